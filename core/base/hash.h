@@ -1,0 +1,16 @@
+#ifndef HN_BASE_HASH_H
+#define HN_BASE_HASH_H
+// A 64-bit hash (FNV-1a with a final mix) for ids and interning. Not for secrets.
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define HN_HASH_START 0xcbf29ce484222325ull
+
+uint64_t hn_hash_bytes(uint64_t hash, const void *bytes, size_t n);
+uint64_t hn_hash_text(uint64_t hash, const char *text);
+uint64_t hn_hash_double(uint64_t hash, double value); ///< -0 and 0 hash alike
+uint64_t hn_hash_mix(uint64_t hash);
+/// 16 lower-case hex digits and a zero.
+void hn_hash_hex(uint64_t hash, char out[17]);
+#endif

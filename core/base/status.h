@@ -1,0 +1,45 @@
+#ifndef HN_BASE_STATUS_H
+#define HN_BASE_STATUS_H
+// What a function that can fail on its data hands back. One list gives the enum, its name and its sentence.
+
+#include <stdlib.h>
+
+/// name, sentence for a person
+#define HN_STATUS_LIST(X)                                                                          \
+    X(HN_OK, "done")                                                                               \
+    X(HN_ERR_MEMORY, "out of memory")                                                              \
+    X(HN_ERR_INPUT, "the input is at fault")                                                       \
+    X(HN_ERR_LIMIT, "a stated limit is exceeded")                                                  \
+    X(HN_ERR_IO, "a file could not be read or written")                                            \
+    X(HN_ERR_SINGULAR, "a matrix is singular beyond repair")                                       \
+    X(HN_ERR_NOT_SPD, "a matrix that must be positive definite is not")                            \
+    X(HN_ERR_INCONSISTENT, "the constraints contradict each other")                                \
+    X(HN_ERR_NO_CONVERGENCE, "an iteration did not converge")                                      \
+    X(HN_ERR_UNREACHABLE, "the loops cannot be closed")                                            \
+    X(HN_ERR_CHART, "the chosen coordinates stopped being valid here")                             \
+    X(HN_ERR_DIVERGED, "the state left every sensible bound or stopped being finite")              \
+    X(HN_ERR_STEP_UNDERFLOW, "the step became too small to make progress")                         \
+    X(HN_ERR_BUDGET, "the budget of steps or time is used up")                                     \
+    X(HN_ERR_UNSUPPORTED, "this combination is not served")                                        \
+    X(HN_ERR_INTERNAL, "the program is at fault")
+
+typedef enum hn_status {
+#define HN_STATUS_ENUM(name, text) name,
+    HN_STATUS_LIST(HN_STATUS_ENUM)
+#undef HN_STATUS_ENUM
+        HN_STATUS_COUNT
+} hn_status;
+
+#define HN_MUST_CHECK __attribute__((warn_unused_result))
+#define HN_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+
+/// A programmer's error (NULL, wrong size, wrong order of calls): active in every build.
+#define HN_ASSERT(cond) ((cond) ? (void)0 : hn_assert_failed(#cond, __FILE__, __LINE__))
+
+_Noreturn void hn_assert_failed(const char *cond, const char *file, int line);
+
+/// "HN_ERR_INPUT" and "the input is at fault"; static text, never NULL.
+const char *hn_status_name(hn_status status);
+const char *hn_status_text(hn_status status);
+
+#endif

@@ -1,0 +1,13 @@
+#ifndef HN_EXPR_PRINT_H
+#define HN_EXPR_PRINT_H
+// Expressions as text that hn_parse() reads back to the same node, as LaTeX, and as C.
+
+#include "base/strbuf.h"
+#include "expr/graph.h"
+
+typedef enum hn_print_form { HN_PRINT_TEXT, HN_PRINT_LATEX, HN_PRINT_C } hn_print_form;
+
+/// Appends e. Numbers with `digits` significant digits (0: as many as read back exactly).
+void hn_print(hn_strbuf *b, const hn_graph *g, hn_ex e, hn_print_form form, int digits);
+
+#endif
