@@ -1,0 +1,63 @@
+#ifndef HN_DYNAMICS_EVAL_H
+#define HN_DYNAMICS_EVAL_H
+// Evaluators: one tape for exactly the terms asked for, and the saddle-point solve behind it.
+
+#include "base/arena.h"
+#include "dynamics/system.h"
+#include "expr/tape.h"
+
+typedef enum hn_term {
+    HN_TERM_M = 1 << 0,      ///< nv x nv row-major
+    HN_TERM_F = 1 << 1,      ///< nv: Q - h
+    HN_TERM_PHI = 1 << 2,    ///< nc
+    HN_TERM_PHI_T = 1 << 3,  ///< nc
+    HN_TERM_J = 1 << 4,      ///< nc x nv row-major
+    HN_TERM_GAMMA = 1 << 5,  ///< nc
+    HN_TERM_ENERGY = 1 << 6, ///< 2: kinetic, potential [J]
+    HN_TERM_POINTS = 1 << 7  ///< 3 n_points [m]
+} hn_term;
+enum { HN_TERM_COUNT = 8 };
+
+typedef struct hn_eval hn_eval;
+
+/// An evaluator of the terms in the mask. Memory from `arena`, the tape owned by the eval (hn_eval_free).
+HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_eval **out);
+void hn_eval_free(hn_eval *e); ///< frees the tape; NULL is legal
+/// Evaluates all its terms; allocates nothing.
+void hn_eval_run(hn_eval *e, double t, const double *q, const double *v);
+/// Where the values of one term stand (borrowed, same place for life). M and J: entries that are identically zero
+/// are set once; only the others are written by a run.
+const double *hn_eval_get(const hn_eval *e, hn_term term);
+hn_tape_info hn_eval_info(const hn_eval *e);
+long long hn_eval_count(const hn_eval *e); ///< runs so far
+
+// --- accelerations and multipliers -------------------------------------------------------------------------
+/// K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],  K = [M J'; J 0]. A sparse symbolic LDL' whose order is
+/// chosen at compile time is part of the tape; its pivots are guarded at run time; when a pivot is lost, or a value is
+/// not finite, the dense rank-revealing solve of linalg/saddle.h with iterative refinement answers instead and says so.
+typedef struct hn_accel hn_accel;
+
+typedef struct hn_accel_opts {
+    int baumgarte;   ///< phi and J v enter, alpha and beta become inputs
+    int want_lambda; ///< leave out what only multipliers need otherwise
+} hn_accel_opts;
+
+typedef struct hn_accel_info {
+    int fallback;        ///< 1: the dense solve answered
+    int rank;            ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
+    double pivot_ratio;  ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    double residual;     ///< dense solve only: max |J a + gamma|
+} hn_accel_info;
+#define HN_PIVOT_GUARD 1e-8
+
+HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena, hn_accel **out);
+void hn_accel_free(hn_accel *s);
+/// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without baumgarte. Fails: HN_ERR_SINGULAR,
+/// HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite); outputs then untouched. Allocates nothing.
+HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                                      double beta, double *a, double *lambda, hn_accel_info *info);
+hn_tape_info hn_accel_tape_info(const hn_accel *s);
+long long hn_accel_count(const hn_accel *s);
+long long hn_accel_fallbacks(const hn_accel *s);
+
+#endif

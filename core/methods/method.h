@@ -1,0 +1,78 @@
+#ifndef HN_METHODS_METHOD_H
+#define HN_METHODS_METHOD_H
+// A formulation: how the constraints enter. It turns a system into an ordinary differential equation y' = F(t, y) that
+// any integrator can step, and may mend the state after a step. One file each, one row in the registry.
+//
+// y = (positions, speeds): n_pos entries, then n_vel. Which positions and speeds these are is the formulation's affair.
+
+#include "base/arena.h"
+#include "base/diag.h"
+#include "dynamics/system.h"
+
+enum { HN_MAX_SETTINGS = 8 };
+
+/// One setting of a formulation or an integrator, as in "alpha=20".
+typedef struct hn_setting_info {
+    const char *key;
+    double initial, min, max;      ///< NaN initial: required
+    const char *unit, *about;
+    const char *const *choices;    ///< named values (0, 1, ...) or NULL; spelled by name
+    int n_choices;
+    int warn_below_zero;           ///< allowed but told ("pushes the loop apart")
+} hn_setting_info;
+
+/// What a formulation did and met, summed over a run; plain counters, reset by the run.
+typedef struct hn_cost {
+    long long evals;          ///< right-hand sides
+    long long factorisations, solves, newton;
+    double ops;               ///< arithmetic operations, tape plus linear algebra
+    long long fallbacks;      ///< dense solves in place of the tape's
+    long long projections;
+    double energy_removed;    ///< by projection [J]
+    long long chart_changes;
+} hn_cost;
+
+typedef struct hn_ode {
+    int n_pos, n_vel;
+    void *self;
+    /// y' at (t, y), (n_pos + n_vel). Fails as the formulation's card says; ydot is then undefined.
+    hn_status (*rhs)(void *self, double t, const double *y, double *ydot);
+    /// only the position part of y' (partitioned integrators call it with new speeds)
+    hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
+} hn_ode;
+
+typedef struct hn_formulation {
+    const char *name;     ///< as spelled: "baumgarte"
+    const char *title;    ///< "Baumgarte stabilisation"
+    const char *short_name; ///< at most 14 characters, for tables and legends
+    const char *rule;     ///< the one idea in at most 35 words
+    const char *drift;    ///< what happens to the gap, in words
+    const char *when, *when_not, *source;
+    const char *needs;    ///< "M f J gamma"
+    int model_error;      ///< 1: converges to something else, on purpose
+    int keeps_gap;        ///< 1: phi stays at rounding level
+    int n_settings;
+    hn_setting_info settings[HN_MAX_SETTINGS];
+
+    /// Makes an instance (from `arena`; what is not from the arena is freed by destroy). `settings` in table order.
+    /// Refuses a scene it cannot serve with a reason in diag (HN_ERR_UNSUPPORTED).
+    hn_status (*create)(const hn_system *sys, const double *settings, hn_arena *arena, void **self, hn_diag *diag);
+    void (*destroy)(void *self);
+    void (*ode)(void *self, hn_ode *out);
+    /// (q, v) -> y, and back; q (nq), v (nv) in system coordinates. set_state may choose a chart.
+    hn_status (*set_state)(void *self, double t, const double *q, const double *v, double *y);
+    hn_status (*get_state)(void *self, double t, const double *y, double *q, double *v);
+    /// Mends y in place at the end of an accepted step. *changed = 1 if y moved or its meaning changed (FSAL, history and
+    /// dense output are then stale). NULL: nothing to do.
+    hn_status (*after_step)(void *self, double t, double *y, int *changed);
+    /// Changes a setting while running (sliders); NULL: not possible.
+    hn_status (*set)(void *self, int setting, double value);
+    void (*add_cost)(const void *self, hn_cost *cost); ///< adds its counters
+    const char *(*why)(const void *self); ///< the reason of the last failure in words, or NULL
+} hn_formulation;
+
+int hn_formulation_count(void);
+const hn_formulation *hn_formulation_at(int i);
+const hn_formulation *hn_formulation_find(const char *name); ///< NULL when unknown
+
+#endif

@@ -1,0 +1,172 @@
+#ifndef HN_SCENE_SCENE_H
+#define HN_SCENE_SCENE_H
+// A scene: a mechanism as a person writes it down, checked. Plain data, owned by the scene's arena and constant
+// after loading. Two kinds: bodies and joints, or a Lagrangian. The compiler (dynamics/) turns either into
+// equations; nothing here knows about trees, loops that were cut, or methods.
+//
+// Body frame: any frame fixed to the body. A joint sits at `parent_at` in the parent's frame and at `child_at`
+// in the child's; `axis` is given in both frames, and `ref` is a direction perpendicular to it in both, which
+// coincide when the coordinate is 0. Ground is body HN_GROUND; its frame is the world: x right, y up, z to the viewer.
+// SI units: m, kg, s, rad, N.
+
+#include "base/arena.h"
+#include "base/diag.h"
+
+#include <stdint.h>
+
+enum { HN_GROUND = -1 };
+enum { HN_SCENE_MAX_BYTES = 4 << 20, HN_SCENE_MAX_BODIES = 2000, HN_SCENE_MAX_JOINTS = 4000, HN_SCENE_MAX_PARAMS = 200 };
+
+/// A number, or a formula in the parameters (then `formula` is its text and `value` its present value). A
+/// formula that depends on the state (loads, Lagrangian, drawn points) has value 0 and `varies` 1.
+typedef struct hn_quantity {
+    double value;
+    const char *formula; ///< NULL for a plain number
+    int varies;
+    const char *pointer; ///< JSON pointer, for messages of later stages; may be NULL for defaults
+} hn_quantity;
+
+typedef struct hn_param {
+    const char *name, *unit, *about; ///< unit "" when dimensionless
+    double value, initial, min, max; ///< initial: as the scene file says
+    int integer;                     ///< must stay whole (numbers of loops, links)
+    int structural;                  ///< changes how many bodies there are
+} hn_param;
+
+typedef struct hn_body {
+    const char *name, *pointer;
+    hn_quantity mass;       ///< [kg] >= 0
+    hn_quantity com[3];     ///< centre of mass in the body frame [m]
+    hn_quantity inertia[6]; ///< xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
+} hn_body;
+
+#define HN_JOINT_TYPE_LIST(X) X(HN_JOINT_REVOLUTE, "revolute") X(HN_JOINT_PRISMATIC, "prismatic")
+typedef enum hn_joint_type {
+#define HN_JOINT_ENUM(code, name) code,
+    HN_JOINT_TYPE_LIST(HN_JOINT_ENUM)
+#undef HN_JOINT_ENUM
+        HN_JOINT_TYPE_COUNT
+} hn_joint_type;
+const char *hn_joint_type_name(hn_joint_type type);
+
+typedef struct hn_joint {
+    const char *name, *pointer;
+    hn_joint_type type;
+    int parent, child; ///< body index or HN_GROUND
+    hn_quantity parent_at[3], child_at[3];
+    double parent_axis[3], child_axis[3]; ///< unit
+    double parent_ref[3], child_ref[3];   ///< unit, perpendicular to the axis
+    int cut;                              ///< asked to close a loop rather than to carry a coordinate
+    int coordinate;                       ///< index into coordinates
+} hn_joint;
+
+typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
+
+/// Every joint has one (a cut joint's follows from the others); a Lagrangian lists its own.
+typedef struct hn_coordinate {
+    const char *name, *rate; ///< th1, w1: as used in formulas; rate defaults to d_<name>
+    hn_unit_kind kind;
+    int joint;               ///< index, or -1 (Lagrangian)
+    int actuated;
+    // start: a pinned value is kept, a guess is where assembly begins
+    double q0, v0;
+    int q0_given, q0_pinned, v0_given, v0_pinned;
+    const char *q0_pointer, *v0_pointer;
+} hn_coordinate;
+
+/// A point fixed to a body, or (body HN_GROUND) a world point whose entries may depend on coordinates in a Lagrangian scene.
+typedef struct hn_point {
+    const char *name; ///< label, or NULL
+    int body;
+    hn_quantity at[3];
+} hn_point;
+
+typedef enum hn_load_kind {
+    HN_LOAD_SPRING,       ///< between points p and q: stiffness [N/m], rest length [m], damping [N s/m]
+    HN_LOAD_JOINT_SPRING, ///< along a coordinate: stiffness, rest value, damping
+    HN_LOAD_COORDINATE,   ///< generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
+    HN_LOAD_FORCE         ///< force `value[3]` in world axes at point p, formula of t, q, v
+} hn_load_kind;
+
+typedef struct hn_load {
+    const char *name, *pointer;
+    hn_load_kind kind;
+    int p, q;           ///< points (spring, force)
+    int coordinate;     ///< (joint spring, coordinate)
+    hn_quantity stiffness, rest, damping;
+    hn_quantity value[3];
+} hn_load;
+
+/// Formulas of a Lagrangian scene in coordinates, rates, t and parameters.
+typedef struct hn_lagrangian {
+    hn_quantity kinetic, potential;
+    int n_constraints;
+    hn_quantity *constraints;
+    const char **constraint_names; ///< "loop x" ...; never NULL
+} hn_lagrangian;
+
+typedef enum hn_shape_kind {
+    HN_SHAPE_BAR,     ///< rounded bar from p to q, width
+    HN_SHAPE_PIVOT,   ///< a pin at p
+    HN_SHAPE_GROUND,  ///< hatched support at p
+    HN_SHAPE_SLIDER,  ///< box at p sliding along the line p..q
+    HN_SHAPE_GUIDE,   ///< the fixed guide through p in direction q - p
+    HN_SHAPE_SPRING,  ///< zigzag from p to q
+    HN_SHAPE_DAMPER,  ///< pot from p to q
+    HN_SHAPE_ARROW,   ///< load at p
+    HN_SHAPE_POLYGON, ///< p, q, r, ... closed (n points from `first`)
+    HN_SHAPE_TRACE    ///< p leaves a trace
+} hn_shape_kind;
+const char *hn_shape_kind_name(hn_shape_kind kind);
+
+typedef struct hn_shape {
+    hn_shape_kind kind;
+    int p, q, n;     ///< point indices; polygon: points p .. p + n - 1
+    double width;    ///< [m], 0: let the drawer choose
+    int body;        ///< body it belongs to (for colouring), HN_GROUND if none
+} hn_shape;
+
+typedef struct hn_scene {
+    hn_arena *arena; ///< owns everything below
+    const char *id, *name, *title, *about, *look_for; ///< id: file name without .json, or the "id" field
+    int is_lagrangian;
+    int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_shapes;
+    hn_param *params;
+    hn_body *bodies;
+    hn_joint *joints;
+    hn_coordinate *coordinates;
+    hn_point *points;
+    hn_load *loads;
+    hn_shape *shapes;   ///< as the scene says, or made from its joints when it says nothing
+    int n_tears;        ///< Lagrangian only: pairs of points that coincide when the loop is closed
+    int (*tears)[2];
+    hn_quantity gravity[3]; ///< acceleration of gravity [m/s^2], world axes; Lagrangian: 0
+    hn_lagrangian lagrangian;
+    double duration, step;  ///< suggested [s]
+    const char *const *methods; ///< suggested method spellings
+    int n_methods;
+    uint64_t hash;          ///< of the normalised text and the present parameter values
+} hn_scene;
+
+/// One changed parameter, as from --set l1=1.2.
+typedef struct hn_setting {
+    const char *name;
+    double value;
+} hn_setting;
+
+/// Reads a scene from JSON text (n bytes, need not be terminated). `settings` override parameters. Every fault that
+/// can be told from the text alone is told (up to HN_DIAG_MAX): syntax with line and column, unknown or missing
+/// fields with a near-miss suggestion, wrong types, units, ranges, names used twice, bodies not connected, inertia that no body has.
+/// Returns owned in *out (hn_scene_free). Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings,
+                                           int n_settings, hn_scene **out, hn_diags *diags);
+/// The same from a file.
+HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings,
+                                           hn_scene **out, hn_diags *diags);
+void hn_scene_free(hn_scene *scene); ///< NULL is legal
+
+int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
+int hn_scene_find_param(const hn_scene *scene, const char *name);
+int hn_scene_find_body(const hn_scene *scene, const char *name); ///< "ground" gives HN_GROUND; unknown: -2
+
+#endif
