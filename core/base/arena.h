@@ -20,6 +20,7 @@ int *hn_arena_ints(hn_arena *arena, size_t n);
 /// A copy of the text; NULL in, NULL out.
 char *hn_arena_strdup(hn_arena *arena, const char *text);
 
-int hn_arena_failed(const hn_arena *arena);      ///< 1 once any request failed: check once after building
-size_t hn_arena_used(const hn_arena *arena);     ///< bytes given out
+int hn_arena_failed(
+    const hn_arena *arena); ///< 1 once any request failed: check once after building
+size_t hn_arena_used(const hn_arena *arena); ///< bytes given out
 #endif

@@ -5,22 +5,22 @@
 #include <stdlib.h>
 
 /// name, sentence for a person
-#define HN_STATUS_LIST(X)                                                                          \
-    X(HN_OK, "done")                                                                               \
-    X(HN_ERR_MEMORY, "out of memory")                                                              \
-    X(HN_ERR_INPUT, "the input is at fault")                                                       \
-    X(HN_ERR_LIMIT, "a stated limit is exceeded")                                                  \
-    X(HN_ERR_IO, "a file could not be read or written")                                            \
-    X(HN_ERR_SINGULAR, "a matrix is singular beyond repair")                                       \
-    X(HN_ERR_NOT_SPD, "a matrix that must be positive definite is not")                            \
-    X(HN_ERR_INCONSISTENT, "the constraints contradict each other")                                \
-    X(HN_ERR_NO_CONVERGENCE, "an iteration did not converge")                                      \
-    X(HN_ERR_UNREACHABLE, "the loops cannot be closed")                                            \
-    X(HN_ERR_CHART, "the chosen coordinates stopped being valid here")                             \
-    X(HN_ERR_DIVERGED, "the state left every sensible bound or stopped being finite")              \
-    X(HN_ERR_STEP_UNDERFLOW, "the step became too small to make progress")                         \
-    X(HN_ERR_BUDGET, "the budget of steps or time is used up")                                     \
-    X(HN_ERR_UNSUPPORTED, "this combination is not served")                                        \
+#define HN_STATUS_LIST(X)                                                             \
+    X(HN_OK, "done")                                                                  \
+    X(HN_ERR_MEMORY, "out of memory")                                                 \
+    X(HN_ERR_INPUT, "the input is at fault")                                          \
+    X(HN_ERR_LIMIT, "a stated limit is exceeded")                                     \
+    X(HN_ERR_IO, "a file could not be read or written")                               \
+    X(HN_ERR_SINGULAR, "a matrix is singular beyond repair")                          \
+    X(HN_ERR_NOT_SPD, "a matrix that must be positive definite is not")               \
+    X(HN_ERR_INCONSISTENT, "the constraints contradict each other")                   \
+    X(HN_ERR_NO_CONVERGENCE, "an iteration did not converge")                         \
+    X(HN_ERR_UNREACHABLE, "the loops cannot be closed")                               \
+    X(HN_ERR_CHART, "the chosen coordinates stopped being valid here")                \
+    X(HN_ERR_DIVERGED, "the state left every sensible bound or stopped being finite") \
+    X(HN_ERR_STEP_UNDERFLOW, "the step became too small to make progress")            \
+    X(HN_ERR_BUDGET, "the budget of steps or time is used up")                        \
+    X(HN_ERR_UNSUPPORTED, "this combination is not served")                           \
     X(HN_ERR_INTERNAL, "the program is at fault")
 
 typedef enum hn_status {

@@ -10,20 +10,21 @@
 #include <stdint.h>
 
 typedef struct hn_strbuf {
-    char *text;   ///< always zero-terminated once anything was written; NULL while empty
-    size_t n;     ///< bytes, without the zero
+    char *text; ///< always zero-terminated once anything was written; NULL while empty
+    size_t n;   ///< bytes, without the zero
     size_t cap;
-    int failed;   ///< memory ran out: everything after that is ignored
-    int depth;    ///< JSON nesting
+    int failed;        ///< memory ran out: everything after that is ignored
+    int depth;         ///< JSON nesting
     uint64_t has_item; ///< bit per depth: a comma is due
     int after_key;
 } hn_strbuf;
 
 void hn_strbuf_init(hn_strbuf *b);
-void hn_strbuf_reset(hn_strbuf *b);            ///< frees the text; the buffer can be used again
-void hn_strbuf_clear(hn_strbuf *b);            ///< keeps the memory, forgets the text
-char *hn_strbuf_take(hn_strbuf *b);            ///< returns owned text (free()), buffer is empty again; NULL if failed
-const char *hn_strbuf_text(const hn_strbuf *b);///< never NULL ("" while empty)
+void hn_strbuf_reset(hn_strbuf *b); ///< frees the text; the buffer can be used again
+void hn_strbuf_clear(hn_strbuf *b); ///< keeps the memory, forgets the text
+char *hn_strbuf_take(
+    hn_strbuf *b); ///< returns owned text (free()), buffer is empty again; NULL if failed
+const char *hn_strbuf_text(const hn_strbuf *b); ///< never NULL ("" while empty)
 void hn_strbuf_add(hn_strbuf *b, const char *text);
 void hn_strbuf_add_n(hn_strbuf *b, const char *bytes, size_t n);
 void hn_strbuf_printf(hn_strbuf *b, const char *format, ...) HN_PRINTF(2, 3);
@@ -40,7 +41,7 @@ void hn_json_bool(hn_strbuf *b, int value);
 void hn_json_null(hn_strbuf *b);
 /// Escaped; NULL becomes null; bytes that are not UTF-8 become U+FFFD.
 void hn_json_string(hn_strbuf *b, const char *text);
-void hn_json_raw(hn_strbuf *b, const char *json); ///< already valid JSON
+void hn_json_raw(hn_strbuf *b, const char *json);                   ///< already valid JSON
 void hn_json_numbers(hn_strbuf *b, const double *values, size_t n); ///< an array
 void hn_json_strings(hn_strbuf *b, const char *const *values, size_t n);
 // key + value in one call

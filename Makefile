@@ -1,0 +1,254 @@
+# holonom: `make` builds, `make run` starts the page, `make test` runs the whole suite, `make help` lists the rest.
+
+.DEFAULT_GOAL := all
+.SUFFIXES:
+.DELETE_ON_ERROR:
+.SECONDARY:
+SHELL := /bin/sh
+
+# V=1 shows the commands
+Q   := $(if $(V),,@)
+say  = $(if $(V),,@echo '$(if $(filter release,$(VARIANT)),,[$(VARIANT)] )$(1)')
+
+PREFIX ?= /usr/local
+PORT   ?= 8080
+
+# ---- layers: each names what it may include, lowest last; tests link the same list ----------------------------
+LAYERS := base linalg expr scene dynamics methods integrators study render session server
+NEEDS_base        :=
+NEEDS_linalg      := base
+NEEDS_expr        := base
+NEEDS_scene       := expr base
+NEEDS_dynamics    := scene expr linalg base
+NEEDS_methods     := dynamics $(NEEDS_dynamics)
+NEEDS_integrators := methods $(NEEDS_methods)
+NEEDS_study       := integrators $(NEEDS_integrators)
+NEEDS_render      := dynamics $(NEEDS_dynamics)
+NEEDS_session     := render study $(NEEDS_study)
+NEEDS_server      := session $(NEEDS_session)
+
+# ---- variants: each has its own folder under build/ -----------------------------------------------------------
+VARIANT ?= release
+CC_release := gcc
+CC_asan    := gcc
+CC_tsan    := gcc
+CC_gcc     := gcc
+CC_clang   := clang
+FLAGS_release := -O2 -g
+FLAGS_asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+FLAGS_tsan    := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+FLAGS_gcc     := -O2 -Werror
+FLAGS_clang   := -O2 -Werror
+
+CC       := $(CC_$(VARIANT))
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-prototypes \
+            -Wmissing-prototypes -Wconversion -Wno-sign-conversion
+# no fast-math and no fused multiply-add: a build must give the same bits everywhere
+CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
+CPPFLAGS := -D_DEFAULT_SOURCE -MMD -MP
+LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lOSMesa -lpng -lm
+WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
+
+OUT     := build/$(VARIANT)
+PROGRAM := $(if $(filter release,$(VARIANT)),build/holonom,$(OUT)/holonom)
+
+# ---- sources, found by folder ---------------------------------------------------------------------------------
+CORE_LAYERS    := $(filter-out server,$(LAYERS))
+SERVER_SOURCES := $(sort $(wildcard server/*.c server/*/*.c))
+MAIN_SOURCE    := server/main.c
+$(foreach l,$(CORE_LAYERS),$(eval SOURCES_$(l) := $(sort $(wildcard core/$(l)/*.c))))
+SOURCES_server := $(filter-out $(MAIN_SOURCE),$(SERVER_SOURCES))
+SUPPORT        := $(sort $(wildcard tests/support/*.c))
+HEADERS        := $(sort $(wildcard core/*/*.h server/*.h server/*/*.h tests/support/*.h))
+UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
+SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
+BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
+ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
+                  $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c))
+
+objects  = $(patsubst %.c,$(OUT)/%.o,$(1))
+archive  = $(OUT)/lib/libhn_$(1).a
+programs = $(patsubst %.c,$(OUT)/%,$(1))
+
+LIBRARY       := $(if $(filter release,$(VARIANT)),build/libholonom.a,$(OUT)/libholonom.a)
+CORE_OBJECTS  := $(foreach l,$(CORE_LAYERS),$(call objects,$(SOURCES_$(l))))
+UNIT          := $(call programs,$(UNIT_SOURCES))
+SLOW          := $(call programs,$(SLOW_SOURCES))
+BENCH         := $(call programs,$(BENCH_SOURCES))
+SCRIPTS       := $(sort $(wildcard tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_*))
+BROWSER       := $(sort $(wildcard tests/browser/test_*))
+
+# ---- building -------------------------------------------------------------------------------------------------
+.PHONY: all programs
+# `make` alone assumes nothing but itself, so the compilers come first
+all: build/.packages-run
+	@$(MAKE) --no-print-directory $(PROGRAM) $(LIBRARY)
+
+$(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(LIBRARY)
+	$(call say,link $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# made anew each time: an archive would keep the object of a source that is gone
+$(LIBRARY): $(CORE_OBJECTS)
+	@mkdir -p $(@D)
+	@rm -f $@
+	@ar rcs $@ $^
+
+define layer_rules
+$(call archive,$(1)): $(call objects,$(SOURCES_$(1)))
+	@mkdir -p $$(@D)
+	@rm -f $$@
+	@ar rcs $$@ $$^
+
+$(OUT)/tests/unit/$(1)/%: $(OUT)/tests/unit/$(1)/%.o $(call archive,support) \
+        $(call archive,$(1)) $(foreach n,$(NEEDS_$(1)),$(call archive,$(n)))
+	$$(call say,link $$@)
+	$$(Q)$$(CC) $$(LDFLAGS) $$(WRAP) -o $$@ $$^ -lcmocka $$(LDLIBS)
+endef
+$(foreach l,$(LAYERS),$(eval $(call layer_rules,$(l))))
+
+$(call archive,support): $(call objects,$(SUPPORT))
+	@mkdir -p $(@D)
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(OUT)/tests/bench/%: $(OUT)/tests/bench/%.o $(LIBRARY)
+	$(call say,link $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(OUT)/tests/%.o: tests/%.c
+	@mkdir -p $(@D)
+	$(call say,compile $<)
+	$(Q)$(CC) $(CFLAGS) $(CPPFLAGS) -Icore -Iserver -Itests -c -o $@ $<
+
+$(OUT)/%.o: %.c
+	@mkdir -p $(@D)
+	$(call say,compile $<)
+	$(Q)$(CC) $(CFLAGS) $(CPPFLAGS) -Icore $(if $(filter server/%,$<),-Iserver) -c -o $@ $<
+
+-include $(patsubst %.c,$(OUT)/%.d,$(ALL_C))
+
+programs: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW) $(BENCH)
+
+# ---- what a bare Debian machine lacks -------------------------------------------------------------------------
+RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libosmesa6-dev libpng-dev \
+                 node:nodejs npm:npm
+TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 chromium:chromium
+CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
+
+build/.packages-run: Makefile
+	@.ci/packages.sh $@ $(RUN_PACKAGES)
+build/.packages-test: Makefile
+	@.ci/packages.sh $@ $(TEST_PACKAGES)
+build/.packages-check: Makefile
+	@.ci/packages.sh $@ $(CHECK_PACKAGES)
+
+# the libraries of the page and of its test; `vendor` in package.json copies what the page loads
+%/node_modules/.installed: %/package.json %/package-lock.json
+	@echo "holonom: installing the npm packages of $*/"
+	@cd $* && PUPPETEER_SKIP_DOWNLOAD=1 PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 \
+	    npm ci --silent --no-audit --no-fund && npm run --silent --if-present vendor
+	@touch $@
+
+WEB_READY     := $(patsubst %/package.json,%/node_modules/.installed,$(wildcard web/package.json))
+BROWSER_READY := $(patsubst %/package.json,%/node_modules/.installed,$(wildcard tests/browser/package.json))
+
+# ---- using ----------------------------------------------------------------------------------------------------
+.PHONY: run install clean help
+run: all
+	@$(if $(WEB_READY),$(MAKE) --no-print-directory $(WEB_READY))
+	@build/holonom serve --port $(PORT) | while IFS= read -r line; do \
+	    printf '%s\n' "$$line"; \
+	    address=$$(printf '%s\n' "$$line" | sed -n 's|.*\(http://[^ ]*\).*|\1|p'); \
+	    if [ -n "$$address$$opened" ] && [ -z "$$opened" ]; then \
+	        opened=1; \
+	        if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] && command -v xdg-open >/dev/null 2>&1; then \
+	            xdg-open "$$address" >/dev/null 2>&1 & \
+	        fi; \
+	    fi; \
+	done
+
+install: all
+	@$(if $(WEB_READY),$(MAKE) --no-print-directory $(WEB_READY))
+	install -D -m 755 build/holonom $(DESTDIR)$(PREFIX)/bin/holonom
+	install -D -m 644 build/libholonom.a $(DESTDIR)$(PREFIX)/lib/libholonom.a
+	@for f in $$(find core -name '*.h'); do \
+	    install -D -m 644 $$f $(DESTDIR)$(PREFIX)/include/holonom/$${f#core/} || exit 1; done
+	@for f in $$(find web lessons core -path '*/node_modules' -prune -o -type f \
+	    ! -name '*.[ch]' ! -name 'package*.json' -print 2>/dev/null); do \
+	    install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/holonom/$$f || exit 1; done
+
+clean:
+	rm -rf build
+
+help:
+	@echo 'make              build build/holonom and build/libholonom.a'
+	@echo 'make run          install what is missing, build, start the page (PORT=8080)'
+	@echo 'make test         install what is missing, build, run the whole suite'
+	@echo 'make test-quick   the unit tests alone, under 10 seconds once built'
+	@echo 'make asan         all unit tests under the address and undefined-behaviour sanitisers'
+	@echo 'make tsan         the tests of the server under the thread sanitiser'
+	@echo 'make bench        time the engine: CSV on standard output'
+	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
+	@echo 'make format       put every C file into the one format'
+	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
+	@echo 'make clean        remove build/'
+
+# ---- testing --------------------------------------------------------------------------------------------------
+.PHONY: test test-quick asan tsan bench run-suite run-unit run-server run-bench
+test: build/.packages-test
+	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) --no-print-directory $(WEB_READY) $(BROWSER_READY))
+	@$(MAKE) --no-print-directory run-suite
+
+test-quick: build/.packages-test
+	@$(MAKE) --no-print-directory run-unit
+
+asan: build/.packages-test
+	@$(MAKE) --no-print-directory VARIANT=asan run-unit
+
+tsan: build/.packages-test
+	@$(MAKE) --no-print-directory VARIANT=tsan run-server
+
+bench: all
+	@$(MAKE) --no-print-directory run-bench
+
+# HOLONOM tells the scripts which program to drive
+run-suite: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW)
+	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(UNIT) $(SLOW) $(SCRIPTS) $(BROWSER)
+
+run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
+	@tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
+
+run-server: $(PROGRAM)
+	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66 \
+	    tests/run-tests.sh $(filter tests/api/%,$(SCRIPTS))
+
+run-bench: $(BENCH)
+	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
+
+# ---- checking -------------------------------------------------------------------------------------------------
+.PHONY: check check-layers check-headers check-format format
+check: build/.packages-check check-layers check-format
+	@$(MAKE) --no-print-directory check-headers
+	@$(MAKE) --no-print-directory VARIANT=gcc programs
+	@$(MAKE) --no-print-directory VARIANT=clang programs
+	@echo 'check: all good'
+
+# awk gets the table above as layer:need,need
+COMMA := ,
+SPACE := $(subst x,,x x)
+check-layers:
+	@awk -v layers='$(foreach l,$(LAYERS),$(l):$(subst $(SPACE),$(COMMA),$(strip $(NEEDS_$(l)))))' \
+	    -f tests/check-layers.awk $(filter-out tests/%,$(ALL_C) $(HEADERS))
+
+check-headers:
+	@for h in $(HEADERS); do \
+	    $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -Icore -Iserver -Itests -fsyntax-only -x c \
+	        -include $$h /dev/null || { echo "$$h does not compile alone"; exit 1; }; done
+
+check-format:
+	@clang-format --dry-run --Werror $(ALL_C) $(HEADERS)
+
+format:
+	@clang-format -i $(ALL_C) $(HEADERS)

@@ -1,0 +1,66 @@
+# Reads #include lines and holds them against the layers: "include what is below you, nothing else".
+# usage: awk -v layers='base: linalg:base expr:base ...' -f check-layers.awk FILES
+# Prints file:line for each fault; exit 1 if there is any.
+
+BEGIN {
+    n = split(layers, entries, " ")
+    for (i = 1; i <= n; i++) {
+        split(entries[i], pair, ":")
+        known[pair[1]] = 1
+        allowed[pair[1], pair[1]] = 1
+        m = split(pair[2], needs, ",")
+        for (j = 1; j <= m; j++) allowed[pair[1], needs[j]] = 1
+    }
+    # a library is seen by these layers alone
+    only["microhttpd"] = " server "
+    only["cjson"] = " scene session server "
+    only["GL"] = " render "
+    only["png"] = " render "
+    only["gsl"] = " linalg integrators study "
+    only["ncurses"] = " server "
+}
+
+function fault(text) {
+    printf "%s:%d: %s\n", FILENAME, FNR, text
+    faults++
+}
+
+function library_of(header) {
+    if (header ~ /^microhttpd/) return "microhttpd"
+    if (header ~ /^cjson\//) return "cjson"
+    if (header ~ /^GL\//) return "GL"
+    if (header ~ /^png/) return "png"
+    if (header ~ /^gsl\//) return "gsl"
+    if (header ~ /^n?curses/) return "ncurses"
+    return ""
+}
+
+FNR == 1 {
+    split(FILENAME, part, "/")
+    layer = part[1] == "core" ? part[2] : part[1]
+    if (!(layer in known)) fault("the layer '" layer "' is not in the table of the Makefile")
+}
+
+/^[ \t]*#[ \t]*include[ \t]*"/ {
+    header = $0
+    sub(/^[^"]*"/, "", header)
+    sub(/".*/, "", header)
+    if (header ~ /\.c$/) fault("includes a source file: " header)
+    split(header, part, "/")
+    target = part[1]
+    # the folders of server/ are one layer
+    if (!(target in known) && layer == "server") next
+    if (!(target in known)) fault("write \"layer/file.h\", not \"" header "\"")
+    else if (!((layer, target) in allowed)) fault(layer " must not include " target ": " header)
+}
+
+/^[ \t]*#[ \t]*include[ \t]*</ {
+    header = $0
+    sub(/^[^<]*</, "", header)
+    sub(/>.*/, "", header)
+    library = library_of(header)
+    if (library != "" && index(only[library], " " layer " ") == 0)
+        fault(layer " must not include <" header ">: only" only[library] "may")
+}
+
+END { exit faults > 0 }
