@@ -76,7 +76,7 @@ CORE_OBJECTS  := $(foreach l,$(CORE_LAYERS),$(call objects,$(SOURCES_$(l))))
 UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
-SCRIPTS       := $(sort $(wildcard tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_*))
+SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
 # ---- building -------------------------------------------------------------------------------------------------
@@ -229,10 +229,11 @@ run-bench: $(BENCH)
 
 # ---- checking -------------------------------------------------------------------------------------------------
 .PHONY: check check-layers check-headers check-format format
-check: build/.packages-check check-layers check-format
+check: build/.packages-check check-layers
 	@$(MAKE) --no-print-directory check-headers
 	@$(MAKE) --no-print-directory VARIANT=gcc programs
 	@$(MAKE) --no-print-directory VARIANT=clang programs
+	@$(MAKE) --no-print-directory check-format
 	@echo 'check: all good'
 
 # awk gets the table above as layer:need,need

@@ -1,0 +1,96 @@
+#!/bin/sh
+# The counting of tests and the check of layers, tried on outputs and sources made for it. Speaks TAP.
+set -u
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+n=0
+bad=0
+
+expect() { # name, expected, actual
+    n=$((n + 1))
+    if [ "$2" = "$3" ]; then
+        echo "ok $n - $1"
+    else
+        echo "not ok $n - $1"
+        echo "# expected '$2', found '$3'"
+        bad=1
+    fi
+}
+
+count() { # exit status; output on standard input
+    awk -v status="$1" -v program=p -f tests/count-tests.awk | head -n 1
+}
+
+expect 'cmocka: passed, failed and skipped are told apart' '1 1' "$(count 1 <<'X'
+[==========] Running 3 test(s).
+[ RUN      ] a
+[       OK ] a
+[ RUN      ] b
+[  ERROR   ] --- 1 != 2
+[   LINE   ] --- x.c:1: error: Failure!
+[  FAILED  ] b
+[ RUN      ] c
+[  SKIPPED ] c
+[==========] 3 test(s) run.
+[  PASSED  ] 1 test(s).
+[  FAILED  ] 1 test(s), listed below:
+[  FAILED  ] b
+X
+)"
+expect 'cmocka: a crash in the middle is a failure, and so are the tests it took along' '1 2' "$(count 139 <<'X'
+[==========] Running 5 test(s).
+[ RUN      ] a
+[       OK ] a
+[ RUN      ] b
+X
+)"
+expect 'TAP: parents of subtests are not counted twice' '2 1' "$(count 1 <<'X'
+TAP version 13
+# Subtest: page
+    # Subtest: plays
+    ok 1 - plays
+    # Subtest: pauses
+    not ok 2 - pauses
+    1..2
+not ok 1 - page
+# Subtest: alone
+ok 2 - alone
+1..2
+X
+)"
+expect 'TAP: planned tests that did not run are a failure' '1 1' "$(printf '1..3\nok 1 - a\n' | count 0)"
+expect 'a program that runs no test fails' '0 1' "$(printf 'hello\n' | count 0)"
+expect 'a bad exit status alone is a failure' '1 1' "$(printf 'ok 1 - a\n1..1\n' | count 3)"
+expect 'a time-out is a failure' '1 1' "$(printf 'ok 1 - a\n' | count 124)"
+
+cat >"$work/crash.sh" <<'X'
+kill -SEGV $$
+X
+expect 'the runner ends with the sum of all programs' '0 passed, 1 failed' \
+    "$(sh tests/run-tests.sh "$work/crash.sh" | tail -n 1)"
+sh tests/run-tests.sh >/dev/null
+expect 'no programs at all is a failure' 1 $?
+
+mkdir -p "$work/core/base" "$work/core/render" "$work/server/http"
+here=$PWD
+layers() { # prints the faults of the files in $work
+    (cd "$work" && awk -v layers='base: expr:base session:expr,base render:base server:session,base' \
+        -f "$here/tests/check-layers.awk" "$@")
+}
+printf '#include "base/a.h"\n#include <math.h>\n' >"$work/core/base/good.c"
+printf '\n#include "expr/graph.h"\n' >"$work/core/base/up.c"
+printf '#include <GL/osmesa.h>\n' >"$work/core/render/gl.c"
+printf '#include "http/x.h"\n#include <GL/gl.h>\n' >"$work/server/http/y.c"
+printf '#include "graph.h"\n' >"$work/core/base/short.c"
+expect 'layers: below and libc are allowed' '' "$(layers core/base/good.c core/render/gl.c)"
+expect 'layers: above is told with file and line' \
+    'core/base/up.c:2: base must not include expr: expr/graph.h' "$(layers core/base/up.c)"
+expect 'layers: a library outside its layer is told' \
+    'server/http/y.c:2: server must not include <GL/gl.h>: only render may' "$(layers server/http/y.c)"
+expect 'layers: a header without its layer is told' \
+    'core/base/short.c:1: write "layer/file.h", not "graph.h"' "$(layers core/base/short.c)"
+layers core/base/up.c >/dev/null
+expect 'layers: a fault is an exit status' 1 $?
+
+echo "1..$n"
+exit $bad
