@@ -24,19 +24,18 @@ function close_open() {
 /^ *(not )?ok +[0-9]+/ {
     match($0, /^ */)
     depth = RLENGTH
+    if (depth == 0) tap_top++
     is_parent = depth < deepest && subtests[depth] > 0
     subtests[depth] = 0
     if (depth > deepest) deepest = depth
     for (d = depth - 1; d >= 0; d--) subtests[d]++
     bad = $0 ~ /^ *not ok/ && $0 !~ /# *(SKIP|TODO)/
-    if (bad) tap_bad++
     if (is_parent) next
     if ($0 ~ /# *SKIP/) skipped++
     else if (bad) fail(program ": " $0)
     else passed++
 }
 /^1\.\.[0-9]+/ { tap_planned = substr($0, 4) + 0; has_plan = 1 }
-/^(not )?ok +[0-9]+/ { tap_top++ }
 /^Bail out!/ { fail(program ": " $0) }
 
 END {
