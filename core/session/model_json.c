@@ -1,0 +1,273 @@
+// The documents that describe a scene: the list of scenes, one scene for a page, its assembly.
+#include "dynamics/eval.h"
+#include "session/caption.h"
+#include "session/model.h"
+#include "study/run.h"
+
+#include <math.h>
+
+/// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene makes it slow.
+enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
+static const double ENVELOPE_SECONDS = 10;
+static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
+
+static void put_params(hn_strbuf *b, const hn_scene *scene)
+{
+    hn_json_key(b, "parameters");
+    hn_json_array(b);
+    for (int i = 0; i < scene->n_params; i++) {
+        const hn_param *p = &scene->params[i];
+        hn_json_object(b);
+        hn_json_put_string(b, "name", p->name);
+        hn_json_put_string(b, "unit", p->unit);
+        hn_json_put_string(b, "about", p->about);
+        hn_json_put_number(b, "value", p->value);
+        hn_json_put_number(b, "initial", p->initial);
+        hn_json_put_number(b, "min", p->min);
+        hn_json_put_number(b, "max", p->max);
+        hn_json_put_bool(b, "integer", p->integer);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_scene_head(hn_strbuf *b, const hn_model *model)
+{
+    const hn_scene *scene = hn_model_scene(model);
+    char caption[160];
+    hn_model_caption(model, caption, sizeof caption);
+    hn_json_put_string(b, "id", scene->id);
+    hn_json_put_string(b, "title", scene->title);
+    hn_json_put_string(b, "about", scene->about);
+    hn_json_put_string(b, "look_for", scene->look_for);
+    hn_json_put_string(b, "kind", scene->is_lagrangian ? "Lagrangian" : "bodies and joints");
+    hn_json_put_string(b, "caption", caption);
+    hn_json_put_int(b, "freedoms", hn_model_assembly(model)->freedoms);
+    put_params(b, scene);
+}
+
+static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id)
+{
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_model_source source = {.name = id, .allow_open = 1};
+    hn_json_object(b);
+    if (hn_model_load(lib, &source, &model, &diags) == HN_OK) {
+        put_scene_head(b, model);
+    } else {
+        hn_json_put_string(b, "id", id);
+        hn_json_key(b, "errors");
+        hn_json_diags(b, &diags);
+    }
+    hn_json_end_object(b);
+    hn_model_free(model);
+}
+
+void hn_scenes_json(hn_strbuf *b, const hn_library *lib)
+{
+    hn_json_object(b);
+    hn_json_key(b, "scenes");
+    hn_json_array(b);
+    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
+        put_one_scene(b, lib, hn_library_scene_id(lib, i));
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
+static const char *kind_name(hn_unit_kind kind)
+{
+    return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
+}
+
+/// Coordinates that carry freedom, with the assembled start in user coordinates.
+static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *uq, const double *uv)
+{
+    const hn_scene *scene = hn_model_scene(model);
+    int n = hn_system_get_info(hn_model_system(model)).n_user;
+    hn_json_key(b, "coordinates");
+    hn_json_array(b);
+    for (int i = 0; i < n; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
+        hn_json_object(b);
+        hn_json_put_string(b, "name", c->name);
+        hn_json_put_string(b, "rate", c->rate);
+        hn_json_put_string(b, "kind", kind_name(c->kind));
+        hn_json_put_string(b, "joint", c->joint >= 0 ? scene->joints[c->joint].name : NULL);
+        hn_json_put_bool(b, "actuated", c->actuated);
+        hn_json_put_bool(b, "pinned", c->q0_pinned);
+        hn_json_put_number(b, "value", uq[i]);
+        hn_json_put_number(b, "rate_value", uv[i]);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_rows(hn_strbuf *b, const hn_system *sys)
+{
+    hn_json_key(b, "rows");
+    hn_json_array(b);
+    for (int i = 0; i < hn_system_get_info(sys).nc; i++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "name", hn_system_row_name(sys, i));
+        hn_json_put_string(b, "loop", hn_system_loop_name(sys, hn_system_row_loop(sys, i)));
+        hn_json_put_string(b, "unit", hn_system_row_is_length(sys, i) ? "m" : "1");
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_sizes(hn_strbuf *b, const hn_model *model)
+{
+    hn_system_info info = hn_system_get_info(hn_model_system(model));
+    const hn_assembly *a = hn_model_assembly(model);
+    hn_json_put_int(b, "n", info.nv);
+    hn_json_put_int(b, "m", info.nc);
+    hn_json_put_int(b, "rank", a->rank);
+    hn_json_put_int(b, "redundant", a->redundant);
+    hn_json_put_int(b, "loops", info.n_loops);
+    hn_json_put_number(b, "length", hn_system_length(hn_model_system(model)));
+}
+
+static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a)
+{
+    hn_json_put_bool(b, "ok", a->ok);
+    hn_json_put_string(b, "route", a->route);
+    hn_json_put_int(b, "iterations", a->iterations);
+    hn_json_put_number(b, "gap_before", a->gap_before);
+    hn_json_put_number(b, "gap", a->gap);
+    hn_json_put_number(b, "moved", a->moved);
+    hn_json_put_number(b, "velocity_gap_before", a->velocity_gap_before);
+    hn_json_put_number(b, "velocity_gap", a->velocity_gap);
+    hn_json_put_int(b, "rank", a->rank);
+    hn_json_put_int(b, "freedoms", a->freedoms);
+    hn_json_put_int(b, "redundant", a->redundant);
+    hn_json_put_number(b, "sigma_min", a->sigma_min);
+    hn_json_put_number(b, "sigma_max", a->sigma_max);
+    hn_json_put_int(b, "mode", a->mode);
+    hn_json_put_string(b, "mode_name", a->mode_name);
+    hn_json_put_number(b, "energy", a->energy);
+}
+
+/// Box around every point that moves or stands, from points (3 n).
+static void grow_box(double box[4], const double *points, int n)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < 2; k++) {
+            double x = points[3 * i + k];
+            if (isfinite(x)) {
+                box[k] = fmin(box[k], x);
+                box[2 + k] = fmax(box[2 + k], x);
+            }
+        }
+    }
+}
+
+/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
+static void grow_box_by_motion(double box[4], const hn_model *model)
+{
+    hn_system_info info = hn_system_get_info(hn_model_system(model));
+    hn_method_spec spec;
+    hn_run *run = NULL;
+    hn_run_opts opts = hn_run_opts_default();
+    opts.max_steps = ENVELOPE_MAX_STEPS;
+    if (!hn_model_assembly(model)->ok || info.nc > ENVELOPE_MAX_ROWS ||
+        hn_method_parse(ENVELOPE_METHOD, &spec, NULL) != HN_OK ||
+        hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts, &run, NULL) != HN_OK) {
+        return;
+    }
+    hn_run_watch(run, 0);
+    double end = fmin(ENVELOPE_SECONDS, hn_model_scene(model)->duration);
+    for (int k = 1; k <= ENVELOPE_SAMPLES; k++) {
+        double t = end * k / ENVELOPE_SAMPLES;
+        hn_sample sample;
+        if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
+            break;
+        }
+        grow_box(box, sample.points, info.n_points);
+    }
+    hn_run_free(run);
+}
+
+/// World points at the start and the box around the motion: [xmin, ymin, xmax, ymax].
+static void put_points(hn_strbuf *b, const hn_model *model)
+{
+    int n = hn_system_get_info(hn_model_system(model)).n_points;
+    hn_arena *arena = hn_arena_create(0);
+    hn_eval *eval = NULL;
+    if (arena && hn_eval_create(hn_model_system(model), HN_TERM_POINTS, arena, &eval) == HN_OK) {
+        hn_eval_run(eval, 0, hn_model_q(model), hn_model_v(model));
+        const double *points = hn_eval_get(eval, HN_TERM_POINTS);
+        double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+        grow_box(box, points, n);
+        grow_box_by_motion(box, model);
+        hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
+        if (n > 0) {
+            hn_json_put_numbers(b, "envelope", box, 4);
+        }
+    } else {
+        b->failed = 1;
+    }
+    hn_eval_free(eval);
+    hn_arena_free(arena);
+}
+
+/// The start in user coordinates; NULL when memory is out.
+static double *user_start(const hn_model *model, hn_arena *arena)
+{
+    const hn_system *sys = hn_model_system(model);
+    hn_system_info info = hn_system_get_info(sys);
+    double *u = arena ? hn_arena_doubles(arena, 2 * (size_t)info.n_user + 1) : NULL;
+    if (u) {
+        hn_system_to_user(sys, hn_model_q(model), u);
+        hn_system_rates_to_user(sys, hn_model_v(model), u + info.n_user);
+    }
+    return u;
+}
+
+void hn_model_json(hn_strbuf *b, const hn_model *model)
+{
+    const hn_scene *scene = hn_model_scene(model);
+    hn_arena *arena = hn_arena_create(0);
+    double *u = user_start(model, arena);
+    if (!u) {
+        hn_arena_free(arena);
+        b->failed = 1;
+        return;
+    }
+    hn_json_object(b);
+    put_scene_head(b, model);
+    put_sizes(b, model);
+    put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
+    put_rows(b, hn_model_system(model));
+    hn_json_key(b, "assembly");
+    hn_json_object(b);
+    put_assembly_fields(b, hn_model_assembly(model));
+    hn_json_end_object(b);
+    hn_json_key(b, "drawing");
+    hn_drawing_json(b, hn_model_system(model));
+    put_points(b, model);
+    hn_json_key(b, "methods");
+    hn_json_strings(b, scene->methods, (size_t)scene->n_methods);
+    hn_json_put_number(b, "duration", scene->duration);
+    hn_json_put_number(b, "step", scene->step);
+    hn_json_end_object(b);
+    hn_arena_free(arena);
+}
+
+void hn_model_assembly_json(hn_strbuf *b, const hn_model *model)
+{
+    hn_arena *arena = hn_arena_create(0);
+    double *u = user_start(model, arena);
+    if (!u) {
+        hn_arena_free(arena);
+        b->failed = 1;
+        return;
+    }
+    hn_json_object(b);
+    hn_json_put_string(b, "scene", hn_model_scene(model)->id);
+    put_assembly_fields(b, hn_model_assembly(model));
+    put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
+    hn_json_end_object(b);
+    hn_arena_free(arena);
+}

@@ -1,0 +1,303 @@
+// One run with its output: the object of `holonom run --json`.
+#include "session/comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DEFAULT_SAMPLES = 200, STEPS_BETWEEN_QUESTIONS = 512, LARGEST_TABLE = 1 << 25 }; // doubles of one table: 256 MiB
+
+/// Samples gathered row by row before they are written as columns.
+typedef struct table {
+    hn_arena *arena;
+    int n_user, nc;
+    long long n, cap;
+    double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
+} table;
+
+static hn_status table_create(table *tab, const hn_system *sys, long long cap, hn_diags *diags)
+{
+    hn_system_info info = hn_system_get_info(sys);
+    *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
+    double width = 4 + 2.0 * info.n_user + info.nc;
+    if (width * (double)cap > LARGEST_TABLE) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
+                            "%lld samples of %g numbers are more than one answer may hold (%d numbers)", cap, width,
+                            LARGEST_TABLE);
+    }
+    tab->arena = hn_arena_create(0);
+    if (!tab->arena) {
+        return HN_ERR_MEMORY;
+    }
+    size_t n = (size_t)cap;
+    tab->t = hn_arena_doubles(tab->arena, n);
+    tab->q = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
+    tab->v = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
+    tab->lambda = hn_arena_doubles(tab->arena, n * (size_t)info.nc);
+    tab->gap = hn_arena_doubles(tab->arena, n);
+    tab->velocity_gap = hn_arena_doubles(tab->arena, n);
+    tab->energy = hn_arena_doubles(tab->arena, n);
+    return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+static void table_add(table *tab, const hn_sample *s)
+{
+    size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
+    tab->t[k] = s->t;
+    memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
+    memcpy(tab->v + k * nq, s->v, nq * sizeof(double));
+    if (nc > 0) {
+        memcpy(tab->lambda + k * nc, s->lambda, nc * sizeof(double));
+    }
+    tab->gap[k] = s->gap;
+    tab->velocity_gap[k] = s->velocity_gap;
+    tab->energy[k] = s->energy;
+}
+
+/// Output times, one after the other.
+typedef struct schedule {
+    const hn_run_request *request;
+    double every;
+    long long n;
+} schedule;
+
+static double schedule_time(const schedule *s, long long k)
+{
+    if (s->request->at) {
+        return s->request->at[k];
+    }
+    return k == s->n - 1 ? s->request->time : (double)k * s->every;
+}
+
+static hn_status check_at(const hn_run_request *r, hn_diags *diags)
+{
+    for (int i = 0; i < r->n_at; i++) {
+        double before = i ? r->at[i - 1] : 0;
+        if (!(r->at[i] >= before) || !isfinite(r->at[i])) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
+                                "output time %d is %g; times must be finite, ascending and not before 0", i + 1,
+                                r->at[i]);
+        }
+        if (r->at[i] > r->time * (1 + 1e-12)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL, "output time %g s lies after the end, %g s", r->at[i],
+                                r->time);
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags)
+{
+    if (!(r->time > 0) || !(r->time <= 1e7)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL, "the end time is %g s; it must be above 0 and at most 1e7 s",
+                            r->time);
+    }
+    if (!(r->every >= 0) || !isfinite(r->every)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL, "the output interval is %g s; it must be above 0", r->every);
+    }
+    *s = (schedule){.request = r, .every = r->every > 0 ? r->every : r->time / DEFAULT_SAMPLES};
+    double n = r->at ? r->n_at : floor(r->time / s->every * (1 + 1e-12)) + 1;
+    if (!r->at && (n - 1) * s->every < r->time * (1 - 1e-9)) {
+        n += 1; // the end is always told
+    }
+    long long allowed = r->max_samples > 0 ? r->max_samples : 1000000;
+    if (n > (double)allowed) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every", "ask for fewer output times",
+                            "%.0f samples were asked for; at most %lld are given", n, allowed);
+    }
+    s->n = (long long)n;
+    return r->at ? check_at(r, diags) : HN_OK;
+}
+
+/// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
+static hn_status step_to(hn_run *run, double t, const hn_run_request *r)
+{
+    for (int n = 1; hn_run_time(run) < t * (1 - 1e-14); n++) {
+        hn_status status = hn_run_step(run);
+        if (status != HN_OK) {
+            return status;
+        }
+        if (n % STEPS_BETWEEN_QUESTIONS == 0) {
+            n = 0;
+            if (r->progress && !r->progress(r->user, hn_run_time(run) / r->time)) {
+                return HN_ERR_BUDGET;
+            }
+        }
+    }
+    return HN_OK;
+}
+
+/// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
+static hn_status take_sample(hn_run *run, double h, double t, const hn_run_request *r, table *tab)
+{
+    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, r);
+    hn_sample sample;
+    if (status == HN_OK) {
+        status = hn_run_sample(run, t, &sample);
+    }
+    if (status == HN_OK) {
+        table_add(tab, &sample);
+    }
+    return status;
+}
+
+static double fixed_step(const hn_method_spec *spec)
+{
+    for (int i = 0; i < spec->stepper->n_settings && !spec->stepper->adaptive; i++) {
+        if (strcmp(spec->stepper->settings[i].key, "h") == 0) {
+            return spec->stepper_set[i];
+        }
+    }
+    return 0;
+}
+
+/// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
+static hn_status record(hn_run *run, const schedule *s, table *tab)
+{
+    double h = fixed_step(hn_run_spec(run));
+    hn_status status = HN_OK;
+    for (long long k = 0; k < s->n && status == HN_OK; k++) {
+        status = take_sample(run, h, schedule_time(s, k), s->request, tab);
+    }
+    hn_sample last;
+    double t = hn_run_time(run);
+    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
+        hn_run_sample(run, t, &last) == HN_OK) {
+        table_add(tab, &last);
+    }
+    return status;
+}
+
+static void put_rows(hn_strbuf *b, const char *key, const double *values, long long n, int width)
+{
+    hn_json_key(b, key);
+    hn_json_array(b);
+    for (long long k = 0; k < n; k++) {
+        hn_json_numbers(b, values + k * width, (size_t)width);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_samples(hn_strbuf *b, const table *tab)
+{
+    hn_json_key(b, "samples");
+    hn_json_object(b);
+    hn_json_put_numbers(b, "t", tab->t, (size_t)tab->n);
+    put_rows(b, "q", tab->q, tab->n, tab->n_user);
+    put_rows(b, "v", tab->v, tab->n, tab->n_user);
+    put_rows(b, "lambda", tab->lambda, tab->n, tab->nc);
+    hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
+    hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
+    hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
+    hn_json_end_object(b);
+}
+
+static void put_names(hn_strbuf *b, const hn_model *model)
+{
+    const hn_system *sys = hn_model_system(model);
+    const hn_scene *scene = hn_model_scene(model);
+    hn_system_info info = hn_system_get_info(sys);
+    static const char *const keys[] = {"coordinates", "rates"};
+    for (int which = 0; which < 2; which++) {
+        hn_json_key(b, keys[which]);
+        hn_json_array(b);
+        for (int i = 0; i < info.n_user; i++) {
+            const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i)];
+            hn_json_string(b, which ? c->rate : c->name);
+        }
+        hn_json_end_array(b);
+    }
+    hn_json_key(b, "rows");
+    hn_json_array(b);
+    for (int i = 0; i < info.nc; i++) {
+        hn_json_string(b, hn_system_row_name(sys, i));
+    }
+    hn_json_end_array(b);
+}
+
+static void put_run_cost(hn_strbuf *b, const hn_run_summary *s)
+{
+    hn_json_key(b, "cost");
+    hn_json_object(b);
+    hn_json_put_number(b, "cpu_seconds", s->cpu_seconds);
+    hn_json_put_int(b, "evaluations", s->cost.evals);
+    hn_json_put_number(b, "operations", s->cost.ops);
+    hn_json_put_int(b, "steps", s->steps);
+    hn_json_put_int(b, "rejected", s->rejected);
+    hn_json_put_int(b, "factorisations", s->cost.factorisations);
+    hn_json_put_int(b, "solves", s->cost.solves);
+    hn_json_put_int(b, "newton", s->cost.newton);
+    hn_json_put_int(b, "projections", s->cost.projections);
+    hn_json_put_int(b, "fallbacks", s->cost.fallbacks);
+    hn_json_put_number(b, "energy_removed", s->cost.energy_removed);
+    hn_json_end_object(b);
+}
+
+static void put_run_incidents(hn_strbuf *b, const hn_run *run)
+{
+    const hn_incident *list;
+    int n = hn_run_incidents(run, &list);
+    hn_json_key(b, "incidents");
+    hn_json_array(b);
+    for (int i = 0; i < n; i++) {
+        hn_incident_json(b, -1, &list[i]);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_status ended, const table *tab)
+{
+    hn_run_summary s = hn_run_get_summary(run);
+    char spelling[HN_SPEC_MAX];
+    hn_method_format(hn_run_spec(run), spelling);
+    hn_json_object(b);
+    hn_json_put_string(b, "scene", hn_model_scene(model)->id);
+    hn_json_put_string(b, "method", spelling);
+    hn_json_put_string(b, "status", hn_status_name(ended));
+    hn_json_put_string(b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? "stopped on request" : s.reason);
+    hn_json_put_number(b, "t_reached", s.t);
+    put_names(b, model);
+    put_samples(b, tab);
+    hn_json_put_number(b, "worst_gap", s.worst_gap);
+    hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
+    hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
+    put_run_incidents(b, run);
+    put_run_cost(b, &s);
+    hn_json_end_object(b);
+}
+
+hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request, hn_status *ended,
+                            hn_diags *diags)
+{
+    hn_diag diag = {0};
+    hn_method_spec spec;
+    schedule times;
+    table tab = {0};
+    hn_run *run = NULL;
+    hn_status status = hn_method_parse(request->method, &spec, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+    }
+    status = make_schedule(request, &times, diags);
+    if (status == HN_OK) {
+        hn_run_opts opts = hn_run_opts_default();
+        if (request->max_steps > 0) {
+            opts.max_steps = request->max_steps;
+        }
+        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts, &run, &diag);
+        if (status != HN_OK) {
+            hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+        }
+    }
+    if (status == HN_OK) {
+        status = table_create(&tab, hn_model_system(model), times.n + 1, diags);
+    }
+    if (status == HN_OK) {
+        *ended = record(run, &times, &tab);
+        put_run(b, model, run, *ended, &tab);
+        status = b->failed ? HN_ERR_MEMORY : HN_OK;
+    }
+    hn_arena_free(tab.arena);
+    hn_run_free(run);
+    return status;
+}
