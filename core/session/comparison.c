@@ -12,10 +12,10 @@ static const double SHORTEST_FRAME = 1.0 / 60; // [s]
 /// One method of the comparison.
 typedef struct entry {
     hn_run *run;
-    double h;           ///< fixed step [s], 0 for an adaptive method
-    int slot;           ///< colour and dash, see render/look.h
+    double h; ///< fixed step [s], 0 for an adaptive method
+    int slot; ///< colour and dash, see render/look.h
     int incidents_told;
-    int over_budget;    ///< stopped by the comparison because one frame cost too much
+    int over_budget; ///< stopped by the comparison because one frame cost too much
 } entry;
 
 struct hn_comparison {
@@ -26,14 +26,12 @@ struct hn_comparison {
     long long frame;
 };
 
-hn_comparison_opts hn_comparison_opts_default(void)
-{
+hn_comparison_opts hn_comparison_opts_default(void) {
     return (hn_comparison_opts){.cpu_budget = 5};
 }
 
 /// The value of a setting by its key, or `otherwise` when the integrator has none of that name.
-static double stepper_setting(const hn_method_spec *spec, const char *key, double otherwise)
-{
+static double stepper_setting(const hn_method_spec *spec, const char *key, double otherwise) {
     for (int i = 0; i < spec->stepper->n_settings; i++) {
         if (strcmp(spec->stepper->settings[i].key, key) == 0) {
             return spec->stepper_set[i];
@@ -43,8 +41,7 @@ static double stepper_setting(const hn_method_spec *spec, const char *key, doubl
 }
 
 /// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when two methods share it.
-static int choose_slot(const hn_comparison *c, const hn_formulation *formulation)
-{
+static int choose_slot(const hn_comparison *c, const hn_formulation *formulation) {
     int wanted = 0;
     while (wanted < hn_formulation_count() && hn_formulation_at(wanted) != formulation) {
         wanted++;
@@ -61,8 +58,8 @@ static int choose_slot(const hn_comparison *c, const hn_formulation *formulation
     return wanted % N_SLOTS;
 }
 
-static hn_status add_method(hn_comparison *c, const char *text, const hn_comparison_opts *opts, hn_diags *diags)
-{
+static hn_status add_method(hn_comparison *c, const char *text, const hn_comparison_opts *opts,
+                            hn_diags *diags) {
     char pointer[32];
     snprintf(pointer, sizeof pointer, "/methods/%d", c->n);
     hn_diag diag = {0};
@@ -73,8 +70,8 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
         if (opts->max_steps > 0) {
             run_opts.max_steps = opts->max_steps;
         }
-        status = hn_run_create(hn_model_system(c->model), &spec, hn_model_q(c->model), hn_model_v(c->model),
-                               &run_opts, &c->entries[c->n].run, &diag);
+        status = hn_run_create(hn_model_system(c->model), &spec, hn_model_q(c->model),
+                               hn_model_v(c->model), &run_opts, &c->entries[c->n].run, &diag);
     }
     if (status != HN_OK) {
         return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
@@ -87,8 +84,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
 }
 
 /// A whole number of the largest fixed step, at least a sixtieth of a second.
-static double choose_frame_dt(const hn_comparison *c)
-{
+static double choose_frame_dt(const hn_comparison *c) {
     double h = 0;
     for (int i = 0; i < c->n; i++) {
         h = fmax(h, c->entries[i].h);
@@ -96,26 +92,27 @@ static double choose_frame_dt(const hn_comparison *c)
     return h > 0 ? h * fmax(1, ceil(SHORTEST_FRAME / h - 1e-9)) : SHORTEST_FRAME;
 }
 
-static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_diags *diags)
-{
+static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_diags *diags) {
     if (n_methods < 1 || n_methods > HN_COMPARISON_MAX_METHODS) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/methods", "name one method, such as projection@rk4:h=1e-3",
-                            "%d methods were given; 1 to %d are allowed", n_methods, HN_COMPARISON_MAX_METHODS);
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/methods", "name one method, such as projection@rk4:h=1e-3",
+            "%d methods were given; 1 to %d are allowed", n_methods, HN_COMPARISON_MAX_METHODS);
     }
-    if (!(opts->frame_dt >= 0) || !isfinite(opts->frame_dt) || (opts->frame_dt > 0 && opts->frame_dt < 1e-6)) {
+    if (!(opts->frame_dt >= 0) || !isfinite(opts->frame_dt) ||
+        (opts->frame_dt > 0 && opts->frame_dt < 1e-6)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/frame_dt", "leave it out to have it chosen",
                             "frame_dt is %g s; it must be at least 1e-6 s", opts->frame_dt);
     }
     if (!(opts->duration >= 0) || !(opts->duration <= 1e6)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/duration", NULL, "the duration is %g s; 0 to 1e6 s are allowed",
-                            opts->duration);
+        return hn_diags_add(diags, HN_ERR_INPUT, "/duration", NULL,
+                            "the duration is %g s; 0 to 1e6 s are allowed", opts->duration);
     }
     return HN_OK;
 }
 
 hn_status hn_comparison_create(const hn_model *model, const char *const *methods, int n_methods,
-                               const hn_comparison_opts *opts, hn_comparison **out, hn_diags *diags)
-{
+                               const hn_comparison_opts *opts, hn_comparison **out,
+                               hn_diags *diags) {
     hn_comparison_opts chosen = opts ? *opts : hn_comparison_opts_default();
     hn_status status = check_opts(&chosen, n_methods, diags);
     if (status != HN_OK) {
@@ -135,13 +132,13 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
     }
     c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
     c->duration = chosen.duration > 0 ? chosen.duration : hn_model_scene(model)->duration;
-    c->cpu_budget = chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
+    c->cpu_budget =
+        chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
     *out = c;
     return HN_OK;
 }
 
-void hn_comparison_free(hn_comparison *c)
-{
+void hn_comparison_free(hn_comparison *c) {
     if (c) {
         for (int i = 0; i < c->n; i++) {
             hn_run_free(c->entries[i].run);
@@ -150,38 +147,31 @@ void hn_comparison_free(hn_comparison *c)
     }
 }
 
-int hn_comparison_n_methods(const hn_comparison *c)
-{
+int hn_comparison_n_methods(const hn_comparison *c) {
     return c->n;
 }
 
-double hn_comparison_frame_dt(const hn_comparison *c)
-{
+double hn_comparison_frame_dt(const hn_comparison *c) {
     return c->frame_dt;
 }
 
-double hn_comparison_duration(const hn_comparison *c)
-{
+double hn_comparison_duration(const hn_comparison *c) {
     return c->duration;
 }
 
-long long hn_comparison_frame(const hn_comparison *c)
-{
+long long hn_comparison_frame(const hn_comparison *c) {
     return c->frame;
 }
 
-const hn_run *hn_comparison_run(const hn_comparison *c, int method)
-{
+const hn_run *hn_comparison_run(const hn_comparison *c, int method) {
     return c->entries[method].run;
 }
 
-static int is_live(const entry *e)
-{
+static int is_live(const entry *e) {
     return !e->over_budget && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
 }
 
-int hn_comparison_finished(const hn_comparison *c)
-{
+int hn_comparison_finished(const hn_comparison *c) {
     if ((double)c->frame * c->frame_dt >= c->duration * (1 - 1e-12)) {
         return 1;
     }
@@ -194,23 +184,22 @@ int hn_comparison_finished(const hn_comparison *c)
 }
 
 /// Steps one method to the last point of its own grid at or before t (fixed step), or past t (adaptive).
-static void advance_entry(hn_comparison *c, entry *e, double t)
-{
+static void advance_entry(hn_comparison *c, entry *e, double t) {
     double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
     double cpu = hn_run_get_summary(e->run).cpu_seconds;
     for (long long n = 1; hn_run_time(e->run) < target * (1 - 1e-14); n++) {
         if (hn_run_step(e->run) != HN_OK) {
             return;
         }
-        if (n % STEPS_BETWEEN_CLOCKS == 0 && hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
+        if (n % STEPS_BETWEEN_CLOCKS == 0 &&
+            hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
             e->over_budget = 1;
             return;
         }
     }
 }
 
-void hn_comparison_next(hn_comparison *c)
-{
+void hn_comparison_next(hn_comparison *c) {
     c->frame++;
     for (int i = 0; i < c->n; i++) {
         if (is_live(&c->entries[i])) {
@@ -219,19 +208,19 @@ void hn_comparison_next(hn_comparison *c)
     }
 }
 
-void hn_comparison_reset(hn_comparison *c)
-{
+void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
     for (int i = 0; i < c->n; i++) {
         c->entries[i].incidents_told = 0;
         c->entries[i].over_budget = 0;
-        hn_run_reset(c->entries[i].run); // a run that cannot be set back stays failed, and its summary says why
+        hn_run_reset(
+            c->entries[i]
+                .run); // a run that cannot be set back stays failed, and its summary says why
     }
 }
 
 /// 1 if the formulation of this method has the setting.
-static int has_setting(const hn_run *run, const char *key)
-{
+static int has_setting(const hn_run *run, const char *key) {
     const hn_formulation *f = hn_run_spec(run)->formulation;
     for (int i = 0; i < f->n_settings; i++) {
         if (strcmp(f->settings[i].key, key) == 0) {
@@ -241,11 +230,11 @@ static int has_setting(const hn_run *run, const char *key)
     return 0;
 }
 
-hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, double value, hn_diag *diag)
-{
+hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, double value,
+                            hn_diag *diag) {
     if (method < -1 || method >= c->n) {
-        return hn_diag_set(diag, HN_ERR_INPUT, "/set/method", NULL, "method %d was named; -1 to %d are allowed", method,
-                           c->n - 1);
+        return hn_diag_set(diag, HN_ERR_INPUT, "/set/method", NULL,
+                           "method %d was named; -1 to %d are allowed", method, c->n - 1);
     }
     int served = 0;
     for (int i = 0; i < c->n; i++) {
@@ -264,8 +253,7 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
     return HN_OK;
 }
 
-int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out)
-{
+int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out) {
     entry *e = &c->entries[method];
     double t = (double)c->frame * c->frame_dt;
     if (is_live(e) && hn_run_sample(e->run, t, out) == HN_OK) {
@@ -279,17 +267,18 @@ int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out)
 }
 
 /// "running", "finished", "failed": as a person would say it of this method now.
-static const char *state_name(const hn_comparison *c, const entry *e)
-{
+static const char *state_name(const hn_comparison *c, const entry *e) {
     return !is_live(e) ? "failed" : hn_comparison_finished(c) ? "finished" : "running";
 }
 
-static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e, const hn_run_summary *s)
-{
+static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
+                       const hn_run_summary *s) {
     if (e->over_budget) {
         char text[160];
-        snprintf(text, sizeof text, "one frame took more than %g s of computing; take a larger step or a shorter frame",
-                 c->cpu_budget);
+        snprintf(
+            text, sizeof text,
+            "one frame took more than %g s of computing; take a larger step or a shorter frame",
+            c->cpu_budget);
         hn_json_put_string(b, "status", hn_status_name(HN_ERR_BUDGET));
         hn_json_put_string(b, "reason", text);
     } else {
@@ -298,8 +287,7 @@ static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e, con
     }
 }
 
-static void put_cost(hn_strbuf *b, const hn_run_summary *s)
-{
+static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_put_int(b, "steps", s->steps);
     hn_json_put_int(b, "rejected", s->rejected);
     hn_json_put_int(b, "evals", s->cost.evals);
@@ -310,8 +298,7 @@ static void put_cost(hn_strbuf *b, const hn_run_summary *s)
     hn_json_put_number(b, "worst_energy_change", s->worst_energy_change);
 }
 
-static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample)
-{
+static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample) {
     hn_system_info info = hn_system_get_info(hn_model_system(c->model));
     hn_json_put_number(b, "t", sample->t);
     if (!sample->q) {
@@ -327,8 +314,7 @@ static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sa
     hn_json_put_int(b, "rank", sample->rank);
 }
 
-void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident)
-{
+void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     hn_json_object(b);
     if (method >= 0) {
         hn_json_put_int(b, "method", method);
@@ -349,8 +335,7 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident)
 }
 
 /// All incidents, or only those not told yet.
-static void put_incidents(hn_strbuf *b, const hn_comparison *c, int only_new)
-{
+static void put_incidents(hn_strbuf *b, const hn_comparison *c, int only_new) {
     hn_json_key(b, "incidents");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
@@ -363,16 +348,14 @@ static void put_incidents(hn_strbuf *b, const hn_comparison *c, int only_new)
     hn_json_end_array(b);
 }
 
-static void mark_incidents_told(hn_comparison *c)
-{
+static void mark_incidents_told(hn_comparison *c) {
     for (int i = 0; i < c->n; i++) {
         const hn_incident *list;
         c->entries[i].incidents_told = hn_run_incidents(c->entries[i].run, &list);
     }
 }
 
-void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c)
-{
+void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_int(b, "frame", c->frame);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
@@ -396,8 +379,7 @@ void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c)
     hn_json_end_object(b);
 }
 
-void hn_comparison_json(hn_strbuf *b, const hn_comparison *c)
-{
+void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_number(b, "frame_dt", c->frame_dt);
     hn_json_put_number(b, "duration", c->duration);
@@ -421,8 +403,7 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c)
     hn_json_end_object(b);
 }
 
-void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c)
-{
+void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(c->model)->id);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);

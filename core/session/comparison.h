@@ -13,27 +13,32 @@ enum { HN_COMPARISON_MAX_METHODS = 8 };
 typedef struct hn_comparison hn_comparison;
 
 typedef struct hn_comparison_opts {
-    double frame_dt;     ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s
-    double duration;     ///< [s]; 0: the scene's
-    double cpu_budget;   ///< seconds of stepping allowed for one frame of one method; beyond it the method is stopped with HN_ERR_BUDGET; 0: 5
+    double frame_dt; ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s
+    double duration; ///< [s]; 0: the scene's
+    double
+        cpu_budget; ///< seconds of stepping allowed for one frame of one method; beyond it the method is stopped with HN_ERR_BUDGET; 0: 5
     long long max_steps; ///< per method
 } hn_comparison_opts;
 hn_comparison_opts hn_comparison_opts_default(void);
 
 /// The model must outlive the comparison. A spelling that is at fault, or a method the scene cannot serve, is told in diags (pointer "/methods/2").
-HN_MUST_CHECK hn_status hn_comparison_create(const hn_model *model, const char *const *methods, int n_methods,
-                                             const hn_comparison_opts *opts, hn_comparison **out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_comparison_create(const hn_model *model, const char *const *methods,
+                                             int n_methods, const hn_comparison_opts *opts,
+                                             hn_comparison **out, hn_diags *diags);
 void hn_comparison_free(hn_comparison *c);
 int hn_comparison_n_methods(const hn_comparison *c);
 double hn_comparison_frame_dt(const hn_comparison *c);
 double hn_comparison_duration(const hn_comparison *c);
-long long hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
-int hn_comparison_finished(const hn_comparison *c);    ///< the clock reached the duration, or every method failed
+long long
+hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
+int hn_comparison_finished(
+    const hn_comparison *c); ///< the clock reached the duration, or every method failed
 /// Advances every method to the next frame. Failures of single methods are not an error of the comparison.
 void hn_comparison_next(hn_comparison *c);
 void hn_comparison_reset(hn_comparison *c);
 /// Changes "alpha" ... of one method (-1: all that have the key) while running.
-HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, double value, hn_diag *diag);
+HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
+                                          double value, hn_diag *diag);
 const hn_run *hn_comparison_run(const hn_comparison *c, int method);
 /// The sample of a method at the present frame; 0 when the method has failed (then it is its last good one).
 int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out);
@@ -50,11 +55,11 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
 // one run with output, for `holonom run` and POST /runs -----------------------------------------------------------
 typedef struct hn_run_request {
     const char *method;
-    double time;             ///< end [s]
-    const double *at;        ///< output times, ascending; NULL: `every`
+    double time;      ///< end [s]
+    const double *at; ///< output times, ascending; NULL: `every`
     int n_at;
-    double every;            ///< 0: 200 samples
-    long long max_samples;   ///< bound
+    double every;          ///< 0: 200 samples
+    long long max_samples; ///< bound
     long long max_steps;
     /// called now and then with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
@@ -63,6 +68,7 @@ typedef struct hn_run_request {
 
 /// The object of `run --json`: scene, method, status, reason, t_reached, coordinates, samples as columns, incidents, cost. *status says how the run
 /// ended (HN_OK or why it ended early). Returns not HN_OK only when the request itself is at fault.
-HN_MUST_CHECK hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request,
-                                          hn_status *ended, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model,
+                                          const hn_run_request *request, hn_status *ended,
+                                          hn_diags *diags);
 #endif

@@ -19,8 +19,7 @@ typedef struct term {
 
 enum { N_TERMS = 5 };
 
-static void list_terms(const hn_system *sys, term out[N_TERMS])
-{
+static void list_terms(const hn_system *sys, term out[N_TERMS]) {
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
     const term list[N_TERMS] = {
@@ -33,14 +32,12 @@ static void list_terms(const hn_system *sys, term out[N_TERMS])
     memcpy(out, list, sizeof list);
 }
 
-static const char *symbol_name(const hn_system *sys, int symbol)
-{
+static const char *symbol_name(const hn_system *sys, int symbol) {
     return hn_graph_symbol_name(hn_system_graph(sys), symbol);
 }
 
 /// "th2 = q2 - q1" for each scene coordinate that is not a system coordinate itself.
-static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *unit, double *image)
-{
+static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *unit, double *image) {
     hn_system_info info = hn_system_get_info(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     int first = 1;
@@ -62,15 +59,13 @@ static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *un
 }
 
 /// 1 if the entry is told: not zero, and for a symmetric matrix not above the diagonal.
-static int is_told(const term *m, int i, int j)
-{
+static int is_told(const term *m, int i, int j) {
     return !(m->symmetric && j > i) && !hn_is_zero(m->cols ? m->e[i * m->cols + j] : m->e[i]);
 }
 
 typedef void (*entry_writer)(hn_strbuf *b, hn_graph *g, const term *m, int i, int j);
 
-static void write_text(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
-{
+static void write_text(hn_strbuf *b, hn_graph *g, const term *m, int i, int j) {
     if (m->cols) {
         hn_strbuf_printf(b, "%s[%d][%d] = ", m->name, i + 1, j + 1);
     } else {
@@ -80,17 +75,16 @@ static void write_text(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
     hn_strbuf_add(b, "\n");
 }
 
-static void put_latex_name(hn_strbuf *b, const term *m, int i, int j)
-{
+static void put_latex_name(hn_strbuf *b, const term *m, int i, int j) {
     if (m->cols) {
-        hn_strbuf_printf(b, "%s_{%d%s%d}", m->latex, i + 1, m->cols > 9 || m->rows > 9 ? "," : "", j + 1);
+        hn_strbuf_printf(b, "%s_{%d%s%d}", m->latex, i + 1, m->cols > 9 || m->rows > 9 ? "," : "",
+                         j + 1);
     } else {
         hn_strbuf_printf(b, "%s_{%d}", m->latex, i + 1);
     }
 }
 
-static void write_latex(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
-{
+static void write_latex(hn_strbuf *b, hn_graph *g, const term *m, int i, int j) {
     hn_strbuf_add(b, "  ");
     put_latex_name(b, m, i, j);
     hn_strbuf_add(b, " &= ");
@@ -98,8 +92,7 @@ static void write_latex(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
     hn_strbuf_add(b, " \\\\\n");
 }
 
-static void write_json(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
-{
+static void write_json(hn_strbuf *b, hn_graph *g, const term *m, int i, int j) {
     hn_ex e = m->cols ? m->e[i * m->cols + j] : m->e[i];
     hn_strbuf piece;
     hn_strbuf_init(&piece);
@@ -122,8 +115,7 @@ static void write_json(hn_strbuf *b, hn_graph *g, const term *m, int i, int j)
     hn_strbuf_reset(&piece);
 }
 
-static void write_entries(hn_strbuf *b, hn_graph *g, const term *m, entry_writer write)
-{
+static void write_entries(hn_strbuf *b, hn_graph *g, const term *m, entry_writer write) {
     for (int i = 0; i < m->rows; i++) {
         for (int j = 0; j < (m->cols ? m->cols : 1); j++) {
             if (is_told(m, i, j) && b->n < LARGEST_TEXT) {
@@ -133,8 +125,7 @@ static void write_entries(hn_strbuf *b, hn_graph *g, const term *m, entry_writer
     }
 }
 
-static int count_entries(const term *m)
-{
+static int count_entries(const term *m) {
     int n = 0;
     for (int i = 0; i < m->rows; i++) {
         for (int j = 0; j < (m->cols ? m->cols : 1); j++) {
@@ -145,11 +136,12 @@ static int count_entries(const term *m)
 }
 
 static const char *const SYSTEM_TEXT = "M a = f + J' lambda\nJ a + gamma = 0\nphi = 0\n";
-static const char *const SYSTEM_LATEX = "\\[ M\\,a = f + J^{\\mathsf T}\\lambda, \\qquad J\\,a + \\gamma = 0, \\qquad "
-                                        "\\varphi = 0 \\]\n";
+static const char *const SYSTEM_LATEX =
+    "\\[ M\\,a = f + J^{\\mathsf T}\\lambda, \\qquad J\\,a + \\gamma = 0, \\qquad "
+    "\\varphi = 0 \\]\n";
 
-static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit, double *image)
-{
+static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit,
+                     double *image) {
     const hn_scene *scene = hn_system_scene(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
@@ -165,14 +157,16 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
         hn_strbuf_add(b, "\n");
     }
     for (int k = 0; k < N_TERMS; k++) {
-        hn_strbuf_printf(b, "\n%s (%s; entries not listed are zero)\n", terms[k].name, terms[k].meaning);
+        hn_strbuf_printf(b, "\n%s (%s; entries not listed are zero)\n", terms[k].name,
+                         terms[k].meaning);
         write_entries(b, hn_system_graph(sys), &terms[k], write_text);
     }
 }
 
-static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms)
-{
-    hn_strbuf_printf(b, "%% %s\n%s", hn_system_scene(sys)->title ? hn_system_scene(sys)->title : hn_system_scene(sys)->id,
+static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms) {
+    hn_strbuf_printf(b, "%% %s\n%s",
+                     hn_system_scene(sys)->title ? hn_system_scene(sys)->title
+                                                 : hn_system_scene(sys)->id,
                      SYSTEM_LATEX);
     for (int k = 0; k < N_TERMS; k++) {
         if (count_entries(&terms[k]) > 0) {
@@ -183,8 +177,8 @@ static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms)
     }
 }
 
-static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit, double *image)
-{
+static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit,
+                     double *image) {
     const hn_scene *scene = hn_system_scene(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
@@ -232,8 +226,8 @@ static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, doub
     hn_json_end_object(b);
 }
 
-hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_form form, hn_diags *diags)
-{
+hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_form form,
+                             hn_diags *diags) {
     hn_system *sys = NULL;
     hn_system_opts opts = hn_system_opts_default();
     opts.symbolic_params = 1;
@@ -257,8 +251,8 @@ hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_fo
         put_json(b, sys, terms, unit, image);
     }
     if (status == HN_OK && b->n >= LARGEST_TEXT) {
-        status = hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "take a smaller scene", "the equations are longer than %d bytes",
-                              LARGEST_TEXT);
+        status = hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "take a smaller scene",
+                              "the equations are longer than %d bytes", LARGEST_TEXT);
     }
     hn_arena_free(arena);
     hn_system_free(sys);

@@ -22,22 +22,19 @@ struct hn_library {
     shelf scenes, problems;
 };
 
-static int is_folder(const char *path)
-{
+static int is_folder(const char *path) {
     struct stat st;
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
 }
 
 /// Joins two parts; 0 if the result would not fit.
-static int join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name)
-{
+static int join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name) {
     int n = snprintf(out, MAX_PATH_CHARS, "%s/%s", folder, name);
     return n > 0 && n < MAX_PATH_CHARS;
 }
 
 /// The folder of the running program, without a trailing slash; 0 if it cannot be told.
-static int program_folder(char out[MAX_PATH_CHARS])
-{
+static int program_folder(char out[MAX_PATH_CHARS]) {
     ssize_t n = readlink("/proc/self/exe", out, MAX_PATH_CHARS - 1);
     if (n <= 0) {
         return 0;
@@ -51,23 +48,20 @@ static int program_folder(char out[MAX_PATH_CHARS])
     return 1;
 }
 
-static int is_home(const char *folder)
-{
+static int is_home(const char *folder) {
     char path[MAX_PATH_CHARS];
-    return join_path(path, folder, "lessons") && is_folder(path) && join_path(path, folder, "web") &&
-           is_folder(path);
+    return join_path(path, folder, "lessons") && is_folder(path) &&
+           join_path(path, folder, "web") && is_folder(path);
 }
 
 /// Keeps a list of the places tried, for the message.
-static void note_place(char *tried, size_t size, const char *folder)
-{
+static void note_place(char *tried, size_t size, const char *folder) {
     size_t used = strlen(tried);
     snprintf(tried + used, size - used, "%s%s", used ? ", " : "", folder);
 }
 
 /// The folder that holds lessons/ and web/; 0 when there is none.
-static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, size_t n_tried)
-{
+static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, size_t n_tried) {
     static const char *const beside[] = {"..", "../..", "../share/holonom"};
     const char *named = home ? home : getenv("HOLONOM_HOME");
     if (named && *named) {
@@ -99,11 +93,11 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
 }
 
 /// Puts one file on the shelf at its place in the order of ids; a second file of the same id is left out.
-static void shelve(hn_library *lib, shelf *s, const char *folder, const char *file)
-{
+static void shelve(hn_library *lib, shelf *s, const char *folder, const char *file) {
     size_t n = strlen(file);
     char path[MAX_PATH_CHARS];
-    if (n < 6 || strcmp(file + n - 5, ".json") != 0 || s->n == MAX_ENTRIES || !join_path(path, folder, file)) {
+    if (n < 6 || strcmp(file + n - 5, ".json") != 0 || s->n == MAX_ENTRIES ||
+        !join_path(path, folder, file)) {
         return;
     }
     char id[256];
@@ -122,8 +116,7 @@ static void shelve(hn_library *lib, shelf *s, const char *folder, const char *fi
     s->n++;
 }
 
-static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char *kind)
-{
+static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char *kind) {
     char folder[MAX_PATH_CHARS];
     if (!join_path(folder, lesson, kind)) {
         return;
@@ -140,11 +133,11 @@ static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char
     closedir(dir);
 }
 
-static hn_status read_lessons(hn_library *lib, hn_diag *diag)
-{
+static hn_status read_lessons(hn_library *lib, hn_diag *diag) {
     DIR *dir = opendir(lib->lessons);
     if (!dir) {
-        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read", lib->lessons);
+        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read",
+                           lib->lessons);
     }
     for (struct dirent *e = readdir(dir); e; e = readdir(dir)) {
         char lesson[MAX_PATH_CHARS];
@@ -157,11 +150,11 @@ static hn_status read_lessons(hn_library *lib, hn_diag *diag)
     return HN_OK;
 }
 
-hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag)
-{
+hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
     char folder[MAX_PATH_CHARS] = "", tried[2 * MAX_PATH_CHARS] = "", path[MAX_PATH_CHARS];
     if (!find_home(home, folder, tried, sizeof tried)) {
-        return hn_diag_set(diag, HN_ERR_IO, NULL, "set HOLONOM_HOME to the folder that holds lessons/ and web/",
+        return hn_diag_set(diag, HN_ERR_IO, NULL,
+                           "set HOLONOM_HOME to the folder that holds lessons/ and web/",
                            "no folder with lessons/ and web/ was found; tried: %.300s", tried);
     }
     hn_arena *arena = hn_arena_create(1 << 14);
@@ -189,25 +182,21 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag)
     return HN_OK;
 }
 
-void hn_library_free(hn_library *lib)
-{
+void hn_library_free(hn_library *lib) {
     if (lib) {
         hn_arena_free(lib->arena);
     }
 }
 
-const char *hn_library_web(const hn_library *lib)
-{
+const char *hn_library_web(const hn_library *lib) {
     return lib->web;
 }
 
-const char *hn_library_lessons(const hn_library *lib)
-{
+const char *hn_library_lessons(const hn_library *lib) {
     return lib->lessons;
 }
 
-static const char *find_path(const shelf *s, const char *id)
-{
+static const char *find_path(const shelf *s, const char *id) {
     for (int i = 0; i < s->n; i++) {
         if (strcmp(s->ids[i], id) == 0) {
             return s->paths[i];
@@ -216,37 +205,30 @@ static const char *find_path(const shelf *s, const char *id)
     return NULL;
 }
 
-int hn_library_n_scenes(const hn_library *lib)
-{
+int hn_library_n_scenes(const hn_library *lib) {
     return lib->scenes.n;
 }
 
-const char *hn_library_scene_id(const hn_library *lib, int i)
-{
+const char *hn_library_scene_id(const hn_library *lib, int i) {
     return lib->scenes.ids[i];
 }
 
-const char *hn_library_scene_path(const hn_library *lib, const char *id)
-{
+const char *hn_library_scene_path(const hn_library *lib, const char *id) {
     return find_path(&lib->scenes, id);
 }
 
-const char *const *hn_library_scene_ids(const hn_library *lib)
-{
+const char *const *hn_library_scene_ids(const hn_library *lib) {
     return lib->scenes.ids;
 }
 
-const char *hn_library_problem_path(const hn_library *lib, const char *id)
-{
+const char *hn_library_problem_path(const hn_library *lib, const char *id) {
     return find_path(&lib->problems, id);
 }
 
-int hn_library_n_problems(const hn_library *lib)
-{
+int hn_library_n_problems(const hn_library *lib) {
     return lib->problems.n;
 }
 
-const char *hn_library_problem_id(const hn_library *lib, int i)
-{
+const char *hn_library_problem_id(const hn_library *lib, int i) {
     return lib->problems.ids[i];
 }

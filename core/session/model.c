@@ -11,21 +11,24 @@ struct hn_model {
     hn_assembly assembly;
 };
 
-static hn_status load_shipped(const hn_library *lib, const hn_model_source *source, hn_scene **scene, hn_diags *diags)
-{
+static hn_status load_shipped(const hn_library *lib, const hn_model_source *source,
+                              hn_scene **scene, hn_diags *diags) {
     const char *path = hn_library_scene_path(lib, source->name);
     if (!path) {
-        const char *near = hn_nearest_name(source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib));
+        const char *near =
+            hn_nearest_name(source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib));
         char hint[HN_DIAG_HINT];
-        snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom list scenes' names them all%s",
+        snprintf(hint, sizeof hint,
+                 near ? "did you mean '%s'?" : "'holonom list scenes' names them all%s",
                  near ? near : "");
-        return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint, "no shipped scene is called '%.80s'", source->name);
+        return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint,
+                            "no shipped scene is called '%.80s'", source->name);
     }
     return hn_scene_load_file(path, source->settings, source->n_settings, scene, diags);
 }
 
-static hn_status load_scene(const hn_library *lib, const hn_model_source *source, hn_scene **scene, hn_diags *diags)
-{
+static hn_status load_scene(const hn_library *lib, const hn_model_source *source, hn_scene **scene,
+                            hn_diags *diags) {
     HN_ASSERT((source->name != NULL) + (source->path != NULL) + (source->text != NULL) == 1);
     if (source->name) {
         return load_shipped(lib, source, scene, diags);
@@ -33,25 +36,26 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
     if (source->path) {
         return hn_scene_load_file(source->path, source->settings, source->n_settings, scene, diags);
     }
-    return hn_scene_load_json(source->text, source->n_text, NULL, source->settings, source->n_settings, scene, diags);
+    return hn_scene_load_json(source->text, source->n_text, NULL, source->settings,
+                              source->n_settings, scene, diags);
 }
 
 /// Consistent starting values; an open loop is an error unless the caller wants to look at it.
-static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags)
-{
+static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(model->system);
     model->q = hn_arena_doubles(model->arena, (size_t)info.nq);
     model->v = hn_arena_doubles(model->arena, (size_t)info.nv);
     if (hn_arena_failed(model->arena)) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, diags);
+    hn_status status =
+        hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, diags);
     int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
     return open && allow_open ? HN_OK : status;
 }
 
-hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out, hn_diags *diags)
-{
+hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out,
+                        hn_diags *diags) {
     hn_arena *arena = hn_arena_create(0);
     hn_model *model = arena ? hn_arena_get(arena, sizeof *model) : NULL;
     if (!model) {
@@ -74,8 +78,7 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     return HN_OK;
 }
 
-void hn_model_free(hn_model *model)
-{
+void hn_model_free(hn_model *model) {
     if (model) {
         hn_system_free(model->system);
         hn_scene_free(model->scene);
@@ -83,27 +86,22 @@ void hn_model_free(hn_model *model)
     }
 }
 
-const hn_scene *hn_model_scene(const hn_model *model)
-{
+const hn_scene *hn_model_scene(const hn_model *model) {
     return model->scene;
 }
 
-const hn_system *hn_model_system(const hn_model *model)
-{
+const hn_system *hn_model_system(const hn_model *model) {
     return model->system;
 }
 
-const hn_assembly *hn_model_assembly(const hn_model *model)
-{
+const hn_assembly *hn_model_assembly(const hn_model *model) {
     return &model->assembly;
 }
 
-const double *hn_model_q(const hn_model *model)
-{
+const double *hn_model_q(const hn_model *model) {
     return model->q;
 }
 
-const double *hn_model_v(const hn_model *model)
-{
+const double *hn_model_v(const hn_model *model) {
     return model->v;
 }

@@ -22,7 +22,8 @@ typedef struct hn_model_source {
     int allow_open; ///< 1: a scene that cannot be assembled is still a model (for inspect); its report says why
 } hn_model_source;
 
-HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_source *source,
+                                      hn_model **out, hn_diags *diags);
 void hn_model_free(hn_model *model);
 const hn_scene *hn_model_scene(const hn_model *model);
 const hn_system *hn_model_system(const hn_model *model);
@@ -47,10 +48,16 @@ HN_MUST_CHECK hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *mode
 /// assembly report as JSON, with user coordinates
 void hn_model_assembly_json(hn_strbuf *b, const hn_model *model);
 /// M, h, f, J, gamma, phi, K, acceleration, lambda, energies at one state, in user coordinates, with ranks and sigma; "rows" and "columns" named.
-HN_MUST_CHECK hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t, const hn_state_entry *entries,
-                                            int n_entries, hn_diags *diags);
-typedef enum hn_equation_form { HN_EQUATIONS_TEXT, HN_EQUATIONS_LATEX, HN_EQUATIONS_JSON } hn_equation_form;
+HN_MUST_CHECK hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
+                                            const hn_state_entry *entries, int n_entries,
+                                            hn_diags *diags);
+typedef enum hn_equation_form {
+    HN_EQUATIONS_TEXT,
+    HN_EQUATIONS_LATEX,
+    HN_EQUATIONS_JSON
+} hn_equation_form;
 /// The equations of motion with parameters as symbols.
-HN_MUST_CHECK hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_form form, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_model_equations(hn_strbuf *b, const hn_model *model,
+                                           hn_equation_form form, hn_diags *diags);
 
 #endif

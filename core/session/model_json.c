@@ -11,8 +11,7 @@ enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 12
 static const double ENVELOPE_SECONDS = 10;
 static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
-static void put_params(hn_strbuf *b, const hn_scene *scene)
-{
+static void put_params(hn_strbuf *b, const hn_scene *scene) {
     hn_json_key(b, "parameters");
     hn_json_array(b);
     for (int i = 0; i < scene->n_params; i++) {
@@ -31,8 +30,7 @@ static void put_params(hn_strbuf *b, const hn_scene *scene)
     hn_json_end_array(b);
 }
 
-static void put_scene_head(hn_strbuf *b, const hn_model *model)
-{
+static void put_scene_head(hn_strbuf *b, const hn_model *model) {
     const hn_scene *scene = hn_model_scene(model);
     char caption[160];
     hn_model_caption(model, caption, sizeof caption);
@@ -46,8 +44,7 @@ static void put_scene_head(hn_strbuf *b, const hn_model *model)
     put_params(b, scene);
 }
 
-static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id)
-{
+static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     hn_model_source source = {.name = id, .allow_open = 1};
@@ -63,8 +60,7 @@ static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id)
     hn_model_free(model);
 }
 
-void hn_scenes_json(hn_strbuf *b, const hn_library *lib)
-{
+void hn_scenes_json(hn_strbuf *b, const hn_library *lib) {
     hn_json_object(b);
     hn_json_key(b, "scenes");
     hn_json_array(b);
@@ -75,20 +71,20 @@ void hn_scenes_json(hn_strbuf *b, const hn_library *lib)
     hn_json_end_object(b);
 }
 
-static const char *kind_name(hn_unit_kind kind)
-{
+static const char *kind_name(hn_unit_kind kind) {
     return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
 }
 
 /// Coordinates that carry freedom, with the assembled start in user coordinates.
-static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *uq, const double *uv)
-{
+static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *uq,
+                            const double *uv) {
     const hn_scene *scene = hn_model_scene(model);
     int n = hn_system_get_info(hn_model_system(model)).n_user;
     hn_json_key(b, "coordinates");
     hn_json_array(b);
     for (int i = 0; i < n; i++) {
-        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
+        const hn_coordinate *c =
+            &scene->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
         hn_json_object(b);
         hn_json_put_string(b, "name", c->name);
         hn_json_put_string(b, "rate", c->rate);
@@ -103,8 +99,7 @@ static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *u
     hn_json_end_array(b);
 }
 
-static void put_rows(hn_strbuf *b, const hn_system *sys)
-{
+static void put_rows(hn_strbuf *b, const hn_system *sys) {
     hn_json_key(b, "rows");
     hn_json_array(b);
     for (int i = 0; i < hn_system_get_info(sys).nc; i++) {
@@ -117,8 +112,7 @@ static void put_rows(hn_strbuf *b, const hn_system *sys)
     hn_json_end_array(b);
 }
 
-static void put_sizes(hn_strbuf *b, const hn_model *model)
-{
+static void put_sizes(hn_strbuf *b, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     const hn_assembly *a = hn_model_assembly(model);
     hn_json_put_int(b, "n", info.nv);
@@ -129,8 +123,7 @@ static void put_sizes(hn_strbuf *b, const hn_model *model)
     hn_json_put_number(b, "length", hn_system_length(hn_model_system(model)));
 }
 
-static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a)
-{
+static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a) {
     hn_json_put_bool(b, "ok", a->ok);
     hn_json_put_string(b, "route", a->route);
     hn_json_put_int(b, "iterations", a->iterations);
@@ -150,8 +143,7 @@ static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a)
 }
 
 /// Box around every point that moves or stands, from points (3 n).
-static void grow_box(double box[4], const double *points, int n)
-{
+static void grow_box(double box[4], const double *points, int n) {
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < 2; k++) {
             double x = points[3 * i + k];
@@ -164,8 +156,7 @@ static void grow_box(double box[4], const double *points, int n)
 }
 
 /// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
-static void grow_box_by_motion(double box[4], const hn_model *model)
-{
+static void grow_box_by_motion(double box[4], const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
     hn_run *run = NULL;
@@ -173,7 +164,8 @@ static void grow_box_by_motion(double box[4], const hn_model *model)
     opts.max_steps = ENVELOPE_MAX_STEPS;
     if (!hn_model_assembly(model)->ok || info.nc > ENVELOPE_MAX_ROWS ||
         hn_method_parse(ENVELOPE_METHOD, &spec, NULL) != HN_OK ||
-        hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts, &run, NULL) != HN_OK) {
+        hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts,
+                      &run, NULL) != HN_OK) {
         return;
     }
     hn_run_watch(run, 0);
@@ -190,8 +182,7 @@ static void grow_box_by_motion(double box[4], const hn_model *model)
 }
 
 /// World points at the start and the box around the motion: [xmin, ymin, xmax, ymax].
-static void put_points(hn_strbuf *b, const hn_model *model)
-{
+static void put_points(hn_strbuf *b, const hn_model *model) {
     int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     hn_eval *eval = NULL;
@@ -213,8 +204,7 @@ static void put_points(hn_strbuf *b, const hn_model *model)
 }
 
 /// The start in user coordinates; NULL when memory is out.
-static double *user_start(const hn_model *model, hn_arena *arena)
-{
+static double *user_start(const hn_model *model, hn_arena *arena) {
     const hn_system *sys = hn_model_system(model);
     hn_system_info info = hn_system_get_info(sys);
     double *u = arena ? hn_arena_doubles(arena, 2 * (size_t)info.n_user + 1) : NULL;
@@ -225,8 +215,7 @@ static double *user_start(const hn_model *model, hn_arena *arena)
     return u;
 }
 
-void hn_model_json(hn_strbuf *b, const hn_model *model)
-{
+void hn_model_json(hn_strbuf *b, const hn_model *model) {
     const hn_scene *scene = hn_model_scene(model);
     hn_arena *arena = hn_arena_create(0);
     double *u = user_start(model, arena);
@@ -255,8 +244,7 @@ void hn_model_json(hn_strbuf *b, const hn_model *model)
     hn_arena_free(arena);
 }
 
-void hn_model_assembly_json(hn_strbuf *b, const hn_model *model)
-{
+void hn_model_assembly_json(hn_strbuf *b, const hn_model *model) {
     hn_arena *arena = hn_arena_create(0);
     double *u = user_start(model, arena);
     if (!u) {

@@ -5,7 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DEFAULT_SAMPLES = 200, STEPS_BETWEEN_QUESTIONS = 512, LARGEST_TABLE = 1 << 25 }; // doubles of one table: 256 MiB
+enum {
+    DEFAULT_SAMPLES = 200,
+    STEPS_BETWEEN_QUESTIONS = 512,
+    LARGEST_TABLE = 1 << 25
+}; // doubles of one table: 256 MiB
 
 /// Samples gathered row by row before they are written as columns.
 typedef struct table {
@@ -15,15 +19,15 @@ typedef struct table {
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
 } table;
 
-static hn_status table_create(table *tab, const hn_system *sys, long long cap, hn_diags *diags)
-{
+static hn_status table_create(table *tab, const hn_system *sys, long long cap, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
     double width = 4 + 2.0 * info.n_user + info.nc;
     if (width * (double)cap > LARGEST_TABLE) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
-                            "%lld samples of %g numbers are more than one answer may hold (%d numbers)", cap, width,
-                            LARGEST_TABLE);
+        return hn_diags_add(
+            diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
+            "%lld samples of %g numbers are more than one answer may hold (%d numbers)", cap, width,
+            LARGEST_TABLE);
     }
     tab->arena = hn_arena_create(0);
     if (!tab->arena) {
@@ -40,8 +44,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, h
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-static void table_add(table *tab, const hn_sample *s)
-{
+static void table_add(table *tab, const hn_sample *s) {
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
     memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
@@ -61,39 +64,38 @@ typedef struct schedule {
     long long n;
 } schedule;
 
-static double schedule_time(const schedule *s, long long k)
-{
+static double schedule_time(const schedule *s, long long k) {
     if (s->request->at) {
         return s->request->at[k];
     }
     return k == s->n - 1 ? s->request->time : (double)k * s->every;
 }
 
-static hn_status check_at(const hn_run_request *r, hn_diags *diags)
-{
+static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
     for (int i = 0; i < r->n_at; i++) {
         double before = i ? r->at[i - 1] : 0;
         if (!(r->at[i] >= before) || !isfinite(r->at[i])) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
-                                "output time %d is %g; times must be finite, ascending and not before 0", i + 1,
-                                r->at[i]);
+            return hn_diags_add(
+                diags, HN_ERR_INPUT, "/at", NULL,
+                "output time %d is %g; times must be finite, ascending and not before 0", i + 1,
+                r->at[i]);
         }
         if (r->at[i] > r->time * (1 + 1e-12)) {
-            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL, "output time %g s lies after the end, %g s", r->at[i],
-                                r->time);
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
+                                "output time %g s lies after the end, %g s", r->at[i], r->time);
         }
     }
     return HN_OK;
 }
 
-static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags)
-{
+static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags) {
     if (!(r->time > 0) || !(r->time <= 1e7)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL, "the end time is %g s; it must be above 0 and at most 1e7 s",
-                            r->time);
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
+                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
     }
     if (!(r->every >= 0) || !isfinite(r->every)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL, "the output interval is %g s; it must be above 0", r->every);
+        return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
+                            "the output interval is %g s; it must be above 0", r->every);
     }
     *s = (schedule){.request = r, .every = r->every > 0 ? r->every : r->time / DEFAULT_SAMPLES};
     double n = r->at ? r->n_at : floor(r->time / s->every * (1 + 1e-12)) + 1;
@@ -102,7 +104,8 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     }
     long long allowed = r->max_samples > 0 ? r->max_samples : 1000000;
     if (n > (double)allowed) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every", "ask for fewer output times",
+        return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every",
+                            "ask for fewer output times",
                             "%.0f samples were asked for; at most %lld are given", n, allowed);
     }
     s->n = (long long)n;
@@ -110,8 +113,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
 }
 
 /// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
-static hn_status step_to(hn_run *run, double t, const hn_run_request *r)
-{
+static hn_status step_to(hn_run *run, double t, const hn_run_request *r) {
     for (int n = 1; hn_run_time(run) < t * (1 - 1e-14); n++) {
         hn_status status = hn_run_step(run);
         if (status != HN_OK) {
@@ -128,8 +130,7 @@ static hn_status step_to(hn_run *run, double t, const hn_run_request *r)
 }
 
 /// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
-static hn_status take_sample(hn_run *run, double h, double t, const hn_run_request *r, table *tab)
-{
+static hn_status take_sample(hn_run *run, double h, double t, const hn_run_request *r, table *tab) {
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, r);
     hn_sample sample;
     if (status == HN_OK) {
@@ -141,8 +142,7 @@ static hn_status take_sample(hn_run *run, double h, double t, const hn_run_reque
     return status;
 }
 
-static double fixed_step(const hn_method_spec *spec)
-{
+static double fixed_step(const hn_method_spec *spec) {
     for (int i = 0; i < spec->stepper->n_settings && !spec->stepper->adaptive; i++) {
         if (strcmp(spec->stepper->settings[i].key, "h") == 0) {
             return spec->stepper_set[i];
@@ -152,8 +152,7 @@ static double fixed_step(const hn_method_spec *spec)
 }
 
 /// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
-static hn_status record(hn_run *run, const schedule *s, table *tab)
-{
+static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double h = fixed_step(hn_run_spec(run));
     hn_status status = HN_OK;
     for (long long k = 0; k < s->n && status == HN_OK; k++) {
@@ -168,8 +167,7 @@ static hn_status record(hn_run *run, const schedule *s, table *tab)
     return status;
 }
 
-static void put_rows(hn_strbuf *b, const char *key, const double *values, long long n, int width)
-{
+static void put_rows(hn_strbuf *b, const char *key, const double *values, long long n, int width) {
     hn_json_key(b, key);
     hn_json_array(b);
     for (long long k = 0; k < n; k++) {
@@ -178,8 +176,7 @@ static void put_rows(hn_strbuf *b, const char *key, const double *values, long l
     hn_json_end_array(b);
 }
 
-static void put_samples(hn_strbuf *b, const table *tab)
-{
+static void put_samples(hn_strbuf *b, const table *tab) {
     hn_json_key(b, "samples");
     hn_json_object(b);
     hn_json_put_numbers(b, "t", tab->t, (size_t)tab->n);
@@ -192,8 +189,7 @@ static void put_samples(hn_strbuf *b, const table *tab)
     hn_json_end_object(b);
 }
 
-static void put_names(hn_strbuf *b, const hn_model *model)
-{
+static void put_names(hn_strbuf *b, const hn_model *model) {
     const hn_system *sys = hn_model_system(model);
     const hn_scene *scene = hn_model_scene(model);
     hn_system_info info = hn_system_get_info(sys);
@@ -215,8 +211,7 @@ static void put_names(hn_strbuf *b, const hn_model *model)
     hn_json_end_array(b);
 }
 
-static void put_run_cost(hn_strbuf *b, const hn_run_summary *s)
-{
+static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_key(b, "cost");
     hn_json_object(b);
     hn_json_put_number(b, "cpu_seconds", s->cpu_seconds);
@@ -233,8 +228,7 @@ static void put_run_cost(hn_strbuf *b, const hn_run_summary *s)
     hn_json_end_object(b);
 }
 
-static void put_run_incidents(hn_strbuf *b, const hn_run *run)
-{
+static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
     const hn_incident *list;
     int n = hn_run_incidents(run, &list);
     hn_json_key(b, "incidents");
@@ -245,8 +239,8 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run)
     hn_json_end_array(b);
 }
 
-static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_status ended, const table *tab)
-{
+static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_status ended,
+                    const table *tab) {
     hn_run_summary s = hn_run_get_summary(run);
     char spelling[HN_SPEC_MAX];
     hn_method_format(hn_run_spec(run), spelling);
@@ -254,7 +248,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_s
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "method", spelling);
     hn_json_put_string(b, "status", hn_status_name(ended));
-    hn_json_put_string(b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? "stopped on request" : s.reason);
+    hn_json_put_string(
+        b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? "stopped on request" : s.reason);
     hn_json_put_number(b, "t_reached", s.t);
     put_names(b, model);
     put_samples(b, tab);
@@ -266,9 +261,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_s
     hn_json_end_object(b);
 }
 
-hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request, hn_status *ended,
-                            hn_diags *diags)
-{
+hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request,
+                            hn_status *ended, hn_diags *diags) {
     hn_diag diag = {0};
     hn_method_spec spec;
     schedule times;
@@ -284,7 +278,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
         if (request->max_steps > 0) {
             opts.max_steps = request->max_steps;
         }
-        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts, &run, &diag);
+        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
+                               &opts, &run, &diag);
         if (status != HN_OK) {
             hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
         }

@@ -6,7 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_DENSE = 150, MAX_K = 40 }; ///< speeds for which matrices are written out; and the whole K
+enum {
+    MAX_DENSE = 150,
+    MAX_K = 40
+}; ///< speeds for which matrices are written out; and the whole K
 
 /// Workspace of one call. P (nv x n): v_system = P v_user.
 typedef struct terms {
@@ -20,13 +23,12 @@ typedef struct terms {
     hn_status accel_status;
 } terms;
 
-static const hn_coordinate *user_coordinate(const hn_model *model, int i)
-{
-    return &hn_model_scene(model)->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
+static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
+    return &hn_model_scene(model)
+                ->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
 }
 
-static hn_status unknown_entry(const hn_model *model, const char *name, int n, hn_diags *diags)
-{
+static hn_status unknown_entry(const hn_model *model, const char *name, int n, hn_diags *diags) {
     const char *names[2 * MAX_DENSE];
     for (int i = 0; i < n; i++) {
         names[2 * i] = user_coordinate(model, i)->name;
@@ -39,12 +41,13 @@ static hn_status unknown_entry(const hn_model *model, const char *name, int n, h
     }
     char pointer[HN_DIAG_POINTER];
     snprintf(pointer, sizeof pointer, "/state/%.80s", name);
-    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "the scene has no free coordinate or rate '%.80s'", name);
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint,
+                        "the scene has no free coordinate or rate '%.80s'", name);
 }
 
 /// The assembled start with the given entries put in their places.
-static hn_status set_state(terms *w, const hn_state_entry *entries, int n_entries, hn_diags *diags)
-{
+static hn_status set_state(terms *w, const hn_state_entry *entries, int n_entries,
+                           hn_diags *diags) {
     const hn_system *sys = hn_model_system(w->model);
     hn_system_to_user(sys, hn_model_q(w->model), w->uq);
     hn_system_rates_to_user(sys, hn_model_v(w->model), w->uv);
@@ -60,7 +63,8 @@ static hn_status set_state(terms *w, const hn_state_entry *entries, int n_entrie
         if (!place) {
             status = unknown_entry(w->model, entries[k].name, w->info.n_user, diags);
         } else if (!isfinite(entries[k].value)) {
-            status = hn_diags_add(diags, HN_ERR_INPUT, "/state", NULL, "'%.80s' is not a finite number", entries[k].name);
+            status = hn_diags_add(diags, HN_ERR_INPUT, "/state", NULL,
+                                  "'%.80s' is not a finite number", entries[k].name);
         } else {
             *place = entries[k].value;
         }
@@ -70,19 +74,21 @@ static hn_status set_state(terms *w, const hn_state_entry *entries, int n_entrie
     return status;
 }
 
-static hn_status create(terms *w, const hn_model *model, hn_diags *diags)
-{
+static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
     *w = (terms){.model = model, .info = hn_system_get_info(hn_model_system(model))};
     if (w->info.nv > MAX_DENSE) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "inspect tells its sizes and patterns",
-                            "the scene has %d speeds; its matrices are written out up to %d", w->info.nv, MAX_DENSE);
+                            "the scene has %d speeds; its matrices are written out up to %d",
+                            w->info.nv, MAX_DENSE);
     }
-    size_t n = (size_t)w->info.nv, m = (size_t)w->info.nc, nq = (size_t)w->info.nq, nu = (size_t)w->info.n_user;
+    size_t n = (size_t)w->info.nv, m = (size_t)w->info.nc, nq = (size_t)w->info.nq,
+           nu = (size_t)w->info.n_user;
     w->arena = hn_arena_create(0);
     if (!w->arena) {
         return HN_ERR_MEMORY;
     }
-    double **const places[] = {&w->uq, &w->uv, &w->q, &w->v, &w->P, &w->M, &w->J, &w->f, &w->a, &w->ua, &w->lambda, &w->scratch};
+    double **const places[] = {&w->uq, &w->uv, &w->q, &w->v,  &w->P,      &w->M,
+                               &w->J,  &w->f,  &w->a, &w->ua, &w->lambda, &w->scratch};
     const size_t sizes[] = {nu, nu, nq, n, n * nu, nu * nu, m * nu, nu, n, nu, m, n * nu + m};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         *places[i] = hn_arena_doubles(w->arena, sizes[i] + 1);
@@ -90,24 +96,24 @@ static hn_status create(terms *w, const hn_model *model, hn_diags *diags)
     if (hn_arena_failed(w->arena)) {
         return HN_ERR_MEMORY;
     }
-    unsigned all = HN_TERM_M | HN_TERM_F | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_GAMMA | HN_TERM_ENERGY;
+    unsigned all = HN_TERM_M | HN_TERM_F | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_GAMMA |
+                   HN_TERM_ENERGY;
     hn_status status = hn_eval_create(hn_model_system(model), all, w->arena, &w->eval);
     if (status == HN_OK) {
-        status = hn_accel_create(hn_model_system(model), &(hn_accel_opts){.want_lambda = 1}, w->arena, &w->accel);
+        status = hn_accel_create(hn_model_system(model), &(hn_accel_opts){.want_lambda = 1},
+                                 w->arena, &w->accel);
     }
     return status;
 }
 
-static void destroy(terms *w)
-{
+static void destroy(terms *w) {
     hn_eval_free(w->eval);
     hn_accel_free(w->accel);
     hn_arena_free(w->arena);
 }
 
 /// out (rows x nu) = A (rows x nv) P
-static void times_P(const terms *w, const double *A, int rows, double *out)
-{
+static void times_P(const terms *w, const double *A, int rows, double *out) {
     int n = w->info.nv, nu = w->info.n_user;
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < nu; j++) {
@@ -121,8 +127,7 @@ static void times_P(const terms *w, const double *A, int rows, double *out)
 }
 
 /// M, J, f in the scene's coordinates: P' M P, J P, P' f; accelerations by the same map as rates.
-static void calc_user_terms(terms *w)
-{
+static void calc_user_terms(terms *w) {
     const hn_system *sys = hn_model_system(w->model);
     int n = w->info.nv, nu = w->info.n_user;
     for (int j = 0; j < nu; j++) {
@@ -146,14 +151,14 @@ static void calc_user_terms(terms *w)
         }
     }
     hn_system_forces_to_user(sys, hn_eval_get(w->eval, HN_TERM_F), w->f);
-    w->accel_status = hn_accel_eval(w->accel, w->t, w->q, w->v, 0, 0, w->a, w->lambda, &w->accel_info);
+    w->accel_status =
+        hn_accel_eval(w->accel, w->t, w->q, w->v, 0, 0, w->a, w->lambda, &w->accel_info);
     if (w->accel_status == HN_OK) {
         hn_system_rates_to_user(sys, w->a, w->ua);
     }
 }
 
-static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows, int cols)
-{
+static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows, int cols) {
     hn_json_key(b, key);
     hn_json_array(b);
     for (int i = 0; i < rows; i++) {
@@ -163,8 +168,7 @@ static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows,
 }
 
 /// K = [M J'; J 0], the matrix of K [a; -lambda] = [f; -gamma].
-static void put_saddle(hn_strbuf *b, const terms *w)
-{
+static void put_saddle(hn_strbuf *b, const terms *w) {
     int nu = w->info.n_user, m = w->info.nc, n = nu + m;
     double row[MAX_K];
     if (n > MAX_K) {
@@ -174,15 +178,17 @@ static void put_saddle(hn_strbuf *b, const terms *w)
     hn_json_array(b);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            row[j] = i < nu && j < nu ? w->M[i * nu + j] : i < nu ? w->J[(j - nu) * nu + i] : j < nu ? w->J[(i - nu) * nu + j] : 0;
+            row[j] = i < nu && j < nu ? w->M[i * nu + j]
+                     : i < nu         ? w->J[(j - nu) * nu + i]
+                     : j < nu         ? w->J[(i - nu) * nu + j]
+                                      : 0;
         }
         hn_json_numbers(b, row, (size_t)n);
     }
     hn_json_end_array(b);
 }
 
-static void put_names(hn_strbuf *b, const terms *w)
-{
+static void put_names(hn_strbuf *b, const terms *w) {
     hn_json_key(b, "coordinates");
     hn_json_array(b);
     for (int i = 0; i < w->info.n_user; i++) {
@@ -197,8 +203,7 @@ static void put_names(hn_strbuf *b, const terms *w)
     hn_json_end_array(b);
 }
 
-static double norm(const double *x, int n)
-{
+static double norm(const double *x, int n) {
     double scale = 0;
     for (int i = 0; i < n; i++) {
         scale = hypot(scale, x[i]);
@@ -206,8 +211,7 @@ static double norm(const double *x, int n)
     return scale;
 }
 
-static double velocity_gap(const terms *w)
-{
+static double velocity_gap(const terms *w) {
     const double *J = hn_eval_get(w->eval, HN_TERM_J), *phi_t = hn_eval_get(w->eval, HN_TERM_PHI_T);
     double sum = 0;
     for (int i = 0; i < w->info.nc; i++) {
@@ -220,8 +224,7 @@ static double velocity_gap(const terms *w)
     return sum;
 }
 
-static void put_solution(hn_strbuf *b, const terms *w)
-{
+static void put_solution(hn_strbuf *b, const terms *w) {
     hn_json_put_string(b, "status", hn_status_name(w->accel_status));
     if (w->accel_status == HN_OK) {
         hn_json_put_numbers(b, "a", w->ua, (size_t)w->info.n_user);
@@ -234,10 +237,10 @@ static void put_solution(hn_strbuf *b, const terms *w)
     }
 }
 
-static void put_terms(hn_strbuf *b, const terms *w)
-{
+static void put_terms(hn_strbuf *b, const terms *w) {
     int nu = w->info.n_user, m = w->info.nc;
-    const double *energy = hn_eval_get(w->eval, HN_TERM_ENERGY), *phi = hn_eval_get(w->eval, HN_TERM_PHI);
+    const double *energy = hn_eval_get(w->eval, HN_TERM_ENERGY),
+                 *phi = hn_eval_get(w->eval, HN_TERM_PHI);
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(w->model)->id);
     hn_json_put_string(b, "equations", "M a = f + J' lambda, J a + gamma = 0, f = Q - h");
@@ -259,9 +262,8 @@ static void put_terms(hn_strbuf *b, const terms *w)
     hn_json_end_object(b);
 }
 
-hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t, const hn_state_entry *entries, int n_entries,
-                              hn_diags *diags)
-{
+hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
+                              const hn_state_entry *entries, int n_entries, hn_diags *diags) {
     terms w;
     hn_status status = create(&w, model, diags);
     if (status == HN_OK && !isfinite(t)) {
