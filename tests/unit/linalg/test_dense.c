@@ -9,7 +9,7 @@
 
 static void norm_survives_entries_whose_squares_overflow(void **state) {
     (void)state;
-    const double big[2] = {3e300, -4e300}, tiny[2] = {3e-300, 4e-300}, bad[3] = {1, NAN, 2};
+    const double big[2] = {3e300, -4e300}, tiny[2] = {3e-300, 4e-300}, bad[3] = {1, (double)NAN, 2};
     assert_rel(hn_norm2(2, big), 5e300, 4 * DBL_EPSILON);
     assert_rel(hn_norm2(2, tiny), 5e-300, 4 * DBL_EPSILON);
     assert_near(hn_norm2(0, NULL), 0, 0);
@@ -29,7 +29,7 @@ static void products_with_a_matrix_and_its_transpose(void **state) {
 
 static void quadratic_form_reads_only_the_lower_triangle(void **state) {
     (void)state;
-    double A[4] = {2, NAN, 3, 5};
+    double A[4] = {2, (double)NAN, 3, 5};
     const double x[2] = {1, 2}, y[2] = {-1, 4};
     assert_near(hn_quad_sym(2, A, x, y), 2 * -1 + 3 * (2 * -1 + 1 * 4) + 5 * 8, 1e-14);
     hn_mirror_lower(2, A);
@@ -54,7 +54,7 @@ static void cholesky_of_the_hilbert_matrix_inverts_it(void **state) {
 
 static void cholesky_tells_singular_from_indefinite(void **state) {
     (void)state;
-    double singular[4] = {1, 0, 2, 4}, indefinite[4] = {1, 0, 2, 3}, nan[1] = {NAN};
+    double singular[4] = {1, 0, 2, 4}, indefinite[4] = {1, 0, 2, 3}, nan[1] = {(double)NAN};
     assert_int_equal(hn_cholesky(2, singular, 2, 1e-14), HN_ERR_SINGULAR);
     assert_int_equal(hn_cholesky(2, indefinite, 2, 1e-14), HN_ERR_NOT_SPD);
     assert_int_equal(hn_cholesky(1, nan, 1, 0), HN_ERR_SINGULAR);

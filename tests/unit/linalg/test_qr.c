@@ -174,7 +174,7 @@ static void singular_values_of_wide_and_tall_matrices_agree_and_nan_is_refused(v
     double frobenius = hn_norm2(12, A);
     assert_near(hn_norm2(3, s1), frobenius, 1e-14);
 
-    A[5] = NAN;
+    A[5] = (double)NAN;
     hn_poison_fill(s1, 3);
     assert_int_equal(hn_singular_values(3, 4, A, s1, f->arena), HN_ERR_DIVERGED);
     assert_true(hn_poison_intact(s1, 3));

@@ -329,7 +329,7 @@ static void inputs_that_are_not_finite_leave_the_outputs_alone(void **state) {
     fixture *f = *state;
     make_four_bar(&f->p, 2);
     double *spots[] = {&f->p.M[3], &f->p.J[4], &f->p.f[1], &f->p.gamma[0]};
-    const double values[] = {NAN, INFINITY, -INFINITY};
+    const double values[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
             double keep = *spots[i];
@@ -339,7 +339,7 @@ static void inputs_that_are_not_finite_leave_the_outputs_alone(void **state) {
         }
     }
     assert_true(hn_poison_intact(f->a, MAX_NV) && hn_poison_intact(f->lambda, MAX_NC));
-    f->p.M[1] = NAN; // above the diagonal: not read
+    f->p.M[1] = (double)NAN; // above the diagonal: not read
     assert_int_equal(solve(f, NULL), HN_OK);
 }
 
