@@ -21,12 +21,12 @@ typedef struct hn_saddle_ws hn_saddle_ws;
 
 /// Settings. Start from hn_saddle_opts_default(), then change fields.
 typedef struct hn_saddle_opts {
-    double
-        rank_tol; ///< a pivot of the equilibrated J' at or below rank_tol * largest counts as 0 [-]; 1e-10, never
-        ///< below 1000 max(nv, nc) eps
-    double
-        residual_tol; ///< dependent rows that disagree by more than this, relative to the sizes of gamma, J a and f (all
-        ///< equilibrated), contradict each other [-]; 1e-8. HUGE_VAL: accept the least-squares answer
+    /// Pivots of the equilibrated J' at or below rank_tol * largest count as 0 [-]; 1e-10, and never less than
+    /// 1000 max(nv, nc) eps.
+    double rank_tol;
+    /// Dependent rows that disagree by more than this contradict each other, relative to the sizes of gamma, J a
+    /// and f, all equilibrated [-]; 1e-8. HUGE_VAL: accept the least-squares answer.
+    double residual_tol;
     double refine_tol; ///< refine until the correction is below this * the solution [-]; 2 eps
     int max_refine;    ///< 4; 0 switches refinement off
     int want_cond;     ///< estimate the condition number too: about five more solves
@@ -34,16 +34,15 @@ typedef struct hn_saddle_opts {
 
 /// What happened. rank and pivot_ratio are set unless an input was not finite or M has a negative diagonal entry.
 typedef struct hn_saddle_info {
-    int rank; ///< numerical rank of J, 0..nc
-    double
-        pivot_ratio; ///< smallest kept pivot of the equilibrated J' / largest [-]; 1e-10..1e-6 is a near-singular pose
-    double dropped;  ///< size of the largest dropped pivot / largest [-]; 0 when none was
-    double residual; ///< max |J a + gamma| [row unit / s^2]
+    int rank;           ///< numerical rank of J, 0..nc
+    double pivot_ratio; ///< smallest kept pivot / largest [-]; 1e-10..1e-6 is a near-singular pose
+    double dropped;     ///< largest dropped pivot / largest [-]; 0 when none was dropped
+    double residual;    ///< max |J a + gamma| [row unit / s^2]
     double
         backward_error; ///< largest row residual of (1) relative to |K| |x| + |b| of that row [-]
     int refinements;    ///< refinement steps kept
     double
-        cond; ///< 1-norm condition estimate of the equilibrated K on the kept rows; 0 unless asked for
+        cond; ///< 1-norm condition estimate of the equilibrated K on the kept rows; 0: not asked for
 } hn_saddle_info;
 
 hn_saddle_opts hn_saddle_opts_default(void);

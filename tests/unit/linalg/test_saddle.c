@@ -67,13 +67,13 @@ static void solve_quad(const problem *p, double *a, double *lambda) {
     memset(K, 0, sizeof K);
     for (int i = 0; i < nv; i++) {
         for (int j = 0; j < nv; j++) {
-            K[i][j] = i >= j ? p->M[i * nv + j] : p->M[j * nv + i];
+            K[i][j] = (quad)(i >= j ? p->M[i * nv + j] : p->M[j * nv + i]);
         }
-        K[i][n] = p->f[i];
+        K[i][n] = (quad)p->f[i];
     }
     for (int i = 0; i < p->nc; i++) {
         for (int j = 0; j < nv; j++) {
-            K[nv + i][j] = K[j][nv + i] = p->J[i * nv + j];
+            K[nv + i][j] = K[j][nv + i] = (quad)p->J[i * nv + j];
         }
         K[nv + i][n] = -(quad)p->gamma[i];
     }
