@@ -104,7 +104,7 @@ $(call archive,$(1)): $(call objects,$(SOURCES_$(1)))
 $(OUT)/tests/unit/$(1)/%: $(OUT)/tests/unit/$(1)/%.o $(call archive,support) \
         $(call archive,$(1)) $(foreach n,$(NEEDS_$(1)),$(call archive,$(n)))
 	$$(call say,link $$@)
-	$$(Q)$$(CC) $$(LDFLAGS) $$(WRAP) -o $$@ $$^ -lcmocka $$(LDLIBS)
+	$$(Q)$$(CC) $$(LDFLAGS) $$(WRAP) -o $$@ -Wl,--start-group $$^ -Wl,--end-group -lcmocka $$(LDLIBS)
 endef
 $(foreach l,$(LAYERS),$(eval $(call layer_rules,$(l))))
 

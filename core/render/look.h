@@ -1,0 +1,62 @@
+#ifndef HN_RENDER_LOOK_H
+#define HN_RENDER_LOOK_H
+// The one table of colours, dashes, markers and glyphs. The page (through its JSON), the snapshot, the report
+// and the terminal read it, so that a method looks the same everywhere. Colour is never the only difference.
+
+#include "base/strbuf.h"
+
+#include <stdint.h>
+
+/// Slots 0..6 are for methods; slot 7 is the grey of the reference solution.
+enum { HN_LOOK_METHODS = 7, HN_LOOK_REFERENCE = 7, HN_LOOK_SLOTS = 8, HN_LOOK_MAX_DASH = 6 };
+
+typedef enum hn_theme { HN_THEME_LIGHT, HN_THEME_DARK, HN_THEME_COUNT } hn_theme;
+
+#define HN_MARKER_LIST(X)             \
+    X(HN_MARKER_DISC, "disc")         \
+    X(HN_MARKER_SQUARE, "square")     \
+    X(HN_MARKER_TRIANGLE, "triangle") \
+    X(HN_MARKER_DIAMOND, "diamond")   \
+    X(HN_MARKER_CROSS, "cross")       \
+    X(HN_MARKER_RING, "ring")         \
+    X(HN_MARKER_PLUS, "plus")         \
+    X(HN_MARKER_DOT, "dot")
+typedef enum hn_marker {
+#define HN_MARKER_ENUM(code, name) code,
+    HN_MARKER_LIST(HN_MARKER_ENUM)
+#undef HN_MARKER_ENUM
+        HN_MARKER_COUNT
+} hn_marker;
+const char *hn_marker_name(hn_marker marker);
+
+typedef struct hn_look {
+    const char *name;                ///< of the colour, for people
+    uint32_t colour[HN_THEME_COUNT]; ///< 0xRRGGBB
+    int n_dash;                      ///< 0: a full line
+    double dash[HN_LOOK_MAX_DASH];   ///< on, off, ... in pixels for a line 2 px wide
+    hn_marker marker;
+    const char *glyph; ///< for the terminal, UTF-8, one column wide
+} hn_look;
+
+/// The row of a slot 0..7.
+const hn_look *hn_look_get(int slot);
+/// The slot of the i-th method of a list: 0..6, then from 0 again.
+int hn_look_slot(int i);
+
+/// What is not a method: surfaces and inks.
+typedef struct hn_surface {
+    uint32_t paper;    ///< behind everything
+    uint32_t raised;   ///< the second level: insets, panels
+    uint32_t ink;      ///< text
+    uint32_t muted;    ///< captions, ground, guides
+    uint32_t hairline; ///< borders
+    uint32_t tear;     ///< the gap at a cut joint
+} hn_surface;
+const hn_surface *hn_surface_get(hn_theme theme);
+const char *hn_theme_name(hn_theme theme); ///< "light", "dark"
+
+/// {"surfaces":{"light":{"paper":"#FCFCFA",...},"dark":{...}},"slots":[{"slot":0,"name","light","dark","dash":[...],
+/// "marker","glyph"}, ... 7 methods],"reference":{the same}}
+void hn_look_json(hn_strbuf *b);
+
+#endif
