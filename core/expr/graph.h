@@ -52,7 +52,7 @@ hn_ex hn_scale(double k, hn_ex a);
 hn_ex hn_mul(hn_graph *g, hn_ex a, hn_ex b);
 hn_ex hn_div(hn_graph *g, hn_ex a, hn_ex b); ///< by a number: times the reciprocal; by zero: graph keeps 1/0 as a node and evaluates to inf
 hn_ex hn_sum(hn_graph *g, const hn_ex *terms, int n); ///< flat sum of n terms
-/// Any operator of the table by its code; `args` holds hn_op_info(op)->arity expressions.
+/// Any operator of the table by its code; `args` holds hn_op_get_info(op)->arity expressions.
 hn_ex hn_apply(hn_graph *g, hn_op op, const hn_ex *args);
 hn_ex hn_sin(hn_graph *g, hn_ex a);
 hn_ex hn_cos(hn_graph *g, hn_ex a);
