@@ -1,0 +1,263 @@
+// Painting what a canvas has recorded: OSMesa for the pixels, libpng for the file.
+#include "render/canvas.h"
+
+#include "render/canvas_record.h"
+
+#include <GL/osmesa.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <string.h>
+
+// a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the sheet
+enum { TILE = 256, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_STENCIL = 255 };
+
+typedef struct tile {
+    int x0, y0, x1, y1; ///< [px], always TILE by TILE: the last ones reach over the sheet's edge
+} tile;
+
+static void set_colour(uint32_t rgb, double alpha) {
+    glColor4f((float)(rgb >> 16 & 0xff) / 255.0f, (float)(rgb >> 8 & 0xff) / 255.0f,
+              (float)(rgb & 0xff) / 255.0f, (float)alpha);
+}
+
+static void set_view(const tile *t, uint32_t paper) {
+    glViewport(0, 0, SIDE, SIDE);
+    glMatrixMode(GL_PROJECTION);
+    glLoadIdentity();
+    glOrtho(t->x0, t->x1, t->y1, t->y0, -1, 1);
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor((float)(paper >> 16 & 0xff) / 255.0f, (float)(paper >> 8 & 0xff) / 255.0f,
+                 (float)(paper & 0xff) / 255.0f, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+}
+
+static int max_int(int a, int b) {
+    return a > b ? a : b;
+}
+
+static int min_int(int a, int b) {
+    return a < b ? a : b;
+}
+
+/// Limits drawing to the shape's rectangle within the tile; 0 if nothing is left.
+static int set_clip(const hn_canvas_shape *s, const tile *t) {
+    const int x0 = max_int(s->clip[0], t->x0), x1 = min_int(s->clip[2], t->x1);
+    const int y0 = max_int(s->clip[1], t->y0), y1 = min_int(s->clip[3], t->y1);
+    if (x0 >= x1 || y0 >= y1) {
+        return 0;
+    }
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(HN_CANVAS_SAMPLES * (x0 - t->x0), HN_CANVAS_SAMPLES * (t->y1 - y1),
+              HN_CANVAS_SAMPLES * (x1 - x0), HN_CANVAS_SAMPLES * (y1 - y0));
+    return 1;
+}
+
+static void draw_shape(const hn_canvas *c, const hn_canvas_shape *s, const tile *t) {
+    if (s->count > 0 && set_clip(s, t)) {
+        set_colour(s->paint.rgb, s->paint.alpha * c->layers[s->layer]);
+        glDrawArrays(GL_TRIANGLES, s->first, s->count);
+    }
+}
+
+/// Every sample of a layer takes its colour from one shape, the last that covers it: shapes are drawn last to first,
+/// and the stencil keeps the layer's number where a sample is taken.
+static void draw_layer(const hn_canvas *c, int first, int end, int number, const tile *t) {
+    glStencilFunc(GL_NOTEQUAL, number, 0xff);
+    for (int i = end - 1; i >= first; i--) {
+        draw_shape(c, &c->shapes[i], t);
+    }
+}
+
+static void draw_tile(const hn_canvas *c, const tile *t) {
+    set_view(t, hn_surface_get(c->theme)->paper);
+    int number = 0;
+    for (int first = 0, end; first < c->n_shapes; first = end) {
+        for (end = first + 1; end < c->n_shapes && c->shapes[end].layer == c->shapes[first].layer;
+             end++) {}
+        if (++number > MAX_STENCIL) {
+            glDisable(GL_SCISSOR_TEST);
+            glClear(GL_STENCIL_BUFFER_BIT);
+            number = 1;
+        }
+        draw_layer(c, first, end, number, t);
+    }
+    glFinish();
+}
+
+static void set_state(const hn_canvas *c) {
+    OSMesaPixelStore(OSMESA_Y_UP, 0);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_DITHER);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glEnable(GL_STENCIL_TEST);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glVertexPointer(2, GL_FLOAT, 0, c->xy);
+}
+
+/// Averages squares of samples into the pixels of the tile that are on the sheet.
+static void average(const unsigned char *samples, const tile *t, const hn_canvas *c,
+                    unsigned char *rgb) {
+    const int n = HN_CANVAS_SAMPLES, area = n * n;
+    for (int y = t->y0; y < min_int(t->y1, c->height); y++) {
+        for (int x = t->x0; x < min_int(t->x1, c->width); x++) {
+            int sum[3] = {0, 0, 0};
+            for (int j = 0; j < area; j++) {
+                const size_t row = (size_t)(n * (y - t->y0) + j / n),
+                             column = (size_t)(n * (x - t->x0) + j % n);
+                const unsigned char *s = samples + 4 * (row * SIDE + column);
+                sum[0] += s[0];
+                sum[1] += s[1];
+                sum[2] += s[2];
+            }
+            unsigned char *pixel = rgb + 3 * ((size_t)y * (size_t)c->width + (size_t)x);
+            for (int k = 0; k < 3; k++) {
+                pixel[k] = (unsigned char)((sum[k] + area / 2) / area);
+            }
+        }
+    }
+}
+
+static hn_status paint_tiles(const hn_canvas *c, const unsigned char *samples, unsigned char *rgb,
+                             hn_diag *diag) {
+    set_state(c);
+    for (int y = 0; y < c->height; y += TILE) {
+        for (int x = 0; x < c->width; x += TILE) {
+            const tile t = {x, y, x + TILE, y + TILE};
+            draw_tile(c, &t);
+            const GLenum fault = glGetError();
+            if (fault != GL_NO_ERROR) {
+                return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, NULL,
+                                   "OSMesa reports GL fault 0x%04x while drawing", (unsigned)fault);
+            }
+            average(samples, &t, c, rgb);
+        }
+    }
+    return HN_OK;
+}
+
+hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
+    HN_ASSERT(c != NULL && rgb != NULL && !c->in_layer);
+    if (c->failed) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "memory ran out while drawing");
+    }
+    hn_status status = HN_OK;
+    OSMesaContext context = NULL;
+    unsigned char *samples = malloc((size_t)4 * SIDE * SIDE);
+    if (samples == NULL) {
+        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+        goto done;
+    }
+    context = OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
+    if (context == NULL || !OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
+        status = hn_diag_set(
+            diag, HN_ERR_UNSUPPORTED, NULL, "install libosmesa6 with its software drivers",
+            "OSMesa gives no off-screen drawing context, so no picture can be made");
+        goto done;
+    }
+    status = paint_tiles(c, samples, rgb, diag);
+
+done:
+    if (context != NULL) {
+        OSMesaDestroyContext(context);
+    }
+    free(samples);
+    return status;
+}
+
+// ---- PNG --------------------------------------------------------------------------------------------------------
+
+static void append_bytes(png_structp png, png_bytep bytes, png_size_t n) {
+    hn_strbuf_add_n(png_get_io_ptr(png), (const char *)bytes, n);
+}
+
+static void flush_nothing(png_structp png) {
+    (void)png;
+}
+
+static void ignore_warning(png_structp png, png_const_charp text) {
+    (void)png;
+    (void)text;
+}
+
+_Noreturn static void leave(png_structp png, png_const_charp text) {
+    (void)text;
+    longjmp(*(jmp_buf *)png_get_error_ptr(png), 1);
+}
+
+/// libpng leaves by longjmp: everything it needs is passed in, so that no local changes between.
+static int write_png(png_structp png, png_infop info, const hn_canvas *c, const unsigned char *rgb,
+                     jmp_buf *back) {
+    if (setjmp(*back) != 0) {
+        return 0;
+    }
+    png_set_IHDR(png, info, (png_uint_32)c->width, (png_uint_32)c->height, 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
+    png_write_info(png, info);
+    for (int y = 0; y < c->height; y++) {
+        png_write_row(png, rgb + 3 * (size_t)y * (size_t)c->width);
+    }
+    png_write_end(png, info);
+    return 1;
+}
+
+static hn_status encode_png(const hn_canvas *c, const unsigned char *rgb, hn_strbuf *out,
+                            hn_diag *diag) {
+    jmp_buf back;
+    const size_t before = out->n;
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &back, leave, ignore_warning);
+    png_infop info = png != NULL ? png_create_info_struct(png) : NULL;
+    int written = 0;
+    if (info != NULL) {
+        png_set_write_fn(png, out, append_bytes, flush_nothing);
+        written = write_png(png, info, c, rgb, &back);
+    }
+    png_destroy_write_struct(png != NULL ? &png : NULL, info != NULL ? &info : NULL);
+    if (!written || out->failed) {
+        if (!out->failed && out->text != NULL) {
+            out->n = before;
+            out->text[before] = '\0';
+        }
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write the PNG");
+    }
+    return HN_OK;
+}
+
+hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
+    HN_ASSERT(c != NULL && png != NULL);
+    unsigned char *rgb = malloc((size_t)3 * (size_t)c->width * (size_t)c->height);
+    if (rgb == NULL) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL,
+                           "no memory for a picture of %d by %d pixels", c->width, c->height);
+    }
+    hn_status status = hn_canvas_paint(c, rgb, diag);
+    if (status == HN_OK) {
+        status = encode_png(c, rgb, png, diag);
+    }
+    free(rgb);
+    return status;
+}
+
+hn_status hn_canvas_save_png(const hn_canvas *c, const char *path, hn_diag *diag) {
+    HN_ASSERT(path != NULL);
+    hn_strbuf png;
+    hn_strbuf_init(&png);
+    hn_status status = hn_canvas_png(c, &png, diag);
+    if (status == HN_OK) {
+        FILE *file = fopen(path, "wb");
+        const int wrote = file != NULL && fwrite(png.text, 1, png.n, file) == png.n;
+        const int closed = file != NULL && fclose(file) == 0;
+        if (!wrote || !closed) {
+            status = hn_diag_set(diag, HN_ERR_IO, path, NULL,
+                                 "the picture could not be written to %s", path);
+        }
+    }
+    hn_strbuf_reset(&png);
+    return status;
+}

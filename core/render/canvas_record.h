@@ -1,0 +1,38 @@
+#ifndef HN_RENDER_CANVAS_RECORD_H
+#define HN_RENDER_CANVAS_RECORD_H
+// What a canvas has recorded; shared by the files of the canvas, not for others.
+
+#include "render/canvas.h"
+
+/// One shape: `count` vertices from `first`, three for a triangle.
+typedef struct hn_canvas_shape {
+    hn_paint paint;
+    int first, count;
+    int clip[4]; ///< x0, y0, x1, y1 [px]
+    int layer;
+} hn_canvas_shape;
+
+struct hn_canvas {
+    int width, height;
+    hn_theme theme;
+    int failed; ///< memory ran out while recording
+    int clip[4];
+
+    float *xy; ///< 2 per vertex [px]
+    int n_xy, cap_xy;
+    hn_canvas_shape *shapes;
+    int n_shapes, cap_shapes;
+    double *layers; ///< opacity of each; a shape outside of any has one of its own
+    int n_layers, cap_layers;
+    int in_layer;
+};
+
+/// A shape is what is added between these two. Nothing is kept of an empty one.
+void hn_record_begin(hn_canvas *c, hn_paint paint);
+void hn_record_end(hn_canvas *c);
+void hn_record_triangle(hn_canvas *c, const double a[2], const double b[2], const double d[2]);
+void hn_record_disc(hn_canvas *c, double x, double y, double radius);
+/// Adds the triangles of a stroked line to the open shape.
+void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double width);
+
+#endif
