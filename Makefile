@@ -218,7 +218,8 @@ run-suite: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW)
 	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(UNIT) $(SLOW) $(SCRIPTS) $(BROWSER)
 
 run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
-	@tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
+	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
+	    tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
 
 run-server: $(PROGRAM)
 	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66 \

@@ -164,6 +164,7 @@ hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag)
 
 done:
     if (context != NULL) {
+        OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
         OSMesaDestroyContext(context);
     }
     free(samples);
