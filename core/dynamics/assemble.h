@@ -10,28 +10,45 @@
 
 typedef struct hn_assembly {
     int ok;
-    double gap_before, gap;       ///< ||phi|| at the guess and at the end [row units]
-    double moved;                 ///< largest change of a user coordinate from its guess
+    double gap_before, gap; ///< ||phi|| at the guess and at the end [row units]
+    double moved;           ///< largest change of a user coordinate from its guess
     double velocity_gap_before, velocity_gap; ///< ||J v + phi_t||
-    int rank;                     ///< rank of J at the assembled pose
-    int freedoms;                 ///< nv - rank
-    int redundant;                ///< nc - rank
-    double sigma_min, sigma_max;  ///< of the mass-scaled J: smallest nonzero-by-rank, largest
-    int mode;                     ///< assembly mode: sign of det J_d, +1 or -1, 0 unknown; per first loop
-    const char *mode_name;        ///< "open", "crossed", "+", "-" ...: static text
+    int rank;                                 ///< rank of J at the assembled pose
+    int freedoms;                             ///< nv - rank
+    int redundant;                            ///< nc - rank
+    double sigma_min, sigma_max; ///< of J D, D = diag(M)^-1/2: smallest nonzero-by-rank, largest
+    int mode; ///< assembly mode of the first loop: +1 or -1, 0 unknown (see hn_mode_watch)
+    const char *mode_name; ///< "open", "crossed" (four-bar), "+", "-", "none": static text
     int iterations;
-    const char *route;            ///< "already closed", "levenberg-marquardt", "homotopy", "multi-start": static text
-    int worst_loop;               ///< loop with the largest residual when not ok, else -1
-    double energy;                ///< T + V [J]
+    /// "already closed", "newton", "levenberg-marquardt", "homotopy", "multi-start": static text
+    const char *route;
+    int worst_loop; ///< loop with the largest residual when not ok, else -1
+    double energy;  ///< T + V [J]
 } hn_assembly;
 
 /// Fills q (nq), v (nv), a (nv), lambda (nc) in system coordinates from the scene's start values. Pins are user
-/// coordinates with q0_pinned / v0_pinned. `a` and `lambda` may be NULL. On HN_ERR_UNREACHABLE `report` is filled (gap, worst loop)
-/// and `diags` say which loop, the gap in metres, the pins that are active, and the missing length where a dyad shows it.
-/// Over-pinned velocities that contradict each other: HN_ERR_INCONSISTENT.
+/// coordinates with q0_pinned / v0_pinned; free rates change as little as possible, weighted by mass. `a`, `lambda`, `report`
+/// and `diags` may be NULL.
+/// Fails: HN_ERR_UNREACHABLE: `report` is filled (gap, worst loop) and `diags` say which loop, the gap in metres, the pins that
+/// are active, and the missing length where the free part of the loop is a chain of parallel revolute joints.
+/// HN_ERR_INCONSISTENT: pinned rates contradict each other. HN_ERR_UNSUPPORTED: a pin on a joint that closes a loop.
+/// HN_ERR_SINGULAR and the like: accelerations are not determined. HN_ERR_DIVERGED: not finite at the start. HN_ERR_MEMORY.
+/// q and v hold what was reached in every case; a and lambda are untouched on failure.
 HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a, double *lambda,
                                     hn_assembly *report, hn_diags *diags);
 
-/// Sign of the assembly mode at q (see hn_assembly.mode), for watching branch jumps; 0 when undefined.
+/// Watches the assembly mode of the first loop: the sign of -det J_d, with J_d the loop's rows and the coordinates that depend on
+/// the others. Independent are the loop's actuated coordinates, then its pinned ones, then the first ones, as many as it
+/// has freedoms. For a four-bar driven by th1 that is the sign of sin(th3 - th2): open +, crossed -. It passes through 0
+/// where the independent coordinates stop serving (dead point); a change of sign without that is a branch jump.
+typedef struct hn_mode_watch hn_mode_watch;
+/// Memory from `arena`, the tape owned by the watch. A system without a first loop of that kind gives a watch that says 0.
+/// Not thread-safe for one system (see system.h); hn_mode_watch_value() is. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_mode_watch_create(const hn_system *sys, hn_arena *arena, hn_mode_watch **out);
+void hn_mode_watch_free(hn_mode_watch *w); ///< NULL is legal
+/// -det J_d over the product of its column lengths, in [-1, 1]; 0 when undefined. Allocates nothing.
+double hn_mode_watch_value(hn_mode_watch *w, double t, const double *q);
+
+/// The sign alone, once: makes and frees a watch, so for a look now and then; 0 when undefined.
 int hn_assembly_mode(const hn_system *sys, double t, const double *q);
 #endif

@@ -1,0 +1,51 @@
+#ifndef HN_DYNAMICS_ASSEMBLE_INTERNAL_H
+#define HN_DYNAMICS_ASSEMBLE_INTERNAL_H
+// Shared by the parts of assembly: assemble.c (outline, velocity, report), assemble_position.c (the search for a closed
+// pose), assemble_explain.c (why there is none), mode.c.
+
+#include "dynamics/assemble.h"
+#include "dynamics/eval.h"
+#include "linalg/qr.h"
+
+/// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates, made comparable:
+/// z = x / reach (1 rad, or the characteristic length), residual r = phi / L in length rows, phi elsewhere.
+typedef struct hn_assembler {
+    const hn_system *sys;
+    const hn_scene *scene;
+    hn_arena *arena;
+    hn_diags *diags;
+    double t;
+    int n, nc; ///< user coordinates (= nv), constraint rows
+    double length;
+
+    hn_eval *eval; ///< M, phi, phi_t, J, energy
+    double *x, *guess, *q, *rest; ///< user coordinates, their start, system coordinates, speeds of zero
+    double *reach;                ///< n
+    double *row_scale;            ///< nc
+    int n_free, *free;            ///< user coordinates that may move
+    double *residual, size;       ///< scaled phi (nc) and its length
+
+    // column k of T^-1: rates of the system coordinates for a unit rate of user coordinate k, nonzeros only
+    int *map_start, *map_row;
+    double *map_value;
+
+    int iterations;
+    const char *route;
+} hn_assembler;
+
+/// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual, s->size.
+/// HN_OK: closed; HN_ERR_UNREACHABLE; HN_ERR_DIVERGED: phi is not finite at the guess; HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
+/// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
+int hn_assemble_evaluate(hn_assembler *s);
+/// Row i of J in user rates, out (n).
+void hn_assemble_user_row(const hn_assembler *s, int row, double *out);
+/// Euclidean norm of the unscaled phi, over all rows (loop < 0) or those of one loop.
+double hn_assemble_gap(const hn_assembler *s, int loop);
+/// Says why loop `loop` stays open at s->x.
+void hn_assemble_explain(hn_assembler *s, int loop);
+
+int hn_mode_sign(double value);                   ///< +1, -1, or 0 within rounding
+int hn_mode_is_four_bar(const hn_system *sys);    ///< 1: the first loop is a planar four-bar, "open" and "crossed" apply
+
+#endif
