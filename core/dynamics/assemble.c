@@ -31,9 +31,11 @@ static hn_status check_pins(const hn_assembler *s) {
             continue;
         }
         if (c->q0_pinned || c->v0_pinned) {
-            status = hn_diags_add(s->diags, HN_ERR_UNSUPPORTED, c->q0_pinned ? c->q0_pointer : c->v0_pointer,
-                                  "pin another coordinate, or say \"cut\": true at another joint of the loop",
-                                  "%s cannot be pinned: its joint closes a loop and follows from the others", c->name);
+            status = hn_diags_add(
+                s->diags, HN_ERR_UNSUPPORTED, c->q0_pinned ? c->q0_pointer : c->v0_pointer,
+                "pin another coordinate, or say \"cut\": true at another joint of the loop",
+                "%s cannot be pinned: its joint closes a loop and follows from the others",
+                c->name);
         }
     }
     return status;
@@ -42,7 +44,8 @@ static hn_status check_pins(const hn_assembler *s) {
 /// T^-1 column by column, nonzeros only.
 static hn_status read_map(hn_assembler *s) {
     int n = s->n, count = 0;
-    double *user = hn_arena_doubles(s->arena, (size_t)n), *rates = hn_arena_doubles(s->arena, (size_t)n);
+    double *user = hn_arena_doubles(s->arena, (size_t)n),
+           *rates = hn_arena_doubles(s->arena, (size_t)n);
     s->map_start = hn_arena_ints(s->arena, (size_t)n + 1);
     if (!user || !rates || !s->map_start) {
         return HN_ERR_MEMORY;
@@ -150,7 +153,8 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
         report->worst_loop = find_worst_loop(s);
         hn_assemble_explain(s, report->worst_loop);
     } else if (status == HN_ERR_DIVERGED) {
-        hn_diags_add(s->diags, status, NULL, NULL, "the closure equations have no finite value at the start values");
+        hn_diags_add(s->diags, status, NULL, NULL,
+                     "the closure equations have no finite value at the start values");
     }
     return status;
 }
@@ -180,7 +184,8 @@ static double user_mass(const hn_assembler *s, int k, int l) {
     double sum = 0;
     for (int e = s->map_start[k]; e < s->map_start[k + 1]; e++) {
         for (int d = s->map_start[l]; d < s->map_start[l + 1]; d++) {
-            sum += s->map_value[e] * M[(size_t)s->map_row[e] * s->n + s->map_row[d]] * s->map_value[d];
+            sum +=
+                s->map_value[e] * M[(size_t)s->map_row[e] * s->n + s->map_row[d]] * s->map_value[d];
         }
     }
     return sum;
@@ -229,7 +234,8 @@ static void fill_weight(const hn_assembler *s, rate_problem *p, int by_mass) {
     for (int k = 0; k < n; k++) {
         for (int l = 0; l <= k; l++) {
             double reach = s->reach[p->free[k]];
-            double w = by_mass ? user_mass(s, p->free[k], p->free[l]) : (k == l ? 1 / (reach * reach) : 0);
+            double w =
+                by_mass ? user_mass(s, p->free[k], p->free[l]) : (k == l ? 1 / (reach * reach) : 0);
             p->weight[(size_t)k * n + l] = w;
         }
     }
@@ -252,7 +258,8 @@ static void list_pinned_rates(const hn_assembler *s, char *text, size_t size) {
     for (int i = 0; i < s->n && used + 1 < size; i++) {
         const hn_coordinate *c = user_coordinate(s, i);
         if (c->v0_pinned) {
-            int wrote = snprintf(text + used, size - used, "%s%s = %.6g", used ? ", " : "", c->rate, c->v0);
+            int wrote =
+                snprintf(text + used, size - used, "%s%s = %.6g", used ? ", " : "", c->rate, c->v0);
             used += wrote > 0 ? (size_t)wrote : 0;
         }
     }
@@ -265,10 +272,11 @@ static hn_status tell_contradiction(hn_assembler *s, const double *gap) {
     for (int i = 0; i < s->n; i++) {
         pointer = user_coordinate(s, i)->v0_pinned ? user_coordinate(s, i)->v0_pointer : pointer;
     }
-    return hn_diags_add(s->diags, HN_ERR_INCONSISTENT, pointer, "let one of these rates be free",
-                        "the pinned rates %s contradict the closed loops: |J v| = %.3g is left whatever the other "
-                        "rates are",
-                        pinned[0] ? pinned : "(none)", hn_norm2(s->nc, gap));
+    return hn_diags_add(
+        s->diags, HN_ERR_INCONSISTENT, pointer, "let one of these rates be free",
+        "the pinned rates %s contradict the closed loops: |J v| = %.3g is left whatever the other "
+        "rates are",
+        pinned[0] ? pinned : "(none)", hn_norm2(s->nc, gap));
 }
 
 /// Changes the free user rates least so that J v + phi_t = 0; v (n) in system rates, in and out.
@@ -294,7 +302,8 @@ static hn_status correct_rates(hn_assembler *s, double *user_v, double *v, rate_
 }
 
 static hn_status find_rates(hn_assembler *s, double *v, hn_assembly *report) {
-    double *user_v = hn_arena_doubles(s->arena, (size_t)s->n), *gap = hn_arena_doubles(s->arena, (size_t)s->nc);
+    double *user_v = hn_arena_doubles(s->arena, (size_t)s->n),
+           *gap = hn_arena_doubles(s->arena, (size_t)s->nc);
     if (!user_v || !gap) {
         return HN_ERR_MEMORY;
     }
@@ -330,7 +339,8 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
     hn_accel *accel = NULL;
     hn_accel_opts opts = {.want_lambda = 1};
     hn_status status = hn_accel_create(s->sys, &opts, s->arena, &accel);
-    double *a_out = hn_arena_doubles(s->arena, (size_t)s->n), *l_out = hn_arena_doubles(s->arena, (size_t)s->nc);
+    double *a_out = hn_arena_doubles(s->arena, (size_t)s->n),
+           *l_out = hn_arena_doubles(s->arena, (size_t)s->nc);
     if (status == HN_OK && (!a_out || !l_out)) {
         status = HN_ERR_MEMORY;
     }
@@ -338,7 +348,8 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
         hn_accel_info info;
         status = hn_accel_eval(accel, s->t, s->q, v, 0, 0, a_out, l_out, &info);
         if (status != HN_OK) {
-            hn_diags_add(s->diags, status, NULL, NULL, "the accelerations at the start are not determined: %s",
+            hn_diags_add(s->diags, status, NULL, NULL,
+                         "the accelerations at the start are not determined: %s",
                          hn_status_text(status));
         }
     }
@@ -400,7 +411,8 @@ static hn_status fill_report(hn_assembler *s, hn_assembly *report) {
     return report_rank(s, report);
 }
 
-static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda, hn_assembly *report) {
+static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda,
+                            hn_assembly *report) {
     hn_status status = check_pins(s);
     if (status == HN_OK) {
         status = start(s);
@@ -423,8 +435,8 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
     return status != HN_OK ? status : told;
 }
 
-hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a, double *lambda,
-                      hn_assembly *report, hn_diags *diags) {
+hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
+                      double *lambda, hn_assembly *report, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     HN_ASSERT(info.nq == info.nv && info.n_user == info.nv);
     hn_assembly local;

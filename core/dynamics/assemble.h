@@ -34,8 +34,8 @@ typedef struct hn_assembly {
 /// HN_ERR_INCONSISTENT: pinned rates contradict each other. HN_ERR_UNSUPPORTED: a pin on a joint that closes a loop.
 /// HN_ERR_SINGULAR and the like: accelerations are not determined. HN_ERR_DIVERGED: not finite at the start. HN_ERR_MEMORY.
 /// q and v hold what was reached in every case; a and lambda are untouched on failure.
-HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a, double *lambda,
-                                    hn_assembly *report, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
+                                    double *lambda, hn_assembly *report, hn_diags *diags);
 
 /// Watches the assembly mode of the first loop: the sign of -det J_d, with J_d the loop's rows and the coordinates that depend on
 /// the others. Independent are the loop's actuated coordinates, then its pinned ones, then the first ones, as many as it
@@ -44,7 +44,8 @@ HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, d
 typedef struct hn_mode_watch hn_mode_watch;
 /// Memory from `arena`, the tape owned by the watch. A system without a first loop of that kind gives a watch that says 0.
 /// Not thread-safe for one system (see system.h); hn_mode_watch_value() is. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
-HN_MUST_CHECK hn_status hn_mode_watch_create(const hn_system *sys, hn_arena *arena, hn_mode_watch **out);
+HN_MUST_CHECK hn_status hn_mode_watch_create(const hn_system *sys, hn_arena *arena,
+                                             hn_mode_watch **out);
 void hn_mode_watch_free(hn_mode_watch *w); ///< NULL is legal
 /// -det J_d over the product of its column lengths, in [-1, 1]; 0 when undefined. Allocates nothing.
 double hn_mode_watch_value(hn_mode_watch *w, double t, const double *q);

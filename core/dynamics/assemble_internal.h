@@ -19,11 +19,12 @@ typedef struct hn_assembler {
     double length;
 
     hn_eval *eval; ///< M, phi, phi_t, J, energy
-    double *x, *guess, *q, *rest; ///< user coordinates, their start, system coordinates, speeds of zero
-    double *reach;                ///< n
-    double *row_scale;            ///< nc
-    int n_free, *free;            ///< user coordinates that may move
-    double *residual, size;       ///< scaled phi (nc) and its length
+    double *x, *guess, *q,
+        *rest;              ///< user coordinates, their start, system coordinates, speeds of zero
+    double *reach;          ///< n
+    double *row_scale;      ///< nc
+    int n_free, *free;      ///< user coordinates that may move
+    double *residual, size; ///< scaled phi (nc) and its length
 
     // column k of T^-1: rates of the system coordinates for a unit rate of user coordinate k, nonzeros only
     int *map_start, *map_row;
@@ -45,7 +46,8 @@ double hn_assemble_gap(const hn_assembler *s, int loop);
 /// Says why loop `loop` stays open at s->x.
 void hn_assemble_explain(hn_assembler *s, int loop);
 
-int hn_mode_sign(double value);                   ///< +1, -1, or 0 within rounding
-int hn_mode_is_four_bar(const hn_system *sys);    ///< 1: the first loop is a planar four-bar, "open" and "crossed" apply
+int hn_mode_sign(double value); ///< +1, -1, or 0 within rounding
+int hn_mode_is_four_bar(
+    const hn_system *sys); ///< 1: the first loop is a planar four-bar, "open" and "crossed" apply
 
 #endif

@@ -22,9 +22,9 @@ enum { MAX_ITERATIONS = 100, MAX_HOMOTOPY_STEPS = 60, MAX_CORRECTIONS = 8, RANDO
 typedef struct search {
     hn_assembler *s;
     int n, nc;
-    double *J;        // nc x n, scaled
-    double *goal;     // nc: the residual aimed at; 0 but during homotopy
-    double *A, *g;    // J'J + mu I, J' r
+    double *J;     // nc x n, scaled
+    double *goal;  // nc: the residual aimed at; 0 but during homotopy
+    double *A, *g; // J'J + mu I, J' r
     double *step, *start, *r;
     double *best_x, best_size;
     int damped; // damped steps taken
@@ -93,7 +93,8 @@ static void fill_jacobian(search *w) {
     for (int i = 0; i < w->nc; i++) {
         hn_assemble_user_row(s, i, w->step);
         for (int k = 0; k < w->n; k++) {
-            w->J[(size_t)i * w->n + k] = s->row_scale[i] * w->step[s->free[k]] * s->reach[s->free[k]];
+            w->J[(size_t)i * w->n + k] =
+                s->row_scale[i] * w->step[s->free[k]] * s->reach[s->free[k]];
         }
     }
 }
@@ -102,7 +103,8 @@ static void fill_jacobian(search *w) {
 static void cap_step(search *w) {
     double factor = 1;
     for (int k = 0; k < w->n; k++) {
-        hn_unit_kind kind = w->s->scene->coordinates[hn_system_user_coordinate(w->s->sys, w->s->free[k])].kind;
+        hn_unit_kind kind =
+            w->s->scene->coordinates[hn_system_user_coordinate(w->s->sys, w->s->free[k])].kind;
         double cap = kind == HN_LENGTH ? LENGTH_CAP : ANGLE_CAP;
         if (fabs(w->step[k]) * factor > cap) {
             factor = cap / fabs(w->step[k]);
@@ -254,7 +256,8 @@ static int follow_homotopy(search *w) {
     memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
     memset(w->goal, 0, (size_t)w->nc * sizeof *w->goal);
     (void)evaluate(w);
-    double *from = hn_arena_doubles(s->arena, (size_t)w->nc), *last = hn_arena_doubles(s->arena, (size_t)s->n);
+    double *from = hn_arena_doubles(s->arena, (size_t)w->nc),
+           *last = hn_arena_doubles(s->arena, (size_t)s->n);
     if (!from || !last) {
         return 0;
     }

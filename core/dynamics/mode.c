@@ -78,7 +78,8 @@ static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts 
             if (coordinates[i] < 0) {
                 continue;
             }
-            int will = willingness(&scene->coordinates[hn_system_user_coordinate(sys, coordinates[i])]);
+            int will =
+                willingness(&scene->coordinates[hn_system_user_coordinate(sys, coordinates[i])]);
             if (will > most) {
                 most = will;
                 best = i;
@@ -125,7 +126,8 @@ static hn_status find_parts(const hn_system *sys, hn_arena *arena, loop_parts *p
     return HN_OK;
 }
 
-static hn_status compile_determinant(const hn_system *sys, hn_arena *arena, const loop_parts *parts, hn_mode_watch *w) {
+static hn_status compile_determinant(const hn_system *sys, hn_arena *arena, const loop_parts *parts,
+                                     hn_mode_watch *w) {
     hn_system_info info = hn_system_get_info(sys);
     hn_system_exprs ex = hn_system_get_exprs(sys);
     int n = parts->n_dependent;
@@ -146,7 +148,8 @@ static hn_status compile_determinant(const hn_system *sys, hn_arena *arena, cons
         symbols[i] = ex.q_symbols[i];
     }
     symbols[info.nq] = ex.t_symbol;
-    hn_status status = hn_tape_compile(hn_system_graph(sys), entries, n * n, symbols, info.nq + 1, &w->tape);
+    hn_status status =
+        hn_tape_compile(hn_system_graph(sys), entries, n * n, symbols, info.nq + 1, &w->tape);
     if (status != HN_OK) {
         return status;
     }
@@ -259,7 +262,8 @@ int hn_mode_is_four_bar(const hn_system *sys) {
     const hn_scene *scene = hn_system_scene(sys);
     hn_arena *arena = hn_arena_create(0);
     loop_parts parts = {0};
-    int yes = arena && find_parts(sys, arena, &parts) == HN_OK && parts.n_rows == 2 && parts.n_coordinates == 3;
+    int yes = arena && find_parts(sys, arena, &parts) == HN_OK && parts.n_rows == 2 &&
+              parts.n_coordinates == 3;
     hn_arena_free(arena);
     if (!yes) {
         return 0;

@@ -1,0 +1,385 @@
+// Why a loop stays open. Beside the gap and the pins: where the joints of the loop that may turn are parallel revolutes, the
+// loop is a polygon. Bodies between two turning joints form one side (pinned joints make them rigid), and it closes if and
+// only if no side is longer than all the others together.
+
+#include "dynamics/assemble_internal.h"
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double PARALLEL = 1e-9; // sine of the angle between axes that count as parallel
+
+typedef struct pose {
+    double R[9]; // body to world
+    double p[3]; // world position of the body's origin
+} pose;
+
+/// One body of the ring with the joints through which the ring enters and leaves it.
+typedef struct ring_part {
+    int body;
+    int joint_in, joint_out;
+} ring_part;
+
+// --- poses of bodies, straight from the scene ----------------------------------------------------------------
+
+static void rotate(const double R[9], const double x[3], double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        out[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
+    }
+}
+
+static void multiply(const double A[9], const double B[9], double out[9]) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+        }
+    }
+}
+
+static void transpose(const double A[9], double out[9]) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out[3 * i + j] = A[3 * j + i];
+        }
+    }
+}
+
+/// Joint frame in body axes: columns ref, axis x ref, axis.
+static void joint_frame(const double axis[3], const double ref[3], double out[9]) {
+    const double side[3] = {axis[1] * ref[2] - axis[2] * ref[1],
+                            axis[2] * ref[0] - axis[0] * ref[2],
+                            axis[0] * ref[1] - axis[1] * ref[0]};
+    for (int i = 0; i < 3; i++) {
+        out[3 * i] = ref[i];
+        out[3 * i + 1] = side[i];
+        out[3 * i + 2] = axis[i];
+    }
+}
+
+static void place(const hn_quantity at[3], double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        out[i] = at[i].value;
+    }
+}
+
+/// Rotation and shift from the joint's child to its parent at coordinate value x: p_parent = R p_child + shift.
+static void joint_transform(const hn_joint *joint, double x, pose *out) {
+    double B[9], C[9], Ct[9], turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9];
+    joint_frame(joint->parent_axis, joint->parent_ref, B);
+    joint_frame(joint->child_axis, joint->child_ref, C);
+    if (joint->type == HN_JOINT_REVOLUTE) {
+        turn[0] = turn[4] = cos(x);
+        turn[3] = sin(x);
+        turn[1] = -turn[3];
+    }
+    transpose(C, Ct);
+    multiply(B, turn, half);
+    multiply(half, Ct, out->R);
+
+    double at_parent[3], at_child[3], arm[3];
+    place(joint->parent_at, at_parent);
+    place(joint->child_at, at_child);
+    rotate(out->R, at_child, arm);
+    double slide = joint->type == HN_JOINT_PRISMATIC ? x : 0;
+    for (int i = 0; i < 3; i++) {
+        out->p[i] = at_parent[i] + slide * joint->parent_axis[i] - arm[i];
+    }
+}
+
+static double coordinate_value(const hn_assembler *s, int coordinate) {
+    for (int k = 0; k < s->n; k++) {
+        if (hn_system_user_coordinate(s->sys, k) == coordinate) {
+            return s->x[k];
+        }
+    }
+    return 0;
+}
+
+/// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on failure.
+static pose find_pose(const hn_assembler *s, int body) {
+    pose at = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    while (body != HN_GROUND) {
+        const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
+        pose step, next;
+        joint_transform(joint, coordinate_value(s, joint->coordinate), &step);
+        if (joint->child != body) { // the tree runs through this joint backwards
+            pose inverse;
+            transpose(step.R, inverse.R);
+            rotate(inverse.R, step.p, inverse.p);
+            for (int i = 0; i < 3; i++) {
+                inverse.p[i] = -inverse.p[i];
+            }
+            step = inverse;
+        }
+        multiply(step.R, at.R, next.R);
+        rotate(step.R, at.p, next.p);
+        for (int i = 0; i < 3; i++) {
+            next.p[i] += step.p[i];
+        }
+        at = next;
+        body = joint->child == body ? joint->parent : joint->child;
+    }
+    return at;
+}
+
+/// World position of a joint as seen from one of its two bodies.
+static void joint_position(const hn_assembler *s, int joint_index, int body, double out[3]) {
+    const hn_joint *joint = &s->scene->joints[joint_index];
+    double local[3];
+    place(joint->parent == body ? joint->parent_at : joint->child_at, local);
+    pose at = find_pose(s, body);
+    rotate(at.R, local, out);
+    for (int i = 0; i < 3; i++) {
+        out[i] += at.p[i];
+    }
+}
+
+// --- the ring of a loop --------------------------------------------------------------------------------------
+
+static int tree_parent(const hn_assembler *s, int body) {
+    const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
+    return joint->child == body ? joint->parent : joint->child;
+}
+
+static int depth_of(const hn_assembler *s, int body) {
+    int depth = 0;
+    for (; body != HN_GROUND; body = tree_parent(s, body)) {
+        depth++;
+    }
+    return depth;
+}
+
+/// Walks from both bodies of the cut joint up to their common ancestor. Returns the number of parts; `parts` holds n_bodies + 1.
+static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
+    int a = s->scene->joints[cut].child, b = s->scene->joints[cut].parent, n = 0, n_back = 0;
+    int depth_a = depth_of(s, a), depth_b = depth_of(s, b), in = cut, out = cut;
+    ring_part *back = parts + s->scene->n_bodies + 1; // the parent's side, to be turned round
+    while (a != b) {
+        if (depth_a >= depth_b) {
+            int up = hn_system_tree_joint(s->sys, a);
+            parts[n++] = (ring_part){a, in, up};
+            in = up;
+            a = tree_parent(s, a);
+            depth_a--;
+        } else {
+            int up = hn_system_tree_joint(s->sys, b);
+            back[n_back++] = (ring_part){b, up, out};
+            out = up;
+            b = tree_parent(s, b);
+            depth_b--;
+        }
+    }
+    parts[n++] = (ring_part){a, in, out};
+    while (n_back > 0) {
+        parts[n++] = back[--n_back];
+    }
+    return n;
+}
+
+static int is_pinned(const hn_assembler *s, int joint) {
+    return !hn_system_joint_is_cut(s->sys, joint) &&
+           s->scene->coordinates[s->scene->joints[joint].coordinate].q0_pinned;
+}
+
+static const char *body_name(const hn_assembler *s, int body) {
+    return body == HN_GROUND ? "ground" : s->scene->bodies[body].name;
+}
+
+// --- sides of the polygon ------------------------------------------------------------------------------------
+
+typedef struct side {
+    double length;
+    int n_bodies, body; ///< how many bodies it is made of; the first
+    char name[96];
+} side;
+
+/// 1 if every joint of the ring that may move is a revolute and all their axes are parallel in the world.
+static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
+    double first[3] = {0};
+    int have = 0;
+    for (int k = 0; k < n; k++) {
+        const hn_joint *joint = &s->scene->joints[parts[k].joint_in];
+        if (is_pinned(s, parts[k].joint_in)) {
+            continue;
+        }
+        if (joint->type != HN_JOINT_REVOLUTE) {
+            return 0;
+        }
+        double axis[3];
+        pose at = find_pose(s, parts[k].body);
+        rotate(at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis, axis);
+        if (!have) {
+            memcpy(first, axis, sizeof first);
+            have = 1;
+        }
+        double cosine = hn_dot(3, first, axis);
+        if (1 - cosine * cosine > PARALLEL) {
+            return 0;
+        }
+    }
+    return have;
+}
+
+static void append_name(side *to, const char *name) {
+    size_t used = strlen(to->name);
+    (void)snprintf(to->name + used, sizeof to->name - used, "%s%s", used ? "+" : "", name);
+}
+
+/// Distance across the axis between the joints at which a run of parts begins and ends.
+static double side_length(const hn_assembler *s, const ring_part *first, const ring_part *last) {
+    double from[3], to[3], axis[3];
+    joint_position(s, first->joint_in, first->body, from);
+    joint_position(s, last->joint_out, last->body, to);
+    const hn_joint *joint = &s->scene->joints[first->joint_in];
+    pose at = find_pose(s, first->body);
+    rotate(at.R, joint->child == first->body ? joint->child_axis : joint->parent_axis, axis);
+    double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    hn_axpy(3, -hn_dot(3, d, axis), axis, d);
+    return hn_norm2(3, d);
+}
+
+/// Joins parts over pinned joints into sides; returns how many there are.
+static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side *sides) {
+    int first = 0, count = 0;
+    while (is_pinned(s, parts[first].joint_in)) {
+        first++; // the ring has a cut joint, which is never pinned
+    }
+    for (int k = 0; k < n;) {
+        side *now = &sides[count++];
+        int begin = (first + k) % n, end = begin;
+        *now = (side){.body = parts[begin].body};
+        for (;;) {
+            end = (first + k) % n;
+            append_name(now, body_name(s, parts[end].body));
+            now->n_bodies++;
+            k++;
+            if (k == n || !is_pinned(s, parts[end].joint_out)) {
+                break;
+            }
+        }
+        now->length = side_length(s, &parts[begin], &parts[end]);
+    }
+    return count;
+}
+
+/// The shortest remedies: which one side to lengthen or shorten. Sides of several bodies change with their pin.
+static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
+                          size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < n && used + 1 < size; k++) {
+        if (sides[k].n_bodies > 1) {
+            continue;
+        }
+        double to = sides[k].length + (k == longest ? -missing : missing);
+        int wrote = snprintf(text + used, size - used, "%s%s %.6g m", used ? " or " : "make ",
+                             sides[k].name, to);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+    if (used == 0) {
+        (void)snprintf(text, size, "release a pin");
+    }
+}
+
+/// "coupler + rocker reach 3.8 m, 4.2 m are needed": adds to `text`, and the remedy to `hint`. Nothing if the polygon could close.
+static void explain_polygon(const hn_assembler *s, const side *sides, int n, char *text,
+                            size_t size, char *hint, size_t hint_size) {
+    int longest = 0;
+    double sum = 0;
+    for (int k = 0; k < n; k++) {
+        sum += sides[k].length;
+        longest = sides[k].length > sides[longest].length ? k : longest;
+    }
+    double others = sum - sides[longest].length, missing = sides[longest].length - others;
+    if (missing <= 1e-9 * s->length) {
+        return;
+    }
+    (void)snprintf(text, size,
+                   "; %s spans %.6g m, the other sides together reach %.6g m: %.6g m are missing",
+                   sides[longest].name, sides[longest].length, others, missing);
+    list_remedies(sides, n, longest, missing, hint, hint_size);
+}
+
+static void explain_ring(hn_assembler *s, int loop, char *text, size_t size, char *hint,
+                         size_t hint_size) {
+    int cut = s->scene->is_lagrangian ? -1 : hn_system_loop_joint(s->sys, loop);
+    if (cut < 0) {
+        return;
+    }
+    size_t room = (size_t)s->scene->n_bodies + 1;
+    ring_part *parts = hn_arena_get(s->arena, 2 * room * sizeof *parts);
+    side *sides = hn_arena_get(s->arena, room * sizeof *sides);
+    if (!parts || !sides) {
+        return;
+    }
+    int n = find_ring(s, cut, parts);
+    if (is_polygon(s, parts, n)) {
+        explain_polygon(s, sides, find_sides(s, parts, n, sides), text, size, hint, hint_size);
+    }
+}
+
+// --- the message ---------------------------------------------------------------------------------------------
+
+/// Names and values of the pins that hold coordinates of this loop.
+static void list_pins(hn_assembler *s, int loop, char *text, size_t size) {
+    double *row = hn_arena_doubles(s->arena, (size_t)s->n);
+    int *moves = hn_arena_ints(s->arena, (size_t)s->n);
+    size_t used = 0;
+    text[0] = '\0';
+    if (!row || !moves) {
+        return;
+    }
+    for (int i = 0; i < s->nc; i++) {
+        if (hn_system_row_loop(s->sys, i) == loop) {
+            hn_assemble_user_row(s, i, row);
+            for (int k = 0; k < s->n; k++) {
+                moves[k] |= row[k] != 0;
+            }
+        }
+    }
+    for (int k = 0; k < s->n && used + 1 < size; k++) {
+        const hn_coordinate *c = &s->scene->coordinates[hn_system_user_coordinate(s->sys, k)];
+        if (moves[k] && c->q0_pinned) {
+            int wrote =
+                snprintf(text + used, size - used, "%s%s = %.6g", used ? ", " : "", c->name, c->q0);
+            used += wrote > 0 ? (size_t)wrote : 0;
+        }
+    }
+}
+
+static const char *first_pin_pointer(const hn_assembler *s) {
+    for (int k = 0; k < s->n; k++) {
+        const hn_coordinate *c = &s->scene->coordinates[hn_system_user_coordinate(s->sys, k)];
+        if (c->q0_pinned) {
+            return c->q0_pointer;
+        }
+    }
+    return NULL;
+}
+
+static int loop_has_lengths(const hn_assembler *s, int loop) {
+    for (int i = 0; i < s->nc; i++) {
+        if (hn_system_row_loop(s->sys, i) == loop && hn_system_row_is_length(s->sys, i)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+void hn_assemble_explain(hn_assembler *s, int loop) {
+    char pins[128], reason[256] = "", hint[HN_DIAG_HINT] = "";
+    list_pins(s, loop, pins, sizeof pins);
+    explain_ring(s, loop, reason, sizeof reason, hint, sizeof hint);
+    if (!hint[0]) {
+        (void)snprintf(hint, sizeof hint, "%s",
+                       pins[0] ? "release a pin, or start from another guess"
+                               : "start from another guess, or change a length");
+    }
+    const char *unit = loop_has_lengths(s, loop) ? " m" : "";
+    hn_diags_add(s->diags, HN_ERR_UNREACHABLE, first_pin_pointer(s), hint,
+                 "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s%s",
+                 hn_system_loop_name(s->sys, loop), hn_assemble_gap(s, loop), unit,
+                 pins[0] ? " with " : "", pins, pins[0] ? " held" : "", reason);
+}
