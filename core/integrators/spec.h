@@ -17,11 +17,20 @@ typedef struct hn_method_spec {
 } hn_method_spec;
 
 /// Parses and checks. Faults (HN_ERR_INPUT): unknown formulation, integrator or key with a near miss, a value that is no number
-/// ("2e-2 s" and "0,02" are read as 0.02), out of range, given twice, missing '@'. `diag->column` says where.
+/// ("2e-2 s", "20 ms" and "0,02" are read as 0.02), out of range, given twice, missing '@'. `diag->column` says where. With
+/// HN_OK, diag->message is "" or a warning ("alpha = -5 1/s: below zero it pushes the loop apart").
 HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag);
 /// The normal spelling: only settings that differ from their defaults, plus h or rtol always. Reads back to the same spec.
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]);
-/// {"spelling","formulation","integrator","title","settings":{...}}
+/// The value of a setting by key, of the formulation or else of the integrator; `otherwise` when neither has it.
+double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise);
+/// Checks one value against its table entry: HN_OK or HN_ERR_INPUT with the reason in diag (no column).
+HN_MUST_CHECK hn_status hn_setting_check(const hn_setting_info *info, double value, hn_diag *diag);
+/// Reads one value as hn_method_parse() does ("0,02", "20 ms", "auto"); checked.
+HN_MUST_CHECK hn_status hn_setting_parse(const hn_setting_info *info, const char *text,
+                                         double *value, hn_diag *diag);
+/// {"spelling","formulation","integrator","title","short_name","model_error","settings":{...}}; settings of the integrator follow
+/// those of the formulation, named choices are strings.
 void hn_method_json(hn_strbuf *b, const hn_method_spec *spec);
 /// The whole catalogue: {"formulations":[card...],"integrators":[card...]}; settings with unit, range, default.
 void hn_methods_json(hn_strbuf *b);

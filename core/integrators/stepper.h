@@ -6,20 +6,22 @@
 #include "methods/method.h"
 
 typedef struct hn_stepper {
-    const char *name, *title;   ///< "rk4", "Runge-Kutta 4"
+    const char *name, *title; ///< "rk4", "Runge-Kutta 4"
     const char *about, *source;
-    int order;                  ///< of the solution that is kept
-    int stages;                 ///< right-hand sides per step
-    int adaptive;               ///< chooses its own step from rtol, atol
-    int partitioned;            ///< treats positions and speeds differently (symplectic Euler)
-    double real_limit, imag_limit; ///< |h s| limits of the stability region on the axes; INFINITY: none
+    int order;       ///< of the solution that is kept
+    int stages;      ///< right-hand sides per step
+    int adaptive;    ///< chooses its own step from rtol, atol
+    int partitioned; ///< treats positions and speeds differently (symplectic Euler)
+    double real_limit,
+        imag_limit; ///< |h s| limits of the stability region on the axes; HUGE_VAL: none
     int n_settings;
     hn_setting_info settings[HN_MAX_SETTINGS]; ///< h, or rtol, atol, h0, hmax
 
     void *(*create)(int n_pos, int n_vel, hn_arena *arena);
     /// One trial step of size h from (t, y) to y_new; err (n) receives the embedded error estimate when adaptive. Does not
     /// change y. Fails with the right-hand side's status.
-    hn_status (*step)(void *self, const hn_ode *ode, double t, double h, const double *y, double *y_new, double *err);
+    hn_status (*step)(void *self, const hn_ode *ode, double t, double h, const double *y,
+                      double *y_new, double *err);
     /// Called when y_new was accepted as it is (FSAL may be kept) or was changed afterwards (it may not).
     void (*accepted)(void *self, int changed);
     /// Dense output in the step just accepted: y at t + theta h, theta in [0, 1]. NULL: none.

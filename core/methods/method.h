@@ -14,21 +14,21 @@ enum { HN_MAX_SETTINGS = 8 };
 /// One setting of a formulation or an integrator, as in "alpha=20".
 typedef struct hn_setting_info {
     const char *key;
-    double initial, min, max;      ///< NaN initial: required
+    double initial, min, max; ///< NaN initial: required
     const char *unit, *about;
-    const char *const *choices;    ///< named values (0, 1, ...) or NULL; spelled by name
+    const char *const *choices; ///< named values (0, 1, ...) or NULL; spelled by name
     int n_choices;
-    int warn_below_zero;           ///< allowed but told ("pushes the loop apart")
+    int warn_below_zero; ///< allowed but told ("pushes the loop apart")
 } hn_setting_info;
 
 /// What a formulation did and met, summed over a run; plain counters, reset by the run.
 typedef struct hn_cost {
-    long long evals;          ///< right-hand sides
+    long long evals; ///< right-hand sides
     long long factorisations, solves, newton;
-    double ops;               ///< arithmetic operations, tape plus linear algebra
-    long long fallbacks;      ///< dense solves in place of the tape's
+    double ops;          ///< arithmetic operations, tape plus linear algebra
+    long long fallbacks; ///< dense solves in place of the tape's
     long long projections;
-    double energy_removed;    ///< by projection [J]
+    double energy_removed; ///< by projection [J]
     long long chart_changes;
 } hn_cost;
 
@@ -42,21 +42,22 @@ typedef struct hn_ode {
 } hn_ode;
 
 typedef struct hn_formulation {
-    const char *name;     ///< as spelled: "baumgarte"
-    const char *title;    ///< "Baumgarte stabilisation"
+    const char *name;       ///< as spelled: "baumgarte"
+    const char *title;      ///< "Baumgarte stabilisation"
     const char *short_name; ///< at most 14 characters, for tables and legends
-    const char *rule;     ///< the one idea in at most 35 words
-    const char *drift;    ///< what happens to the gap, in words
+    const char *rule;       ///< the one idea in at most 35 words
+    const char *drift;      ///< what happens to the gap, in words
     const char *when, *when_not, *source;
-    const char *needs;    ///< "M f J gamma"
-    int model_error;      ///< 1: converges to something else, on purpose
-    int keeps_gap;        ///< 1: phi stays at rounding level
+    const char *needs; ///< "M f J gamma"
+    int model_error;   ///< 1: converges to something else, on purpose
+    int keeps_gap;     ///< 1: phi stays at rounding level
     int n_settings;
     hn_setting_info settings[HN_MAX_SETTINGS];
 
     /// Makes an instance (from `arena`; what is not from the arena is freed by destroy). `settings` in table order.
     /// Refuses a scene it cannot serve with a reason in diag (HN_ERR_UNSUPPORTED).
-    hn_status (*create)(const hn_system *sys, const double *settings, hn_arena *arena, void **self, hn_diag *diag);
+    hn_status (*create)(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag);
     void (*destroy)(void *self);
     void (*ode)(void *self, hn_ode *out);
     /// (q, v) -> y, and back; q (nq), v (nv) in system coordinates. set_state may choose a chart.

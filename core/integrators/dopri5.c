@@ -1,0 +1,34 @@
+#include "integrators/explicit_rk.h"
+#include "integrators/registry.h"
+
+static void *create(int n_pos, int n_vel, hn_arena *arena) {
+    return hn_explicit_rk_create(&hn_tableau_dopri5, n_pos + n_vel, arena);
+}
+
+const hn_stepper hn_stepper_dopri5 = {
+    .name = "dopri5",
+    .title = "Dormand-Prince 5(4)",
+    .about = "Chooses its own step from rtol and atol; order 5, dense output of order 4. On stiff "
+             "undamped "
+             "springs it takes smaller steps than rk4.",
+    .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.4-II.6",
+    .order = 5,
+    .stages = 6,
+    .adaptive = 1,
+    .real_limit = 3.306567892634947,
+    .imag_limit = 0.9970302265836285,
+    .n_settings = 4,
+    .settings =
+        {
+            {"rtol", 1e-6, 1e-14, 0.1, "", "relative error allowed in a step", NULL, 0, 0},
+            {"atol", 0, 0, 1, "", "absolute error allowed in a step; 0: the same number as rtol",
+             NULL, 0, 0},
+            {"h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0},
+            {"hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0},
+        },
+    .create = create,
+    .step = hn_explicit_rk_step,
+    .accepted = hn_explicit_rk_accepted,
+    .dense = hn_explicit_rk_dense,
+    .dense_order = 4,
+};

@@ -1,0 +1,27 @@
+#include "integrators/registry.h"
+
+#include <string.h>
+
+static const hn_stepper *const steppers[] = {
+    &hn_stepper_euler, &hn_stepper_symplectic_euler, &hn_stepper_heun,
+    &hn_stepper_rk4,   &hn_stepper_dopri5,
+};
+enum { N_STEPPERS = sizeof steppers / sizeof steppers[0] };
+
+int hn_stepper_count(void) {
+    return N_STEPPERS;
+}
+
+const hn_stepper *hn_stepper_at(int i) {
+    HN_ASSERT(i >= 0 && i < N_STEPPERS);
+    return steppers[i];
+}
+
+const hn_stepper *hn_stepper_find(const char *name) {
+    for (int i = 0; i < N_STEPPERS; i++) {
+        if (strcmp(steppers[i]->name, name) == 0) {
+            return steppers[i];
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,115 @@
+#include "methods/minimal_state.h"
+
+#include <string.h>
+
+hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
+                          hn_diag *diag) {
+    const size_t nv = (size_t)hn_system_get_info(sys).nv;
+    s->q = hn_arena_doubles(arena, nv);
+    s->v = hn_arena_doubles(arena, nv);
+    if (!s->q || !s->v) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    return hn_chart_init(&s->chart, sys, 1, arena, diag);
+}
+
+void hn_minimal_destroy(void *self) {
+    hn_minimal_state *s = self;
+    hn_chart_destroy(&s->chart);
+}
+
+// `here` goes to the closed pose with the independent entries of y
+static hn_status place(hn_minimal_state *s, double t, const double *y, double tol) {
+    hn_chart *chart = &s->chart;
+    hn_chart_point *p = &chart->here;
+    int same = p->valid && p->t == t && p->tol <= tol;
+    for (int j = 0; j < chart->r && same; j++) {
+        same = p->q[chart->ind[j]] == y[j];
+    }
+    if (same) {
+        return HN_OK;
+    }
+    hn_chart_predict(chart, t, y, s->q);
+    const hn_status status = hn_chart_close(chart, p, t, s->q, tol);
+    return status == HN_OK ? hn_chart_check_mode(chart) : status;
+}
+
+static hn_status rhs(void *self, double t, const double *y, double *ydot) {
+    hn_minimal_state *s = self;
+    const int r = s->chart.r;
+    s->chart.cost.evals++;
+    const hn_status status = place(s, t, y, HN_CHART_TOL);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_chart_speeds(&s->chart, &s->chart.here, y + r, s->v);
+    memcpy(ydot, y + r, (size_t)r * sizeof *y);
+    return hn_chart_accel(&s->chart, s->v, ydot + r);
+}
+
+static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
+    const hn_minimal_state *s = self;
+    (void)t;
+    memcpy(pos_dot, y + s->chart.r, (size_t)s->chart.r * sizeof *y);
+    return HN_OK;
+}
+
+void hn_minimal_ode(void *self, hn_ode *out) {
+    const hn_minimal_state *s = self;
+    *out = (hn_ode){.n_pos = s->chart.r,
+                    .n_vel = s->chart.r,
+                    .self = self,
+                    .rhs = rhs,
+                    .kinematics = kinematics};
+}
+
+hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
+                           const double *v, double *y) {
+    hn_chart *chart = &s->chart;
+    memmove(s->q, q, (size_t)chart->nv * sizeof *q);
+    memmove(s->v, v, (size_t)chart->nv * sizeof *v);
+    hn_status status = hn_chart_choose(chart, t, s->q, first);
+    if (status == HN_OK) {
+        status = hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int j = 0; j < chart->r; j++) {
+        y[j] = s->q[chart->ind[j]];
+        y[chart->r + j] = s->v[chart->ind[j]];
+    }
+    return hn_chart_settle(chart);
+}
+
+hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v) {
+    hn_minimal_state *s = self;
+    hn_chart *chart = &s->chart;
+    hn_chart_predict(chart, t, y, q);
+    // at the accepted state itself nothing has to be solved
+    const hn_chart_point *p = &chart->base;
+    if (!hn_chart_is_at(chart, p, t, q)) {
+        const hn_status status = hn_chart_close(chart, &chart->probe, t, q, HN_CHART_TOL_FINE);
+        if (status != HN_OK) {
+            return status;
+        }
+        p = &chart->probe;
+    }
+    hn_chart_speeds(chart, p, y + chart->r, v);
+    return HN_OK;
+}
+
+hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
+    const hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
+    return status == HN_OK ? hn_chart_settle(&s->chart) : status;
+}
+
+void hn_minimal_add_cost(const void *self, hn_cost *cost) {
+    const hn_minimal_state *s = self;
+    hn_chart_add_cost(&s->chart, cost);
+}
+
+const char *hn_minimal_why(const void *self) {
+    const hn_minimal_state *s = self;
+    return s->chart.why[0] ? s->chart.why : NULL;
+}

@@ -1,0 +1,26 @@
+#ifndef HN_METHODS_MINIMAL_STATE_H
+#define HN_METHODS_MINIMAL_STATE_H
+// What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many entries as the mechanism
+// has freedoms. Every right-hand side closes the loops first, by Newton from a tangent prediction, so no gap can open.
+
+#include "methods/chart.h"
+
+typedef struct hn_minimal_state {
+    hn_chart chart;
+    double *q, *v; ///< nv, scratch
+} hn_minimal_state;
+
+HN_MUST_CHECK hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
+                                        hn_diag *diag);
+void hn_minimal_destroy(void *self);
+void hn_minimal_ode(void *self, hn_ode *out);
+/// Chooses a chart with column `first` independent (-1: any), closes the loops at the independent entries of q.
+HN_MUST_CHECK hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
+                                         const double *v, double *y);
+hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v);
+/// Closes the loops at an accepted state as far as rounding allows and makes it the base of the next step.
+HN_MUST_CHECK hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y);
+void hn_minimal_add_cost(const void *self, hn_cost *cost);
+const char *hn_minimal_why(const void *self);
+
+#endif

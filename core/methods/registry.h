@@ -1,0 +1,10 @@
+#ifndef HN_METHODS_REGISTRY_H
+#define HN_METHODS_REGISTRY_H
+// The formulations that exist; each is defined in its own file.
+#include "methods/method.h"
+
+extern const hn_formulation hn_formulation_index1, hn_formulation_baumgarte,
+    hn_formulation_projection, hn_formulation_nullspace, hn_formulation_nullspace_as_printed,
+    hn_formulation_partitioning, hn_formulation_reduced;
+
+#endif

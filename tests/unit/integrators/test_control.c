@@ -1,0 +1,112 @@
+#include "support/near.h"
+#include "support/odes.h"
+
+#include "integrators/control.h"
+
+#include <math.h>
+#include <string.h>
+
+static void error_norm_is_the_rms_of_scaled_errors(void **state) {
+    (void)state;
+    const double err[2] = {3e-3, 4e-3}, y0[2] = {1, -2}, y1[2] = {0.5, 1};
+    // scales 1e-3 + 1e-3 * {1, 2} = {2e-3, 3e-3}
+    assert_rel(hn_error_norm(2, err, y0, y1, 1e-3, 1e-3), sqrt((2.25 + 16.0 / 9) / 2), 1e-14);
+    assert_near(hn_error_norm(0, err, y0, y1, 1e-3, 1e-3), 0, 0);
+}
+
+static void error_norm_of_a_state_that_is_not_finite_is_infinite(void **state) {
+    (void)state;
+    const double err[1] = {0}, y0[1] = {1}, bad[1] = {nan("")}, nan_err[1] = {nan("")};
+    assert_true(isinf(hn_error_norm(1, err, y0, bad, 1e-3, 1e-3)));
+    assert_true(isinf(hn_error_norm(1, nan_err, y0, y0, 1e-3, 1e-3)));
+}
+
+static void a_rejection_always_shrinks_and_the_next_step_does_not_grow(void **state) {
+    (void)state;
+    hn_step_control c = {.last = 1};
+    assert_near(hn_step_factor(&c, 1e-12, 5), HN_STEP_GROW, 0);
+    assert_true(hn_step_factor(&c, 1.0001, 5) <= HN_STEP_SAFETY);
+    assert_true(hn_step_factor(&c, 1e-12, 5) <= 1);
+    assert_near(hn_step_factor(&c, 1e-12, 5), HN_STEP_GROW, 0);
+    assert_near(hn_step_factor(&c, 1e30, 5), HN_STEP_SHRINK, 0);
+    assert_near(hn_step_factor(&c, HUGE_VAL, 5), HN_STEP_SHRINK, 0);
+}
+
+static void first_step_is_of_the_size_of_the_motion(void **state) {
+    (void)state;
+    for (double w = 1e-3; w < 1e4; w *= 10) {
+        hn_test_oscillator o = {0, w, 0};
+        const hn_ode ode = hn_test_oscillator_ode(&o);
+        const double y[2] = {1, w};
+        double f0[2], a[2], b[2], h = 0;
+        assert_int_equal(hn_first_step(&ode, 0, y, 5, 1e-6, 1e-9, HUGE_VAL, f0, a, b, &h), HN_OK);
+        assert_true(h * w > 1e-5 && h * w < 1.5);
+    }
+}
+
+static void first_step_respects_the_largest_one(void **state) {
+    (void)state;
+    hn_test_oscillator o = {0, 1, 0};
+    const hn_ode ode = hn_test_oscillator_ode(&o);
+    const double y[2] = {0, 0};
+    double f0[2], a[2], b[2], h = 0;
+    assert_int_equal(hn_first_step(&ode, 0, y, 5, 1e-6, 1e-9, 1e-9, f0, a, b, &h), HN_OK);
+    assert_true(h > 0 && h <= 1e-9);
+}
+
+// the whole loop on an orbit: the error follows the tolerance
+static double controlled_error(double rtol, int *steps) {
+    const hn_stepper *s = hn_stepper_find("dopri5");
+    const hn_ode ode = hn_test_kepler_ode();
+    hn_arena *arena = hn_arena_create(0);
+    hn_step_control c = {.last = 1};
+    double y[4], next[4], err[4], exact[4], t = 0, h = 1e-3, worst = 0;
+    const double T = 6;
+    void *self = s->create(2, 2, arena);
+    hn_test_kepler_exact(0.5, 0, y);
+    *steps = 0;
+    while (t < T) {
+        h = fmin(h, T - t);
+        assert_int_equal(s->step(self, &ode, t, h, y, next, err), HN_OK);
+        const double norm = hn_error_norm(4, err, y, next, rtol, rtol);
+        if (norm <= 1) {
+            s->accepted(self, 0);
+            memcpy(y, next, sizeof y);
+            t += h;
+            ++*steps;
+        }
+        h *= hn_step_factor(&c, norm, 5);
+    }
+    hn_test_kepler_exact(0.5, T, exact);
+    for (int i = 0; i < 4; i++) {
+        worst = fmax(worst, fabs(y[i] - exact[i]));
+    }
+    hn_arena_free(arena);
+    return worst;
+}
+
+static void error_of_a_controlled_run_follows_the_tolerance(void **state) {
+    (void)state;
+    double rtol[4], err[4], n[4];
+    for (int i = 0; i < 4; i++) {
+        int steps = 0;
+        rtol[i] = pow(10, -5 - 1.5 * i);
+        err[i] = controlled_error(rtol[i], &steps);
+        n[i] = steps;
+        assert_true(err[i] < 1e3 * rtol[i]);
+    }
+    assert_near(hn_test_slope(4, rtol, err), 1, 0.25);
+    assert_near(hn_test_slope(4, rtol, n), -0.2, 0.05); // work of an order-5 method
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(error_norm_is_the_rms_of_scaled_errors),
+        cmocka_unit_test(error_norm_of_a_state_that_is_not_finite_is_infinite),
+        cmocka_unit_test(a_rejection_always_shrinks_and_the_next_step_does_not_grow),
+        cmocka_unit_test(first_step_is_of_the_size_of_the_motion),
+        cmocka_unit_test(first_step_respects_the_largest_one),
+        cmocka_unit_test(error_of_a_controlled_run_follows_the_tolerance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,109 @@
+#include "support/near.h"
+#include "support/odes.h"
+
+#include <math.h>
+#include <string.h>
+
+// The limits on the cards, tried: growth just beyond, decay or no growth just below.
+
+static hn_arena *arena;
+
+static int setup(void **state) {
+    (void)state;
+    arena = hn_arena_create(0);
+    return arena ? 0 : -1;
+}
+
+static int teardown(void **state) {
+    (void)state;
+    hn_arena_free(arena);
+    return 0;
+}
+
+// size of (x, x') of x'' + 2 a x' + b^2 x = 0 after n steps of length 1 from (1, 0), at most 1e100
+static double size_after(const hn_stepper *s, double a, double b, int n) {
+    hn_test_oscillator o = {a, b, 0};
+    const hn_ode ode = hn_test_oscillator_ode(&o);
+    double y[2] = {1, 0}, next[2], err[2], size = 1;
+    void *self = s->create(1, 1, arena);
+    for (int i = 0; i < n && size < 1e100; i++) {
+        assert_int_equal(s->step(self, &ode, 0, 1, y, next, err), HN_OK);
+        s->accepted(self, 0);
+        memcpy(y, next, sizeof y);
+        size = hypot(y[0], y[1]);
+    }
+    return size;
+}
+
+static const struct {
+    const char *name;
+    double real_limit, imag_limit;
+} table[] = {
+    {"euler", 2.000, 0},
+    {"heun", 2.000, 0},
+    {"rk4", 2.785, 2.828},
+    {"dopri5", 3.307, 0.997},
+    {"symplectic-euler", 0.828, 2.0},
+};
+enum { N_TABLE = sizeof table / sizeof table[0] };
+
+static void cards_carry_the_limits_of_the_stability_polynomials(void **state) {
+    (void)state;
+    assert_int_equal(hn_stepper_count(), N_TABLE);
+    for (int k = 0; k < N_TABLE; k++) {
+        const hn_stepper *s = hn_stepper_find(table[k].name);
+        assert_non_null(s);
+        assert_near(s->real_limit, table[k].real_limit, 6e-4);
+        assert_near(s->imag_limit, table[k].imag_limit, 6e-4);
+    }
+}
+
+static void a_critically_damped_gap_decays_below_the_real_limit_and_grows_beyond(void **state) {
+    (void)state;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        const double below = 0.99 * s->real_limit, beyond = 1.01 * s->real_limit;
+        assert_true(size_after(s, below, below, 5000) < 1e-3);
+        assert_true(size_after(s, beyond, beyond, 5000) > 1e3);
+    }
+}
+
+static void
+an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond(void **state) {
+    (void)state;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        const int n = 1000000; // dopri5 grows by 1e-5 a step only just beyond its limit
+        if (s->imag_limit == 0) {
+            assert_true(size_after(s, 0, 0.2, n) > 1e3);
+            continue;
+        }
+        assert_true(size_after(s, 0, 0.98 * s->imag_limit, n) < 20);
+        assert_true(size_after(s, 0, 1.05 * s->imag_limit, n) > 1e3);
+    }
+}
+
+static void explicit_euler_grows_by_the_exact_factor(void **state) {
+    (void)state;
+    const double w = 0.01;
+    const int n = 20000;
+    hn_test_oscillator o = {0, w, 0};
+    const hn_ode ode = hn_test_oscillator_ode(&o);
+    double y[2] = {1, 0};
+    assert_int_equal(hn_test_integrate(hn_stepper_find("euler"), &ode, n, n, y, arena), HN_OK);
+    // amplitude grows by sqrt(1 + h^2 w^2) a step
+    assert_rel(hypot(y[0], y[1] / w), pow(1 + w * w, n / 2.0), 1e-10);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cards_carry_the_limits_of_the_stability_polynomials),
+        cmocka_unit_test_setup_teardown(
+            a_critically_damped_gap_decays_below_the_real_limit_and_grows_beyond, setup, teardown),
+        cmocka_unit_test_setup_teardown(
+            an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond, setup,
+            teardown),
+        cmocka_unit_test_setup_teardown(explicit_euler_grows_by_the_exact_factor, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

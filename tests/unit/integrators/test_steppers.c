@@ -1,0 +1,249 @@
+#include "support/alloc.h"
+#include "support/near.h"
+#include "support/odes.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ORDER_TOL 0.2
+
+static hn_arena *arena;
+
+static int setup(void **state) {
+    (void)state;
+    arena = hn_arena_create(0);
+    return arena ? 0 : -1;
+}
+
+static int teardown(void **state) {
+    (void)state;
+    hn_arena_free(arena);
+    return 0;
+}
+
+static double kepler_error(const hn_stepper *stepper, double e, double T, int n) {
+    const hn_ode ode = hn_test_kepler_ode();
+    double y[4], exact[4], worst = 0;
+    hn_test_kepler_exact(e, 0, y);
+    hn_test_kepler_exact(e, T, exact);
+    assert_int_equal(hn_test_integrate(stepper, &ode, T, n, y, arena), HN_OK);
+    for (int i = 0; i < 4; i++) {
+        worst = fmax(worst, fabs(y[i] - exact[i]));
+    }
+    return worst;
+}
+
+static void observed_order_on_an_orbit_is_the_stated_one(void **state) {
+    (void)state;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        double h[4], err[4];
+        const int base = s->order == 1 ? 4000 : s->order == 2 ? 400 : 100;
+        for (int i = 0; i < 4; i++) {
+            const int n = base << i;
+            h[i] = 1.0 / n;
+            err[i] = kepler_error(s, 0.3, 4.0, n);
+        }
+        assert_near(hn_test_slope(4, h, err), s->order, ORDER_TOL);
+    }
+}
+
+static void observed_order_on_an_oscillation_is_the_stated_one(void **state) {
+    (void)state;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        double h[4], err[4];
+        const int base = s->order == 1 ? 400 : 20;
+        for (int i = 0; i < 4; i++) {
+            hn_test_oscillator o = {0, 1.7, 0};
+            const hn_ode ode = hn_test_oscillator_ode(&o);
+            double y[2] = {1, 0.5};
+            const int n = base << i;
+            const double T = 2.3, w = 1.7;
+            h[i] = T / n;
+            assert_int_equal(hn_test_integrate(s, &ode, T, n, y, arena), HN_OK);
+            const double x = cos(w * T) + 0.5 / w * sin(w * T);
+            const double v = -w * sin(w * T) + 0.5 * cos(w * T);
+            err[i] = hypot(y[0] - x, y[1] - v);
+        }
+        assert_near(hn_test_slope(4, h, err), s->order, ORDER_TOL);
+    }
+}
+
+// error of the interpolant in the middle of one step from an exact start
+static double dense_error(const hn_stepper *s, double h) {
+    const hn_ode ode = hn_test_kepler_ode();
+    double y[4], next[4], err[4], inner[4], exact[4], worst = 0;
+    void *self = s->create(2, 2, arena);
+    assert_non_null(self);
+    hn_test_kepler_exact(0.3, 0.5, y);
+    assert_int_equal(s->step(self, &ode, 0.5, h, y, next, err), HN_OK);
+    s->accepted(self, 0);
+    for (int i = 0; i <= 10; i++) {
+        const double theta = i / 10.0;
+        s->dense(self, theta, inner);
+        hn_test_kepler_exact(0.3, 0.5 + theta * h, exact);
+        for (int j = 0; j < 4; j++) {
+            worst = fmax(worst, fabs(inner[j] - exact[j]));
+        }
+    }
+    s->dense(self, 0, inner);
+    assert_all_near(inner, y, 4, 0);
+    s->dense(self, 1, inner);
+    assert_all_near(inner, next, 4, 1e-15);
+    return worst;
+}
+
+static void dense_output_has_the_stated_order_and_meets_both_ends(void **state) {
+    (void)state;
+    int found = 0;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        double h[4], err[4];
+        if (!s->dense) {
+            continue;
+        }
+        found++;
+        for (int i = 0; i < 4; i++) {
+            h[i] = 0.2 / (1 << i);
+            err[i] = dense_error(s, h[i]);
+        }
+        // a local error: one power of h above the order
+        assert_near(hn_test_slope(4, h, err), s->dense_order + 1, 0.3);
+    }
+    assert_true(found > 0);
+}
+
+static void error_estimate_of_dopri5_falls_like_h_to_the_fifth(void **state) {
+    (void)state;
+    const hn_stepper *s = hn_stepper_find("dopri5");
+    const hn_ode ode = hn_test_kepler_ode();
+    double h[4], size[4];
+    for (int i = 0; i < 4; i++) {
+        double y[4], next[4], err[4];
+        void *self = s->create(2, 2, arena);
+        hn_test_kepler_exact(0.3, 0.5, y);
+        h[i] = 0.1 / (1 << i);
+        assert_int_equal(s->step(self, &ode, 0, h[i], y, next, err), HN_OK);
+        size[i] = fabs(err[0]) + fabs(err[1]) + fabs(err[2]) + fabs(err[3]);
+    }
+    assert_near(hn_test_slope(4, h, size), 5, ORDER_TOL);
+}
+
+static void fsal_saves_a_stage_unless_the_state_was_changed(void **state) {
+    (void)state;
+    const hn_stepper *s = hn_stepper_find("dopri5");
+    hn_test_oscillator o = {0, 1, 0};
+    const hn_ode ode = hn_test_oscillator_ode(&o);
+    double y[2] = {1, 0}, next[2], err[2];
+    void *self = s->create(1, 1, arena);
+    assert_int_equal(s->step(self, &ode, 0, 0.1, y, next, err), HN_OK);
+    assert_int_equal(o.evals, 7);
+    // rejected: the same point again needs no new first slope
+    assert_int_equal(s->step(self, &ode, 0, 0.05, y, next, err), HN_OK);
+    assert_int_equal(o.evals, 13);
+    s->accepted(self, 0);
+    memcpy(y, next, sizeof y);
+    assert_int_equal(s->step(self, &ode, 0.05, 0.1, y, next, err), HN_OK);
+    assert_int_equal(o.evals, 19);
+    s->accepted(self, 1);
+    assert_int_equal(s->step(self, &ode, 0.15, 0.1, next, y, err), HN_OK);
+    assert_int_equal(o.evals, 26);
+}
+
+static void a_kept_slope_gives_the_same_bits_as_a_fresh_one(void **state) {
+    (void)state;
+    const hn_stepper *s = hn_stepper_find("dopri5");
+    const hn_ode ode = hn_test_kepler_ode();
+    double a[2][4];
+    for (int changed = 0; changed <= 1; changed++) {
+        double y[4], next[4], err[4];
+        void *self = s->create(2, 2, arena);
+        hn_test_kepler_exact(0.3, 0, y);
+        for (int i = 0; i < 20; i++) {
+            assert_int_equal(s->step(self, &ode, i * 0.05, 0.05, y, next, err), HN_OK);
+            s->accepted(self, changed);
+            memcpy(y, next, sizeof y);
+        }
+        memcpy(a[changed], y, sizeof y);
+    }
+    assert_memory_equal(a[0], a[1], sizeof a[0]);
+}
+
+static void a_step_does_not_allocate(void **state) {
+    (void)state;
+    const hn_ode ode = hn_test_kepler_ode();
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        double y[4], next[4], err[4];
+        void *self = s->create(2, 2, arena);
+        hn_test_kepler_exact(0.3, 0, y);
+        const long before = hn_alloc_count();
+        for (int i = 0; i < 10; i++) {
+            assert_int_equal(s->step(self, &ode, 0, 0.01, y, next, err), HN_OK);
+            s->accepted(self, i % 2);
+            if (s->dense) {
+                s->dense(self, 0.5, next);
+            }
+        }
+        assert_int_equal(hn_alloc_count(), before);
+    }
+}
+
+static hn_status refuse(void *self, double t, const double *y, double *ydot) {
+    (void)self;
+    (void)y;
+    ydot[0] = ydot[1] = 0;
+    return t > 0.04 ? HN_ERR_CHART : HN_OK;
+}
+
+static void failure_of_the_right_hand_side_is_handed_on(void **state) {
+    (void)state;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        const hn_stepper *s = hn_stepper_at(k);
+        const hn_ode ode = {1, 1, NULL, refuse, refuse};
+        double y[2] = {0, 0}, next[2], err[2];
+        void *self = s->create(1, 1, arena);
+        assert_int_equal(s->step(self, &ode, 0.05, 0.1, y, next, err), HN_ERR_CHART);
+    }
+}
+
+static void symplectic_euler_keeps_the_energy_of_an_oscillation_bounded(void **state) {
+    (void)state;
+    const hn_stepper *s = hn_stepper_find("symplectic-euler");
+    hn_test_oscillator o = {0, 1, 0};
+    const hn_ode ode = hn_test_oscillator_ode(&o);
+    const double h = 0.1;
+    double y[2] = {1, 0};
+    void *self = s->create(1, 1, arena);
+    // x^2 + v^2 - h x v is exactly conserved by the map (1) of symplectic_euler.c
+    for (int i = 0; i < 100000; i++) {
+        double next[2];
+        assert_int_equal(s->step(self, &ode, 0, h, y, next, NULL), HN_OK);
+        memcpy(y, next, sizeof y);
+        assert_near(y[0] * y[0] + y[1] * y[1] - h * y[0] * y[1], 1, 1e-10);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(observed_order_on_an_orbit_is_the_stated_one, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(observed_order_on_an_oscillation_is_the_stated_one, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(dense_output_has_the_stated_order_and_meets_both_ends,
+                                        setup, teardown),
+        cmocka_unit_test_setup_teardown(error_estimate_of_dopri5_falls_like_h_to_the_fifth, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(fsal_saves_a_stage_unless_the_state_was_changed, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(a_kept_slope_gives_the_same_bits_as_a_fresh_one, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(a_step_does_not_allocate, setup, teardown),
+        cmocka_unit_test_setup_teardown(failure_of_the_right_hand_side_is_handed_on, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(symplectic_euler_keeps_the_energy_of_an_oscillation_bounded,
+                                        setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
