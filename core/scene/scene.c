@@ -1,0 +1,49 @@
+#include "scene/scene.h"
+
+#include <string.h>
+
+const char *hn_joint_type_name(hn_joint_type type) {
+    static const char *const names[] = {
+#define HN_JOINT_NAME(code, name) name,
+        HN_JOINT_TYPE_LIST(HN_JOINT_NAME)
+#undef HN_JOINT_NAME
+    };
+    HN_ASSERT((int)type >= 0 && type < HN_JOINT_TYPE_COUNT);
+    return names[type];
+}
+
+int hn_scene_find_coordinate(const hn_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_coordinates; i++) {
+        if (strcmp(scene->coordinates[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int hn_scene_find_param(const hn_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_params; i++) {
+        if (strcmp(scene->params[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int hn_scene_find_body(const hn_scene *scene, const char *name) {
+    if (strcmp(name, "ground") == 0) {
+        return HN_GROUND;
+    }
+    for (int i = 0; i < scene->n_bodies; i++) {
+        if (strcmp(scene->bodies[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -2;
+}
+
+void hn_scene_free(hn_scene *scene) {
+    if (scene) {
+        hn_arena_free(scene->arena); // the scene itself lives in it
+    }
+}

@@ -1,0 +1,264 @@
+// The loader: text -> checked tree -> scene. The order of the parts is the order in which names become known:
+// parameters, bodies, joints or Lagrangian (coordinates), points, loads, shapes, start.
+
+#include "scene/reader.h"
+
+#include "base/hash.h"
+#include "base/json_text.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// head ----------------------------------------------------------------------------------------------
+
+static void read_version(hn_reader *r, const cJSON *root) {
+    const cJSON *version = hn_rd_get(root, "holonom");
+    if (!version) {
+        hn_rd_fault(r, "start the scene with \"holonom\": 1", "the field 'holonom' (version of the format) is missing");
+    } else if (!cJSON_IsNumber(version) || version->valuedouble != 1) {
+        hn_rd_fault_at(r, "holonom", "write 1", "unknown version of the format; this program reads version 1");
+    }
+}
+
+/// A number that must be positive, within a bound.
+static double read_positive(hn_reader *r, const cJSON *root, const char *key, double fallback, double bound) {
+    hn_quantity q;
+    if (hn_rd_member(r, root, key, 0, fallback, &q, HN_RD_CONST) && !(q.value > 0 && q.value <= bound)) {
+        hn_rd_fault_at(r, key, NULL, "%s = %g s, expected more than 0 and at most %g s", key, q.value, bound);
+    }
+    return q.value;
+}
+
+static void read_methods(hn_reader *r, const cJSON *root) {
+    const cJSON *node = hn_rd_get(root, "methods");
+    const char **methods = NULL;
+    size_t mark = hn_rd_enter(r, "methods");
+    int index = 0;
+    if (node && !cJSON_IsArray(node)) {
+        hn_rd_fault(r, "as in [\"index1@rk4:h=1e-3\"]", "expected a list of methods, found %s", hn_rd_kind(node));
+    }
+    for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m && !hn_rd_stopped(r); m = m->next, index++) {
+        size_t inner = hn_rd_enter_index(r, index);
+        if (!cJSON_IsString(m) || !strchr(m->valuestring, '@')) {
+            hn_rd_fault(r, "as in \"index1@rk4:h=1e-3\"", "expected FORMULATION@INTEGRATOR, found %s", hn_rd_kind(m));
+        } else if ((methods = hn_rd_grow(r, methods, r->scene->n_methods, sizeof *methods, 100, "methods"))) {
+            methods[r->scene->n_methods++] = hn_rd_keep(r, m->valuestring);
+        }
+        hn_rd_leave(r, inner);
+    }
+    r->scene->methods = methods;
+    hn_rd_leave(r, mark);
+}
+
+static void read_head(hn_reader *r, const cJSON *root, const char *id) {
+    hn_scene *s = r->scene;
+    const char *own = hn_rd_name(r, root, "id", 0), *text;
+    s->name = hn_rd_name(r, root, "name", 1);
+    s->id = id ? hn_rd_keep(r, id) : own ? own : s->name;
+    s->title = (text = hn_rd_text(r, root, "title", 0)) ? text : s->name;
+    s->about = (text = hn_rd_text(r, root, "about", 0)) ? text : "";
+    s->look_for = (text = hn_rd_text(r, root, "look_for", 0)) ? text : "";
+    s->duration = read_positive(r, root, "duration", 10, 1e6);
+    s->step = read_positive(r, root, "step", 1e-3, 1e6);
+    read_methods(r, root);
+}
+
+// body ----------------------------------------------------------------------------------------------
+
+static void read_gravity(hn_reader *r, const cJSON *root) {
+    const cJSON *node = hn_rd_get(root, "gravity");
+    size_t mark = hn_rd_enter(r, "gravity");
+    if (node && r->scene->is_lagrangian) {
+        hn_rd_fault(r, "gravity belongs in 'potential'", "a Lagrangian scene has no 'gravity'");
+    } else if (node) {
+        hn_rd_vector(r, node, r->scene->gravity, HN_RD_CONST);
+    }
+    hn_rd_leave(r, mark);
+}
+
+/// Which of the two kinds it is; 0 after a fault.
+static int read_kind(hn_reader *r, const cJSON *root) {
+    const cJSON *bodies = hn_rd_get(root, "bodies"), *joints = hn_rd_get(root, "joints");
+    r->scene->is_lagrangian = hn_rd_get(root, "lagrangian") != NULL;
+    if (r->scene->is_lagrangian && (bodies || joints)) {
+        return hn_rd_fault(r, NULL, "a scene has either 'lagrangian' or 'bodies' and 'joints', found both");
+    }
+    if (!r->scene->is_lagrangian && (!bodies || !joints)) {
+        return hn_rd_fault(r, NULL, "a scene needs 'bodies' and 'joints', or 'lagrangian'; %s missing",
+                           bodies ? "'joints' is" : joints ? "'bodies' is" : "all three are");
+    }
+    return 1;
+}
+
+static void read_mechanism(hn_reader *r, const cJSON *root) {
+    if (r->scene->is_lagrangian) {
+        hn_rd_lagrangian(r, root);
+    } else {
+        hn_rd_bodies(r, root);
+        hn_rd_joints(r, root);
+        if (r->n_faults == 0 && r->scene->n_bodies == 0) {
+            hn_rd_fault_at(r, "bodies", NULL, "the scene has no body");
+        } else if (r->n_faults == 0) {
+            hn_rd_check_connected(r);
+        }
+    }
+    // what refers to names that a fault kept out would only repeat that fault
+    if (r->n_faults == 0 && !r->oom) {
+        hn_rd_points(r, root);
+    }
+    if (r->n_faults == 0 && !r->oom) {
+        hn_rd_loads(r, root);
+        hn_rd_shapes(r, root);
+        hn_rd_start(r, root);
+    }
+    if (r->n_faults == 0 && !r->oom) {
+        hn_rd_draw_default(r, root);
+    }
+}
+
+static void read_root(hn_reader *r, const cJSON *root, const char *id) {
+    static const char *const fields[] = {"holonom", "id",     "name",   "title", "about", "look_for", "parameters", "gravity", "bodies",
+                                         "joints",  "loads",  "lagrangian", "draw", "start", "duration", "step", "methods"};
+    hn_rd_check_tree(r, root);
+    if (r->n_faults > 0 || !hn_rd_object(r, root, "a scene", fields, sizeof fields / sizeof fields[0])) {
+        return;
+    }
+    read_version(r, root);
+    int faults = r->n_faults;
+    hn_rd_params(r, root);
+    if (r->n_faults > faults) {
+        return; // every formula would fail again
+    }
+    read_head(r, root, id);
+    read_gravity(r, root);
+    if (read_kind(r, root)) {
+        read_mechanism(r, root);
+    }
+}
+
+// the whole -----------------------------------------------------------------------------------------
+
+/// Of the normalised text and the present values.
+static int calc_hash(hn_reader *r, const cJSON *root) {
+    char *text = cJSON_PrintUnformatted(root);
+    if (!text) {
+        return 0;
+    }
+    uint64_t hash = hn_hash_text(HN_HASH_START, text);
+    for (int i = 0; i < r->scene->n_params; i++) {
+        hash = hn_hash_double(hash, r->scene->params[i].value);
+    }
+    r->scene->hash = hn_hash_mix(hash);
+    cJSON_free(text);
+    return 1;
+}
+
+static hn_status read_tree(hn_reader *r, const cJSON *root, const char *id) {
+    r->graph = hn_graph_create();
+    if (!r->graph) {
+        return HN_ERR_MEMORY;
+    }
+    read_root(r, root, id);
+    if (r->n_faults == 0 && !r->oom && !calc_hash(r, root)) {
+        r->oom = 1;
+    }
+    if (r->oom || hn_arena_failed(r->arena) || hn_graph_failed(r->graph)) {
+        return HN_ERR_MEMORY;
+    }
+    return r->n_faults > 0 ? r->status : HN_OK;
+}
+
+/// Sound JSON only: what cJSON then refuses can only be memory.
+static hn_status parse_text(const char *text, size_t n, cJSON **root, hn_diags *diags) {
+    hn_diag diag = {0};
+    *root = NULL;
+    if (n > HN_SCENE_MAX_BYTES) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "", NULL, "the scene has %zu bytes, at most %d are allowed", n, HN_SCENE_MAX_BYTES);
+    }
+    hn_status status = hn_json_text_check(text, n, HN_RD_MAX_DEPTH, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    *root = cJSON_ParseWithLength(text, n);
+    return *root ? HN_OK : HN_ERR_MEMORY;
+}
+
+hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings, int n_settings,
+                             hn_scene **out, hn_diags *diags) {
+    HN_ASSERT(out && (text || n == 0) && (settings || n_settings == 0));
+    *out = NULL;
+    cJSON *root;
+    hn_status status = parse_text(text, n, &root, diags);
+    hn_arena *arena = status == HN_OK ? hn_arena_create(1 << 16) : NULL;
+    hn_scene *scene = arena ? hn_arena_get(arena, sizeof *scene) : NULL;
+    hn_reader *r = scene ? calloc(1, sizeof *r) : NULL;
+    if (status == HN_OK && !r) {
+        status = HN_ERR_MEMORY;
+    }
+    if (status == HN_OK) {
+        scene->arena = arena;
+        *r = (hn_reader){.scene = scene, .arena = arena, .diags = diags, .settings = settings, .n_settings = n_settings};
+        status = read_tree(r, root, id);
+    }
+    if (status == HN_OK) {
+        *out = scene;
+    } else {
+        hn_arena_free(arena);
+    }
+    if (r) {
+        hn_graph_free(r->graph);
+    }
+    free(r);
+    cJSON_Delete(root);
+    return status;
+}
+
+/// The file's bytes (owned) or NULL with *status set.
+static char *read_file(const char *path, size_t *n, hn_status *status, hn_diags *diags) {
+    FILE *file = fopen(path, "rb");
+    char *text = file ? malloc(HN_SCENE_MAX_BYTES + 1) : NULL;
+    *status = HN_OK;
+    if (!file) {
+        *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path, strerror(errno));
+    } else if (!text) {
+        *status = HN_ERR_MEMORY;
+    } else {
+        *n = fread(text, 1, HN_SCENE_MAX_BYTES + 1, file);
+        if (ferror(file)) {
+            *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s", path, strerror(errno));
+        }
+    }
+    if (file) {
+        fclose(file);
+    }
+    if (*status != HN_OK) {
+        free(text);
+        text = NULL;
+    }
+    return text;
+}
+
+hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings, hn_scene **out, hn_diags *diags) {
+    HN_ASSERT(path && out);
+    *out = NULL;
+    size_t n = 0;
+    hn_status status;
+    char *text = read_file(path, &n, &status, diags);
+    if (!text) {
+        return status;
+    }
+    // id: the file's name without folder and .json
+    const char *base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    size_t length = strlen(base);
+    char id[HN_RD_MAX_NAME + 1];
+    if (length > 5 && strcmp(base + length - 5, ".json") == 0) {
+        length -= 5;
+    }
+    snprintf(id, sizeof id, "%.*s", (int)(length < HN_RD_MAX_NAME ? length : HN_RD_MAX_NAME), base);
+    status = hn_scene_load_json(text, n, id, settings, n_settings, out, diags);
+    free(text);
+    return status;
+}

@@ -1,0 +1,210 @@
+// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas; and the start of either kind.
+
+#include "scene/reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int hn_rd_coordinate(hn_reader *r, const char *name, int rates) {
+    enum { ROOM = 512 };
+    const hn_scene *s = r->scene;
+    const char *names[ROOM];
+    int n = 0;
+    for (int i = 0; i < s->n_coordinates; i++) {
+        if (strcmp(name, s->coordinates[i].name) == 0 || (rates && strcmp(name, s->coordinates[i].rate) == 0)) {
+            return i;
+        }
+    }
+    for (int i = 0; i < s->n_coordinates && n < ROOM; i++) {
+        names[n++] = s->coordinates[i].name;
+    }
+    char hint[HN_DIAG_HINT];
+    hn_rd_suggest(hint, sizeof hint, name, names, n);
+    hn_rd_fault(r, hint, "there is no coordinate named '%.60s'", name);
+    return -1;
+}
+
+static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
+    static const char *const fields[] = {"name", "rate", "unit", "actuated", "about", "for"};
+    static const char *const units[] = {"rad", "m", "1"};
+    static const hn_unit_kind kinds[] = {HN_ANGLE, HN_LENGTH, HN_OTHER};
+    (void)key;
+    if (!hn_rd_object(r, node, "a coordinate", fields, 6)) {
+        return;
+    }
+    const char *name = hn_rd_name(r, node, "name", 1), *rate = hn_rd_name(r, node, "rate", 0), *unit = hn_rd_text(r, node, "unit", 0);
+    hn_rd_text(r, node, "about", 0);
+    hn_unit_kind kind = HN_ANGLE;
+    if (unit) {
+        int k = 0;
+        while (k < 3 && strcmp(unit, units[k]) != 0) {
+            k++;
+        }
+        if (k == 3) {
+            hn_rd_fault_at(r, "unit", "allowed: rad, m, 1", "a coordinate cannot have the unit '%.40s'", unit);
+        } else {
+            kind = kinds[k];
+        }
+    }
+    size_t mark = hn_rd_enter(r, "name");
+    hn_rd_add_coordinate(r, node, name, rate, kind, -1);
+    hn_rd_leave(r, mark);
+}
+
+static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
+    static const char *const fields[] = {"name", "formula", "for"};
+    hn_lagrangian *l = &r->scene->lagrangian;
+    hn_quantity q = {0};
+    const char *name = NULL;
+    (void)key;
+    if (cJSON_IsObject(node)) {
+        hn_rd_object(r, node, "a constraint", fields, 3);
+        name = hn_rd_name(r, node, "name", 0);
+        hn_rd_member(r, node, "formula", 1, 0, &q, HN_RD_POSE);
+    } else {
+        hn_rd_quantity(r, node, &q, HN_RD_POSE);
+    }
+    if (q.formula && !q.varies && q.value != 0) {
+        hn_rd_fault(r, NULL, "this constraint is the constant %g and can never be 0", q.value);
+    }
+    if (!name) {
+        char made[32];
+        snprintf(made, sizeof made, "constraint %d", l->n_constraints + 1);
+        name = hn_rd_keep(r, made);
+    }
+    hn_quantity *all = hn_rd_grow(r, l->constraints, l->n_constraints, sizeof *all, HN_SCENE_MAX_JOINTS, "constraints");
+    const char **names = all ? hn_rd_grow(r, l->constraint_names, l->n_constraints, sizeof *names, HN_SCENE_MAX_JOINTS, "constraints") : NULL;
+    if (!names || !name) {
+        return;
+    }
+    l->constraints = all;
+    l->constraint_names = names;
+    all[l->n_constraints] = q;
+    names[l->n_constraints++] = name;
+}
+
+/// Member of "forces": the coordinate's name and a formula.
+static void read_force(hn_reader *r, const cJSON *node, const char *key) {
+    static const char *const fields[] = {"value", "for"};
+    hn_scene *s = r->scene;
+    const char *name = hn_rd_fill(r, key);
+    int coordinate = name ? hn_rd_coordinate(r, name, 0) : -1;
+    hn_load load = {.name = name, .pointer = hn_rd_pointer(r), .kind = HN_LOAD_COORDINATE, .p = -1, .q = -1, .coordinate = coordinate};
+    int ok = cJSON_IsObject(node)
+                 ? hn_rd_object(r, node, "a generalised force", fields, 2) && hn_rd_member(r, node, "value", 1, 0, &load.value[0], HN_RD_STATE)
+                 : hn_rd_quantity(r, node, &load.value[0], HN_RD_STATE);
+    hn_load *loads = hn_rd_grow(r, s->loads, s->n_loads, sizeof *loads, HN_RD_MAX_LOADS, "loads");
+    if (loads && ok && coordinate >= 0) {
+        s->loads = loads;
+        loads[s->n_loads++] = load;
+    }
+}
+
+static void each_of(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item) {
+    const cJSON *list = hn_rd_get(node, key);
+    size_t mark = hn_rd_enter(r, key);
+    if (list && (object ? !cJSON_IsObject(list) : !cJSON_IsArray(list))) {
+        hn_rd_fault(r, NULL, "expected %s, found %s", object ? "an object" : "a list", hn_rd_kind(list));
+    } else if (list) {
+        hn_rd_each(r, list, item);
+    }
+    hn_rd_leave(r, mark);
+}
+
+void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
+    static const char *const fields[] = {"coordinates", "kinetic", "potential", "constraints", "forces"};
+    const cJSON *node = hn_rd_get(root, "lagrangian");
+    hn_lagrangian *l = &r->scene->lagrangian;
+    size_t mark = hn_rd_enter(r, "lagrangian");
+    if (hn_rd_object(r, node, "a lagrangian", fields, 5)) {
+        each_of(r, node, "coordinates", 0, read_coordinate);
+        if (r->scene->n_coordinates == 0 && r->n_faults == 0) {
+            hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]", "'coordinates' is missing or empty");
+        }
+        if (r->n_faults == 0) {
+            hn_rd_member(r, node, "kinetic", 1, 0, &l->kinetic, HN_RD_STATE);
+            hn_rd_member(r, node, "potential", 0, 0, &l->potential, HN_RD_POSE);
+            each_of(r, node, "constraints", 0, read_constraint);
+            each_of(r, node, "forces", 1, read_force);
+        }
+        if (r->n_faults == 0 && !l->kinetic.varies) {
+            hn_rd_fault_at(r, "kinetic", "it holds the masses: m*v^2/2", "the kinetic energy does not depend on any rate");
+        }
+    }
+    hn_rd_leave(r, mark);
+}
+
+// start ---------------------------------------------------------------------------------------------
+
+/// A start entry: a number or formula is pinned, {"guess": ..} is where assembly begins.
+static int read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pinned) {
+    static const char *const fields[] = {"value", "guess", "for"};
+    *pinned = 1;
+    if (!cJSON_IsObject(node)) {
+        return hn_rd_quantity(r, node, q, HN_RD_CONST);
+    }
+    if (!hn_rd_object(r, node, "a start value", fields, 3)) {
+        return 0;
+    }
+    const cJSON *value = hn_rd_get(node, "value"), *guess = hn_rd_get(node, "guess");
+    if (!value == !guess) {
+        return hn_rd_fault(r, "'value' is kept, 'guess' is where assembly begins", "expected either 'value' or 'guess', found %s", value ? "both" : "neither");
+    }
+    *pinned = value != NULL;
+    return hn_rd_member(r, node, value ? "value" : "guess", 1, 0, q, HN_RD_CONST);
+}
+
+static hn_coordinate *start_coordinate(hn_reader *r, const char *key) {
+    const char *name = hn_rd_fill(r, key);
+    int k = name ? hn_rd_coordinate(r, name, 1) : -1;
+    return k >= 0 ? &r->scene->coordinates[k] : NULL;
+}
+
+static void read_position(hn_reader *r, const cJSON *node, const char *key) {
+    hn_quantity q;
+    int pinned;
+    hn_coordinate *c = start_coordinate(r, key);
+    if (!c || !read_entry(r, node, &q, &pinned)) {
+        return;
+    }
+    if (c->q0_given) {
+        hn_rd_fault(r, NULL, "the start of '%s' is given twice", c->name);
+        return;
+    }
+    c->q0 = q.value;
+    c->q0_given = 1;
+    c->q0_pinned = pinned;
+    c->q0_pointer = hn_rd_pointer(r);
+}
+
+static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
+    hn_quantity q;
+    int pinned;
+    hn_coordinate *c = start_coordinate(r, key);
+    if (!c || !read_entry(r, node, &q, &pinned)) {
+        return;
+    }
+    if (c->v0_given) {
+        hn_rd_fault(r, NULL, "the start rate of '%s' is given twice", c->name);
+        return;
+    }
+    c->v0 = q.value;
+    c->v0_given = 1;
+    c->v0_pinned = pinned;
+    c->v0_pointer = hn_rd_pointer(r);
+}
+
+void hn_rd_start(hn_reader *r, const cJSON *root) {
+    static const char *const fields[] = {"positions", "rates"};
+    const cJSON *node = hn_rd_get(root, "start");
+    if (!node) {
+        return;
+    }
+    size_t mark = hn_rd_enter(r, "start");
+    if (hn_rd_object(r, node, "a start", fields, 2)) {
+        each_of(r, node, "positions", 1, read_position);
+        each_of(r, node, "rates", 1, read_rate);
+    }
+    hn_rd_leave(r, mark);
+}

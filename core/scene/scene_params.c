@@ -1,0 +1,217 @@
+// Parameters: a number or a formula of other parameters, a unit, a range.
+
+#include "scene/reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const UNITS[] = {"",      "1",     "m",     "kg",      "s",     "rad",     "N",       "N*m", "m/s", "rad/s",
+                                    "m/s^2", "kg*m^2", "N/m",  "N*s/m",   "N*m/rad", "N*m*s/rad", "J",   "W",   "Hz"};
+enum { N_UNITS = sizeof UNITS / sizeof UNITS[0] };
+
+/// Units people bring along, and what to write instead.
+static const struct {
+    const char *unit, *hint;
+} FOREIGN[] = {
+    {"deg", "use rad: 30 deg = 0.5236 rad"}, {"degree", "use rad: 30 deg = 0.5236 rad"}, {"degrees", "use rad: 30 deg = 0.5236 rad"},
+    {"deg/s", "use rad/s: 1 deg/s = 0.017453 rad/s"}, {"rpm", "use rad/s: 1 rpm = 0.10472 rad/s"},
+    {"mm", "use m: 1 mm = 0.001 m"}, {"cm", "use m: 1 cm = 0.01 m"}, {"km", "use m: 1 km = 1000 m"}, {"in", "use m: 1 in = 0.0254 m"}, {"ft", "use m: 1 ft = 0.3048 m"},
+    {"g", "use kg: 1 g = 0.001 kg"}, {"lb", "use kg: 1 lb = 0.45359 kg"}, {"ms", "use s: 1 ms = 0.001 s"}, {"min", "use s: 1 min = 60 s"},
+    {"Nm", "write N*m"}, {"kN", "use N: 1 kN = 1000 N"}, {"N*mm", "use N*m: 1 N*mm = 0.001 N*m"}, {"1/s", "write Hz or rad/s"},
+};
+
+static void check_unit(hn_reader *r, const char *unit) {
+    for (int i = 0; i < N_UNITS; i++) {
+        if (strcmp(unit, UNITS[i]) == 0) {
+            return;
+        }
+    }
+    for (size_t i = 0; i < sizeof FOREIGN / sizeof FOREIGN[0]; i++) {
+        if (strcmp(unit, FOREIGN[i].unit) == 0) {
+            hn_rd_fault_at(r, "unit", FOREIGN[i].hint, "the unit '%s' is not served; numbers are in SI units", unit);
+            return;
+        }
+    }
+    char hint[HN_DIAG_HINT];
+    hn_rd_suggest(hint, sizeof hint, unit, UNITS + 1, N_UNITS - 1);
+    hn_rd_fault_at(r, "unit", hint, "unknown unit '%.40s'", unit);
+}
+
+/// Name, unit and words of one parameter; its value comes once all names are known.
+static void read_param(hn_reader *r, const cJSON *node, const char *key) {
+    static const char *const fields[] = {"value", "unit", "min", "max", "integer", "about"};
+    hn_scene *s = r->scene;
+    const cJSON *value = cJSON_IsObject(node) ? hn_rd_get(node, "value") : node;
+    int ok = hn_rd_check_identifier(r, key);
+    if (cJSON_IsObject(node)) {
+        hn_rd_object(r, node, "a parameter", fields, 6);
+        if (!value) {
+            ok = hn_rd_fault(r, NULL, "the field 'value' is missing");
+        }
+    }
+    if (value && !cJSON_IsNumber(value) && !cJSON_IsString(value)) {
+        ok = hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s", hn_rd_kind(value));
+    }
+    hn_param *params = hn_rd_grow(r, s->params, s->n_params, sizeof *params, HN_SCENE_MAX_PARAMS, "parameters");
+    hn_rd_param *src = params ? hn_rd_grow(r, r->param_src, s->n_params, sizeof *src, HN_SCENE_MAX_PARAMS, "parameters") : NULL;
+    if (!src) {
+        return;
+    }
+    const char *unit = hn_rd_text(r, node, "unit", 0), *about = hn_rd_text(r, node, "about", 0);
+    hn_param p = {.name = hn_rd_keep(r, key), .unit = unit && strcmp(unit, "1") != 0 ? unit : "", .about = about ? about : "",
+                  .integer = hn_rd_flag(r, node, "integer"), .min = -INFINITY, .max = INFINITY, .value = 1, .initial = 1};
+    hn_rd_param source = {.number = 1, .state = ok ? 0 : 2};
+    if (ok && cJSON_IsString(value)) {
+        source.formula = hn_rd_keep(r, value->valuestring);
+    } else if (ok) {
+        source.number = value->valuedouble;
+    }
+    if (unit) {
+        check_unit(r, unit);
+    }
+    s->params = params;
+    r->param_src = src;
+    params[s->n_params] = p;
+    src[s->n_params] = source;
+    s->n_params += p.name != NULL;
+}
+
+static const hn_setting *find_setting(const hn_reader *r, const char *name) {
+    for (int i = r->n_settings; i-- > 0;) {
+        if (r->settings[i].name && strcmp(r->settings[i].name, name) == 0) {
+            return &r->settings[i];
+        }
+    }
+    return NULL;
+}
+
+/// "l1 needs l2 needs l1", told at the parameter where the ring was entered.
+static void tell_cycle(hn_reader *r, int k) {
+    char ring[HN_DIAG_MESSAGE - 64];
+    size_t at = 0;
+    int from = 0;
+    while (from < r->n_chain && r->chain[from] != k) {
+        from++;
+    }
+    for (int i = from; i < r->n_chain && at + HN_RD_MAX_NAME + 16 < sizeof ring; i++) {
+        at += (size_t)snprintf(ring + at, sizeof ring - at, "%s needs ", r->scene->params[r->chain[i]].name);
+    }
+    char path[sizeof r->path];
+    memcpy(path, r->path, sizeof path);
+    r->path[0] = '\0';
+    hn_rd_enter(r, "parameters");
+    hn_rd_enter(r, r->scene->params[k].name);
+    hn_rd_fault(r, "give one of them a number", "parameters depend on each other in a ring: %s%s", ring, r->scene->params[k].name);
+    memcpy(r->path, path, sizeof path);
+}
+
+int hn_rd_param_value(hn_reader *r, int k, double *value) {
+    hn_param *p = &r->scene->params[k];
+    hn_rd_param *src = &r->param_src[k];
+    const hn_setting *set = r->use_settings ? find_setting(r, p->name) : NULL;
+    int walk = r->mark_structural && !p->structural && !set && src->formula && src->state == 2;
+    p->structural |= r->mark_structural;
+    if (src->state == 1) {
+        tell_cycle(r, k);
+        src->state = 2;
+        p->value = 1;
+        return 0;
+    }
+    if (src->state == 0 || walk) {
+        src->state = 1;
+        r->chain[r->n_chain++] = k;
+        hn_quantity q = {.value = set ? set->value : src->number};
+        // a formula written inside a repetition must not see its name
+        const char *loop = r->loop_name;
+        r->loop_name = NULL;
+        char path[sizeof r->path];
+        memcpy(path, r->path, sizeof path);
+        snprintf(r->path, sizeof r->path, "/parameters");
+        hn_rd_enter(r, p->name);
+        int ok = set || !src->formula || hn_rd_formula(r, src->formula, HN_RD_CONST, &q);
+        memcpy(r->path, path, sizeof path);
+        r->loop_name = loop;
+        r->n_chain--;
+        p->value = ok ? q.value : 1;
+        src->state = 2;
+    }
+    *value = p->value;
+    return 1;
+}
+
+static void evaluate_all(hn_reader *r) {
+    double ignored;
+    for (int k = 0; k < r->scene->n_params && !hn_rd_stopped(r); k++) {
+        hn_rd_param_value(r, k, &ignored);
+    }
+}
+
+static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
+    hn_quantity q;
+    if (hn_rd_member(r, node, "min", 0, -INFINITY, &q, HN_RD_CONST)) {
+        p->min = q.value;
+    }
+    if (hn_rd_member(r, node, "max", 0, INFINITY, &q, HN_RD_CONST)) {
+        p->max = q.value;
+    }
+    if (p->min > p->max) {
+        hn_rd_fault_at(r, "min", NULL, "min %g is larger than max %g", p->min, p->max);
+    } else if (!isfinite(p->value)) {
+        hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
+    } else if (p->value < p->min || p->value > p->max) {
+        hn_rd_fault(r, NULL, "%s = %g %s is outside its range %g ... %g", p->name, p->value, p->unit, p->min, p->max);
+    } else if (p->integer && p->value != floor(p->value)) {
+        hn_rd_fault(r, NULL, "%s = %g must be a whole number", p->name, p->value);
+    }
+}
+
+static void check_settings(hn_reader *r) {
+    const char *names[HN_SCENE_MAX_PARAMS];
+    for (int i = 0; i < r->scene->n_params; i++) {
+        names[i] = r->scene->params[i].name;
+    }
+    for (int i = 0; i < r->n_settings; i++) {
+        const char *name = r->settings[i].name ? r->settings[i].name : "";
+        if (hn_scene_find_param(r->scene, name) < 0) {
+            char hint[HN_DIAG_HINT];
+            hn_rd_suggest(hint, sizeof hint, name, names, r->scene->n_params);
+            hn_rd_fault(r, hint, "this scene has no parameter '%.60s'", name);
+        }
+    }
+}
+
+void hn_rd_params(hn_reader *r, const cJSON *root) {
+    const cJSON *node = hn_rd_get(root, "parameters");
+    size_t mark = hn_rd_enter(r, "parameters");
+    if (node && !cJSON_IsObject(node)) {
+        hn_rd_fault(r, "as in {\"l1\": {\"value\": 1, \"unit\": \"m\"}}", "expected an object, found %s", hn_rd_kind(node));
+        node = NULL;
+    }
+    int index = 0;
+    for (const cJSON *m = node ? node->child : NULL; m && !hn_rd_stopped(r); m = m->next) {
+        size_t inner = hn_rd_enter(r, m->string);
+        read_param(r, m, m->string);
+        hn_rd_leave(r, inner);
+    }
+    check_settings(r);
+
+    // once as the file says, once as set
+    evaluate_all(r);
+    for (int k = 0; k < r->scene->n_params; k++) {
+        r->scene->params[k].initial = r->scene->params[k].value;
+    }
+    if (r->n_settings > 0 && r->n_faults == 0) {
+        for (int k = 0; k < r->scene->n_params; k++) {
+            r->param_src[k].state = 0;
+        }
+        r->use_settings = 1;
+        evaluate_all(r);
+    }
+    for (const cJSON *m = node ? node->child : NULL; m && index < r->scene->n_params && !hn_rd_stopped(r); m = m->next, index++) {
+        size_t inner = hn_rd_enter(r, m->string);
+        check_range(r, m, &r->scene->params[index]);
+        hn_rd_leave(r, inner);
+    }
+    hn_rd_leave(r, mark);
+}
