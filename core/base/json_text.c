@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NUMBER_MAX = 400 }; // characters of one number; more is refused rather than rounded in silence
+enum {
+    NUMBER_MAX = 400
+}; // characters of one number; more is refused rather than rounded in silence
 
 typedef struct scan {
     const char *text;
@@ -50,7 +52,8 @@ static void describe(const scan *s, char *out, size_t size) {
 static int fail(scan *s, hn_status status, const char *hint, const char *what) {
     int line, column;
     locate(s, s->at, &line, &column);
-    s->status = hn_diag_set(s->diag, status, "", hint, "line %d, column %d: %s", line, column, what);
+    s->status =
+        hn_diag_set(s->diag, status, "", hint, "line %d, column %d: %s", line, column, what);
     return 0;
 }
 
@@ -90,7 +93,8 @@ static int number(scan *s) {
     if (peek(s) == '0') {
         s->at++;
         if (is_digit(peek(s))) {
-            return expected(s, "a number has no leading zeros", "'.', an exponent or the end of the number");
+            return expected(s, "a number has no leading zeros",
+                            "'.', an exponent or the end of the number");
         }
     } else if (!digits(s, "a digit")) {
         return 0;
@@ -119,8 +123,9 @@ static int number(scan *s) {
     memcpy(copy, s->text + start, length);
     copy[length] = '\0';
     if (!isfinite(strtod(copy, NULL))) {
-        char message[80];
-        snprintf(message, sizeof message, "%.40s is larger than any number here can be (1.8e308)", copy);
+        char message[120];
+        snprintf(message, sizeof message, "%.40s is larger than any number here can be (1.8e308)",
+                 copy);
         return fail(s, HN_ERR_INPUT, NULL, message);
     }
     s->at = start + length;
@@ -130,7 +135,12 @@ static int number(scan *s) {
 /// Length of the UTF-8 sequence at the scan's place, 0 if it is not valid (overlong, surrogate, beyond U+10FFFF).
 static size_t utf8_length(const scan *s) {
     const unsigned char *p = (const unsigned char *)s->text + s->at;
-    size_t left = s->n - s->at, length = p[0] < 0x80 ? 1 : p[0] < 0xC2 ? 0 : p[0] < 0xE0 ? 2 : p[0] < 0xF0 ? 3 : p[0] < 0xF5 ? 4 : 0;
+    size_t left = s->n - s->at, length = p[0] < 0x80   ? 1
+                                         : p[0] < 0xC2 ? 0
+                                         : p[0] < 0xE0 ? 2
+                                         : p[0] < 0xF0 ? 3
+                                         : p[0] < 0xF5 ? 4
+                                                       : 0;
     if (length == 0 || length > left) {
         return 0;
     }
@@ -139,7 +149,8 @@ static size_t utf8_length(const scan *s) {
             return 0;
         }
     }
-    int bad = (p[0] == 0xE0 && p[1] < 0xA0) || (p[0] == 0xED && p[1] > 0x9F) || (p[0] == 0xF0 && p[1] < 0x90) || (p[0] == 0xF4 && p[1] > 0x8F);
+    int bad = (p[0] == 0xE0 && p[1] < 0xA0) || (p[0] == 0xED && p[1] > 0x9F) ||
+              (p[0] == 0xF0 && p[1] < 0x90) || (p[0] == 0xF4 && p[1] > 0x8F);
     return bad ? 0 : length;
 }
 
@@ -148,7 +159,10 @@ static int hex4(scan *s) {
     int value = 0;
     for (int i = 0; i < 4; i++, s->at++) {
         int c = peek(s);
-        int digit = is_digit(c) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+        int digit = is_digit(c)            ? c - '0'
+                    : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                    : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                           : -1;
         if (digit < 0) {
             expected(s, NULL, "four hexadecimal digits after \\u");
             return -1;
@@ -162,7 +176,8 @@ static int escape(scan *s) {
     s->at++;
     int c = peek(s);
     if (c < 0 || c == 0 || !strchr("\"\\/bfnrtu", c)) {
-        return expected(s, "a backslash itself is written \\\\", "one of \" \\ / b f n r t u after the backslash");
+        return expected(s, "a backslash itself is written \\\\",
+                        "one of \" \\ / b f n r t u after the backslash");
     }
     s->at++;
     if (c != 'u') {
@@ -205,7 +220,8 @@ static int string(scan *s) {
             return fail(s, HN_ERR_INPUT, NULL, "the text that starts here has no closing '\"'");
         }
         if (c < 0x20) {
-            return expected(s, "a line break inside a text is written \\n", "a character or the closing '\"'");
+            return expected(s, "a line break inside a text is written \\n",
+                            "a character or the closing '\"'");
         }
         if (c == '\\') {
             if (!escape(s)) {
@@ -224,7 +240,8 @@ static int string(scan *s) {
 static int word(scan *s, const char *name) {
     size_t length = strlen(name);
     if (s->n - s->at < length || memcmp(s->text + s->at, name, length) != 0) {
-        return expected(s, "bare words are only true, false and null; texts stand in double quotes", "a value");
+        return expected(s, "bare words are only true, false and null; texts stand in double quotes",
+                        "a value");
     }
     s->at += length;
     return 1;
@@ -234,7 +251,9 @@ static int value(scan *s);
 
 static int member(scan *s) {
     if (peek(s) != '"') {
-        return expected(s, peek(s) == '}' ? "remove the comma before the '}'" : "names stand in double quotes", "a name in double quotes");
+        return expected(
+            s, peek(s) == '}' ? "remove the comma before the '}'" : "names stand in double quotes",
+            "a name in double quotes");
     }
     if (!string(s)) {
         return 0;
@@ -283,18 +302,33 @@ static int value(scan *s) {
     skip_space(s);
     int c = peek(s);
     switch (c) {
-    case '{': return container(s, '}', member);
-    case '[': return container(s, ']', value);
-    case '"': return string(s);
-    case 't': return word(s, "true");
-    case 'f': return word(s, "false");
-    case 'n': return word(s, "null");
-    case '\'': return expected(s, "texts stand in double quotes", "a value");
-    case '/': return expected(s, "JSON has no comments", "a value");
-    case '.': case '+': return expected(s, "write 0.5, not .5 or +0.5", "a value");
-    case ']': case '}': return expected(s, "remove the comma before it", "a value");
-    case 'N': case 'I': return expected(s, "NaN and Infinity are not numbers here", "a value");
-    default: break;
+    case '{':
+        return container(s, '}', member);
+    case '[':
+        return container(s, ']', value);
+    case '"':
+        return string(s);
+    case 't':
+        return word(s, "true");
+    case 'f':
+        return word(s, "false");
+    case 'n':
+        return word(s, "null");
+    case '\'':
+        return expected(s, "texts stand in double quotes", "a value");
+    case '/':
+        return expected(s, "JSON has no comments", "a value");
+    case '.':
+    case '+':
+        return expected(s, "write 0.5, not .5 or +0.5", "a value");
+    case ']':
+    case '}':
+        return expected(s, "remove the comma before it", "a value");
+    case 'N':
+    case 'I':
+        return expected(s, "NaN and Infinity are not numbers here", "a value");
+    default:
+        break;
     }
     if (c == '-' || is_digit(c)) {
         return number(s);
@@ -307,7 +341,8 @@ hn_status hn_json_text_check(const char *text, size_t n, int max_depth, hn_diag 
     scan s = {.text = text, .n = n, .max_depth = max_depth, .diag = diag};
     skip_space(&s);
     if (s.at == s.n) {
-        return hn_diag_set(diag, HN_ERR_INPUT, "", NULL, n == 0 ? "the text is empty" : "the text holds nothing but white space");
+        return hn_diag_set(diag, HN_ERR_INPUT, "", NULL,
+                           n == 0 ? "the text is empty" : "the text holds nothing but white space");
     }
     if (!value(&s)) {
         return s.status;

@@ -10,6 +10,7 @@
 /// Checks that n bytes are one JSON value: strict grammar, valid UTF-8, no zero character (not even escaped), numbers
 /// that fit a double, at most max_depth levels. The message starts with "line L, column C: " (1-based; columns count
 /// characters). Allocates nothing, time linear in n. Fails: HN_ERR_INPUT; HN_ERR_LIMIT (too deep).
-HN_MUST_CHECK hn_status hn_json_text_check(const char *text, size_t n, int max_depth, hn_diag *diag);
+HN_MUST_CHECK hn_status hn_json_text_check(const char *text, size_t n, int max_depth,
+                                           hn_diag *diag);
 
 #endif

@@ -36,7 +36,8 @@ void hn_rd_leave(hn_reader *r, size_t mark) {
     r->path[mark] = '\0';
 }
 
-static int add_fault(hn_reader *r, hn_status status, const char *hint, const char *format, va_list args) {
+static int add_fault(hn_reader *r, hn_status status, const char *hint, const char *format,
+                     va_list args) {
     char message[HN_DIAG_MESSAGE], where[HN_RD_MAX_NAME + 48] = "";
     vsnprintf(message, sizeof message, format, args);
     if (r->loop_name) {
@@ -92,7 +93,7 @@ void hn_rd_suggest(char *out, size_t size, const char *word, const char *const *
 }
 
 const char *hn_rd_kind(const cJSON *node) {
-    return !node                ? "nothing"
+    return !node                  ? "nothing"
            : cJSON_IsNumber(node) ? "a number"
            : cJSON_IsString(node) ? "a text"
            : cJSON_IsArray(node)  ? "a list"
@@ -144,7 +145,8 @@ const cJSON *hn_rd_get(const cJSON *object, const char *key) {
     return cJSON_IsObject(object) ? cJSON_GetObjectItemCaseSensitive(object, key) : NULL;
 }
 
-int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields, int n_fields) {
+int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
+                 int n_fields) {
     if (!cJSON_IsObject(node)) {
         return hn_rd_fault(r, NULL, "expected an object for %s, found %s", what, hn_rd_kind(node));
     }
@@ -181,13 +183,17 @@ static int read_bound(hn_reader *r, const cJSON *node, int index, long long *out
 static int read_for(hn_reader *r, const cJSON *node, const char **name, long long bounds[2]) {
     const cJSON *range = cJSON_IsObject(node) ? node->child : NULL;
     if (!range || range->next) {
-        return hn_rd_fault(r, "as in {\"i\": [1, \"N\"]}", "expected an object with one name and its first and last value, found %s",
-                           cJSON_IsObject(node) ? (range ? "several names" : "an empty object") : hn_rd_kind(node));
+        return hn_rd_fault(
+            r, "as in {\"i\": [1, \"N\"]}",
+            "expected an object with one name and its first and last value, found %s",
+            cJSON_IsObject(node) ? (range ? "several names" : "an empty object")
+                                 : hn_rd_kind(node));
     }
     size_t mark = hn_rd_enter(r, range->string);
     int ok = hn_rd_check_identifier(r, range->string);
     if (cJSON_GetArraySize(range) != 2 || !cJSON_IsArray(range)) {
-        ok = hn_rd_fault(r, "as in [1, \"N\"]", "expected the first and the last value, found %s", hn_rd_kind(range));
+        ok = hn_rd_fault(r, "as in [1, \"N\"]", "expected the first and the last value, found %s",
+                         hn_rd_kind(range));
     } else {
         ok &= read_bound(r, range->child, 0, &bounds[0]);
         ok &= read_bound(r, range->child->next, 1, &bounds[1]);
@@ -227,7 +233,8 @@ static void repeat(hn_reader *r, const cJSON *node, const char *key, hn_rd_item 
 void hn_rd_each(hn_reader *r, const cJSON *node, hn_rd_item item) {
     int index = 0;
     for (const cJSON *m = node ? node->child : NULL; m && !hn_rd_stopped(r); m = m->next, index++) {
-        size_t mark = cJSON_IsObject(node) ? hn_rd_enter(r, m->string) : hn_rd_enter_index(r, index);
+        size_t mark =
+            cJSON_IsObject(node) ? hn_rd_enter(r, m->string) : hn_rd_enter_index(r, index);
         repeat(r, m, cJSON_IsObject(node) ? m->string : NULL, item);
         hn_rd_leave(r, mark);
     }

@@ -10,13 +10,13 @@
 #include <cjson/cJSON.h>
 
 enum {
-    HN_RD_MAX_REPEAT = 5000,  ///< repetitions of one "for"
+    HN_RD_MAX_REPEAT = 5000, ///< repetitions of one "for"
     HN_RD_MAX_POINTS = 20000,
     HN_RD_MAX_SHAPES = 20000,
     HN_RD_MAX_LOADS = 4000,
-    HN_RD_MAX_NAME = 60,      ///< characters of a name
-    HN_RD_MAX_FAULTS = 64,    ///< then reading stops
-    HN_RD_MAX_DEPTH = 24      ///< levels of JSON
+    HN_RD_MAX_NAME = 60,   ///< characters of a name
+    HN_RD_MAX_FAULTS = 64, ///< then reading stops
+    HN_RD_MAX_DEPTH = 24   ///< levels of JSON
 };
 
 /// Which names a formula may use, each including those before it.
@@ -49,8 +49,8 @@ typedef struct hn_reader {
     const hn_setting *settings;
     int n_settings, use_settings, mark_structural;
     int chain[HN_SCENE_MAX_PARAMS], n_chain;
-    int body_at;    ///< the body whose drawing is read
-    int shape_kind; ///< the kind whose list is read
+    int body_at;       ///< the body whose drawing is read
+    int shape_kind;    ///< the kind whose list is read
     hn_rd_scope scope; ///< of the formula that is being parsed
 } hn_reader;
 
@@ -60,8 +60,10 @@ size_t hn_rd_enter_index(hn_reader *r, int index);
 void hn_rd_leave(hn_reader *r, size_t mark);
 /// Adds a fault at the present place (and names the repetition); returns 0, so that `return hn_rd_fault(...)` reads well.
 int hn_rd_fault(hn_reader *r, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
-int hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...) HN_PRINTF(4, 5);
-int hn_rd_limit(hn_reader *r, const char *format, ...) HN_PRINTF(2, 3); ///< the same with HN_ERR_LIMIT
+int hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...)
+    HN_PRINTF(4, 5);
+int hn_rd_limit(hn_reader *r, const char *format, ...)
+    HN_PRINTF(2, 3);                   ///< the same with HN_ERR_LIMIT
 int hn_rd_stopped(const hn_reader *r); ///< out of memory, or enough faults told
 /// "did you mean 'x'?" into out, or the list of what is allowed.
 void hn_rd_suggest(char *out, size_t size, const char *word, const char *const *names, int n);
@@ -75,7 +77,8 @@ const char *hn_rd_pointer(hn_reader *r); ///< the present path, kept
 
 // the tree ----------------------------------------------------------------------------------------
 /// 1 if node is an object whose members are all among `fields`; faults otherwise (0 only if it is no object).
-int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields, int n_fields);
+int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
+                 int n_fields);
 typedef void (*hn_rd_item)(hn_reader *r, const cJSON *item, const char *key);
 /// Calls `item` for each entry of a list, or each member of an object (key: its name), repeated where it says "for".
 void hn_rd_each(hn_reader *r, const cJSON *node, hn_rd_item item);
@@ -92,7 +95,8 @@ int hn_rd_flag(hn_reader *r, const cJSON *object, const char *key);
 /// A number or a formula. On a fault *out is 0 and 0 is returned.
 int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope);
 /// The member `key`: absent gives `fallback` (a fault when `required`).
-int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback, hn_quantity *out, hn_rd_scope scope);
+int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
+                 hn_quantity *out, hn_rd_scope scope);
 /// Two (z = 0) or three entries.
 int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
 /// Value of a formula in parameters, for braces and "for".
@@ -111,7 +115,8 @@ void hn_rd_start(hn_reader *r, const cJSON *root);
 void hn_rd_draw_default(hn_reader *r, const cJSON *root); ///< what the scene leaves undrawn
 
 /// Adds a coordinate after checking its names; index or -1.
-int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, const char *rate, hn_unit_kind kind, int joint);
+int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, const char *rate,
+                         hn_unit_kind kind, int joint);
 /// A body by name ("ground" too), -2 after a fault.
 int hn_rd_body(hn_reader *r, const cJSON *object, const char *key);
 /// A coordinate by its own or (if `rates`) its rate's name at node; -1 after a fault.
@@ -124,7 +129,8 @@ int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity 
 hn_shape *hn_rd_add_shape(hn_reader *r, hn_shape_kind kind, int p, int q, int body);
 
 // scene_check.c: facts about the whole scene ------------------------------------------------------------
-void hn_rd_check_tree(hn_reader *r, const cJSON *node); ///< names used twice in one object, numbers not finite
+void hn_rd_check_tree(hn_reader *r,
+                      const cJSON *node); ///< names used twice in one object, numbers not finite
 void hn_rd_check_inertia(hn_reader *r, const hn_body *body);
 void hn_rd_check_connected(hn_reader *r);
 /// 1 if `name` can be used in formulas and is still free there; otherwise a fault.

@@ -37,7 +37,8 @@ static int lookup(void *user, const char *name, hn_ex *out) {
     int found = strcmp(name, "t") == 0;
     for (int i = 0; i < r->scene->n_coordinates && !found; i++) {
         const hn_coordinate *c = &r->scene->coordinates[i];
-        found = strcmp(name, c->name) == 0 || (r->scope == HN_RD_STATE && strcmp(name, c->rate) == 0);
+        found =
+            strcmp(name, c->name) == 0 || (r->scope == HN_RD_STATE && strcmp(name, c->rate) == 0);
     }
     if (found) {
         *out = hn_symbol(r->graph, name, NULL);
@@ -64,19 +65,24 @@ static int known_names(hn_reader *r, hn_rd_scope scope, const char **names, int 
 }
 
 /// One parse in a scope; a parameter's own faults may be told on the way.
-static hn_status parse(hn_reader *r, const char *text, hn_rd_scope scope, int suggest, hn_ex *out, hn_diag *diag) {
+static hn_status parse(hn_reader *r, const char *text, hn_rd_scope scope, int suggest, hn_ex *out,
+                       hn_diag *diag) {
     enum { ROOM = 512 };
     const char *known[ROOM];
     hn_rd_scope before = r->scope;
     r->scope = scope;
-    hn_parse_opts opts = {.lookup = lookup, .user = r, .known = known, .n_known = suggest ? known_names(r, scope, known, ROOM) : 0};
+    hn_parse_opts opts = {.lookup = lookup,
+                          .user = r,
+                          .known = known,
+                          .n_known = suggest ? known_names(r, scope, known, ROOM) : 0};
     hn_status status = hn_parse(r->graph, text, &opts, out, diag);
     r->scope = before;
     return status;
 }
 
 static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
-    static const char *const allowed[] = {"only parameters may be used here", "only parameters, t and coordinates may be used here",
+    static const char *const allowed[] = {"only parameters may be used here",
+                                          "only parameters, t and coordinates may be used here",
                                           "parameters, t, coordinates and rates may be used here"};
     hn_diag diag = {0};
     hn_ex ignored;
@@ -90,8 +96,8 @@ static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
         r->oom = 1;
         return 0;
     }
-    return hn_rd_fault(r, diag.hint[0] ? diag.hint : allowed[scope], "in the formula '%.80s'%s: %s", text,
-                       strlen(text) > 80 ? "..." : "", diag.message);
+    return hn_rd_fault(r, diag.hint[0] ? diag.hint : allowed[scope], "in the formula '%.80s'%s: %s",
+                       text, strlen(text) > 80 ? "..." : "", diag.message);
 }
 
 int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out) {
@@ -132,7 +138,8 @@ const char *hn_rd_fill(hn_reader *r, const char *raw) {
         }
         char inner[80];
         if (!end || end - c - 1 >= (long)sizeof inner) {
-            ok = hn_rd_fault(r, "as in \"crank{i}\" or \"tip{i+1}\"", "'%.60s' has a '{' without a short formula and '}'", raw);
+            ok = hn_rd_fault(r, "as in \"crank{i}\" or \"tip{i+1}\"",
+                             "'%.60s' has a '{' without a short formula and '}'", raw);
             break;
         }
         memcpy(inner, c + 1, (size_t)(end - c - 1));
@@ -140,7 +147,8 @@ const char *hn_rd_fill(hn_reader *r, const char *raw) {
         hn_quantity q = {0};
         ok = hn_rd_formula(r, inner, HN_RD_CONST, &q);
         if (ok && !(fabs(q.value) <= 1e9 && q.value == floor(q.value))) {
-            ok = hn_rd_fault(r, NULL, "{%s} in '%.60s' is %g, expected a whole number", inner, raw, q.value);
+            ok = hn_rd_fault(r, NULL, "{%s} in '%.60s' is %g, expected a whole number", inner, raw,
+                             q.value);
         }
         hn_strbuf_printf(&b, "%lld", ok ? (long long)q.value : 0LL);
         c = end;
@@ -173,7 +181,8 @@ static const char *settle_loop(hn_reader *r, const char *text) {
                 end += 2;
             }
         }
-        if (is_name_start(*c) && (size_t)(end - c) == strlen(r->loop_name) && memcmp(c, r->loop_name, (size_t)(end - c)) == 0) {
+        if (is_name_start(*c) && (size_t)(end - c) == strlen(r->loop_name) &&
+            memcmp(c, r->loop_name, (size_t)(end - c)) == 0) {
             hn_strbuf_printf(&b, r->loop_value < 0 ? "(%lld)" : "%lld", r->loop_value);
         } else {
             hn_strbuf_add_n(&b, c, (size_t)(end - c));
@@ -193,9 +202,11 @@ int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scop
         return isfinite(out->value) ? 1 : hn_rd_fault(r, NULL, "expected a finite number");
     }
     if (!cJSON_IsString(node)) {
-        return hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s", hn_rd_kind(node));
+        return hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
+                           hn_rd_kind(node));
     }
-    const char *filled = strchr(node->valuestring, '{') ? hn_rd_fill(r, node->valuestring) : node->valuestring;
+    const char *filled =
+        strchr(node->valuestring, '{') ? hn_rd_fill(r, node->valuestring) : node->valuestring;
     const char *text = filled ? settle_loop(r, filled) : NULL;
     if (!text || !hn_rd_formula(r, text, scope, out)) {
         return 0;
@@ -204,7 +215,8 @@ int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scop
     return 1;
 }
 
-int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback, hn_quantity *out, hn_rd_scope scope) {
+int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
+                 hn_quantity *out, hn_rd_scope scope) {
     const cJSON *node = hn_rd_get(object, key);
     *out = (hn_quantity){.value = fallback};
     if (!node) {
@@ -220,8 +232,8 @@ int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scop
     memset(out, 0, 3 * sizeof *out);
     int n = cJSON_IsArray(node) ? cJSON_GetArraySize(node) : 0;
     if (n != 2 && n != 3) {
-        return hn_rd_fault(r, "as in [1, 0, 0]", "expected a list of 2 or 3 numbers, found %s%s", hn_rd_kind(node),
-                           cJSON_IsArray(node) ? " of another length" : "");
+        return hn_rd_fault(r, "as in [1, 0, 0]", "expected a list of 2 or 3 numbers, found %s%s",
+                           hn_rd_kind(node), cJSON_IsArray(node) ? " of another length" : "");
     }
     int ok = 1, i = 0;
     for (const cJSON *item = node->child; item; item = item->next, i++) {
@@ -241,7 +253,8 @@ const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int r
         return NULL;
     }
     if (!cJSON_IsString(node)) {
-        hn_rd_fault_at(r, key, NULL, "expected a text in double quotes, found %s", hn_rd_kind(node));
+        hn_rd_fault_at(r, key, NULL, "expected a text in double quotes, found %s",
+                       hn_rd_kind(node));
         return NULL;
     }
     return hn_rd_keep(r, node->valuestring);
@@ -255,7 +268,8 @@ const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int r
     size_t mark = hn_rd_enter(r, key);
     const char *name = hn_rd_fill(r, node->valuestring);
     if (name && (name[0] == '\0' || strlen(name) > HN_RD_MAX_NAME)) {
-        hn_rd_fault(r, NULL, "expected a name of 1 to %d characters, found %zu", HN_RD_MAX_NAME, strlen(name));
+        hn_rd_fault(r, NULL, "expected a name of 1 to %d characters, found %zu", HN_RD_MAX_NAME,
+                    strlen(name));
         name = NULL;
     }
     for (const char *c = name; c && *c; c++) {

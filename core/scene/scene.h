@@ -15,7 +15,12 @@
 #include <stdint.h>
 
 enum { HN_GROUND = -1 };
-enum { HN_SCENE_MAX_BYTES = 4 << 20, HN_SCENE_MAX_BODIES = 2000, HN_SCENE_MAX_JOINTS = 4000, HN_SCENE_MAX_PARAMS = 200 };
+enum {
+    HN_SCENE_MAX_BYTES = 4 << 20,
+    HN_SCENE_MAX_BODIES = 2000,
+    HN_SCENE_MAX_JOINTS = 4000,
+    HN_SCENE_MAX_PARAMS = 200
+};
 
 /// A number, or a formula in the parameters (then `formula` is its text and `value` its present value). A
 /// formula that depends on the state (loads, Lagrangian, drawn points) has value 0 and `varies` 1.
@@ -56,8 +61,8 @@ typedef struct hn_joint {
     hn_quantity parent_at[3], child_at[3];
     double parent_axis[3], child_axis[3]; ///< unit
     double parent_ref[3], child_ref[3];   ///< unit, perpendicular to the axis
-    int cut;                              ///< asked to close a loop rather than to carry a coordinate
-    int coordinate;                       ///< index into coordinates
+    int cut;        ///< asked to close a loop rather than to carry a coordinate
+    int coordinate; ///< index into coordinates
 } hn_joint;
 
 typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
@@ -66,7 +71,7 @@ typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
 typedef struct hn_coordinate {
     const char *name, *rate; ///< th1, w1: as used in formulas; rate defaults to d_<name>
     hn_unit_kind kind;
-    int joint;               ///< index, or -1 (Lagrangian)
+    int joint; ///< index, or -1 (Lagrangian)
     int actuated;
     // start: a pinned value is kept, a guess is where assembly begins
     double q0, v0;
@@ -82,17 +87,17 @@ typedef struct hn_point {
 } hn_point;
 
 typedef enum hn_load_kind {
-    HN_LOAD_SPRING,       ///< between points p and q: stiffness [N/m], rest length [m], damping [N s/m]
+    HN_LOAD_SPRING, ///< between points p and q: stiffness [N/m], rest length [m], damping [N s/m]
     HN_LOAD_JOINT_SPRING, ///< along a coordinate: stiffness, rest value, damping
-    HN_LOAD_COORDINATE,   ///< generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
-    HN_LOAD_FORCE         ///< force `value[3]` in world axes at point p, formula of t, q, v
+    HN_LOAD_COORDINATE, ///< generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
+    HN_LOAD_FORCE ///< force `value[3]` in world axes at point p, formula of t, q, v
 } hn_load_kind;
 
 typedef struct hn_load {
     const char *name, *pointer;
     hn_load_kind kind;
-    int p, q;           ///< points (spring, force)
-    int coordinate;     ///< (joint spring, coordinate)
+    int p, q;       ///< points (spring, force)
+    int coordinate; ///< (joint spring, coordinate)
     hn_quantity stiffness, rest, damping;
     hn_quantity value[3];
 } hn_load;
@@ -121,14 +126,15 @@ const char *hn_shape_kind_name(hn_shape_kind kind);
 
 typedef struct hn_shape {
     hn_shape_kind kind;
-    int p, q, n;     ///< point indices; polygon: points p .. p + n - 1
-    double width;    ///< [m], 0: let the drawer choose
-    int body;        ///< body it belongs to (for colouring), HN_GROUND if none
+    int p, q, n;  ///< point indices; polygon: points p .. p + n - 1
+    double width; ///< [m], 0: let the drawer choose
+    int body;     ///< body it belongs to (for colouring), HN_GROUND if none
 } hn_shape;
 
 typedef struct hn_scene {
     hn_arena *arena; ///< owns everything below
-    const char *id, *name, *title, *about, *look_for; ///< id: file name without .json, or the "id" field
+    const char *id, *name, *title, *about,
+        *look_for; ///< id: file name without .json, or the "id" field
     int is_lagrangian;
     int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_shapes;
     hn_param *params;
@@ -137,15 +143,15 @@ typedef struct hn_scene {
     hn_coordinate *coordinates;
     hn_point *points;
     hn_load *loads;
-    hn_shape *shapes;   ///< as the scene says, or made from its joints when it says nothing
-    int n_tears;        ///< Lagrangian only: pairs of points that coincide when the loop is closed
+    hn_shape *shapes; ///< as the scene says, or made from its joints when it says nothing
+    int n_tears;      ///< Lagrangian only: pairs of points that coincide when the loop is closed
     int (*tears)[2];
     hn_quantity gravity[3]; ///< acceleration of gravity [m/s^2], world axes; Lagrangian: 0
     hn_lagrangian lagrangian;
-    double duration, step;  ///< suggested [s]
+    double duration, step;      ///< suggested [s]
     const char *const *methods; ///< suggested method spellings
     int n_methods;
-    uint64_t hash;          ///< of the normalised text and the present parameter values
+    uint64_t hash; ///< of the normalised text and the present parameter values
 } hn_scene;
 
 /// One changed parameter, as from --set l1=1.2.
@@ -158,15 +164,17 @@ typedef struct hn_setting {
 /// can be told from the text alone is told (up to HN_DIAG_MAX): syntax with line and column, unknown or missing
 /// fields with a near-miss suggestion, wrong types, units, ranges, names used twice, bodies not connected, inertia that no body has.
 /// Returns owned in *out (hn_scene_free). Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings,
-                                           int n_settings, hn_scene **out, hn_diags *diags);
-/// The same from a file.
-HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings,
+HN_MUST_CHECK hn_status hn_scene_load_json(const char *text, size_t n, const char *id,
+                                           const hn_setting *settings, int n_settings,
                                            hn_scene **out, hn_diags *diags);
+/// The same from a file.
+HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *settings,
+                                           int n_settings, hn_scene **out, hn_diags *diags);
 void hn_scene_free(hn_scene *scene); ///< NULL is legal
 
 int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
 int hn_scene_find_param(const hn_scene *scene, const char *name);
-int hn_scene_find_body(const hn_scene *scene, const char *name); ///< "ground" gives HN_GROUND; unknown: -2
+int hn_scene_find_body(const hn_scene *scene,
+                       const char *name); ///< "ground" gives HN_GROUND; unknown: -2
 
 #endif

@@ -9,7 +9,9 @@
 // bodies -------------------------------------------------------------------------------------------
 
 static int check_new_name(hn_reader *r, const char *name, const char *taken_by) {
-    return taken_by ? hn_rd_fault_at(r, "name", NULL, "the name '%s' is used twice (also at %s)", name, taken_by) : 1;
+    return taken_by ? hn_rd_fault_at(r, "name", NULL, "the name '%s' is used twice (also at %s)",
+                                     name, taken_by)
+                    : 1;
 }
 
 /// The tensor about the centre of mass. zz alone means a thin rod along the body's x: xx = 0, yy = zz.
@@ -60,7 +62,8 @@ static void read_body(hn_reader *r, const cJSON *node, const char *key) {
     if (r->n_faults == faults) {
         hn_rd_check_inertia(r, &b);
     }
-    hn_body *bodies = hn_rd_grow(r, s->bodies, s->n_bodies, sizeof *bodies, HN_SCENE_MAX_BODIES, "bodies");
+    hn_body *bodies =
+        hn_rd_grow(r, s->bodies, s->n_bodies, sizeof *bodies, HN_SCENE_MAX_BODIES, "bodies");
     if (bodies && b.name) {
         s->bodies = bodies;
         bodies[s->n_bodies++] = b;
@@ -68,7 +71,8 @@ static void read_body(hn_reader *r, const cJSON *node, const char *key) {
 }
 
 static int is_list(hn_reader *r, const cJSON *node, const char *what) {
-    return !node || cJSON_IsArray(node) || hn_rd_fault(r, NULL, "expected a list of %s, found %s", what, hn_rd_kind(node));
+    return !node || cJSON_IsArray(node) ||
+           hn_rd_fault(r, NULL, "expected a list of %s, found %s", what, hn_rd_kind(node));
 }
 
 void hn_rd_bodies(hn_reader *r, const cJSON *root) {
@@ -142,7 +146,9 @@ static void read_ref(hn_reader *r, const cJSON *object, const double axis[3], do
     }
     double along = axis[0] * ref[0] + axis[1] * ref[1] + axis[2] * ref[2];
     if (fabs(along) > 1e-6) {
-        hn_rd_fault_at(r, "ref", NULL, "the reference direction is not perpendicular to the axis (cosine %.3g)", along);
+        hn_rd_fault_at(r, "ref", NULL,
+                       "the reference direction is not perpendicular to the axis (cosine %.3g)",
+                       along);
         return;
     }
     for (int k = 0; k < 3; k++) {
@@ -156,7 +162,8 @@ static int read_side(hn_reader *r, const cJSON *joint, const char *key, hn_quant
     const cJSON *node = hn_rd_get(joint, key);
     int body = -2;
     if (!node) {
-        hn_rd_fault(r, "as in {\"body\": \"ground\", \"at\": [0, 0, 0]}", "the field '%s' is missing", key);
+        hn_rd_fault(r, "as in {\"body\": \"ground\", \"at\": [0, 0, 0]}",
+                    "the field '%s' is missing", key);
         return body;
     }
     size_t mark = hn_rd_enter(r, key);
@@ -181,7 +188,8 @@ static void read_frames(hn_reader *r, const cJSON *node, hn_joint *j) {
     } else if (j->type == HN_JOINT_REVOLUTE) {
         memcpy(j->parent_axis, z, sizeof z);
     } else {
-        hn_rd_fault(r, "as in [1, 0, 0]", "a %s joint needs its 'axis'", hn_joint_type_name(j->type));
+        hn_rd_fault(r, "as in [1, 0, 0]", "a %s joint needs its 'axis'",
+                    hn_joint_type_name(j->type));
         return;
     }
     if (hn_rd_get(node, "ref")) {
@@ -219,7 +227,8 @@ static int read_type(hn_reader *r, const cJSON *node, hn_joint_type *type) {
     return 0;
 }
 
-int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, const char *rate, hn_unit_kind kind, int joint) {
+int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, const char *rate,
+                         hn_unit_kind kind, int joint) {
     hn_scene *s = r->scene;
     char made[HN_RD_MAX_NAME + 8];
     if (!name) {
@@ -230,12 +239,14 @@ int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, cons
         snprintf(made, sizeof made, "d_%s", name);
         rate = hn_rd_keep(r, made);
     }
-    hn_coordinate *all = hn_rd_grow(r, s->coordinates, s->n_coordinates, sizeof *all, HN_SCENE_MAX_JOINTS, "coordinates");
+    hn_coordinate *all = hn_rd_grow(r, s->coordinates, s->n_coordinates, sizeof *all,
+                                    HN_SCENE_MAX_JOINTS, "coordinates");
     if (!all || !ok || !rate) {
         return -1;
     }
     s->coordinates = all;
-    all[s->n_coordinates] = (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
+    all[s->n_coordinates] =
+        (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
     // the coordinate is there already, so that a rate of the same name is found out; its own rate is not
     all[s->n_coordinates].rate = "";
     s->n_coordinates++;
@@ -255,7 +266,8 @@ static void check_joint_name(hn_reader *r, const hn_joint *j) {
 }
 
 static void read_joint(hn_reader *r, const cJSON *node, const char *key) {
-    static const char *const fields[] = {"name", "about", "type", "parent", "child", "axis", "ref", "coordinate", "rate", "cut", "actuated", "for"};
+    static const char *const fields[] = {"name", "about",      "type", "parent", "child",    "axis",
+                                         "ref",  "coordinate", "rate", "cut",    "actuated", "for"};
     (void)key;
     hn_scene *s = r->scene;
     if (!hn_rd_object(r, node, "a joint", fields, 12)) {
@@ -269,18 +281,24 @@ static void read_joint(hn_reader *r, const cJSON *node, const char *key) {
     j.parent = read_side(r, node, "parent", j.parent_at);
     j.child = read_side(r, node, "child", j.child_at);
     if (j.parent != -2 && j.parent == j.child) {
-        hn_rd_fault_at(r, "child", NULL, "the joint joins '%s' to itself", j.parent == HN_GROUND ? "ground" : s->bodies[j.parent].name);
+        hn_rd_fault_at(r, "child", NULL, "the joint joins '%s' to itself",
+                       j.parent == HN_GROUND ? "ground" : s->bodies[j.parent].name);
     }
     if (typed) {
         read_frames(r, node, &j);
     }
     j.cut = hn_rd_flag(r, node, "cut");
-    const char *coordinate = hn_rd_name(r, node, "coordinate", 0), *rate = hn_rd_name(r, node, "rate", 0);
+    const char *coordinate = hn_rd_name(r, node, "coordinate", 0),
+               *rate = hn_rd_name(r, node, "rate", 0);
     coordinate = coordinate || hn_rd_get(node, "coordinate") ? coordinate : j.name;
     size_t mark = hn_rd_enter(r, hn_rd_get(node, "coordinate") ? "coordinate" : "name");
-    j.coordinate = hn_rd_add_coordinate(r, node, coordinate, rate, j.type == HN_JOINT_PRISMATIC ? HN_LENGTH : HN_ANGLE, s->n_joints);
+    j.coordinate =
+        hn_rd_add_coordinate(r, node, coordinate, rate,
+                             j.type == HN_JOINT_PRISMATIC ? HN_LENGTH : HN_ANGLE, s->n_joints);
     hn_rd_leave(r, mark);
-    hn_joint *joints = r->n_faults == faults ? hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints, HN_SCENE_MAX_JOINTS, "joints") : NULL;
+    hn_joint *joints = r->n_faults == faults ? hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints,
+                                                          HN_SCENE_MAX_JOINTS, "joints")
+                                             : NULL;
     if (joints && !r->oom) {
         s->joints = joints;
         joints[s->n_joints++] = j;

@@ -29,7 +29,8 @@ static void check_keys(hn_reader *r, const cJSON *node) {
     qsort(keys, (size_t)n, sizeof *keys, compare_names);
     for (i = 1; i < n && !hn_rd_stopped(r); i++) {
         if (strcmp(keys[i - 1], keys[i]) == 0) {
-            hn_rd_fault_at(r, keys[i], NULL, "the name '%.60s' stands twice in this object", keys[i]);
+            hn_rd_fault_at(r, keys[i], NULL, "the name '%.60s' stands twice in this object",
+                           keys[i]);
         }
     }
     free(keys);
@@ -44,7 +45,8 @@ void hn_rd_check_tree(hn_reader *r, const cJSON *node) {
         if (!m->child) {
             continue;
         }
-        size_t mark = cJSON_IsObject(node) ? hn_rd_enter(r, m->string) : hn_rd_enter_index(r, index);
+        size_t mark =
+            cJSON_IsObject(node) ? hn_rd_enter(r, m->string) : hn_rd_enter_index(r, index);
         hn_rd_check_tree(r, m);
         hn_rd_leave(r, mark);
     }
@@ -85,8 +87,9 @@ int hn_rd_check_identifier(hn_reader *r, const char *name) {
         ok = isalnum((unsigned char)*c) || *c == '_';
     }
     if (!ok || strlen(name) > HN_RD_MAX_NAME) {
-        return hn_rd_fault(r, "letters, digits and _, not starting with a digit; at most 60 characters",
-                           "'%.60s' cannot be a name in formulas", name);
+        return hn_rd_fault(
+            r, "letters, digits and _, not starting with a digit; at most 60 characters",
+            "'%.60s' cannot be a name in formulas", name);
     }
     const char *by = taken(r, name);
     return by ? hn_rd_fault(r, NULL, "the name '%s' is taken already (%s)", name, by) : 1;
@@ -100,18 +103,22 @@ int hn_rd_check_identifier(hn_reader *r, const char *name) {
 void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     const hn_quantity *I = b->inertia;
     double xx = I[0].value, yy = I[1].value, zz = I[2].value, half = (xx + yy + zz) / 2;
-    double size = fabs(xx) + fabs(yy) + fabs(zz) + fabs(I[3].value) + fabs(I[4].value) + fabs(I[5].value);
+    double size =
+        fabs(xx) + fabs(yy) + fabs(zz) + fabs(I[3].value) + fabs(I[4].value) + fabs(I[5].value);
     if (size == 0) {
         return;
     }
     if (b->mass.value == 0) {
-        hn_rd_fault_at(r, "inertia", "give it a mass, or leave 'inertia' out", "the body '%s' has inertia but no mass", b->name);
+        hn_rd_fault_at(r, "inertia", "give it a mass, or leave 'inertia' out",
+                       "the body '%s' has inertia but no mass", b->name);
         return;
     }
     static const char *const names[] = {"xx", "yy", "zz"};
     for (int k = 0; k < 3; k++) {
         if (I[k].value < 0) {
-            hn_rd_fault_at(r, "inertia", NULL, "the moment of inertia %s = %g kg m^2 of '%s' is negative", names[k], I[k].value, b->name);
+            hn_rd_fault_at(r, "inertia", NULL,
+                           "the moment of inertia %s = %g kg m^2 of '%s' is negative", names[k],
+                           I[k].value, b->name);
             return;
         }
     }
@@ -120,11 +127,14 @@ void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     const double tol = 1e-9; // [-] of the tensor's size: formulas written with 10 digits pass
     if (a < -tol || e < -tol || c < -tol) {
         hn_rd_fault_at(r, "inertia", "each moment is at most the sum of the other two",
-                       "no body has the moments xx = %g, yy = %g, zz = %g kg m^2 ('%s')", xx, yy, zz, b->name);
+                       "no body has the moments xx = %g, yy = %g, zz = %g kg m^2 ('%s')", xx, yy,
+                       zz, b->name);
     } else if (a * e - d * d < -tol || a * c - f * f < -tol || e * c - g * g < -tol ||
                a * (e * c - g * g) - d * (d * c - g * f) + f * (d * g - e * f) < -tol) {
-        hn_rd_fault_at(r, "inertia", "the products xy, xz, yz are too large for the moments",
-                       "no body has this tensor of inertia ('%s'): its mass would be negative somewhere", b->name);
+        hn_rd_fault_at(
+            r, "inertia", "the products xy, xz, yz are too large for the moments",
+            "no body has this tensor of inertia ('%s'): its mass would be negative somewhere",
+            b->name);
     }
 }
 
@@ -145,7 +155,8 @@ static void join(const hn_scene *s, int with_cut, int *up) {
     }
     for (int k = 0; k < s->n_joints; k++) {
         if (with_cut || !s->joints[k].cut) {
-            int a = find_root(up, s->joints[k].parent + 1), b = find_root(up, s->joints[k].child + 1);
+            int a = find_root(up, s->joints[k].parent + 1),
+                b = find_root(up, s->joints[k].child + 1);
             up[a > b ? a : b] = a > b ? b : a;
         }
     }
@@ -153,7 +164,8 @@ static void join(const hn_scene *s, int with_cut, int *up) {
 
 void hn_rd_check_connected(hn_reader *r) {
     const hn_scene *s = r->scene;
-    int *up = hn_arena_ints(r->arena, 2 * (size_t)(s->n_bodies + 1)), *all = up ? up + s->n_bodies + 1 : NULL;
+    int *up = hn_arena_ints(r->arena, 2 * (size_t)(s->n_bodies + 1)),
+        *all = up ? up + s->n_bodies + 1 : NULL;
     if (!up) {
         r->oom = 1;
         return;
@@ -170,7 +182,8 @@ void hn_rd_check_connected(hn_reader *r) {
             hn_rd_fault(r, "let one of these joints keep its coordinate (\"cut\": false)",
                         "the body '%s' is joined to ground by cut joints alone", s->bodies[i].name);
         } else {
-            hn_rd_fault(r, "add a joint whose other side is 'ground' or a body that is joined to it",
+            hn_rd_fault(r,
+                        "add a joint whose other side is 'ground' or a body that is joined to it",
                         "the body '%s' is not connected to ground by any joint", s->bodies[i].name);
         }
         r->path[0] = '\0';

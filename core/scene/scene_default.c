@@ -72,7 +72,7 @@ static void draw_bars(hn_reader *r) {
 
 /// The place one metre along `axis` from `at`: the second point of sliders and guides.
 static int along(hn_reader *r, int body, const hn_quantity at[3], const double axis[3]) {
-    hn_quantity q[3] = {{0}, {0}, {0}};
+    hn_quantity q[3] = {0};
     for (int k = 0; k < 3; k++) {
         q[k].value = at[k].value + axis[k];
     }
@@ -87,11 +87,13 @@ static void draw_joint(hn_reader *r, const hn_joint *j) {
     if (j->type == HN_JOINT_REVOLUTE) {
         int grounded = j->parent == HN_GROUND || j->child == HN_GROUND;
         int ground = j->child == HN_GROUND ? hn_rd_place(r, j->child, j->child_at) : parent;
-        hn_rd_add_shape(r, grounded ? HN_SHAPE_GROUND : HN_SHAPE_PIVOT, ground, ground, grounded ? HN_GROUND : j->parent);
+        hn_rd_add_shape(r, grounded ? HN_SHAPE_GROUND : HN_SHAPE_PIVOT, ground, ground,
+                        grounded ? HN_GROUND : j->parent);
         return;
     }
     int far = along(r, j->parent, j->parent_at, j->parent_axis);
-    int child = hn_rd_place(r, j->child, j->child_at), toward = along(r, j->child, j->child_at, j->child_axis);
+    int child = hn_rd_place(r, j->child, j->child_at),
+        toward = along(r, j->child, j->child_at, j->child_axis);
     if (far >= 0 && child >= 0 && toward >= 0) {
         hn_rd_add_shape(r, HN_SHAPE_GUIDE, parent, far, j->parent);
         hn_rd_add_shape(r, HN_SHAPE_SLIDER, child, toward, j->child);
@@ -112,7 +114,8 @@ static void draw_load(hn_reader *r, const hn_load *load) {
 }
 
 void hn_rd_draw_default(hn_reader *r, const cJSON *root) {
-    static const char *const bars[] = {"bars", "polygons"}, *const symbols[] = {"pivots", "ground", "sliders", "guides"},
+    static const char *const bars[] = {"bars", "polygons"},
+                             *const symbols[] = {"pivots", "ground", "sliders", "guides"},
                              *const loads[] = {"springs", "dampers", "arrows"};
     const hn_scene *s = r->scene;
     if (s->is_lagrangian) {

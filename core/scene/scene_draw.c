@@ -12,16 +12,21 @@ typedef struct shape_row {
 } shape_row;
 
 static const shape_row ROWS[] = {
-    [HN_SHAPE_BAR] = {"bar", "bars", 2, 2},          [HN_SHAPE_PIVOT] = {"pivot", "pivots", 1, 1},
-    [HN_SHAPE_GROUND] = {"ground", "ground", 1, 1},  [HN_SHAPE_SLIDER] = {"slider", "sliders", 2, 2},
-    [HN_SHAPE_GUIDE] = {"guide", "guides", 2, 2},    [HN_SHAPE_SPRING] = {"spring", "springs", 2, 2},
-    [HN_SHAPE_DAMPER] = {"damper", "dampers", 2, 2}, [HN_SHAPE_ARROW] = {"arrow", "arrows", 1, 1},
-    [HN_SHAPE_POLYGON] = {"polygon", "polygons", 3, 1000}, [HN_SHAPE_TRACE] = {"trace", "traces", 1, 1},
+    [HN_SHAPE_BAR] = {"bar", "bars", 2, 2},
+    [HN_SHAPE_PIVOT] = {"pivot", "pivots", 1, 1},
+    [HN_SHAPE_GROUND] = {"ground", "ground", 1, 1},
+    [HN_SHAPE_SLIDER] = {"slider", "sliders", 2, 2},
+    [HN_SHAPE_GUIDE] = {"guide", "guides", 2, 2},
+    [HN_SHAPE_SPRING] = {"spring", "springs", 2, 2},
+    [HN_SHAPE_DAMPER] = {"damper", "dampers", 2, 2},
+    [HN_SHAPE_ARROW] = {"arrow", "arrows", 1, 1},
+    [HN_SHAPE_POLYGON] = {"polygon", "polygons", 3, 1000},
+    [HN_SHAPE_TRACE] = {"trace", "traces", 1, 1},
 };
 enum { N_ROWS = sizeof ROWS / sizeof ROWS[0] };
 
 const char *hn_shape_kind_name(hn_shape_kind kind) {
-    HN_ASSERT((int)kind >= 0 && kind < N_ROWS);
+    HN_ASSERT((int)kind >= 0 && (int)kind < (int)N_ROWS);
     return ROWS[kind].one;
 }
 
@@ -29,7 +34,8 @@ const char *hn_shape_kind_name(hn_shape_kind kind) {
 
 int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity at[3]) {
     hn_scene *s = r->scene;
-    hn_point *points = hn_rd_grow(r, s->points, s->n_points, sizeof *points, HN_RD_MAX_POINTS, "points");
+    hn_point *points =
+        hn_rd_grow(r, s->points, s->n_points, sizeof *points, HN_RD_MAX_POINTS, "points");
     if (!points) {
         return -1;
     }
@@ -44,8 +50,9 @@ int hn_rd_place(hn_reader *r, int body, const hn_quantity at[3]) {
     int varies = at[0].varies || at[1].varies || at[2].varies;
     for (int i = 0; i < s->n_points && !varies; i++) {
         const hn_point *p = &s->points[i];
-        if (p->body == body && p->at[0].value == at[0].value && p->at[1].value == at[1].value && p->at[2].value == at[2].value &&
-            !p->at[0].varies && !p->at[1].varies && !p->at[2].varies) {
+        if (p->body == body && p->at[0].value == at[0].value && p->at[1].value == at[1].value &&
+            p->at[2].value == at[2].value && !p->at[0].varies && !p->at[1].varies &&
+            !p->at[2].varies) {
             return i;
         }
     }
@@ -83,7 +90,8 @@ static int named_point(hn_reader *r, const char *raw) {
 static int read_on_body(hn_reader *r, const cJSON *node, int *body, hn_quantity at[3]) {
     static const char *const fields[] = {"body", "at", "for"};
     if (r->scene->is_lagrangian) {
-        return hn_rd_fault(r, "as in [\"l1*cos(th1)\", \"l1*sin(th1)\"]", "a Lagrangian scene has no bodies: its points are lists of formulas");
+        return hn_rd_fault(r, "as in [\"l1*cos(th1)\", \"l1*sin(th1)\"]",
+                           "a Lagrangian scene has no bodies: its points are lists of formulas");
     }
     if (!hn_rd_object(r, node, "a point", fields, 3)) {
         return 0;
@@ -91,13 +99,14 @@ static int read_on_body(hn_reader *r, const cJSON *node, int *body, hn_quantity 
     *body = hn_rd_body(r, node, "body");
     const cJSON *where = hn_rd_get(node, "at");
     size_t mark = hn_rd_enter(r, "at");
-    int ok = where ? hn_rd_vector(r, where, at, HN_RD_CONST) : hn_rd_fault(r, NULL, "the field 'at' is missing");
+    int ok = where ? hn_rd_vector(r, where, at, HN_RD_CONST)
+                   : hn_rd_fault(r, NULL, "the field 'at' is missing");
     hn_rd_leave(r, mark);
     return ok && *body != -2;
 }
 
 int hn_rd_point(hn_reader *r, const cJSON *node, int body) {
-    hn_quantity at[3] = {{0}, {0}, {0}};
+    hn_quantity at[3] = {0};
     if (cJSON_IsString(node)) {
         return named_point(r, node->valuestring);
     }
@@ -105,17 +114,20 @@ int hn_rd_point(hn_reader *r, const cJSON *node, int body) {
         return read_on_body(r, node, &body, at) ? hn_rd_place(r, body, at) : -1;
     }
     if (!cJSON_IsArray(node)) {
-        hn_rd_fault(r, NULL, "expected a point (a name, [x, y, z] or {\"body\", \"at\"}), found %s", hn_rd_kind(node));
+        hn_rd_fault(r, NULL, "expected a point (a name, [x, y, z] or {\"body\", \"at\"}), found %s",
+                    hn_rd_kind(node));
         return -1;
     }
-    return hn_rd_vector(r, node, at, r->scene->is_lagrangian ? HN_RD_POSE : HN_RD_CONST) ? hn_rd_place(r, body, at) : -1;
+    return hn_rd_vector(r, node, at, r->scene->is_lagrangian ? HN_RD_POSE : HN_RD_CONST)
+               ? hn_rd_place(r, body, at)
+               : -1;
 }
 
 /// Member of draw.points.
 static void read_named(hn_reader *r, const cJSON *node, const char *key) {
     static const char *const fields[] = {"at", "for"};
     const char *name = hn_rd_fill(r, key);
-    hn_quantity at[3] = {{0}, {0}, {0}};
+    hn_quantity at[3] = {0};
     int body = HN_GROUND, ok;
     const cJSON *list = node;
     if (cJSON_IsObject(node) && (hn_rd_get(node, "body") || !hn_rd_get(node, "for"))) {
@@ -144,7 +156,8 @@ void hn_rd_points(hn_reader *r, const cJSON *root) {
     size_t mark = hn_rd_enter(r, "draw");
     size_t inner = hn_rd_enter(r, "points");
     if (points && !cJSON_IsObject(points)) {
-        hn_rd_fault(r, "as in {\"A\": [1, 0]}", "expected an object of named points, found %s", hn_rd_kind(points));
+        hn_rd_fault(r, "as in {\"A\": [1, 0]}", "expected an object of named points, found %s",
+                    hn_rd_kind(points));
     } else {
         hn_rd_each(r, points, read_named);
     }
@@ -156,12 +169,14 @@ void hn_rd_points(hn_reader *r, const cJSON *root) {
 
 hn_shape *hn_rd_add_shape(hn_reader *r, hn_shape_kind kind, int p, int q, int body) {
     hn_scene *s = r->scene;
-    hn_shape *shapes = hn_rd_grow(r, s->shapes, s->n_shapes, sizeof *shapes, HN_RD_MAX_SHAPES, "shapes");
+    hn_shape *shapes =
+        hn_rd_grow(r, s->shapes, s->n_shapes, sizeof *shapes, HN_RD_MAX_SHAPES, "shapes");
     if (!shapes) {
         return NULL;
     }
     s->shapes = shapes;
-    shapes[s->n_shapes] = (hn_shape){.kind = kind, .p = p, .q = q, .n = ROWS[kind].min, .body = body};
+    shapes[s->n_shapes] =
+        (hn_shape){.kind = kind, .p = p, .q = q, .n = ROWS[kind].min, .body = body};
     return &shapes[s->n_shapes++];
 }
 
@@ -191,8 +206,9 @@ static void read_one(hn_reader *r, const cJSON *node, hn_shape_kind kind, int bo
     const shape_row *row = &ROWS[kind];
     int n = row->max == 1 ? 1 : cJSON_IsArray(node) ? cJSON_GetArraySize(node) : 0;
     if (n < row->min || n > row->max) {
-        hn_rd_fault(r, NULL, "a %s is a list of %d%s points, found %s%s", row->one, row->min, row->max > row->min ? " or more" : "",
-                    hn_rd_kind(node), cJSON_IsArray(node) ? " of another length" : "");
+        hn_rd_fault(r, NULL, "a %s is a list of %d%s points, found %s%s", row->one, row->min,
+                    row->max > row->min ? " or more" : "", hn_rd_kind(node),
+                    cJSON_IsArray(node) ? " of another length" : "");
         return;
     }
     int *p = hn_arena_ints(r->arena, (size_t)n);
@@ -211,7 +227,10 @@ static void read_one(hn_reader *r, const cJSON *node, hn_shape_kind kind, int bo
     }
     int owner = body != HN_GROUND ? body : common_body(r->scene, p, n);
     int first = kind == HN_SHAPE_POLYGON ? line_up(r, p, n) : p[0];
-    hn_shape *shape = first >= 0 ? hn_rd_add_shape(r, kind, first, n > 1 && kind != HN_SHAPE_POLYGON ? p[1] : first, owner) : NULL;
+    hn_shape *shape = first >= 0
+                          ? hn_rd_add_shape(r, kind, first,
+                                            n > 1 && kind != HN_SHAPE_POLYGON ? p[1] : first, owner)
+                          : NULL;
     if (shape) {
         shape->n = n;
         shape->width = width;
@@ -242,7 +261,8 @@ static void read_on_own_body(hn_reader *r, const cJSON *node, const char *key) {
     hn_rd_object(r, node, "a shape", fields, N_ROWS + 2);
     if (n != 1 || r->n_faults > faults) {
         if (r->n_faults == faults) {
-            hn_rd_fault(r, "as in {\"bar\": [[0, 0], [\"l1\", 0]]}", "expected one kind of shape, found %d", n);
+            hn_rd_fault(r, "as in {\"bar\": [[0, 0], [\"l1\", 0]]}",
+                        "expected one kind of shape, found %d", n);
         }
         return;
     }
@@ -258,10 +278,12 @@ static void read_body_draw(hn_reader *r, const cJSON *node, const char *key) {
     (void)key;
     size_t mark = hn_rd_enter(r, "draw");
     if (draw && !cJSON_IsArray(draw)) {
-        hn_rd_fault(r, "as in [{\"bar\": [[0, 0], [\"l1\", 0]]}]", "expected a list of shapes, found %s", hn_rd_kind(draw));
+        hn_rd_fault(r, "as in [{\"bar\": [[0, 0], [\"l1\", 0]]}]",
+                    "expected a list of shapes, found %s", hn_rd_kind(draw));
     } else {
         int index = 0;
-        for (const cJSON *m = draw ? draw->child : NULL; m && !hn_rd_stopped(r); m = m->next, index++) {
+        for (const cJSON *m = draw ? draw->child : NULL; m && !hn_rd_stopped(r);
+             m = m->next, index++) {
             size_t inner = hn_rd_enter_index(r, index);
             read_on_own_body(r, m, NULL);
             hn_rd_leave(r, inner);
@@ -294,7 +316,8 @@ static void read_tear(hn_reader *r, const cJSON *node, const char *key) {
     int ends[2];
     (void)key;
     if (!cJSON_IsArray(node) || cJSON_GetArraySize(node) != 2) {
-        hn_rd_fault(r, "as in [\"P\", \"Q\"]", "a tear is a list of two points, found %s", hn_rd_kind(node));
+        hn_rd_fault(r, "as in [\"P\", \"Q\"]", "a tear is a list of two points, found %s",
+                    hn_rd_kind(node));
         return;
     }
     for (int i = 0; i < 2; i++) {
@@ -302,7 +325,8 @@ static void read_tear(hn_reader *r, const cJSON *node, const char *key) {
         ends[i] = hn_rd_point(r, cJSON_GetArrayItem(node, i), HN_GROUND);
         hn_rd_leave(r, mark);
     }
-    int(*tears)[2] = hn_rd_grow(r, s->tears, s->n_tears, sizeof *tears, HN_SCENE_MAX_JOINTS, "tears");
+    int(*tears)[2] =
+        hn_rd_grow(r, s->tears, s->n_tears, sizeof *tears, HN_SCENE_MAX_JOINTS, "tears");
     if (tears && ends[0] >= 0 && ends[1] >= 0) {
         s->tears = tears;
         memcpy(tears[s->n_tears++], ends, sizeof ends);
@@ -338,7 +362,8 @@ void hn_rd_shapes(hn_reader *r, const cJSON *root) {
             read_list(r, draw, ROWS[r->shape_kind].many, read_listed);
         }
         if (hn_rd_get(draw, "tears") && !r->scene->is_lagrangian) {
-            hn_rd_fault_at(r, "tears", "leave it out", "the tears of bodies and joints follow from the joints that are cut");
+            hn_rd_fault_at(r, "tears", "leave it out",
+                           "the tears of bodies and joints follow from the joints that are cut");
         } else {
             read_list(r, draw, "tears", read_tear);
         }

@@ -17,17 +17,22 @@
 static void read_version(hn_reader *r, const cJSON *root) {
     const cJSON *version = hn_rd_get(root, "holonom");
     if (!version) {
-        hn_rd_fault(r, "start the scene with \"holonom\": 1", "the field 'holonom' (version of the format) is missing");
+        hn_rd_fault(r, "start the scene with \"holonom\": 1",
+                    "the field 'holonom' (version of the format) is missing");
     } else if (!cJSON_IsNumber(version) || version->valuedouble != 1) {
-        hn_rd_fault_at(r, "holonom", "write 1", "unknown version of the format; this program reads version 1");
+        hn_rd_fault_at(r, "holonom", "write 1",
+                       "unknown version of the format; this program reads version 1");
     }
 }
 
 /// A number that must be positive, within a bound.
-static double read_positive(hn_reader *r, const cJSON *root, const char *key, double fallback, double bound) {
+static double read_positive(hn_reader *r, const cJSON *root, const char *key, double fallback,
+                            double bound) {
     hn_quantity q;
-    if (hn_rd_member(r, root, key, 0, fallback, &q, HN_RD_CONST) && !(q.value > 0 && q.value <= bound)) {
-        hn_rd_fault_at(r, key, NULL, "%s = %g s, expected more than 0 and at most %g s", key, q.value, bound);
+    if (hn_rd_member(r, root, key, 0, fallback, &q, HN_RD_CONST) &&
+        !(q.value > 0 && q.value <= bound)) {
+        hn_rd_fault_at(r, key, NULL, "%s = %g s, expected more than 0 and at most %g s", key,
+                       q.value, bound);
     }
     return q.value;
 }
@@ -38,13 +43,17 @@ static void read_methods(hn_reader *r, const cJSON *root) {
     size_t mark = hn_rd_enter(r, "methods");
     int index = 0;
     if (node && !cJSON_IsArray(node)) {
-        hn_rd_fault(r, "as in [\"index1@rk4:h=1e-3\"]", "expected a list of methods, found %s", hn_rd_kind(node));
+        hn_rd_fault(r, "as in [\"index1@rk4:h=1e-3\"]", "expected a list of methods, found %s",
+                    hn_rd_kind(node));
     }
-    for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m && !hn_rd_stopped(r); m = m->next, index++) {
+    for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m && !hn_rd_stopped(r);
+         m = m->next, index++) {
         size_t inner = hn_rd_enter_index(r, index);
         if (!cJSON_IsString(m) || !strchr(m->valuestring, '@')) {
-            hn_rd_fault(r, "as in \"index1@rk4:h=1e-3\"", "expected FORMULATION@INTEGRATOR, found %s", hn_rd_kind(m));
-        } else if ((methods = hn_rd_grow(r, methods, r->scene->n_methods, sizeof *methods, 100, "methods"))) {
+            hn_rd_fault(r, "as in \"index1@rk4:h=1e-3\"",
+                        "expected FORMULATION@INTEGRATOR, found %s", hn_rd_kind(m));
+        } else if ((methods = hn_rd_grow(r, methods, r->scene->n_methods, sizeof *methods, 100,
+                                         "methods"))) {
             methods[r->scene->n_methods++] = hn_rd_keep(r, m->valuestring);
         }
         hn_rd_leave(r, inner);
@@ -84,11 +93,15 @@ static int read_kind(hn_reader *r, const cJSON *root) {
     const cJSON *bodies = hn_rd_get(root, "bodies"), *joints = hn_rd_get(root, "joints");
     r->scene->is_lagrangian = hn_rd_get(root, "lagrangian") != NULL;
     if (r->scene->is_lagrangian && (bodies || joints)) {
-        return hn_rd_fault(r, NULL, "a scene has either 'lagrangian' or 'bodies' and 'joints', found both");
+        return hn_rd_fault(r, NULL,
+                           "a scene has either 'lagrangian' or 'bodies' and 'joints', found both");
     }
     if (!r->scene->is_lagrangian && (!bodies || !joints)) {
-        return hn_rd_fault(r, NULL, "a scene needs 'bodies' and 'joints', or 'lagrangian'; %s missing",
-                           bodies ? "'joints' is" : joints ? "'bodies' is" : "all three are");
+        return hn_rd_fault(r, NULL,
+                           "a scene needs 'bodies' and 'joints', or 'lagrangian'; %s missing",
+                           bodies   ? "'joints' is"
+                           : joints ? "'bodies' is"
+                                    : "all three are");
     }
     return 1;
 }
@@ -120,10 +133,13 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
 }
 
 static void read_root(hn_reader *r, const cJSON *root, const char *id) {
-    static const char *const fields[] = {"holonom", "id",     "name",   "title", "about", "look_for", "parameters", "gravity", "bodies",
-                                         "joints",  "loads",  "lagrangian", "draw", "start", "duration", "step", "methods"};
+    static const char *const fields[] = {"holonom",  "id",         "name",    "title",  "about",
+                                         "look_for", "parameters", "gravity", "bodies", "joints",
+                                         "loads",    "lagrangian", "draw",    "start",  "duration",
+                                         "step",     "methods"};
     hn_rd_check_tree(r, root);
-    if (r->n_faults > 0 || !hn_rd_object(r, root, "a scene", fields, sizeof fields / sizeof fields[0])) {
+    if (r->n_faults > 0 ||
+        !hn_rd_object(r, root, "a scene", fields, sizeof fields / sizeof fields[0])) {
         return;
     }
     read_version(r, root);
@@ -176,7 +192,9 @@ static hn_status parse_text(const char *text, size_t n, cJSON **root, hn_diags *
     hn_diag diag = {0};
     *root = NULL;
     if (n > HN_SCENE_MAX_BYTES) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "", NULL, "the scene has %zu bytes, at most %d are allowed", n, HN_SCENE_MAX_BYTES);
+        return hn_diags_add(diags, HN_ERR_LIMIT, "", NULL,
+                            "the scene has %zu bytes, at most %d are allowed", n,
+                            HN_SCENE_MAX_BYTES);
     }
     hn_status status = hn_json_text_check(text, n, HN_RD_MAX_DEPTH, &diag);
     if (status != HN_OK) {
@@ -186,8 +204,8 @@ static hn_status parse_text(const char *text, size_t n, cJSON **root, hn_diags *
     return *root ? HN_OK : HN_ERR_MEMORY;
 }
 
-hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings, int n_settings,
-                             hn_scene **out, hn_diags *diags) {
+hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings,
+                             int n_settings, hn_scene **out, hn_diags *diags) {
     HN_ASSERT(out && (text || n == 0) && (settings || n_settings == 0));
     *out = NULL;
     cJSON *root;
@@ -200,7 +218,11 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
     }
     if (status == HN_OK) {
         scene->arena = arena;
-        *r = (hn_reader){.scene = scene, .arena = arena, .diags = diags, .settings = settings, .n_settings = n_settings};
+        *r = (hn_reader){.scene = scene,
+                         .arena = arena,
+                         .diags = diags,
+                         .settings = settings,
+                         .n_settings = n_settings};
         status = read_tree(r, root, id);
     }
     if (status == HN_OK) {
@@ -222,13 +244,15 @@ static char *read_file(const char *path, size_t *n, hn_status *status, hn_diags 
     char *text = file ? malloc(HN_SCENE_MAX_BYTES + 1) : NULL;
     *status = HN_OK;
     if (!file) {
-        *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path, strerror(errno));
+        *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path,
+                               strerror(errno));
     } else if (!text) {
         *status = HN_ERR_MEMORY;
     } else {
         *n = fread(text, 1, HN_SCENE_MAX_BYTES + 1, file);
         if (ferror(file)) {
-            *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s", path, strerror(errno));
+            *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s", path,
+                                   strerror(errno));
         }
     }
     if (file) {
@@ -241,7 +265,8 @@ static char *read_file(const char *path, size_t *n, hn_status *status, hn_diags 
     return text;
 }
 
-hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings, hn_scene **out, hn_diags *diags) {
+hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings,
+                             hn_scene **out, hn_diags *diags) {
     HN_ASSERT(path && out);
     *out = NULL;
     size_t n = 0;

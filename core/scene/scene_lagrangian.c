@@ -12,7 +12,8 @@ int hn_rd_coordinate(hn_reader *r, const char *name, int rates) {
     const char *names[ROOM];
     int n = 0;
     for (int i = 0; i < s->n_coordinates; i++) {
-        if (strcmp(name, s->coordinates[i].name) == 0 || (rates && strcmp(name, s->coordinates[i].rate) == 0)) {
+        if (strcmp(name, s->coordinates[i].name) == 0 ||
+            (rates && strcmp(name, s->coordinates[i].rate) == 0)) {
             return i;
         }
     }
@@ -33,7 +34,8 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a coordinate", fields, 6)) {
         return;
     }
-    const char *name = hn_rd_name(r, node, "name", 1), *rate = hn_rd_name(r, node, "rate", 0), *unit = hn_rd_text(r, node, "unit", 0);
+    const char *name = hn_rd_name(r, node, "name", 1), *rate = hn_rd_name(r, node, "rate", 0),
+               *unit = hn_rd_text(r, node, "unit", 0);
     hn_rd_text(r, node, "about", 0);
     hn_unit_kind kind = HN_ANGLE;
     if (unit) {
@@ -42,7 +44,8 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
             k++;
         }
         if (k == 3) {
-            hn_rd_fault_at(r, "unit", "allowed: rad, m, 1", "a coordinate cannot have the unit '%.40s'", unit);
+            hn_rd_fault_at(r, "unit", "allowed: rad, m, 1",
+                           "a coordinate cannot have the unit '%.40s'", unit);
         } else {
             kind = kinds[k];
         }
@@ -73,8 +76,11 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
         snprintf(made, sizeof made, "constraint %d", l->n_constraints + 1);
         name = hn_rd_keep(r, made);
     }
-    hn_quantity *all = hn_rd_grow(r, l->constraints, l->n_constraints, sizeof *all, HN_SCENE_MAX_JOINTS, "constraints");
-    const char **names = all ? hn_rd_grow(r, l->constraint_names, l->n_constraints, sizeof *names, HN_SCENE_MAX_JOINTS, "constraints") : NULL;
+    hn_quantity *all = hn_rd_grow(r, l->constraints, l->n_constraints, sizeof *all,
+                                  HN_SCENE_MAX_JOINTS, "constraints");
+    const char **names = all ? hn_rd_grow(r, l->constraint_names, l->n_constraints, sizeof *names,
+                                          HN_SCENE_MAX_JOINTS, "constraints")
+                             : NULL;
     if (!names || !name) {
         return;
     }
@@ -90,9 +96,15 @@ static void read_force(hn_reader *r, const cJSON *node, const char *key) {
     hn_scene *s = r->scene;
     const char *name = hn_rd_fill(r, key);
     int coordinate = name ? hn_rd_coordinate(r, name, 0) : -1;
-    hn_load load = {.name = name, .pointer = hn_rd_pointer(r), .kind = HN_LOAD_COORDINATE, .p = -1, .q = -1, .coordinate = coordinate};
+    hn_load load = {.name = name,
+                    .pointer = hn_rd_pointer(r),
+                    .kind = HN_LOAD_COORDINATE,
+                    .p = -1,
+                    .q = -1,
+                    .coordinate = coordinate};
     int ok = cJSON_IsObject(node)
-                 ? hn_rd_object(r, node, "a generalised force", fields, 2) && hn_rd_member(r, node, "value", 1, 0, &load.value[0], HN_RD_STATE)
+                 ? hn_rd_object(r, node, "a generalised force", fields, 2) &&
+                       hn_rd_member(r, node, "value", 1, 0, &load.value[0], HN_RD_STATE)
                  : hn_rd_quantity(r, node, &load.value[0], HN_RD_STATE);
     hn_load *loads = hn_rd_grow(r, s->loads, s->n_loads, sizeof *loads, HN_RD_MAX_LOADS, "loads");
     if (loads && ok && coordinate >= 0) {
@@ -105,7 +117,8 @@ static void each_of(hn_reader *r, const cJSON *node, const char *key, int object
     const cJSON *list = hn_rd_get(node, key);
     size_t mark = hn_rd_enter(r, key);
     if (list && (object ? !cJSON_IsObject(list) : !cJSON_IsArray(list))) {
-        hn_rd_fault(r, NULL, "expected %s, found %s", object ? "an object" : "a list", hn_rd_kind(list));
+        hn_rd_fault(r, NULL, "expected %s, found %s", object ? "an object" : "a list",
+                    hn_rd_kind(list));
     } else if (list) {
         hn_rd_each(r, list, item);
     }
@@ -113,14 +126,16 @@ static void each_of(hn_reader *r, const cJSON *node, const char *key, int object
 }
 
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
-    static const char *const fields[] = {"coordinates", "kinetic", "potential", "constraints", "forces"};
+    static const char *const fields[] = {"coordinates", "kinetic", "potential", "constraints",
+                                         "forces"};
     const cJSON *node = hn_rd_get(root, "lagrangian");
     hn_lagrangian *l = &r->scene->lagrangian;
     size_t mark = hn_rd_enter(r, "lagrangian");
     if (hn_rd_object(r, node, "a lagrangian", fields, 5)) {
         each_of(r, node, "coordinates", 0, read_coordinate);
         if (r->scene->n_coordinates == 0 && r->n_faults == 0) {
-            hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]", "'coordinates' is missing or empty");
+            hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]",
+                        "'coordinates' is missing or empty");
         }
         if (r->n_faults == 0) {
             hn_rd_member(r, node, "kinetic", 1, 0, &l->kinetic, HN_RD_STATE);
@@ -129,7 +144,8 @@ void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
             each_of(r, node, "forces", 1, read_force);
         }
         if (r->n_faults == 0 && !l->kinetic.varies) {
-            hn_rd_fault_at(r, "kinetic", "it holds the masses: m*v^2/2", "the kinetic energy does not depend on any rate");
+            hn_rd_fault_at(r, "kinetic", "it holds the masses: m*v^2/2",
+                           "the kinetic energy does not depend on any rate");
         }
     }
     hn_rd_leave(r, mark);
@@ -149,7 +165,9 @@ static int read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pinn
     }
     const cJSON *value = hn_rd_get(node, "value"), *guess = hn_rd_get(node, "guess");
     if (!value == !guess) {
-        return hn_rd_fault(r, "'value' is kept, 'guess' is where assembly begins", "expected either 'value' or 'guess', found %s", value ? "both" : "neither");
+        return hn_rd_fault(r, "'value' is kept, 'guess' is where assembly begins",
+                           "expected either 'value' or 'guess', found %s",
+                           value ? "both" : "neither");
     }
     *pinned = value != NULL;
     return hn_rd_member(r, node, value ? "value" : "guess", 1, 0, q, HN_RD_CONST);

@@ -21,7 +21,10 @@ static int add_load(hn_reader *r, const hn_load *load) {
 static int read_end(hn_reader *r, const cJSON *node, const char *key) {
     const cJSON *point = hn_rd_get(node, key);
     if (!point) {
-        hn_rd_fault(r, "a point: a name of draw.points, {\"body\": .., \"at\": [..]} or a fixed place [x, y, z]", "the field '%s' is missing", key);
+        hn_rd_fault(r,
+                    "a point: a name of draw.points, {\"body\": .., \"at\": [..]} or a fixed place "
+                    "[x, y, z]",
+                    "the field '%s' is missing", key);
         return -1;
     }
     size_t mark = hn_rd_enter(r, key);
@@ -39,10 +42,12 @@ static int read_spring_numbers(hn_reader *r, const cJSON *node, hn_load *load) {
         return hn_rd_fault(r, NULL, "a spring needs 'stiffness', 'damping' or both");
     }
     if (ok && load->stiffness.value < 0) {
-        return hn_rd_fault_at(r, "stiffness", NULL, "a stiffness of %g is negative", load->stiffness.value);
+        return hn_rd_fault_at(r, "stiffness", NULL, "a stiffness of %g is negative",
+                              load->stiffness.value);
     }
     if (ok && load->damping.value < 0) {
-        return hn_rd_fault_at(r, "damping", NULL, "a damping of %g is negative", load->damping.value);
+        return hn_rd_fault_at(r, "damping", NULL, "a damping of %g is negative",
+                              load->damping.value);
     }
     return ok;
 }
@@ -57,7 +62,8 @@ static int read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     load->q = read_end(r, node, "to");
     int ok = read_spring_numbers(r, node, load);
     if (ok && load->rest.value < 0) {
-        return hn_rd_fault_at(r, "rest", NULL, "a rest length of %g m is negative", load->rest.value);
+        return hn_rd_fault_at(r, "rest", NULL, "a rest length of %g m is negative",
+                              load->rest.value);
     }
     if (ok && load->p >= 0 && load->p == load->q) {
         return hn_rd_fault(r, NULL, "the spring's two ends are the same point");
@@ -70,7 +76,8 @@ static int read_target(hn_reader *r, const cJSON *node) {
     enum { ROOM = 256 };
     const hn_scene *s = r->scene;
     if (!hn_rd_get(node, "joint") == !hn_rd_get(node, "coordinate")) {
-        hn_rd_fault(r, NULL, "expected either 'joint' or 'coordinate', found %s", hn_rd_get(node, "joint") ? "both" : "neither");
+        hn_rd_fault(r, NULL, "expected either 'joint' or 'coordinate', found %s",
+                    hn_rd_get(node, "joint") ? "both" : "neither");
         return -1;
     }
     const char *key = hn_rd_get(node, "joint") ? "joint" : "coordinate";
@@ -107,17 +114,22 @@ static int read_joint_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     return read_spring_numbers(r, node, load) && load->coordinate >= 0;
 }
 
-static int read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const char *what, hn_unit_kind kind) {
+static int read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const char *what,
+                           hn_unit_kind kind) {
     static const char *const fields[] = {"joint", "coordinate", "value"};
     load->kind = HN_LOAD_COORDINATE;
     if (!hn_rd_object(r, node, what, fields, 3)) {
         return 0;
     }
     load->coordinate = read_target(r, node);
-    int ok = hn_rd_member(r, node, "value", 1, 0, &load->value[0], HN_RD_STATE) && load->coordinate >= 0;
+    int ok =
+        hn_rd_member(r, node, "value", 1, 0, &load->value[0], HN_RD_STATE) && load->coordinate >= 0;
     if (ok && r->scene->coordinates[load->coordinate].kind != kind) {
-        return hn_rd_fault(r, kind == HN_ANGLE ? "use 'force' for a prismatic joint" : "use 'torque' for a revolute joint",
-                           "%s cannot act along '%s'", what, r->scene->coordinates[load->coordinate].name);
+        return hn_rd_fault(r,
+                           kind == HN_ANGLE ? "use 'force' for a prismatic joint"
+                                            : "use 'torque' for a revolute joint",
+                           "%s cannot act along '%s'", what,
+                           r->scene->coordinates[load->coordinate].name);
     }
     return ok;
 }
@@ -139,7 +151,8 @@ static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
     load->p = read_end(r, node, "at");
     const cJSON *value = hn_rd_get(node, "value");
     size_t mark = hn_rd_enter(r, "value");
-    int ok = value ? hn_rd_vector(r, value, load->value, HN_RD_STATE) : hn_rd_fault(r, "as in [0, \"-F\", 0]", "the force has no 'value'");
+    int ok = value ? hn_rd_vector(r, value, load->value, HN_RD_STATE)
+                   : hn_rd_fault(r, "as in [0, \"-F\", 0]", "the force has no 'value'");
     hn_rd_leave(r, mark);
     return ok && load->p >= 0;
 }
@@ -147,7 +160,10 @@ static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
 static const struct {
     const char *name;
     int (*read)(hn_reader *, const cJSON *, hn_load *);
-} KINDS[] = {{"spring", read_spring}, {"joint_spring", read_joint_spring}, {"torque", read_torque}, {"force", read_force}};
+} KINDS[] = {{"spring", read_spring},
+             {"joint_spring", read_joint_spring},
+             {"torque", read_torque},
+             {"force", read_force}};
 enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
 
 static void read_load(hn_reader *r, const cJSON *node, const char *key) {
@@ -167,11 +183,16 @@ static void read_load(hn_reader *r, const cJSON *node, const char *key) {
     }
     if (n != 1) {
         if (r->n_faults == faults) {
-            hn_rd_fault(r, "allowed: spring, joint_spring, torque, force", "expected one kind of load, found %d", n);
+            hn_rd_fault(r, "allowed: spring, joint_spring, torque, force",
+                        "expected one kind of load, found %d", n);
         }
         return;
     }
-    hn_load load = {.name = hn_rd_name(r, node, "name", 0), .pointer = hn_rd_pointer(r), .p = -1, .q = -1, .coordinate = -1};
+    hn_load load = {.name = hn_rd_name(r, node, "name", 0),
+                    .pointer = hn_rd_pointer(r),
+                    .p = -1,
+                    .q = -1,
+                    .coordinate = -1};
     load.name = load.name ? load.name : KINDS[kind].name;
     size_t mark = hn_rd_enter(r, KINDS[kind].name);
     if (KINDS[kind].read(r, hn_rd_get(node, KINDS[kind].name), &load)) {
@@ -184,7 +205,8 @@ void hn_rd_loads(hn_reader *r, const cJSON *root) {
     const cJSON *node = hn_rd_get(root, "loads");
     size_t mark = hn_rd_enter(r, "loads");
     if (node && r->scene->is_lagrangian) {
-        hn_rd_fault(r, "springs belong in 'potential', other forces in 'lagrangian.forces'", "a Lagrangian scene has no 'loads'");
+        hn_rd_fault(r, "springs belong in 'potential', other forces in 'lagrangian.forces'",
+                    "a Lagrangian scene has no 'loads'");
     } else if (node && !cJSON_IsArray(node)) {
         hn_rd_fault(r, NULL, "expected a list of loads, found %s", hn_rd_kind(node));
     } else {

@@ -6,19 +6,33 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const UNITS[] = {"",      "1",     "m",     "kg",      "s",     "rad",     "N",       "N*m", "m/s", "rad/s",
-                                    "m/s^2", "kg*m^2", "N/m",  "N*s/m",   "N*m/rad", "N*m*s/rad", "J",   "W",   "Hz"};
+static const char *const UNITS[] = {
+    "",      "1",      "m",   "kg",    "s",       "rad",       "N", "N*m", "m/s", "rad/s",
+    "m/s^2", "kg*m^2", "N/m", "N*s/m", "N*m/rad", "N*m*s/rad", "J", "W",   "Hz"};
 enum { N_UNITS = sizeof UNITS / sizeof UNITS[0] };
 
 /// Units people bring along, and what to write instead.
 static const struct {
     const char *unit, *hint;
 } FOREIGN[] = {
-    {"deg", "use rad: 30 deg = 0.5236 rad"}, {"degree", "use rad: 30 deg = 0.5236 rad"}, {"degrees", "use rad: 30 deg = 0.5236 rad"},
-    {"deg/s", "use rad/s: 1 deg/s = 0.017453 rad/s"}, {"rpm", "use rad/s: 1 rpm = 0.10472 rad/s"},
-    {"mm", "use m: 1 mm = 0.001 m"}, {"cm", "use m: 1 cm = 0.01 m"}, {"km", "use m: 1 km = 1000 m"}, {"in", "use m: 1 in = 0.0254 m"}, {"ft", "use m: 1 ft = 0.3048 m"},
-    {"g", "use kg: 1 g = 0.001 kg"}, {"lb", "use kg: 1 lb = 0.45359 kg"}, {"ms", "use s: 1 ms = 0.001 s"}, {"min", "use s: 1 min = 60 s"},
-    {"Nm", "write N*m"}, {"kN", "use N: 1 kN = 1000 N"}, {"N*mm", "use N*m: 1 N*mm = 0.001 N*m"}, {"1/s", "write Hz or rad/s"},
+    {"deg", "use rad: 30 deg = 0.5236 rad"},
+    {"degree", "use rad: 30 deg = 0.5236 rad"},
+    {"degrees", "use rad: 30 deg = 0.5236 rad"},
+    {"deg/s", "use rad/s: 1 deg/s = 0.017453 rad/s"},
+    {"rpm", "use rad/s: 1 rpm = 0.10472 rad/s"},
+    {"mm", "use m: 1 mm = 0.001 m"},
+    {"cm", "use m: 1 cm = 0.01 m"},
+    {"km", "use m: 1 km = 1000 m"},
+    {"in", "use m: 1 in = 0.0254 m"},
+    {"ft", "use m: 1 ft = 0.3048 m"},
+    {"g", "use kg: 1 g = 0.001 kg"},
+    {"lb", "use kg: 1 lb = 0.45359 kg"},
+    {"ms", "use s: 1 ms = 0.001 s"},
+    {"min", "use s: 1 min = 60 s"},
+    {"Nm", "write N*m"},
+    {"kN", "use N: 1 kN = 1000 N"},
+    {"N*mm", "use N*m: 1 N*mm = 0.001 N*m"},
+    {"1/s", "write Hz or rad/s"},
 };
 
 static void check_unit(hn_reader *r, const char *unit) {
@@ -29,7 +43,8 @@ static void check_unit(hn_reader *r, const char *unit) {
     }
     for (size_t i = 0; i < sizeof FOREIGN / sizeof FOREIGN[0]; i++) {
         if (strcmp(unit, FOREIGN[i].unit) == 0) {
-            hn_rd_fault_at(r, "unit", FOREIGN[i].hint, "the unit '%s' is not served; numbers are in SI units", unit);
+            hn_rd_fault_at(r, "unit", FOREIGN[i].hint,
+                           "the unit '%s' is not served; numbers are in SI units", unit);
             return;
         }
     }
@@ -51,16 +66,26 @@ static void read_param(hn_reader *r, const cJSON *node, const char *key) {
         }
     }
     if (value && !cJSON_IsNumber(value) && !cJSON_IsString(value)) {
-        ok = hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s", hn_rd_kind(value));
+        ok = hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
+                         hn_rd_kind(value));
     }
-    hn_param *params = hn_rd_grow(r, s->params, s->n_params, sizeof *params, HN_SCENE_MAX_PARAMS, "parameters");
-    hn_rd_param *src = params ? hn_rd_grow(r, r->param_src, s->n_params, sizeof *src, HN_SCENE_MAX_PARAMS, "parameters") : NULL;
+    hn_param *params =
+        hn_rd_grow(r, s->params, s->n_params, sizeof *params, HN_SCENE_MAX_PARAMS, "parameters");
+    hn_rd_param *src = params ? hn_rd_grow(r, r->param_src, s->n_params, sizeof *src,
+                                           HN_SCENE_MAX_PARAMS, "parameters")
+                              : NULL;
     if (!src) {
         return;
     }
     const char *unit = hn_rd_text(r, node, "unit", 0), *about = hn_rd_text(r, node, "about", 0);
-    hn_param p = {.name = hn_rd_keep(r, key), .unit = unit && strcmp(unit, "1") != 0 ? unit : "", .about = about ? about : "",
-                  .integer = hn_rd_flag(r, node, "integer"), .min = -INFINITY, .max = INFINITY, .value = 1, .initial = 1};
+    hn_param p = {.name = hn_rd_keep(r, key),
+                  .unit = unit && strcmp(unit, "1") != 0 ? unit : "",
+                  .about = about ? about : "",
+                  .integer = hn_rd_flag(r, node, "integer"),
+                  .min = -HUGE_VAL,
+                  .max = HUGE_VAL,
+                  .value = 1,
+                  .initial = 1};
     hn_rd_param source = {.number = 1, .state = ok ? 0 : 2};
     if (ok && cJSON_IsString(value)) {
         source.formula = hn_rd_keep(r, value->valuestring);
@@ -95,14 +120,16 @@ static void tell_cycle(hn_reader *r, int k) {
         from++;
     }
     for (int i = from; i < r->n_chain && at + HN_RD_MAX_NAME + 16 < sizeof ring; i++) {
-        at += (size_t)snprintf(ring + at, sizeof ring - at, "%s needs ", r->scene->params[r->chain[i]].name);
+        at += (size_t)snprintf(ring + at, sizeof ring - at, "%s needs ",
+                               r->scene->params[r->chain[i]].name);
     }
     char path[sizeof r->path];
     memcpy(path, r->path, sizeof path);
     r->path[0] = '\0';
     hn_rd_enter(r, "parameters");
     hn_rd_enter(r, r->scene->params[k].name);
-    hn_rd_fault(r, "give one of them a number", "parameters depend on each other in a ring: %s%s", ring, r->scene->params[k].name);
+    hn_rd_fault(r, "give one of them a number", "parameters depend on each other in a ring: %s%s",
+                ring, r->scene->params[k].name);
     memcpy(r->path, path, sizeof path);
 }
 
@@ -149,10 +176,10 @@ static void evaluate_all(hn_reader *r) {
 
 static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
     hn_quantity q;
-    if (hn_rd_member(r, node, "min", 0, -INFINITY, &q, HN_RD_CONST)) {
+    if (hn_rd_member(r, node, "min", 0, -HUGE_VAL, &q, HN_RD_CONST)) {
         p->min = q.value;
     }
-    if (hn_rd_member(r, node, "max", 0, INFINITY, &q, HN_RD_CONST)) {
+    if (hn_rd_member(r, node, "max", 0, HUGE_VAL, &q, HN_RD_CONST)) {
         p->max = q.value;
     }
     if (p->min > p->max) {
@@ -160,7 +187,8 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
     } else if (!isfinite(p->value)) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
     } else if (p->value < p->min || p->value > p->max) {
-        hn_rd_fault(r, NULL, "%s = %g %s is outside its range %g ... %g", p->name, p->value, p->unit, p->min, p->max);
+        hn_rd_fault(r, NULL, "%s = %g %s is outside its range %g ... %g", p->name, p->value,
+                    p->unit, p->min, p->max);
     } else if (p->integer && p->value != floor(p->value)) {
         hn_rd_fault(r, NULL, "%s = %g must be a whole number", p->name, p->value);
     }
@@ -185,7 +213,8 @@ void hn_rd_params(hn_reader *r, const cJSON *root) {
     const cJSON *node = hn_rd_get(root, "parameters");
     size_t mark = hn_rd_enter(r, "parameters");
     if (node && !cJSON_IsObject(node)) {
-        hn_rd_fault(r, "as in {\"l1\": {\"value\": 1, \"unit\": \"m\"}}", "expected an object, found %s", hn_rd_kind(node));
+        hn_rd_fault(r, "as in {\"l1\": {\"value\": 1, \"unit\": \"m\"}}",
+                    "expected an object, found %s", hn_rd_kind(node));
         node = NULL;
     }
     int index = 0;
@@ -208,7 +237,8 @@ void hn_rd_params(hn_reader *r, const cJSON *root) {
         r->use_settings = 1;
         evaluate_all(r);
     }
-    for (const cJSON *m = node ? node->child : NULL; m && index < r->scene->n_params && !hn_rd_stopped(r); m = m->next, index++) {
+    for (const cJSON *m = node ? node->child : NULL;
+         m && index < r->scene->n_params && !hn_rd_stopped(r); m = m->next, index++) {
         size_t inner = hn_rd_enter(r, m->string);
         check_range(r, m, &r->scene->params[index]);
         hn_rd_leave(r, inner);
