@@ -102,12 +102,13 @@ static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
 
 int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out) {
     hn_diag diag = {0};
-    hn_ex e;
-    if (parse(r, text, scope, 0, &e, &diag) != HN_OK || hn_graph_failed(r->graph)) {
-        if (hn_graph_failed(r->graph)) {
-            r->oom = 1;
-            return 0;
-        }
+    hn_ex e = {0};
+    hn_status status = parse(r, text, scope, 0, &e, &diag);
+    if (status == HN_ERR_MEMORY || hn_graph_failed(r->graph)) {
+        r->oom = 1;
+        return 0;
+    }
+    if (status != HN_OK) {
         return tell_parse_fault(r, text, scope);
     }
     double value = 0;
