@@ -59,13 +59,8 @@ static const char *taken(const hn_reader *r, const char *name) {
     if (strcmp(name, "t") == 0) {
         return "the time";
     }
-    for (int i = 0; i < HN_OP_COUNT; i++) {
-#define HN_RD_OP_NAME(code, text, arity) text,
-        static const char *const functions[] = {HN_OP_LIST(HN_RD_OP_NAME)};
-#undef HN_RD_OP_NAME
-        if (strcmp(functions[i], name) == 0 && i > HN_OP_MUL) {
-            return "a function";
-        }
+    if (hn_op_find(name) != HN_OP_COUNT) {
+        return "a function";
     }
     if (hn_scene_find_param(s, name) >= 0) {
         return "a parameter";
