@@ -1,0 +1,366 @@
+// The sheet: what is shown where, the words around the drawing, and the description.
+#include "render/snapshot.h"
+
+#include "base/units.h"
+#include "render/snapshot_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double WIDE_ENOUGH =
+    560;                            // [px] from here on inset and legend stand beside the drawing
+static const double CLOSED = 1e-12; // of the view: a smaller tear is not magnified
+static const double TEAR_IN_INSET = 0.4;  // the tear's share of the inset
+static const double ROOM_AROUND = 0.10;   // of the view, on each side
+static const double SMALLEST_VIEW = 1e-6; // [m]
+enum { TEXT = 256 };
+
+hn_snapshot_opts hn_snapshot_opts_default(void) {
+    return (hn_snapshot_opts){.time = (double)NAN, .labels = 1};
+}
+
+// ---- what is there ----------------------------------------------------------------------------------------------
+
+int hn_pose_is_drawable(const hn_drawing *drawing, const hn_snapshot_pose *pose) {
+    if (pose->points == NULL) {
+        return 0;
+    }
+    for (int i = 0; i < 3 * drawing->n_points; i++) {
+        if (!isfinite(pose->points[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+double hn_tear_gap(const hn_drawing *drawing, const hn_snapshot_pose *pose, int tear) {
+    const double *p = pose->points + 3 * drawing->tears[tear][0];
+    const double *q = pose->points + 3 * drawing->tears[tear][1];
+    return hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+}
+
+static hn_tear find_widest(const hn_drawing *d, const hn_snapshot_pose *poses, int n_poses) {
+    hn_tear widest = {-1, -1, -1};
+    for (int i = 0; i < n_poses; i++) {
+        for (int k = 0; k < d->n_tears && hn_pose_is_drawable(d, &poses[i]); k++) {
+            const double gap = hn_tear_gap(d, &poses[i], k);
+            if (gap > widest.gap) {
+                widest = (hn_tear){i, k, gap};
+            }
+        }
+    }
+    return widest;
+}
+
+static int find_selected(const hn_drawing *d, const hn_snapshot_pose *poses, int n_poses) {
+    int first = -1;
+    for (int i = n_poses - 1; i >= 0; i--) {
+        if (hn_pose_is_drawable(d, &poses[i])) {
+            if (poses[i].selected) {
+                return i;
+            }
+            first = i;
+        }
+    }
+    return first;
+}
+
+static void fit_view(const hn_drawing *d, const hn_snapshot_pose *poses, int n_poses,
+                     double view[4]) {
+    double box[4] = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
+    for (int i = 0; i < n_poses; i++) {
+        for (int k = 0; k < d->n_points && hn_pose_is_drawable(d, &poses[i]); k++) {
+            const double *p = poses[i].points + 3 * k;
+            box[0] = fmin(box[0], p[0]);
+            box[1] = fmax(box[1], p[0]);
+            box[2] = fmin(box[2], p[1]);
+            box[3] = fmax(box[3], p[1]);
+        }
+    }
+    memcpy(view, box, sizeof box);
+}
+
+// ---- where it goes ----------------------------------------------------------------------------------------------
+
+/// Boxes of drawing, inset and legend. Wide: a column on the right. Narrow: both
+/// below it, side by side.
+static void place_boxes(hn_sheet *s, int n_poses, int has_inset) {
+    const double margin = 1.4 * s->font, header = 4.2 * s->font;
+    const double rows = n_poses * 2.7 * s->font;
+    if (s->width >= WIDE_ENOUGH) {
+        const double column = fmin(340, fmax(190, 0.28 * s->width));
+        const double x = s->width - margin - column;
+        const double side = has_inset ? fmin(column, 0.5 * (s->height - header - margin)) : 0;
+        s->inset = (hn_box){x, header, column, side};
+        s->legend = (hn_box){x, header + side + 1.6 * s->font, column, rows};
+        s->drawing = (hn_box){margin, header, x - 2 * margin, s->height - header - margin};
+    } else {
+        const double side = has_inset ? 0.36 * s->width : 0;
+        const double below = fmin(fmax(rows, side + margin), 0.45 * s->height);
+        s->drawing =
+            (hn_box){margin, header, s->width - 2 * margin, s->height - header - below - margin};
+        s->inset =
+            (hn_box){s->width - margin - side, s->height - below, side, fmin(side, below - margin)};
+        s->legend = (hn_box){margin, s->height - below, s->width - 2 * margin - side, below};
+    }
+}
+
+/// The scale that fits the view, grown by the room around, into the drawing's box above the scale bar.
+static void place_view(hn_sheet *s) {
+    double *v = s->view;
+    const double size = fmax(SMALLEST_VIEW, fmax(v[1] - v[0], v[3] - v[2]));
+    const double room = ROOM_AROUND * size;
+    const double width = v[1] - v[0] + 2 * room, height = v[3] - v[2] + 2 * room;
+    const double box_height = fmax(1, s->drawing.height - 2.4 * s->font);
+    s->scale = fmin(s->drawing.width / width, box_height / height);
+    s->origin[0] = s->drawing.x + s->drawing.width / 2 - s->scale * (v[0] + v[1]) / 2;
+    s->origin[1] = s->drawing.y + box_height / 2 + s->scale * (v[2] + v[3]) / 2;
+    s->bar = fmin(20, fmax(5, 0.032 * s->scale * size));
+    s->scale_bar = hn_round_125(0.25 * s->drawing.width / s->scale);
+}
+
+static double choose_magnification(const hn_sheet *s) {
+    const double gap = s->widest.gap * s->scale; // [px]
+    const double size = fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
+    const double side = fmin(s->inset.width, s->inset.height);
+    if (!(s->widest.gap > CLOSED * size) || gap >= TEAR_IN_INSET * side) {
+        return 1;
+    }
+    return hn_round_125(TEAR_IN_INSET * side / gap);
+}
+
+static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing *d,
+                            const hn_snapshot_pose *poses, int n_poses,
+                            const hn_snapshot_opts *opts, hn_diag *diag) {
+    memset(s, 0, sizeof *s);
+    s->width = width;
+    s->height = height;
+    s->font = fmin(24, fmax(10, 0.0235 * fmin(width, 1.4 * height)));
+    s->line = 2 * fmin(1.3, fmax(0.65, s->font / 16));
+    s->selected = find_selected(d, poses, n_poses);
+    if (s->selected < 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "none of the %d poses has finite points to draw", n_poses);
+    }
+    s->widest = find_widest(d, poses, n_poses);
+    if (opts->view[1] > opts->view[0]) {
+        memcpy(s->view, opts->view, sizeof s->view);
+    } else {
+        fit_view(d, poses, n_poses, s->view);
+    }
+    place_boxes(s, n_poses, s->widest.pose >= 0);
+    place_view(s);
+    s->magnification = choose_magnification(s);
+    return HN_OK;
+}
+
+void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]) {
+    out[0] = s->origin[0] + s->scale * world[0];
+    out[1] = s->origin[1] - s->scale * world[1];
+}
+
+// ---- colours ----------------------------------------------------------------------------------------------------
+
+hn_stroke hn_slot_stroke(hn_theme theme, int slot, double width) {
+    const hn_look *look = hn_look_get(slot);
+    return (hn_stroke){.paint = {look->colour[theme], 1},
+                       .width = width,
+                       .n_dash = look->n_dash,
+                       .dash = look->dash};
+}
+
+uint32_t hn_tint(hn_theme theme, uint32_t colour, double share) {
+    const uint32_t paper = hn_surface_get(theme)->paper;
+    uint32_t mixed = 0;
+    for (int shift = 16; shift >= 0; shift -= 8) {
+        const double from = paper >> shift & 0xff, to = colour >> shift & 0xff;
+        mixed |= (uint32_t)lround(from + share * (to - from)) << shift;
+    }
+    return mixed;
+}
+
+// ---- words ------------------------------------------------------------------------------------------------------
+
+/// The text, cut to the width with an ellipsis where it is longer.
+static void put_text(hn_canvas *c, double x, double y, double size, double width, uint32_t colour,
+                     const char *text) {
+    char cut[TEXT];
+    snprintf(cut, sizeof cut, "%s", text);
+    size_t n = strlen(cut);
+    while (n > 0 && hn_canvas_text_width(size, cut) > width) {
+        do {
+            n--;
+        } while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80);
+        snprintf(cut + n, sizeof cut - n, "\xe2\x80\xa6");
+    }
+    hn_canvas_text(c, x, y, size, HN_ALIGN_LEFT, hn_paint_solid(colour), cut);
+}
+
+static void draw_header(hn_canvas *c, const hn_sheet *s, const hn_snapshot_opts *opts) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    const double left = s->drawing.x, right = s->width - left;
+    double time_width = 0;
+    if (isfinite(opts->time)) {
+        char text[TEXT];
+        snprintf(text, sizeof text, "t = %.3f s", opts->time);
+        hn_canvas_text(c, right, 2.2 * s->font, 1.1 * s->font, HN_ALIGN_RIGHT,
+                       hn_paint_solid(surface->ink), text);
+        time_width = hn_canvas_text_width(1.1 * s->font, text) + s->font;
+    }
+    if (opts->title != NULL) {
+        put_text(c, left, 2.2 * s->font, 1.3 * s->font, right - left - time_width, surface->ink,
+                 opts->title);
+    }
+    if (opts->caption != NULL) {
+        put_text(c, left, 3.7 * s->font, 0.9 * s->font, right - left, surface->muted,
+                 opts->caption);
+    }
+}
+
+static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                            int is_drawable, double y, double font) {
+    const hn_theme theme = hn_canvas_theme(c);
+    const hn_surface *surface = hn_surface_get(theme);
+    const double sample = 3.6 * font, x = s->legend.x, text = x + sample + 0.7 * font;
+    const double room = s->legend.width - sample - 0.7 * font, middle = y - 0.32 * font;
+    const hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
+    hn_canvas_segment(c, x, middle, x + sample, middle, &stroke);
+    hn_canvas_disc(c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
+    hn_canvas_marker(c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
+                     stroke.paint);
+    put_text(c, text, y, font, room, surface->ink, pose->name != NULL ? pose->name : "");
+    const char *note = pose->note != NULL ? pose->note : is_drawable ? NULL : "no pose to draw";
+    if (note != NULL) {
+        put_text(c, text, y + 1.15 * font, 0.85 * font, room, surface->muted, note);
+    }
+}
+
+static void draw_legend(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *poses, int n_poses) {
+    // two lines of text for each, smaller where they would not fit
+    const double pitch = fmin(2.7 * s->font, (s->height - s->legend.y) / (n_poses + 0.4));
+    const double font = fmin(s->font, pitch / 2.4);
+    for (int i = 0; i < n_poses; i++) {
+        draw_legend_row(c, s, &poses[i], hn_pose_is_drawable(d, &poses[i]),
+                        s->legend.y + font + i * pitch, font);
+    }
+}
+
+static void draw_scale_bar(hn_canvas *c, const hn_sheet *s) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    const double x = s->drawing.x, y = s->drawing.y + s->drawing.height - 0.5 * s->font,
+                 tick = 0.35 * s->font;
+    const double length = s->scale * s->scale_bar;
+    const double xy[] = {x, y - tick, x, y, x + length, y, x + length, y - tick};
+    const hn_stroke stroke = hn_stroke_solid(surface->muted, 1.5);
+    hn_canvas_line(c, xy, 4, &stroke);
+    char text[HN_SI_TEXT];
+    hn_si_format(s->scale_bar, "m", 1, text);
+    hn_canvas_text(c, x + length / 2, y - 0.5 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
+                   hn_paint_solid(surface->muted), text);
+}
+
+// ---- the two doors ----------------------------------------------------------------------------------------------
+
+static void draw_poses(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                       const hn_snapshot_pose *poses, int n_poses) {
+    // the reference beneath all, then the ghosts, the selected one on top
+    for (int pass = 0; pass < 3; pass++) {
+        for (int i = 0; i < n_poses; i++) {
+            const int wanted = i == s->selected ? 2 : poses[i].slot == HN_LOOK_REFERENCE ? 0 : 1;
+            if (wanted == pass && hn_pose_is_drawable(d, &poses[i])) {
+                hn_snapshot_pose_draw(c, s, d, &poses[i], i == s->selected);
+            }
+        }
+    }
+}
+
+hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_snapshot_pose *poses,
+                           int n_poses, const hn_snapshot_opts *opts, hn_diag *diag) {
+    HN_ASSERT(c != NULL && drawing != NULL && (poses != NULL || n_poses == 0) && opts != NULL);
+    hn_sheet sheet;
+    const hn_status status = make_sheet(&sheet, hn_canvas_width(c), hn_canvas_height(c), drawing,
+                                        poses, n_poses, opts, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    const hn_snapshot_pose *selected = &poses[sheet.selected];
+    hn_snapshot_ground(c, &sheet, drawing, selected);
+    draw_poses(c, &sheet, drawing, poses, n_poses);
+    hn_snapshot_loads(c, &sheet, selected, opts);
+    if (opts->labels) {
+        hn_snapshot_labels(c, &sheet, drawing, selected);
+    }
+    hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
+    draw_scale_bar(c, &sheet);
+    draw_header(c, &sheet, opts);
+    draw_legend(c, &sheet, drawing, poses, n_poses);
+    return HN_OK;
+}
+
+static void describe_poses(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d,
+                           const hn_snapshot_pose *poses, int n_poses) {
+    hn_json_key(b, "poses");
+    hn_json_array(b);
+    for (int i = 0; i < n_poses; i++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "name", poses[i].name);
+        hn_json_put_int(b, "slot", poses[i].slot);
+        hn_json_put_bool(b, "drawn", hn_pose_is_drawable(d, &poses[i]));
+        hn_json_put_bool(b, "selected", i == s->selected);
+        hn_json_put_string(b, "note", poses[i].note);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+static void describe_tears(hn_strbuf *b, const hn_drawing *d, const hn_snapshot_pose *poses,
+                           int n_poses) {
+    hn_json_key(b, "tears");
+    hn_json_array(b);
+    for (int i = 0; i < n_poses; i++) {
+        for (int k = 0; k < d->n_tears && hn_pose_is_drawable(d, &poses[i]); k++) {
+            hn_json_object(b);
+            hn_json_put_string(b, "name", d->tear_names[k]);
+            hn_json_put_int(b, "pose", i);
+            hn_json_put_number(b, "gap", hn_tear_gap(d, &poses[i], k));
+            hn_json_end_object(b);
+        }
+    }
+    hn_json_end_array(b);
+}
+
+static void describe_inset(hn_strbuf *b, const hn_sheet *s, const hn_drawing *d) {
+    hn_json_key(b, "inset");
+    if (s->widest.pose < 0) {
+        hn_json_null(b);
+        return;
+    }
+    hn_json_object(b);
+    hn_json_put_string(b, "tear", d->tear_names[s->widest.index]);
+    hn_json_put_int(b, "pose", s->widest.pose);
+    hn_json_put_number(b, "gap", s->widest.gap);
+    hn_json_put_number(b, "magnification", s->magnification);
+    hn_json_end_object(b);
+}
+
+hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height, const hn_drawing *drawing,
+                               const hn_snapshot_pose *poses, int n_poses,
+                               const hn_snapshot_opts *opts, hn_diag *diag) {
+    HN_ASSERT(b != NULL && drawing != NULL && (poses != NULL || n_poses == 0) && opts != NULL);
+    hn_sheet sheet;
+    const hn_status status = make_sheet(&sheet, width, height, drawing, poses, n_poses, opts, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_json_object(b);
+    hn_json_put_numbers(b, "view", sheet.view, 4);
+    hn_json_put_number(b, "metres_per_pixel", 1 / sheet.scale);
+    describe_poses(b, &sheet, drawing, poses, n_poses);
+    describe_tears(b, drawing, poses, n_poses);
+    describe_inset(b, &sheet, drawing);
+    hn_json_put_number(b, "scale_bar", sheet.scale_bar);
+    hn_json_end_object(b);
+    return HN_OK;
+}

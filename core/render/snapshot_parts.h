@@ -1,0 +1,55 @@
+#ifndef HN_RENDER_SNAPSHOT_PARTS_H
+#define HN_RENDER_SNAPSHOT_PARTS_H
+// What the files of the snapshot share; not for others.
+
+#include "render/snapshot.h"
+
+typedef struct hn_box {
+    double x, y, width, height; ///< [px], upper left corner
+} hn_box;
+
+/// A tear at a cut joint in one pose.
+typedef struct hn_tear {
+    int pose, index; ///< index into drawing->tears; pose -1: there is none
+    double gap;      ///< [m]
+} hn_tear;
+
+/// Where everything goes. Made once from sizes and views, then only read.
+typedef struct hn_sheet {
+    int width, height;
+    double line; ///< width of an outline [px]
+    double font; ///< body text [px]
+    hn_box drawing, inset, legend;
+    double scale;         ///< [px/m]
+    double origin[2];     ///< pixel of world (0, 0)
+    double bar;           ///< width of a bar whose scene says nothing [px]
+    double view[4];       ///< world x0, x1, y0, y1 shown [m]
+    int selected;         ///< index of the opaque pose
+    hn_tear widest;       ///< shown in the inset
+    double magnification; ///< of the inset against the drawing
+    double scale_bar;     ///< [m]
+} hn_sheet;
+
+void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]);
+/// 1 if every point the pose needs is finite.
+int hn_pose_is_drawable(const hn_drawing *drawing, const hn_snapshot_pose *pose);
+double hn_tear_gap(const hn_drawing *drawing, const hn_snapshot_pose *pose, int tear);
+/// Draws the line in the slot's dash; `scale` stretches the dash with thicker lines.
+hn_stroke hn_slot_stroke(hn_theme theme, int slot, double width);
+/// `colour` laid over the paper with this share.
+uint32_t hn_tint(hn_theme theme, uint32_t colour, double share);
+
+/// Ground, guides: what belongs to no pose, from the selected one.
+void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose);
+void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                           const hn_snapshot_pose *pose, int is_selected);
+void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose);
+void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                       const hn_snapshot_opts *opts);
+/// Red segments in place, and the inset.
+void hn_snapshot_tears(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                       const hn_snapshot_pose *poses, int n_poses);
+
+#endif

@@ -1,0 +1,383 @@
+// The mechanism itself: one function per kind of shape, found through one table.
+#include "render/snapshot_parts.h"
+
+#include "base/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double GHOST_OPACITY = 0.6;
+static const double SELECTED_TINT = 0.30;
+static const double LONGEST_LOAD = 0.20; // of the view
+enum { COILS = 7, TEXT = 96, MAX_POLYGON = 64 };
+
+/// How one pose is drawn: colours of outline and fill, and whether it is a mere line.
+typedef struct pen {
+    hn_canvas *c;
+    const hn_sheet *s;
+    const double *points; ///< world
+    hn_stroke outline;
+    hn_paint fill;
+    int has_fill, is_reference;
+} pen;
+
+static void at(const pen *p, int point, double out[2]) {
+    hn_sheet_pixel(p->s, p->points + 3 * point, out);
+}
+
+static double bar_width(const pen *p, const hn_shape *shape) {
+    return shape->width > 0 ? fmax(4, p->s->scale * shape->width) : p->s->bar;
+}
+
+/// Unit vector from a to b in pixels, (1, 0) where they coincide; returns the distance.
+static double direction(const double a[2], const double b[2], double out[2]) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
+    out[0] = length > 0 ? dx / length : 1;
+    out[1] = length > 0 ? dy / length : 0;
+    return length;
+}
+
+static void draw_outlined(const pen *p, const double *xy, int n) {
+    hn_stroke closed = p->outline;
+    closed.closed = 1;
+    if (p->has_fill) {
+        hn_canvas_polygon(p->c, xy, n, p->fill);
+    }
+    hn_canvas_line(p->c, xy, n, &closed);
+}
+
+// ---- kinds ------------------------------------------------------------------------------------------------------
+
+static void draw_bar(const pen *p, const hn_shape *shape) {
+    double a[2], b[2], xy[2 * HN_CAPSULE_POINTS];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    if (p->is_reference) {
+        hn_canvas_segment(p->c, a[0], a[1], b[0], b[1], &p->outline);
+        return;
+    }
+    draw_outlined(p, xy, hn_canvas_capsule(a[0], a[1], b[0], b[1], bar_width(p, shape), xy));
+}
+
+static void draw_pivot(const pen *p, const hn_shape *shape) {
+    if (p->is_reference) {
+        return;
+    }
+    double a[2];
+    at(p, shape->p, a);
+    const hn_stroke ring = {.paint = p->outline.paint,
+                            .width = p->has_fill ? p->s->line : 0.6 * p->s->line};
+    const double r = fmax(2.5, 0.28 * p->s->bar);
+    if (p->has_fill) {
+        hn_canvas_disc(p->c, a[0], a[1], r,
+                       hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper));
+    }
+    hn_canvas_ring(p->c, a[0], a[1], r, &ring);
+}
+
+static void draw_slider(const pen *p, const hn_shape *shape) {
+    double a[2], b[2], u[2], xy[8];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    direction(a, b, u);
+    const double w = bar_width(p, shape), along = 1.3 * w, across = 0.85 * w;
+    for (int i = 0; i < 4; i++) {
+        const double i_along = (i == 0 || i == 3 ? -1 : 1) * along,
+                     i_across = (i < 2 ? -1 : 1) * across;
+        xy[2 * i] = a[0] + i_along * u[0] - i_across * u[1];
+        xy[2 * i + 1] = a[1] + i_along * u[1] + i_across * u[0];
+    }
+    draw_outlined(p, xy, 4);
+}
+
+static void draw_spring(const pen *p, const hn_shape *shape) {
+    double a[2], b[2], u[2], xy[2 * (2 * COILS + 4)];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    const double length = direction(a, b, u), stub = 0.15 * length, swing = 0.6 * p->s->bar;
+    int n = 0;
+    for (int i = -2; i <= 2 * COILS + 1; i++) {
+        const int is_end = i <= -1 || i >= 2 * COILS;
+        const double share = (i + 0.5) / (2 * COILS);
+        const double s = i == -2              ? 0
+                         : i == -1            ? stub
+                         : i == 2 * COILS     ? length - stub
+                         : i == 2 * COILS + 1 ? length
+                                              : stub + share * (length - 2 * stub);
+        const double side = is_end ? 0 : i % 2 == 0 ? swing : -swing;
+        xy[2 * n] = a[0] + s * u[0] - side * u[1];
+        xy[2 * n + 1] = a[1] + s * u[1] + side * u[0];
+        n++;
+    }
+    const hn_stroke wire = {.paint = p->outline.paint, .width = p->outline.width};
+    hn_canvas_line(p->c, xy, n, &wire);
+}
+
+/// A piston in an open pot: `local` gives points along and across the line as shares of its length and of the bar.
+static void draw_local(const pen *p, const double a[2], const double u[2], double length,
+                       const double *local, int n) {
+    double xy[8];
+    for (int i = 0; i < n; i++) {
+        const double s = local[2 * i] * length, side = local[2 * i + 1] * p->s->bar;
+        xy[2 * i] = a[0] + s * u[0] - side * u[1];
+        xy[2 * i + 1] = a[1] + s * u[1] + side * u[0];
+    }
+    const hn_stroke solid = {.paint = p->outline.paint, .width = p->outline.width};
+    hn_canvas_line(p->c, xy, n, &solid);
+}
+
+static void draw_damper(const pen *p, const hn_shape *shape) {
+    static const double rod[] = {0, 0, 0.5, 0}, piston[] = {0.5, -0.38, 0.5, 0.38};
+    static const double pot[] = {0.36, -0.55, 0.66, -0.55, 0.66, 0.55, 0.36, 0.55},
+                        tail[] = {0.66, 0, 1, 0};
+    double a[2], b[2], u[2];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    const double length = direction(a, b, u);
+    draw_local(p, a, u, length, rod, 2);
+    draw_local(p, a, u, length, piston, 2);
+    draw_local(p, a, u, length, pot, 4);
+    draw_local(p, a, u, length, tail, 2);
+}
+
+static void draw_polygon(const pen *p, const hn_shape *shape) {
+    double xy[2 * MAX_POLYGON];
+    const int n = shape->n < MAX_POLYGON ? shape->n : MAX_POLYGON;
+    for (int i = 0; i < n; i++) {
+        at(p, shape->p + i, xy + 2 * i);
+    }
+    if (n >= 3) {
+        draw_outlined(p, xy, n);
+    }
+}
+
+/// The direction of a load's arrow: from q to p where the scene gives both; opts.loads has those with a size.
+static void draw_arrow(const pen *p, const hn_shape *shape) {
+    if (shape->q < 0 || shape->q == shape->p || p->is_reference) {
+        return;
+    }
+    double a[2], b[2];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    const hn_stroke solid = {.paint = p->outline.paint, .width = p->s->line};
+    hn_canvas_arrow(p->c, b[0], b[1], a[0], a[1], p->s->font, &solid);
+}
+
+static void draw_ground(const pen *p, const hn_shape *shape) {
+    double a[2];
+    at(p, shape->p, a);
+    const double size = 1.25 * p->s->bar, foot = a[1] + size;
+    const double triangle[] = {a[0], a[1], a[0] + 0.75 * size, foot, a[0] - 0.75 * size, foot};
+    draw_outlined(p, triangle, 3);
+    hn_canvas_hatch(p->c, a[0], foot, 2.6 * size, 0, &p->outline);
+}
+
+/// How far the view reaches from a along u (both signs), so that a guide spans it.
+static double reach(const hn_sheet *s, const double a[2], const double u[2]) {
+    double most = 0;
+    for (int i = 0; i < 4; i++) {
+        const double corner[2] = {s->view[i % 2], s->view[2 + i / 2]};
+        double xy[2];
+        hn_sheet_pixel(s, corner, xy);
+        most = fmax(most, (xy[0] - a[0]) * u[0] + (xy[1] - a[1]) * u[1]);
+    }
+    return most;
+}
+
+static void draw_guide(const pen *p, const hn_shape *shape) {
+    double a[2], b[2], u[2];
+    at(p, shape->p, a);
+    at(p, shape->q, b);
+    direction(a, b, u);
+    const double back[2] = {-u[0], -u[1]}, w = bar_width(p, shape);
+    const double ahead = reach(p->s, a, u) + 1.5 * w, behind = reach(p->s, a, back) + 1.5 * w;
+    const double middle = (ahead - behind) / 2, off = 1.02 * w;
+    const double x = a[0] + middle * u[0], y = a[1] + middle * u[1];
+
+    // one rail is hatched as ground, the other a mere line
+    hn_stroke rail = p->outline;
+    rail.width *= 0.7;
+    hn_canvas_hatch(p->c, x - off * u[1], y + off * u[0], ahead + behind, atan2(u[1], u[0]), &rail);
+    const double half = (ahead + behind) / 2, ox = x + off * u[1], oy = y - off * u[0];
+    hn_canvas_segment(p->c, ox - half * u[0], oy - half * u[1], ox + half * u[0], oy + half * u[1],
+                      &rail);
+}
+
+// ---- one table --------------------------------------------------------------------------------------------------
+
+typedef struct shape_row {
+    hn_shape_kind kind;
+    int order; ///< what is drawn first within a pose: guides and bars beneath pivots
+    int belongs_to_ground;
+    void (*draw)(const pen *p, const hn_shape *shape);
+} shape_row;
+
+static const shape_row rows[] = {
+    {HN_SHAPE_GUIDE, 0, 1, draw_guide},     {HN_SHAPE_GROUND, 1, 1, draw_ground},
+    {HN_SHAPE_POLYGON, 0, 0, draw_polygon}, {HN_SHAPE_SPRING, 1, 0, draw_spring},
+    {HN_SHAPE_DAMPER, 1, 0, draw_damper},   {HN_SHAPE_SLIDER, 2, 0, draw_slider},
+    {HN_SHAPE_BAR, 3, 0, draw_bar},         {HN_SHAPE_PIVOT, 4, 0, draw_pivot},
+    {HN_SHAPE_ARROW, 5, 0, draw_arrow},
+};
+enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 6 };
+
+static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
+    for (int order = 0; order < N_ORDERS; order++) {
+        for (int i = 0; i < d->n_shapes; i++) {
+            for (int k = 0; k < N_ROWS; k++) {
+                if (rows[k].kind == d->shapes[i].kind && rows[k].order == order &&
+                    rows[k].belongs_to_ground == ground) {
+                    rows[k].draw(p, &d->shapes[i]);
+                }
+            }
+        }
+    }
+}
+
+void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    const pen p = {.c = c,
+                   .s = s,
+                   .points = pose->points,
+                   .outline = hn_stroke_solid(surface->muted, 0.8 * s->line),
+                   .fill = hn_paint_solid(surface->raised),
+                   .has_fill = 1};
+    draw_shapes(&p, d, 1);
+}
+
+static void draw_trace(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                       const hn_stroke *stroke) {
+    double last[2] = {(double)NAN, (double)NAN};
+    hn_stroke thin = *stroke;
+    thin.width = 0.6 * s->line;
+    thin.n_dash = 0;
+    for (int i = 0; i < pose->n_trace; i++) {
+        double xy[2];
+        hn_sheet_pixel(s, pose->trace + 3 * i, xy);
+        if (isfinite(xy[0] + xy[1] + last[0] + last[1])) {
+            hn_canvas_segment(c, last[0], last[1], xy[0], xy[1], &thin);
+        }
+        memcpy(last, xy, sizeof last);
+    }
+}
+
+void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                           const hn_snapshot_pose *pose, int is_selected) {
+    const hn_theme theme = hn_canvas_theme(c);
+    pen p = {.c = c,
+             .s = s,
+             .points = pose->points,
+             .outline = hn_slot_stroke(theme, pose->slot, s->line)};
+    p.is_reference = pose->slot == HN_LOOK_REFERENCE && !is_selected;
+    p.has_fill = is_selected;
+    p.fill = hn_paint_solid(hn_tint(theme, p.outline.paint.rgb, SELECTED_TINT));
+    if (is_selected) {
+        p.outline.n_dash = 0;
+    } else if (p.is_reference) {
+        p.outline.width = 0.75 * s->line;
+    }
+    hn_canvas_begin_layer(c, is_selected || p.is_reference ? 1 : GHOST_OPACITY);
+    draw_trace(c, s, pose, &p.outline);
+    draw_shapes(&p, d, 0);
+    hn_canvas_end_layer(c);
+}
+
+// ---- names and loads --------------------------------------------------------------------------------------------
+
+static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
+    const double share = square > 0 ? ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square : 0;
+    const double t = fmin(1, fmax(0, share));
+    return hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+}
+
+/// Room around a place for a name: the distance to the nearest line of the mechanism [px].
+static double room_at(const hn_sheet *s, const hn_drawing *d, const double *points,
+                      const double xy[2]) {
+    double room = (double)INFINITY;
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *shape = &d->shapes[i];
+        double a[2], b[2];
+        hn_sheet_pixel(s, points + 3 * shape->p, a);
+        memcpy(b, a, sizeof b);
+        if (shape->kind == HN_SHAPE_GROUND) {
+            b[1] += 1.6 * s->bar; // its triangle and hatching
+        } else if (shape->kind == HN_SHAPE_BAR || shape->kind == HN_SHAPE_SPRING ||
+                   shape->kind == HN_SHAPE_DAMPER) {
+            hn_sheet_pixel(s, points + 3 * shape->q, b);
+        }
+        if (shape->kind == HN_SHAPE_SLIDER) {
+            double u[2];
+            hn_sheet_pixel(s, points + 3 * shape->q, b);
+            direction(a, b, u);
+            const double half = 1.3 * s->bar; // its box
+            a[0] -= half * u[0];
+            a[1] -= half * u[1];
+            b[0] = a[0] + 2 * half * u[0];
+            b[1] = a[1] + 2 * half * u[1];
+        }
+        room = fmin(room, distance_to_segment(xy, a, b));
+    }
+    return room;
+}
+
+/// Of sixteen places around a point, the one with the most room.
+static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
+                        double out[2]) {
+    enum { PLACES = 16 };
+    const double off = 0.75 * s->bar + 0.85 * s->font;
+    double xy[2], most = -1;
+    hn_sheet_pixel(s, points + 3 * point, xy);
+    for (int k = 0; k < PLACES; k++) {
+        const double angle = 2 * 3.14159265358979324 * k / PLACES;
+        const double place[2] = {xy[0] + off * cos(angle), xy[1] - off * sin(angle)};
+        const double room = room_at(s, d, points, place);
+        if (room > most + 0.5) {
+            most = room;
+            memcpy(out, place, sizeof place);
+        }
+    }
+}
+
+void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    for (int i = 0; i < d->n_points; i++) {
+        if (d->labels[i] != NULL) {
+            double xy[2];
+            place_label(s, d, pose->points, i, xy);
+            hn_canvas_text(c, xy[0], xy[1] + 0.35 * s->font, s->font, HN_ALIGN_CENTRE,
+                           hn_paint_solid(surface->ink), d->labels[i]);
+        }
+    }
+}
+
+void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                       const hn_snapshot_opts *opts) {
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    double largest = 0;
+    for (int i = 0; i < opts->n_loads; i++) {
+        largest = fmax(largest, hypot(opts->loads[i].force[0], opts->loads[i].force[1]));
+    }
+    const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
+    for (int i = 0; i < opts->n_loads; i++) {
+        const hn_snapshot_load *load = &opts->loads[i];
+        const double size = hypot(load->force[0], load->force[1]);
+        if (!(size > 0) || !isfinite(size)) {
+            continue;
+        }
+        double tip[2];
+        hn_sheet_pixel(s, pose->points + 3 * load->point, tip);
+        const double length = LONGEST_LOAD * view * size / largest;
+        const double x = tip[0] - length * load->force[0] / size,
+                     y = tip[1] + length * load->force[1] / size;
+        const hn_stroke stroke = hn_stroke_solid(surface->ink, s->line);
+        hn_canvas_arrow(c, x, y, tip[0], tip[1], s->font, &stroke);
+        char text[HN_SI_TEXT];
+        hn_si_format(size, load->unit, 3, text);
+        hn_canvas_text(c, x, y - 0.5 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
+                       hn_paint_solid(surface->ink), text);
+    }
+}

@@ -1,0 +1,321 @@
+#include "support/near.h"
+
+#include "render/snapshot.h"
+#include "support/alloc.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 1000, HEIGHT = 720 };
+
+// a four-bar by hand: O A B D, and B again as the rocker sees it
+static const char *const labels[5] = {"O", "A", "B", "D", NULL};
+static const int tears[1][2] = {{2, 4}};
+static const char *const tear_names[1] = {"tear at B"};
+static const hn_shape shapes[] = {
+    {HN_SHAPE_GROUND, 0, 0, 0, 0, HN_GROUND},
+    {HN_SHAPE_GROUND, 3, 3, 0, 0, HN_GROUND},
+    {HN_SHAPE_BAR, 0, 1, 0, 0, 0},
+    {HN_SHAPE_BAR, 1, 2, 0, 0, 1},
+    {HN_SHAPE_BAR, 3, 4, 0, 0, 2},
+    {HN_SHAPE_PIVOT, 0, 0, 0, 0, 0},
+    {HN_SHAPE_PIVOT, 1, 1, 0, 0, 1},
+};
+static const hn_drawing four_bar = {5,     labels,    sizeof shapes / sizeof *shapes, shapes, 1,
+                                    tears, tear_names};
+
+static void set_points(double points[15], double gap) {
+    const double at[15] = {
+        0, 0, 0, 0.4, 0.9, 0, 2.2, 1.7, 0, 2.2, 0, 0, 2.2 + 0.6 * gap, 1.7 + 0.8 * gap, 0};
+    memcpy(points, at, sizeof at);
+}
+
+static hn_canvas *create(void) {
+    hn_canvas *c = NULL;
+    assert_int_equal(hn_canvas_create(WIDTH, HEIGHT, HN_THEME_LIGHT, &c, NULL), HN_OK);
+    return c;
+}
+
+static unsigned char *draw(const hn_drawing *d, const hn_snapshot_pose *poses, int n,
+                           const hn_snapshot_opts *opts) {
+    hn_canvas *c = create();
+    unsigned char *rgb = malloc(3 * WIDTH * HEIGHT);
+    assert_non_null(rgb);
+    assert_int_equal(hn_snapshot_draw(c, d, poses, n, opts, NULL), HN_OK);
+    assert_int_equal(hn_canvas_paint(c, rgb, NULL), HN_OK);
+    hn_canvas_free(c);
+    return rgb;
+}
+
+static int differing_pixels(const unsigned char *a, const unsigned char *b) {
+    int n = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        n += memcmp(a + 3 * i, b + 3 * i, 3) != 0;
+    }
+    return n;
+}
+
+/// The number that follows "key": in the description.
+static double described(const hn_snapshot_pose *poses, int n, const hn_snapshot_opts *opts,
+                        const char *key) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    assert_int_equal(hn_snapshot_describe(&b, WIDTH, HEIGHT, &four_bar, poses, n, opts, NULL),
+                     HN_OK);
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *inset = strstr(hn_strbuf_text(&b), "\"inset\"");
+    const char *found = strstr(strstr(inset, quoted) != NULL ? inset : hn_strbuf_text(&b), quoted);
+    assert_non_null(found);
+    const double value = strtod(found + strlen(quoted), NULL);
+    hn_strbuf_reset(&b);
+    return value;
+}
+
+static void a_tear_of_any_size_fills_a_good_part_of_the_inset(void **state) {
+    (void)state;
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    for (double gap = 1e-9; gap < 0.02; gap *= 3) {
+        double points[15];
+        set_points(points, gap);
+        const hn_snapshot_pose pose = {.points = points, .name = "raw"};
+        assert_rel(described(&pose, 1, &opts, "gap"), gap, 1e-6);
+        const double times = described(&pose, 1, &opts, "magnification");
+        const double shown = gap * times / described(&pose, 1, &opts, "metres_per_pixel");
+        assert_true(shown > 40 && shown < 130); // of 280 pixels
+        const double lead = times / pow(10, floor(log10(times) + 1e-9));
+        assert_true(fabs(lead - 1) < 1e-9 || fabs(lead - 2) < 1e-9 || fabs(lead - 5) < 1e-9);
+    }
+}
+
+static void a_closed_joint_is_not_magnified_into_its_rounding(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    const hn_snapshot_pose pose = {.points = points, .name = "reduced"};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    assert_near(described(&pose, 1, &opts, "magnification"), 1, 0);
+    assert_near(described(&pose, 1, &opts, "gap"), 0, 0);
+}
+
+static void the_widest_tear_of_all_poses_is_the_one_shown(void **state) {
+    (void)state;
+    double a[15], b[15], d[15];
+    set_points(a, 1e-9);
+    set_points(b, 3e-3);
+    set_points(d, 1e-6);
+    const hn_snapshot_pose poses[3] = {
+        {.points = a, .selected = 1}, {.points = b, .slot = 1}, {.points = d, .slot = 2}};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    assert_near(described(poses, 3, &opts, "pose"), 1, 0);
+    assert_rel(described(poses, 3, &opts, "gap"), 3e-3, 1e-9);
+}
+
+static void with_a_fixed_view_the_scale_does_not_depend_on_the_pose(void **state) {
+    (void)state;
+    double near_points[15], far_points[15];
+    set_points(near_points, 0);
+    set_points(far_points, 0.5);
+    const hn_snapshot_pose one = {.points = near_points}, other = {.points = far_points};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    assert_true(described(&one, 1, &opts, "metres_per_pixel") <
+                described(&other, 1, &opts, "metres_per_pixel"));
+    const double view[4] = {-1, 3, -1, 2};
+    memcpy(opts.view, view, sizeof view);
+    assert_near(described(&one, 1, &opts, "metres_per_pixel"),
+                described(&other, 1, &opts, "metres_per_pixel"), 0);
+}
+
+static void a_pose_that_is_not_finite_is_listed_but_not_drawn(void **state) {
+    (void)state;
+    double good[15], bad[15];
+    set_points(good, 1e-3);
+    set_points(bad, 1e-3);
+    bad[7] = (double)NAN;
+    const hn_snapshot_pose poses[3] = {{.points = bad, .name = "euler", .slot = 1, .selected = 1},
+                                       {.points = NULL, .name = "gone", .slot = 2},
+                                       {.points = good, .name = "raw"}};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    assert_int_equal(hn_snapshot_describe(&b, WIDTH, HEIGHT, &four_bar, poses, 3, &opts, NULL),
+                     HN_OK);
+    assert_non_null(
+        strstr(b.text, "{\"name\":\"euler\",\"slot\":1,\"drawn\":false,\"selected\":false"));
+    assert_non_null(
+        strstr(b.text, "{\"name\":\"gone\",\"slot\":2,\"drawn\":false,\"selected\":false"));
+    assert_non_null(
+        strstr(b.text, "{\"name\":\"raw\",\"slot\":0,\"drawn\":true,\"selected\":true"));
+    hn_strbuf_reset(&b);
+
+    hn_canvas *c = create();
+    hn_diag diag = {0};
+    assert_int_equal(hn_snapshot_draw(c, &four_bar, poses, 2, &opts, &diag), HN_ERR_INPUT);
+    assert_true(strlen(diag.message) > 0);
+    hn_canvas_free(c);
+}
+
+/// Pixels within 2 of the colour in each channel: GL may round the other way.
+static int count_colour(const unsigned char *rgb, uint32_t colour) {
+    int n = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int near = 1;
+        for (int k = 0; k < 3; k++) {
+            near &= abs(rgb[3 * i + k] - (int)(colour >> (16 - 8 * k) & 0xff)) <= 2;
+        }
+        n += near;
+    }
+    return n;
+}
+
+static void the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_percent(void **state) {
+    (void)state;
+    double a[15], b[15];
+    set_points(a, 0);
+    set_points(b, 0);
+    for (int i = 0; i < 5; i++) {
+        b[3 * i + 1] += 0.3;
+    }
+    hn_drawing bare = four_bar;
+    bare.n_tears = 0;
+    hn_snapshot_pose poses[2] = {{.points = a, .slot = 0, .selected = 1}, {.points = b, .slot = 1}};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    // bars of slot 0 mixed into the paper at 30 %; outlines of slot 1 at 60 %
+    const hn_surface *s = hn_surface_get(HN_THEME_LIGHT);
+    uint32_t tint[2] = {0, 0}, ghost[2] = {0, 0};
+    for (int slot = 0; slot < 2; slot++) {
+        for (int shift = 16; shift >= 0; shift -= 8) {
+            const double paper = s->paper >> shift & 0xff,
+                         ink = hn_look_get(slot)->colour[0] >> shift & 0xff;
+            tint[slot] |= (uint32_t)lround(paper + 0.3 * (ink - paper)) << shift;
+            ghost[slot] |= (uint32_t)lround(paper + 0.6 * (ink - paper)) << shift;
+        }
+    }
+    unsigned char *first = draw(&bare, poses, 2, &opts);
+    poses[0].selected = 0;
+    poses[1].selected = 1;
+    unsigned char *second = draw(&bare, poses, 2, &opts);
+    assert_true(count_colour(first, tint[0]) > 5000 && count_colour(first, tint[1]) < 100);
+    assert_true(count_colour(second, tint[1]) > 5000 && count_colour(second, tint[0]) < 100);
+    assert_true(count_colour(first, ghost[1]) > 200);
+    assert_true(count_colour(second, ghost[0]) > 200);
+    free(first);
+    free(second);
+}
+
+static void every_kind_of_shape_leaves_ink(void **state) {
+    (void)state;
+    const double points[12] = {0, 0, 0, 1, 0.5, 0, 2, 0, 0, 1, -1, 0};
+    const char *const no_labels[4] = {NULL, NULL, NULL, NULL};
+    const hn_snapshot_pose pose = {.points = points};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    const hn_drawing nothing = {4, no_labels, 0, NULL, 0, NULL, NULL};
+    unsigned char *blank = draw(&nothing, &pose, 1, &opts);
+    for (int kind = HN_SHAPE_BAR; kind <= HN_SHAPE_POLYGON; kind++) {
+        const hn_shape shape = {(hn_shape_kind)kind, 0, 1, 4, 0, 0};
+        const hn_drawing one = {4, no_labels, 1, &shape, 0, NULL, NULL};
+        unsigned char *rgb = draw(&one, &pose, 1, &opts);
+        assert_true(differing_pixels(blank, rgb) > 50);
+        free(rgb);
+    }
+    free(blank);
+}
+
+static void a_trace_and_a_load_are_drawn(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    const double nan = (double)NAN;
+    const double trace[] = {0.4, 0.9, 0, 0.9, 1.0, 0, nan, nan, nan, 1.5, 0.5, 0, 1.9, 0.5, 0};
+    hn_snapshot_pose pose = {.points = points};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    unsigned char *plain = draw(&four_bar, &pose, 1, &opts);
+    pose.trace = trace;
+    pose.n_trace = 5;
+    unsigned char *traced = draw(&four_bar, &pose, 1, &opts);
+    assert_true(differing_pixels(plain, traced) > 100);
+    pose.n_trace = 0;
+    const hn_snapshot_load load = {1, {0, -9.81, 0}, "N"};
+    opts.n_loads = 1;
+    opts.loads = &load;
+    unsigned char *loaded = draw(&four_bar, &pose, 1, &opts);
+    assert_true(differing_pixels(plain, loaded) > 200);
+    free(plain);
+    free(traced);
+    free(loaded);
+}
+
+static void the_reference_lies_beneath_and_is_thin(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    hn_drawing bare = four_bar;
+    bare.n_tears = 0;
+    const uint32_t grey = hn_look_get(HN_LOOK_REFERENCE)->colour[0];
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    double aside[15];
+    set_points(aside, 0);
+    for (int i = 0; i < 5; i++) {
+        aside[3 * i + 1] -= 0.5;
+    }
+    // listed last, drawn first: under a selected method in the same pose only its legend shows
+    const hn_snapshot_pose same[2] = {{.points = points, .selected = 1},
+                                      {.points = points, .slot = HN_LOOK_REFERENCE}};
+    const hn_snapshot_pose apart[2] = {{.points = points, .selected = 1},
+                                       {.points = aside, .slot = HN_LOOK_REFERENCE}};
+    unsigned char *hidden = draw(&bare, same, 2, &opts), *seen = draw(&bare, apart, 2, &opts);
+    assert_true(count_colour(hidden, grey) < 600);
+    assert_true(count_colour(seen, grey) > count_colour(hidden, grey) + 200);
+    assert_true(count_colour(seen, grey) < 3500);
+    free(hidden);
+    free(seen);
+}
+
+static void every_failing_allocation_is_told_and_nothing_leaks(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 1e-3);
+    const hn_snapshot_pose pose = {.points = points, .name = "raw", .note = "gap 1 mm"};
+    hn_snapshot_opts opts = hn_snapshot_opts_default();
+    opts.title = "Four-bar";
+    opts.caption = "a caption that is long enough to be cut off somewhere on a sheet that is only "
+                   "so wide, so very wide, "
+                   "and then some more of it, to be sure of that";
+    opts.time = 0.5;
+    const long live = hn_alloc_live();
+    for (long n = 1;; n++) {
+        hn_alloc_fail_at(n);
+        hn_canvas *c = NULL;
+        hn_strbuf png;
+        hn_strbuf_init(&png);
+        hn_status status = hn_canvas_create(WIDTH, HEIGHT, HN_THEME_DARK, &c, NULL);
+        status = status != HN_OK ? status : hn_snapshot_draw(c, &four_bar, &pose, 1, &opts, NULL);
+        status = status != HN_OK ? status : hn_canvas_png(c, &png, NULL);
+        const int failed = hn_alloc_has_failed();
+        hn_alloc_fail_at(0);
+        hn_canvas_free(c);
+        hn_strbuf_reset(&png);
+        assert_int_equal(status, failed ? HN_ERR_MEMORY : HN_OK);
+        assert_int_equal(hn_alloc_live(), live);
+        if (!failed) {
+            break;
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tear_of_any_size_fills_a_good_part_of_the_inset),
+        cmocka_unit_test(a_closed_joint_is_not_magnified_into_its_rounding),
+        cmocka_unit_test(the_widest_tear_of_all_poses_is_the_one_shown),
+        cmocka_unit_test(with_a_fixed_view_the_scale_does_not_depend_on_the_pose),
+        cmocka_unit_test(a_pose_that_is_not_finite_is_listed_but_not_drawn),
+        cmocka_unit_test(the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_percent),
+        cmocka_unit_test(every_kind_of_shape_leaves_ink),
+        cmocka_unit_test(a_trace_and_a_load_are_drawn),
+        cmocka_unit_test(the_reference_lies_beneath_and_is_thin),
+        cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
