@@ -328,7 +328,7 @@ static double value_of(hn_node node, const int *at, const double *value, const d
 
 double hn_graph_eval(hn_graph *g, hn_ex e, const double *x) {
     sweep_values s;
-    double result = NAN;
+    double result = (double)NAN;
     double *value = NULL;
     if (sweep_values_init(g, &s, &e, 1, ~0ull) &&
         (value = malloc((size_t)s.n * sizeof *value + 1)) != NULL) {
