@@ -28,7 +28,8 @@ typedef struct hn_snapshot_pose {
     int n_trace;
 } hn_snapshot_pose;
 
-/// A force drawn at a point, the same for all poses.
+/// A force drawn at a point of the selected pose. Arrows of the drawing have neither size nor direction of their own:
+/// they are drawn from these.
 typedef struct hn_snapshot_load {
     int point;        ///< of the drawing
     double force[3];  ///< [unit]

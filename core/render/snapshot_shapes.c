@@ -10,7 +10,7 @@
 static const double GHOST_OPACITY = 0.6;
 static const double SELECTED_TINT = 0.30;
 static const double LONGEST_LOAD = 0.20; // of the view
-enum { COILS = 7, TEXT = 96, MAX_POLYGON = 64 };
+enum { COILS = 7, MAX_POLYGON = 1000 };  // the scene format allows no larger one
 
 /// How one pose is drawn: colours of outline and fill, and whether it is a mere line.
 typedef struct pen {
@@ -143,25 +143,14 @@ static void draw_damper(const pen *p, const hn_shape *shape) {
 
 static void draw_polygon(const pen *p, const hn_shape *shape) {
     double xy[2 * MAX_POLYGON];
-    const int n = shape->n < MAX_POLYGON ? shape->n : MAX_POLYGON;
+    const int n = shape->n;
+    HN_ASSERT(n <= MAX_POLYGON);
     for (int i = 0; i < n; i++) {
         at(p, shape->p + i, xy + 2 * i);
     }
     if (n >= 3) {
         draw_outlined(p, xy, n);
     }
-}
-
-/// The direction of a load's arrow: from q to p where the scene gives both; opts.loads has those with a size.
-static void draw_arrow(const pen *p, const hn_shape *shape) {
-    if (shape->q < 0 || shape->q == shape->p || p->is_reference) {
-        return;
-    }
-    double a[2], b[2];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
-    const hn_stroke solid = {.paint = p->outline.paint, .width = p->s->line};
-    hn_canvas_arrow(p->c, b[0], b[1], a[0], a[1], p->s->font, &solid);
 }
 
 static void draw_ground(const pen *p, const hn_shape *shape) {
@@ -206,6 +195,7 @@ static void draw_guide(const pen *p, const hn_shape *shape) {
 
 // ---- one table --------------------------------------------------------------------------------------------------
 
+// HN_SHAPE_ARROW and HN_SHAPE_TRACE are not here: what they show comes with the pose and the options
 typedef struct shape_row {
     hn_shape_kind kind;
     int order; ///< what is drawn first within a pose: guides and bars beneath pivots
@@ -218,9 +208,9 @@ static const shape_row rows[] = {
     {HN_SHAPE_POLYGON, 0, 0, draw_polygon}, {HN_SHAPE_SPRING, 1, 0, draw_spring},
     {HN_SHAPE_DAMPER, 1, 0, draw_damper},   {HN_SHAPE_SLIDER, 2, 0, draw_slider},
     {HN_SHAPE_BAR, 3, 0, draw_bar},         {HN_SHAPE_PIVOT, 4, 0, draw_pivot},
-    {HN_SHAPE_ARROW, 5, 0, draw_arrow},
+    {HN_SHAPE_GROUND, 4, 0, draw_pivot}, // its pin, above the bars
 };
-enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 6 };
+enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 5 };
 
 static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
     for (int order = 0; order < N_ORDERS; order++) {

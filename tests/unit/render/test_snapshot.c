@@ -204,7 +204,7 @@ static void the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_per
     free(second);
 }
 
-static void every_kind_of_shape_leaves_ink(void **state) {
+static void every_kind_of_shape_but_arrow_and_trace_leaves_ink(void **state) {
     (void)state;
     const double points[12] = {0, 0, 0, 1, 0.5, 0, 2, 0, 0, 1, -1, 0};
     const char *const no_labels[4] = {NULL, NULL, NULL, NULL};
@@ -216,7 +216,7 @@ static void every_kind_of_shape_leaves_ink(void **state) {
         const hn_shape shape = {(hn_shape_kind)kind, 0, 1, 4, 0, 0};
         const hn_drawing one = {4, no_labels, 1, &shape, 0, NULL, NULL};
         unsigned char *rgb = draw(&one, &pose, 1, &opts);
-        assert_true(differing_pixels(blank, rgb) > 50);
+        assert_int_equal(differing_pixels(blank, rgb) > 50, kind != HN_SHAPE_ARROW);
         free(rgb);
     }
     free(blank);
@@ -312,7 +312,7 @@ int main(void) {
         cmocka_unit_test(with_a_fixed_view_the_scale_does_not_depend_on_the_pose),
         cmocka_unit_test(a_pose_that_is_not_finite_is_listed_but_not_drawn),
         cmocka_unit_test(the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_percent),
-        cmocka_unit_test(every_kind_of_shape_leaves_ink),
+        cmocka_unit_test(every_kind_of_shape_but_arrow_and_trace_leaves_ink),
         cmocka_unit_test(a_trace_and_a_load_are_drawn),
         cmocka_unit_test(the_reference_lies_beneath_and_is_thin),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
