@@ -15,7 +15,7 @@ failed=0
 run_one() {
     case $1 in
     *.py) timeout "$LIMIT" python3 "$1" ;;
-    *.mjs | *.js) timeout "$LIMIT" node "$1" ;;
+    *.mjs | *.js) timeout "$LIMIT" node --test-reporter=tap "$1" ;;
     *.sh) timeout "$LIMIT" sh "$1" ;;
     *) timeout "$LIMIT" "$1" ;;
     esac
