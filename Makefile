@@ -133,7 +133,7 @@ programs: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW) $(BENCH)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libosmesa6-dev libpng-dev \
-                 node:nodejs npm:npm
+                 ca-certificates node:nodejs npm:npm
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema chromium:chromium
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
