@@ -1,0 +1,86 @@
+// @ts-check
+// The one place that speaks to the server: requests, and problem documents turned into errors.
+
+const BASE = "/api/v1";
+
+/** What the server refused, with the fields at fault. */
+export class Problem extends Error {
+  /**
+   * @param {number} status HTTP status, 0 when the server did not answer
+   * @param {{title?: string, detail?: string, errors?: {detail: string, pointer?: string, hint?: string}[]}} body
+   */
+  constructor(status, body) {
+    super(body.detail || body.title || `the server answered ${status}`);
+    this.status = status;
+    this.errors = Array.isArray(body.errors) ? body.errors : [];
+  }
+
+  /** The first sentence about a field, with its hint; the general detail when no field is named. */
+  get sentence() {
+    const first = this.errors[0];
+    if (!first) {
+      return this.message;
+    }
+    return first.hint ? `${first.detail} (${first.hint})` : first.detail;
+  }
+}
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {unknown} [body]
+ * @returns {Promise<any>}
+ */
+async function request(method, path, body) {
+  /** @type {RequestInit} */
+  const init = { method, headers: { Accept: "application/json" } };
+  if (body !== undefined) {
+    init.headers = { Accept: "application/json", "Content-Type": "application/json" };
+    init.body = JSON.stringify(body);
+  }
+  let response;
+  try {
+    response = await fetch(path, init);
+  } catch {
+    throw new Problem(0, { detail: "the server does not answer" });
+  }
+  if (response.status === 204) {
+    return null;
+  }
+  const text = await response.text();
+  let json;
+  try {
+    json = JSON.parse(text);
+  } catch {
+    throw new Problem(response.status, { detail: `the server's answer is not JSON (${response.status})` });
+  }
+  if (!response.ok) {
+    throw new Problem(response.status, json);
+  }
+  return json;
+}
+
+/** The API, one function per resource that the page uses. */
+export const api = {
+  index: () => request("GET", `${BASE}/`),
+  scenes: () => request("GET", `${BASE}/scenes`),
+  methods: () => request("GET", `${BASE}/methods`),
+  look: () => request("GET", `${BASE}/look`),
+  /** @param {string} id */
+  scene: (id) => request("GET", `${BASE}/scenes/${id}`),
+  /** @param {string} scene @param {Record<string, number>} settings */
+  equations: (scene, settings) => request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),
+  /** @param {object} body */
+  createComparison: (body) => request("POST", `${BASE}/comparisons`, body),
+  /** @param {string} id */
+  comparison: (id) => request("GET", `${BASE}/comparisons/${id}`),
+  /** @param {string} id @param {object} change */
+  changeComparison: (id, change) => request("PATCH", `${BASE}/comparisons/${id}`, change),
+  /** @param {string} id */
+  deleteComparison: (id) => request("DELETE", `${BASE}/comparisons/${id}`),
+  /** The page is going away: no answer is waited for. @param {string} id */
+  abandonComparison: (id) => fetch(`${BASE}/comparisons/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
+  /** @param {string} id @param {string} lastId */
+  eventsAddress: (id, lastId) =>
+    `${BASE}/comparisons/${id}/events${lastId ? `?last_event_id=${encodeURIComponent(lastId)}` : ""}`,
+};

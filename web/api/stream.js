@@ -1,0 +1,104 @@
+// @ts-check
+// The event stream of one comparison. One connection carries all methods; the id of the last event seen is kept, so
+// that a drop, or a page that was hidden for a while, resumes without gap or repeat.
+import { api } from "./client.js";
+
+const EVENTS = ["hello", "frame", "incident", "reset", "state", "gap", "end"];
+const RETRY_FIRST = 500; // [ms]
+const RETRY_MOST = 8000;
+
+/**
+ * @typedef {"connecting" | "live" | "reconnecting" | "hidden" | "ended"} StreamState
+ * @param {string} id of the comparison
+ * @param {(name: string, data: any) => void} onEvent
+ * @param {(state: StreamState, lastId: string) => void} onState
+ */
+export function createStream(id, onEvent, onState) {
+  /** @type {EventSource | null} */
+  let source = null;
+  let lastId = "";
+  let retry = RETRY_FIRST;
+  let timer = 0;
+  let closed = false;
+
+  /** @param {StreamState} state */
+  const tell = (state) => onState(state, lastId);
+
+  function drop() {
+    clearTimeout(timer);
+    source?.close();
+    source = null;
+  }
+
+  /** @param {StreamState} state */
+  function open(state) {
+    drop();
+    tell(state);
+    source = new EventSource(api.eventsAddress(id, lastId));
+    source.onopen = () => {
+      retry = RETRY_FIRST;
+      tell("live");
+    };
+    source.onerror = onError;
+    for (const name of EVENTS) {
+      source.addEventListener(name, (event) => receive(name, /** @type {MessageEvent} */ (event)));
+    }
+  }
+
+  /** @param {string} name @param {MessageEvent} event */
+  function receive(name, event) {
+    if (event.lastEventId) {
+      lastId = event.lastEventId;
+    }
+    onEvent(name, JSON.parse(event.data));
+    if (name === "end") {
+      drop();
+      tell("ended");
+    }
+  }
+
+  // the browser's own retry would send the id of its own connection only; ours also survives a closed source
+  function onError() {
+    drop();
+    if (closed) {
+      return;
+    }
+    tell("reconnecting");
+    timer = window.setTimeout(() => open("reconnecting"), retry);
+    retry = Math.min(2 * retry, RETRY_MOST);
+  }
+
+  function onVisibility() {
+    if (document.hidden && source) {
+      drop();
+      tell("hidden");
+    } else if (!document.hidden && !source && !closed) {
+      open("reconnecting");
+    }
+  }
+
+  function onOnline() {
+    if (!document.hidden && !closed) {
+      open("reconnecting");
+    }
+  }
+
+  document.addEventListener("visibilitychange", onVisibility);
+  window.addEventListener("online", onOnline);
+  open("connecting");
+
+  return {
+    /** Opens again after the end of a comparison that was set back or changed. */
+    reopen() {
+      if (!source && !document.hidden) {
+        open("connecting");
+      }
+    },
+    dispose() {
+      closed = true;
+      drop();
+      document.removeEventListener("visibilitychange", onVisibility);
+      window.removeEventListener("online", onOnline);
+    },
+  };
+}

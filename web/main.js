@@ -1,0 +1,90 @@
+// @ts-check
+// Puts the page together: one store, one session, the views, the keys, one drawing per animation frame.
+import { createSession } from "./state/session.js";
+import { createStore } from "./state/store.js";
+import { findKey } from "./state/keys.js";
+import { createControls } from "./views/controls.js";
+import { createDrawing } from "./views/drawing.js";
+import { createEquations } from "./views/equations.js";
+import { createHappening } from "./views/happening.js";
+import { createHeader } from "./views/header.js";
+import { createKeysDialog } from "./views/keys-dialog.js";
+import { createMethodDialog } from "./views/method-dialog.js";
+import { createMethods } from "./views/methods.js";
+import { createPlots } from "./views/plots.js";
+import { createStatus } from "./views/status.js";
+import { createTear } from "./views/tear.js";
+import { createTransport } from "./views/transport.js";
+import { createTheme } from "./widgets/theme.js";
+
+const store = createStore();
+const session = createSession(store);
+const theme = createTheme(store);
+store.data.view.stepped = matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+/** @param {string} id */
+const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+const dialog = createMethodDialog(document.body, store, session);
+const keys = createKeysDialog(document.body, store, session);
+const views = [
+  createHeader(at("top"), store, session, { toggleTheme: theme.toggle, openKeys: keys.open }),
+  createDrawing(at("mechanism"), store, session),
+  createTear(at("mechanism"), store),
+  createTransport(at("transport"), store, session),
+  createMethods(at("methods"), store, session, dialog.open),
+  createControls(at("controls"), store, session),
+  createHappening(at("happening"), store, session),
+  createPlots(at("plots"), store, session),
+  createEquations(at("equations"), store, session),
+  createStatus(at("status"), store),
+];
+
+let drawing = 0;
+store.on("frame", () => {
+  if (!drawing) {
+    drawing = requestAnimationFrame(() => {
+      drawing = 0;
+      views.forEach((view) => view.update());
+    });
+  }
+});
+
+/** Where a key means something of its own: the page keeps out of it. @param {KeyboardEvent} event */
+function takesKey(event) {
+  const target = /** @type {HTMLElement} */ (event.target);
+  if (target.closest("dialog, input:not([type=checkbox]), select, textarea, [contenteditable]")) {
+    return true;
+  }
+  const pressable = target.closest("button, a, summary, input");
+  return Boolean(pressable) && (event.key === " " || event.key === "Enter");
+}
+
+addEventListener("keydown", (event) => {
+  const key = event.defaultPrevented || takesKey(event) ? undefined : findKey(event, store.data.view.letters);
+  if (key) {
+    event.preventDefault();
+    if (key.action === "help") {
+      keys.open();
+    } else {
+      session[key.action](key.argument);
+    }
+  }
+});
+addEventListener("pagehide", (event) => {
+  if (!event.persisted) {
+    session.dispose();
+  }
+});
+
+try {
+  await session.start(location.hash.slice(1));
+  at("main").setAttribute("aria-busy", "false");
+  at("play").focus({ preventScroll: true });
+} catch (error) {
+  at("main").setAttribute("aria-busy", "false");
+  document.body.prepend(theme.failure(error.sentence ?? error.message));
+}
+
+/** For whoever drives the page: the data it shows. */
+Object.assign(globalThis, { holonom: { data: store.data } });

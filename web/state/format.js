@@ -1,0 +1,119 @@
+// @ts-check
+// Numbers as people read and type them.
+
+const PREFIXES = { f: -15, p: -12, n: -9, "µ": -6, u: -6, m: -3, "": 0, k: 3, M: 6, G: 9 };
+const SHOWN = [
+  [-15, "f"],
+  [-12, "p"],
+  [-9, "n"],
+  [-6, "µ"],
+  [-3, "m"],
+  [0, ""],
+  [3, "k"],
+  [6, "M"],
+  [9, "G"],
+];
+const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** Below this a gap is rounding, and a prefix would pretend to a size that one can picture. */
+export const ROUNDING = 1e-12;
+
+/** 10 to the n, in words of one line: 10⁻⁴. @param {number} n */
+export function powerOfTen(n) {
+  const digits = [...String(Math.abs(n))].map((d) => SUPERSCRIPT[Number(d)]).join("");
+  return `10${n < 0 ? "⁻" : ""}${digits}`;
+}
+
+/** Two digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value */
+export function scientific(value) {
+  if (value === 0) {
+    return "0";
+  }
+  const [mantissa, exponent] = value.toExponential(1).split("e");
+  return `${mantissa.replace("-", "−")}×${powerOfTen(Number(exponent))}`;
+}
+
+/**
+ * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-12 as a power of ten.
+ * @param {number | null | undefined} value
+ * @param {string} unit
+ * @param {number} [digits] significant
+ */
+export function quantity(value, unit, digits = 2) {
+  if (value === null || value === undefined || !Number.isFinite(value)) {
+    return "–";
+  }
+  const size = Math.abs(value);
+  const space = unit ? " " : "";
+  if (size === 0) {
+    return `0${space}${unit}`;
+  }
+  if (size < ROUNDING || size >= 1e12) {
+    return `${scientific(value)}${space}${unit}`;
+  }
+  const rounded = Number(size.toPrecision(digits));
+  const exponent = Math.floor(Math.log10(rounded) / 3 + 1e-9) * 3;
+  const [power, prefix] = SHOWN.find(([e]) => e === exponent) ?? SHOWN[5];
+  const scaled = rounded / 10 ** Number(power);
+  const before = Math.floor(Math.log10(scaled) + 1e-9) + 1;
+  const text = scaled.toFixed(Math.max(0, digits - before));
+  return `${value < 0 ? "−" : ""}${text} ${prefix}${unit}`.trimEnd();
+}
+
+/** A plain number as a person would type it back: 0.02, 5, 1e-6. @param {number} value */
+export function plain(value) {
+  const text = String(Number(value.toPrecision(12)));
+  return Math.abs(value) < 1e-4 && value !== 0 ? Number(value.toPrecision(12)).toExponential() : text;
+}
+
+/** @param {number} t [s] */
+export function seconds(t) {
+  return `${t.toFixed(2)} s`;
+}
+
+/**
+ * Reads "0.02", "0,02", "2e-2 s", "20 ms". The unit may be left out; another unit is refused.
+ * @param {string} text
+ * @param {string} unit
+ * @returns {number} NaN when it is no number in this unit
+ */
+export function parseQuantity(text, unit) {
+  const match = /^\s*([-+−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+−]?\d+)?)\s*(\S*)\s*$/.exec(text);
+  if (!match) {
+    return NaN;
+  }
+  const value = Number(match[1].replace(",", ".").replaceAll("−", "-"));
+  const tail = match[2];
+  if (tail === "" || tail === unit) {
+    return value;
+  }
+  const prefix = unit && tail.endsWith(unit) ? tail.slice(0, -unit.length) : null;
+  return prefix !== null && prefix in PREFIXES ? value * 10 ** PREFIXES[prefix] : NaN;
+}
+
+/** The largest of 1, 2, 5 times a power of ten that is not above x. @param {number} x > 0 */
+export function niceBelow(x) {
+  const power = 10 ** Math.floor(Math.log10(x) + 1e-12);
+  const lead = x / power;
+  return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power;
+}
+
+/** The smallest of 1, 2, 5 times a power of ten that is not below x. @param {number} x > 0 */
+export function niceAbove(x) {
+  const low = niceBelow(x);
+  if (low >= x * (1 - 1e-9)) {
+    return low;
+  }
+  const lead = Math.round(low / 10 ** Math.floor(Math.log10(low) + 1e-9));
+  return low * (lead === 2 ? 2.5 : 2);
+}
+
+/** A magnification in one word: ×20, ×5 million is written ×5·10⁶. @param {number} m */
+export function magnification(m) {
+  if (m < 10000) {
+    return `×${m}`;
+  }
+  const exponent = Math.floor(Math.log10(m) + 1e-9);
+  const lead = Math.round(m / 10 ** exponent);
+  return lead === 1 ? `×${powerOfTen(exponent)}` : `×${lead}·${powerOfTen(exponent)}`;
+}

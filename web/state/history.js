@@ -1,0 +1,169 @@
+// @ts-check
+// What was received, in columns, bounded. When the columns are full every second frame is dropped: the whole span stays,
+// at half the resolution. A failed method has NaN in its curves from then on and keeps its last good points.
+
+const BYTES = 32e6;
+const MOST_FRAMES = 8192;
+const FEWEST_FRAMES = 256;
+
+/** Quantities kept per method, by their names in a frame. */
+export const COLUMNS = /** @type {const} */ (["gap", "velocity_gap", "energy_change", "ops", "evals", "cpu", "steps"]);
+
+/** @typedef {ReturnType<typeof createHistory>} History */
+
+/**
+ * @param {number} nMethods
+ * @param {number} nPoints
+ */
+export function createHistory(nMethods, nPoints) {
+  const perFrame = 8 * nMethods * (3 * nPoints + COLUMNS.length);
+  const capacity = Math.max(FEWEST_FRAMES, Math.min(MOST_FRAMES, 2 * Math.floor(BYTES / perFrame / 2)));
+  const t = new Float64Array(capacity);
+  const columns = Array.from({ length: nMethods }, () =>
+    Object.fromEntries(COLUMNS.map((name) => [name, new Float64Array(capacity)])),
+  );
+  const points = Array.from({ length: nMethods }, () => new Float64Array(capacity * 3 * nPoints));
+  /** time at which a method ended early, or NaN */
+  const ended = new Float64Array(nMethods).fill(NaN);
+  let count = 0;
+  let stride = 1;
+  let lastFrame = -1;
+
+  function halve() {
+    const width = 3 * nPoints;
+    for (let i = 0; i < count / 2; i++) {
+      t[i] = t[2 * i];
+      for (let m = 0; m < nMethods; m++) {
+        for (const name of COLUMNS) {
+          columns[m][name][i] = columns[m][name][2 * i];
+        }
+        points[m].copyWithin(i * width, 2 * i * width, (2 * i + 1) * width);
+      }
+    }
+    count = Math.ceil(count / 2);
+    stride *= 2;
+  }
+
+  /** @param {number} m @param {import("./store.js").MethodFrame} method @param {number} now */
+  function put(m, method, now) {
+    const failed = method.state === "failed";
+    if (failed && Number.isNaN(ended[m])) {
+      ended[m] = Number.isFinite(method.t) ? method.t : now;
+    }
+    for (const name of COLUMNS) {
+      const value = method[name];
+      columns[m][name][count] = failed || value === undefined || value === null ? NaN : value;
+    }
+    const from = count * 3 * nPoints;
+    if (method.points && method.points.length === 3 * nPoints) {
+      points[m].set(method.points, from);
+    } else if (count > 0) {
+      points[m].copyWithin(from, from - 3 * nPoints, from);
+    } else {
+      points[m].fill(NaN, from, from + 3 * nPoints);
+    }
+  }
+
+  return {
+    t,
+    columns,
+    ended,
+    nMethods,
+    nPoints,
+    get count() {
+      return count;
+    },
+    get stride() {
+      return stride;
+    },
+    get lastFrame() {
+      return lastFrame;
+    },
+    /** Takes a frame once; repeats and frames out of order are told by `false`. @param {import("./store.js").Frame} frame */
+    push(frame) {
+      if (frame.frame <= lastFrame) {
+        return false;
+      }
+      lastFrame = frame.frame;
+      if (frame.frame % stride !== 0) {
+        return true;
+      }
+      if (count === capacity) {
+        halve();
+        if (frame.frame % stride !== 0) {
+          return true;
+        }
+      }
+      t[count] = frame.t;
+      frame.methods.forEach((method, m) => put(m, method, frame.t));
+      count++;
+      return true;
+    },
+    /** Points of a method in the i-th kept frame (a view, not a copy). @param {number} m @param {number} i */
+    pointsAt(m, i) {
+      return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
+    },
+    /** Index of the kept frame nearest to a time. @param {number} time */
+    indexAt(time) {
+      let low = 0;
+      let high = count - 1;
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (t[middle] < time) {
+          low = middle + 1;
+        } else {
+          high = middle;
+        }
+      }
+      return low > 0 && time - t[low - 1] < t[low] - time ? low - 1 : low;
+    },
+    /** Largest magnitude of a quantity up to and including index i. @param {number} m @param {string} name @param {number} from @param {number} to */
+    worst(m, name, from, to) {
+      let worst = NaN;
+      const column = columns[m][name];
+      for (let i = Math.max(0, from); i <= to && i < count; i++) {
+        const value = Math.abs(column[i]);
+        if (!Number.isNaN(value) && !(value <= worst)) {
+          worst = value;
+        }
+      }
+      return worst;
+    },
+  };
+}
+
+/** Indices of the entries of least and largest magnitude in [start, end), in the order of time. */
+function extremes(y, start, end) {
+  let low = start;
+  let high = start;
+  for (let i = start + 1; i < end; i++) {
+    const size = Math.abs(y[i]);
+    low = size < Math.abs(y[low]) || Number.isNaN(y[low]) ? i : low;
+    high = size > Math.abs(y[high]) || Number.isNaN(y[high]) ? i : high;
+  }
+  return low < high ? [low, high] : [high, low];
+}
+
+/**
+ * Thins columns for a plot to two points (least and largest) per bucket, so that no peak is lost.
+ * @param {ArrayLike<number>} t ascending
+ * @param {ArrayLike<number>[]} ys
+ * @param {number} count
+ * @param {number} buckets
+ * @param {(value: number) => number | null} map to what is plotted; null is a hole
+ * @returns {(number | null)[][]} [t, y1, y2, ...]
+ */
+export function thin(t, ys, count, buckets, map) {
+  const size = Math.ceil(count / buckets);
+  if (size <= 2) {
+    return [Array.from(t).slice(0, count), ...ys.map((y) => Array.from(y).slice(0, count).map(map))];
+  }
+  /** @type {(number | null)[][]} */
+  const out = [[], ...ys.map(() => [])];
+  for (let start = 0; start < count; start += size) {
+    const end = Math.min(count, start + size);
+    out[0].push(t[start], t[end - 1]);
+    ys.forEach((y, k) => out[k + 1].push(...extremes(y, start, end).map((i) => map(y[i]))));
+  }
+  return out;
+}

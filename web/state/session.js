@@ -1,0 +1,327 @@
+// @ts-check
+// What the page can do: actions that ask the server and put its answers into the store. A change that the server refuses
+// changes nothing here either, and is handed back as a Problem for the field that asked.
+import { Problem, api } from "../api/client.js";
+import { createStream } from "../api/stream.js";
+import { createHistory } from "./history.js";
+import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
+
+const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
+const MOST_INCIDENTS = 200;
+const STEPPED_SECONDS = 0.1; // one press of Play when motion is unwelcome
+export const MOST_METHODS = 8;
+
+const FIRST_SCENE = "four-bar";
+const FIRST_METHODS = [
+  "index1@rk4:h=1e-3",
+  "baumgarte:alpha=5,beta=5@rk4:h=1e-3",
+  "projection@rk4:h=1e-3",
+  "nullspace@rk4:h=1e-3",
+  "reduced@rk4:h=1e-3",
+];
+
+/** @param {import("./store.js").Store} store */
+export function createSession(store) {
+  const data = store.data;
+  /** @type {ReturnType<typeof createStream> | null} */
+  let stream = null;
+  /** changes go out one after the other, in the order of asking */
+  let queue = Promise.resolve();
+
+  /** @param {string} text */
+  function notice(text) {
+    data.notice = text;
+    store.emit("notice");
+  }
+
+  // ---- what the server tells ------------------------------------------------------------------------------------
+
+  /** @param {any} entry of the comparison's methods @returns {import("./store.js").Method} */
+  function readMethod(entry) {
+    const spelling = entry.method.spelling;
+    const parsed = parseSpelling(spelling);
+    return {
+      ...entry,
+      spelling,
+      title: entry.method.title,
+      label: entry.short,
+      formulation: parsed.formulation.name,
+      integrator: parsed.integrator.name,
+    };
+  }
+
+  /** @param {any} description */
+  function startHistory(description) {
+    const sameScene = data.scene?.id === description.scene.id;
+    data.before = sameScene && data.history && data.history.count > 1 ? { methods: data.methods, history: data.history } : null;
+    data.methods = description.comparison.methods.map(readMethod);
+    const labels = labelsOf(data.methods);
+    data.methods.forEach((method, m) => (method.label = labels[m]));
+    data.scene = description.scene;
+    data.history = createHistory(data.methods.length, description.scene.drawing.points);
+    data.incidents = [];
+    data.latest = null;
+    data.view.shown = -1;
+    data.view.why = -1;
+    data.view.selected = Math.min(data.view.selected, data.methods.length - 1);
+    for (const m of data.view.hidden) {
+      if (m >= data.methods.length) {
+        data.view.hidden.delete(m);
+      }
+    }
+  }
+
+  /** @param {any} description @param {boolean} [anew] the runs were set back */
+  function applyDescription(description, anew = false) {
+    if (description.generation < data.generation) {
+      return;
+    }
+    const restarted = anew || description.generation !== data.generation;
+    data.generation = description.generation;
+    data.settings = description.settings ?? {};
+    data.frameDt = description.frame_dt ?? description.comparison.frame_dt;
+    data.duration = description.duration ?? description.comparison.duration;
+    if (restarted) {
+      startHistory(description);
+      store.emit("scene");
+      store.emit("methods");
+    }
+    applyState(description);
+    if (description.latest && description.latest.frame > (data.history?.lastFrame ?? -1) && (restarted || !stream)) {
+      applyFrame({ ...description.latest, generation: description.generation });
+    }
+  }
+
+  /** @param {{state: string, speed: number}} change */
+  function applyState(change) {
+    data.state = change.state ?? data.state;
+    data.speed = change.speed ?? data.speed;
+    store.emit("state");
+  }
+
+  /** @param {import("./store.js").Frame} frame */
+  function applyFrame(frame) {
+    if (frame.generation !== data.generation || !data.history?.push(frame)) {
+      return;
+    }
+    data.latest = frame;
+    store.emit("frame");
+  }
+
+  /** @param {any} incident */
+  function applyIncident(incident) {
+    if (incident.generation !== undefined && incident.generation !== data.generation) {
+      return;
+    }
+    data.incidents.push(incident);
+    data.incidents.splice(0, data.incidents.length - MOST_INCIDENTS);
+    store.emit("incident");
+  }
+
+  /** @type {Record<string, (detail: any) => void>} */
+  const onEvent = {
+    hello: ({ description }) => applyDescription(description),
+    frame: applyFrame,
+    incident: applyIncident,
+    reset: (detail) => applyReset(detail),
+    state: applyState,
+    gap: ({ from, to }) => notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
+    end: () => applyState({ state: "finished", speed: data.speed }),
+  };
+
+  /** The answer to our own change may have come first: then the reset is told already. @param {any} detail */
+  function applyReset(detail) {
+    const description = detail.description ?? detail;
+    if (description.generation > data.generation) {
+      applyDescription(description, true);
+    }
+  }
+
+  // ---- asking the server ----------------------------------------------------------------------------------------
+
+  /** @param {any} description of a comparison that was just made */
+  function adopt(description) {
+    stream?.dispose();
+    stream = null;
+    data.id = description.id;
+    data.generation = -1;
+    applyDescription(description, true);
+    stream = createStream(
+      description.id,
+      (name, detail) => onEvent[name](detail),
+      (state, id) => {
+        data.stream = { state, id };
+        store.emit("stream");
+      },
+    );
+  }
+
+  /** @param {object} body */
+  async function create(body) {
+    const old = data.id;
+    const description = await api.createComparison({ paused: true, speed: data.speed, ...body });
+    adopt(description);
+    if (old) {
+      api.deleteComparison(old).catch(() => notice("the comparison before this one could not be ended"));
+    }
+  }
+
+  /** The server forgets a comparison that nobody touched for long: the same one is made again. @param {object} change */
+  async function changeOrRevive(change) {
+    try {
+      return await api.changeComparison(data.id, change);
+    } catch (error) {
+      if (!(error instanceof Problem) || error.status !== 404 || !data.scene) {
+        throw error;
+      }
+      data.id = "";
+      await create({ scene: data.scene.id, settings: data.settings, methods: data.methods.map((m) => m.spelling) });
+      notice("the server had closed this comparison; it was started again");
+      return api.changeComparison(data.id, change);
+    }
+  }
+
+  /** @param {object} change @returns {Promise<void>} */
+  function change(change) {
+    const done = queue.then(async () => {
+      const description = await changeOrRevive(change);
+      applyDescription(description, "reset" in change);
+      stream?.reopen();
+    });
+    queue = done.catch(() => undefined);
+    return done;
+  }
+
+  /** An action whose failure has no field of its own. @param {object} wanted */
+  function changeOrTell(wanted) {
+    return change(wanted).catch((error) => notice(error.sentence ?? error.message));
+  }
+
+  function chooseMethods(scene) {
+    const known = FIRST_METHODS.filter((spelling) => {
+      const parsed = parseSpelling(spelling);
+      return cardOf(data.catalogue, "formulation", parsed.formulation.name) && cardOf(data.catalogue, "integrator", parsed.integrator.name);
+    });
+    return scene?.methods?.length ? scene.methods : known;
+  }
+
+  const actions = {
+    /** Everything the page needs before it can draw. @param {string} wanted id of a scene, or "" */
+    async start(wanted) {
+      const [index, look, catalogue, list] = await Promise.all([api.index(), api.look(), api.methods(), api.scenes()]);
+      data.build = index.version ?? index.build ?? "";
+      data.look = look;
+      data.catalogue = catalogue;
+      data.scenes = list.scenes.filter((scene) => !scene.errors);
+      store.emit("ready");
+      const ids = data.scenes.map(({ id }) => id);
+      await actions.loadScene([wanted, FIRST_SCENE, ids[0]].find((id) => ids.includes(id)) ?? FIRST_SCENE);
+    },
+    /** @param {string} id */
+    async loadScene(id) {
+      data.view.hidden.clear();
+      data.view.selected = 0;
+      const methods = id === FIRST_SCENE ? chooseMethods(null) : chooseMethods(await api.scene(id));
+      await create({ scene: id, methods });
+    },
+    play() {
+      data.view.shown = -1;
+      if (data.view.stepped) {
+        return actions.step(Math.max(1, Math.round(STEPPED_SECONDS / data.frameDt)));
+      }
+      return changeOrTell({ state: "running" });
+    },
+    pause: () => changeOrTell({ state: "paused" }),
+    toggle: () => (data.state === "running" ? actions.pause() : actions.play()),
+    /** Through what was received while it lasts, then by asking for more. @param {number} frames */
+    step(frames) {
+      const last = (data.history?.count ?? 0) - 1;
+      const shown = data.view.shown < 0 ? last : data.view.shown;
+      if (data.state === "running") {
+        return actions.pause();
+      }
+      if (frames < 0 || shown < last) {
+        actions.show(shown + frames);
+        return Promise.resolve();
+      }
+      return data.state === "finished" ? Promise.resolve() : changeOrTell({ step: frames });
+    },
+    /** Shows a kept frame. @param {number} index */
+    show(index) {
+      const last = (data.history?.count ?? 0) - 1;
+      data.view.shown = index >= last ? -1 : Math.max(0, index);
+      store.emit("frame");
+    },
+    /** @param {number} t [s] */
+    async showTime(t) {
+      if (data.state === "running") {
+        await actions.pause();
+      }
+      if (data.history) {
+        actions.show(data.history.indexAt(t));
+      }
+    },
+    reset: () => changeOrTell({ reset: true, state: "paused" }),
+    slower: () => actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < data.speed) ?? SPEEDS[0]),
+    faster: () => actions.setSpeed(SPEEDS.find((speed) => speed > data.speed) ?? SPEEDS[SPEEDS.length - 1]),
+    /** @param {number} speed */
+    setSpeed: (speed) => changeOrTell({ speed }),
+    /** @param {string[]} spellings */
+    setMethods: (spellings) => change({ methods: spellings }),
+    /** One setting of every method that has it. @param {string} key @param {number} value @param {string} [and] another key */
+    setSetting(key, value, and) {
+      const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
+      const changeBoth = (spelling) => (and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling));
+      return actions.setMethods(data.methods.map(({ spelling }) => changeBoth(spelling)));
+    },
+    /** @param {string} name @param {number} value */
+    setParameter: (name, value) => change({ settings: { ...data.settings, [name]: value } }),
+    resetParameters: () => change({ settings: {} }),
+    /** A thing to try from a card. @param {import("./words.js").Try} item */
+    async attempt(item) {
+      if (item.key) {
+        await actions.setSetting(item.key, Number(item.value), item.and).catch((error) => notice(error.sentence));
+        return;
+      }
+      if (item.method) {
+        const wanted = parseSpelling(item.method).formulation.name;
+        const spellings = data.methods.map(({ spelling }) => spelling);
+        const same = data.methods.findIndex(({ formulation }) => formulation === wanted);
+        const place = same >= 0 ? same : Math.min(spellings.length, MOST_METHODS - 1);
+        spellings[place] = item.method;
+        await actions.setMethods(spellings).catch((error) => notice(error.sentence));
+        actions.select(place);
+      }
+    },
+    /** @param {number} m */
+    select(m) {
+      if (m < data.methods.length) {
+        data.view.selected = m;
+        data.view.hidden.delete(m);
+        store.emit("view");
+      }
+    },
+    cycle: () => actions.select((data.view.selected + 1) % data.methods.length),
+    /** @param {number} m @param {boolean} visible */
+    setVisible(m, visible) {
+      data.view.hidden[visible ? "delete" : "add"](m);
+      store.emit("view");
+    },
+    /** @param {Partial<typeof data.view>} change */
+    setView(change) {
+      Object.assign(data.view, change);
+      store.emit("view");
+    },
+    equations: () => api.equations(data.scene?.id ?? "", data.settings),
+    notice,
+    dispose() {
+      stream?.dispose();
+      if (data.id) {
+        api.abandonComparison(data.id);
+      }
+    },
+  };
+  return actions;
+}
+
+/** @typedef {ReturnType<typeof createSession>} Session */

@@ -1,0 +1,25 @@
+// Copies what the page loads of its libraries into vendor/; run by `npm run vendor`.
+import { cp, mkdir, readdir, rm } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const web = dirname(fileURLToPath(import.meta.url));
+
+/** [from node_modules/, to vendor/] */
+const FILES = [
+  ["uplot/dist/uPlot.esm.js", "uplot/uPlot.esm.js"],
+  ["uplot/dist/uPlot.min.css", "uplot/uPlot.min.css"],
+  ["uplot/LICENSE", "uplot/LICENSE"],
+  ["katex/dist/katex.mjs", "katex/katex.mjs"],
+  ["katex/dist/katex.min.css", "katex/katex.min.css"],
+  ["katex/LICENSE", "katex/LICENSE"],
+];
+
+await rm(join(web, "vendor"), { recursive: true, force: true });
+const fonts = (await readdir(join(web, "node_modules/katex/dist/fonts")))
+  .filter((name) => name.endsWith(".woff2"))
+  .map((name) => [`katex/dist/fonts/${name}`, `katex/fonts/${name}`]);
+for (const [from, to] of [...FILES, ...fonts]) {
+  await mkdir(dirname(join(web, "vendor", to)), { recursive: true });
+  await cp(join(web, "node_modules", from), join(web, "vendor", to));
+}

@@ -1,0 +1,89 @@
+// @ts-check
+// The equations that this scene runs, as the engine prints them. Fetched when the panel is opened.
+import katex from "katex";
+import { listen } from "../state/store.js";
+import { h } from "../widgets/dom.js";
+
+const MOST_ENTRIES = 80; // beyond it a large scene would only fill the page
+
+const SYSTEM = String.raw`\begin{bmatrix} M & J^{\mathsf T} \\ J & 0 \end{bmatrix}\begin{bmatrix} a \\ -\lambda \end{bmatrix} = \begin{bmatrix} f \\ -\gamma \end{bmatrix}, \qquad \varphi(q, t) = 0`;
+const FREE = String.raw`M\,a = f`;
+const PRINTED = {
+  nullspace: String.raw`N^{\mathsf T} M N\,\dot u = N^{\mathsf T}\bigl(f - M \dot N u\bigr), \qquad v = N u`,
+  "nullspace-as-printed": String.raw`N^{\mathsf T} M N\,\dot u = N^{\mathsf T} f \qquad \text{missing: } {\color{#c0392b} N^{\mathsf T} M \dot N u}`,
+};
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ */
+export function createEquations(el, store, actions) {
+  const data = store.data;
+  const body = h("div", { class: "equation-body", tabindex: "0", role: "region", "aria-label": "Equations of this scene" });
+  const summary = h("summary", {}, h("h2", { id: "equations-title" }, "Equations"));
+  const details = h("details", { class: "equation-panel" }, summary, body);
+  el.replaceChildren(details);
+  let shownFor = "";
+
+  /** @param {string} latex @param {boolean} display */
+  function formula(latex, display) {
+    const node = h("div", { class: display ? "display" : "line" });
+    katex.render(latex, node, { displayMode: display, throwOnError: false, output: "htmlAndMathml", strict: false });
+    return node;
+  }
+
+  function special() {
+    const method = data.methods[data.view.selected];
+    return method && PRINTED[method.formulation] ? [h("p", { class: "term" }, method.title), formula(PRINTED[method.formulation], true)] : [];
+  }
+
+  async function show() {
+    const key = JSON.stringify([data.scene?.id, data.methods[data.view.selected]?.formulation]);
+    if (!details.open || !data.scene || key === shownFor) {
+      return;
+    }
+    shownFor = key;
+    let answer;
+    try {
+      answer = await actions.equations();
+    } catch (error) {
+      shownFor = "";
+      body.replaceChildren(h("p", { class: "hint" }, error.sentence ?? error.message));
+      return;
+    }
+    if (key !== shownFor) {
+      return;
+    }
+    const constrained = data.scene.m > 0;
+    const terms = answer.terms.map((term) => ({ ...term, entries: answer.entries.filter((entry) => entry.term === term.name) }));
+    body.replaceChildren(
+      formula(constrained ? SYSTEM : FREE, true),
+      ...special(),
+      h("p", { class: "about" }, `Speeds, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries not listed are zero.`),
+      h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
+    );
+  }
+
+  function termBlock(term) {
+    const most = term.entries.slice(0, MOST_ENTRIES);
+    const more = term.entries.length - most.length;
+    return h(
+      "section",
+      { class: "term-block" },
+      h("h3", {}, `${term.meaning}`),
+      ...most.map((entry) => formula(`${entry.name_latex} = ${entry.latex}`, false)),
+      more > 0 ? h("p", { class: "about" }, `and ${more} more entries`) : "",
+    );
+  }
+
+  details.addEventListener("toggle", show);
+  const stop = listen(store, { scene: show, view: show, methods: show });
+  return {
+    update() {},
+    dispose() {
+      stop();
+      el.replaceChildren();
+    },
+  };
+}

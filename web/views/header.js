@@ -1,0 +1,58 @@
+// @ts-check
+// The name, the scene menu, the switch of the theme, and the keys.
+import { listen } from "../state/store.js";
+import { h } from "../widgets/dom.js";
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ * @param {{toggleTheme: () => void, openKeys: () => void}} open
+ */
+export function createHeader(el, store, actions, open) {
+  const data = store.data;
+  const menu = h("select", { id: "scene", onchange: load, disabled: true }, h("option", {}, "four-bar"));
+  const theme = h("button", { type: "button", class: "quiet", onclick: open.toggleTheme }, "dark");
+  const keys = h("button", { type: "button", class: "quiet", onclick: open.openKeys }, "keys");
+  const about = h("p", { class: "about scene-about" });
+  el.append(h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu), about, h("div", { class: "choices" }, theme, keys));
+
+  async function load() {
+    const wanted = menu.value;
+    try {
+      await actions.loadScene(wanted);
+      history.replaceState(null, "", `#${wanted}`);
+    } catch (error) {
+      menu.value = data.scene?.id ?? menu.value;
+      actions.notice(error.sentence ?? error.message);
+    }
+  }
+
+  function fill() {
+    menu.replaceChildren(...data.scenes.map(({ id, title }) => h("option", { value: id }, title)));
+    menu.disabled = false;
+  }
+
+  function showTheme() {
+    theme.textContent = data.theme === "dark" ? "light" : "dark";
+    theme.setAttribute("aria-label", `${theme.textContent} theme`);
+  }
+
+  const stop = listen(store, {
+    ready: fill,
+    scene: () => {
+      menu.value = data.scene?.id ?? "";
+      about.textContent = data.scene?.about ?? "";
+      about.title = about.textContent ?? "";
+    },
+    theme: showTheme,
+  });
+  showTheme();
+  return {
+    update() {},
+    dispose() {
+      stop();
+      el.querySelectorAll(".scene-pick, .about, .choices").forEach((node) => node.remove());
+    },
+  };
+}

@@ -1,0 +1,33 @@
+// @ts-check
+// The table of keys, and the switch for those that are a single character.
+import { KEYS, isCharacter, keyName } from "../state/keys.js";
+import { h } from "../widgets/dom.js";
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ */
+export function createKeysDialog(el, store, actions) {
+  const letters = h("input", { type: "checkbox", id: "letters", onchange: () => actions.setView({ letters: letters.checked }) });
+  const rows = KEYS.map((key) =>
+    h("tr", { class: isCharacter(key) ? "character" : "" }, h("th", { scope: "row" }, h("kbd", {}, keyName(key))), h("td", {}, key.means)),
+  );
+  const dialog = h(
+    "dialog",
+    { class: "dialog", "aria-labelledby": "keys-title" },
+    h("h2", { id: "keys-title" }, "Keys"),
+    h("table", { class: "keys" }, h("tbody", {}, ...rows)),
+    h("p", {}, letters, " ", h("label", { for: "letters" }, "keys of a single character are on")),
+    h("form", { method: "dialog", class: "actions" }, h("button", { class: "primary" }, "Close")),
+  );
+  el.append(dialog);
+  return {
+    open() {
+      letters.checked = store.data.view.letters;
+      dialog.showModal();
+    },
+    update() {},
+    dispose: () => dialog.remove(),
+  };
+}

@@ -1,0 +1,175 @@
+// @ts-check
+// The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state in words.
+import { quantity } from "../state/format.js";
+import { MOST_METHODS } from "../state/session.js";
+import { parseSpelling } from "../state/spelling.js";
+import { listen } from "../state/store.js";
+import { trendOf } from "../state/words.js";
+import { h, icon, s, say, set } from "../widgets/dom.js";
+
+const GREEK = { alpha: "α", beta: "β" };
+const REDRAW = 120; // [ms] numbers that change faster cannot be read
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ * @param {(m: number) => void} openDialog edits method m, or adds one (m = -1)
+ */
+export function createMethods(el, store, actions, openDialog) {
+  const data = store.data;
+  const body = h("tbody", { role: "rowgroup" });
+  const add = h("button", { type: "button", class: "quiet", onclick: () => openDialog(-1) }, icon("plus"), "add a method");
+  const head = (text, title) => h("th", { scope: "col", role: "columnheader", title }, text);
+  const table = h(
+    "table",
+    { role: "table", class: "method-table" },
+    h(
+      "thead",
+      { role: "rowgroup" },
+      h(
+        "tr",
+        { role: "row" },
+        h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "Shown")),
+        head("Method", "formulation, integrator and step; click to draw it opaque"),
+        head("Loop gap", "‖φ‖: how far the cut joint has come apart"),
+        head("Energy change", "since the start; in this motion energy should stay unless a load or damper works"),
+        head("Cost per step", "processor time and arithmetic operations"),
+        h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "More")),
+      ),
+    ),
+    body,
+  );
+  el.replaceChildren(h("div", { class: "title" }, h("h2", { id: "methods-title" }, "Methods"), add), table);
+
+  /** @type {{row: HTMLElement, parts: Record<string, HTMLElement>}[]} */
+  let rows = [];
+  let timer = 0;
+  let painted = 0;
+
+  function swatch(method) {
+    const look = data.look.slots[method.slot];
+    return s(
+      "svg",
+      { viewBox: "0 0 34 12", class: `swatch slot-${method.slot}`, "aria-hidden": "true" },
+      s("path", { d: "M1 6H33", "stroke-dasharray": look.dash.join(" ") || null }),
+    );
+  }
+
+  /** "α = 5, β = 5, rk4, h = 1 ms": no line breaks within a setting. */
+  function settingWords(method) {
+    const { formulation, integrator } = parseSpelling(method.spelling);
+    const words = (list) => list.map(([key, value]) => `${GREEK[key] ?? key} = ${key === "h" ? `${value} s` : value}`);
+    return [...words(formulation.settings), integrator.name, ...words(integrator.settings)].map((word) => word.replaceAll(" ", "\u00a0")).join(", ");
+  }
+
+  function makeRow(method, m) {
+    const parts = {
+      check: h("input", {
+        type: "checkbox",
+        "aria-label": `draw ${method.label}`,
+        onchange: (event) => actions.setVisible(m, event.currentTarget.checked),
+      }),
+      select: h(
+        "button",
+        { type: "button", class: "select", onclick: () => actions.select(m), title: `${method.title}: ${method.rule}` },
+        swatch(method),
+        h("span", { class: "name" }, method.label),
+      ),
+      gap: h("span", { class: "number" }),
+      trend: h("span", { class: "trend" }),
+      energy: h("span", { class: "number" }),
+      cost: h("span", { class: "number" }),
+      ops: h("span", { class: "sub number" }),
+      why: h("button", { type: "button", class: "quiet why", onclick: () => actions.setView({ why: m }), "aria-label": `Why? ${method.label}` }, "Why?"),
+      edit: h("button", { type: "button", class: "tool small", onclick: () => openDialog(m), "aria-label": `Change or remove ${method.label}`, title: "change or remove" }, icon("edit")),
+    };
+    const name = h("td", { role: "cell", class: "who" }, parts.select, h("span", { class: "sub" }, settingWords(method)));
+    if (method.model_error) {
+      name.append(h("span", { class: "badge" }, "model error: halving h does not help"));
+    }
+    const row = h(
+      "tr",
+      { role: "row" },
+      h("td", { role: "cell", class: "check" }, parts.check),
+      name,
+      h("td", { role: "cell", "data-label": "gap" }, parts.gap, parts.trend),
+      h("td", { role: "cell", "data-label": "energy change" }, parts.energy),
+      h("td", { role: "cell", "data-label": "cost per step" }, parts.cost, parts.ops),
+      h("td", { role: "cell", class: "more" }, parts.why, parts.edit),
+    );
+    return { row, parts };
+  }
+
+  function rebuild() {
+    rows = data.methods.map(makeRow);
+    body.replaceChildren(...rows.map(({ row }) => row));
+    add.disabled = data.methods.length >= MOST_METHODS;
+    add.title = add.disabled ? `${MOST_METHODS} methods at most` : "";
+    showView();
+  }
+
+  function showView() {
+    rows.forEach(({ row, parts }, m) => {
+      const selected = m === data.view.selected;
+      row.classList.toggle("selected", selected);
+      row.classList.toggle("off", data.view.hidden.has(m));
+      set(parts.select, { "aria-pressed": String(selected) });
+      /** @type {HTMLInputElement} */ (parts.check).checked = !data.view.hidden.has(m);
+    });
+    paint();
+  }
+
+  /** A failed method keeps the numbers of its last good frame. @param {Float64Array} column @param {number} now */
+  function lastGood(column, now) {
+    let i = now;
+    while (i > 0 && Number.isNaN(column[i])) {
+      i--;
+    }
+    return i;
+  }
+
+  function paint() {
+    const history = data.history;
+    const now = data.view.shown < 0 ? (history?.count ?? 0) - 1 : data.view.shown;
+    painted = performance.now();
+    if (!history || now < 0 || rows.length !== history.nMethods) {
+      return;
+    }
+    const loops = (data.scene?.m ?? 0) > 0;
+    rows.forEach(({ row, parts }, m) => {
+      const column = history.columns[m];
+      const last = lastGood(column.steps, now);
+      const trend = trendOf(history, m, now);
+      const steps = column.steps[last];
+      say(parts.gap, loops ? quantity(column.gap[last], "m") : "no loop");
+      say(parts.trend, loops || trend.tone === "bad" ? `${trend.arrow} ${trend.word}` : "");
+      row.dataset.tone = trend.tone;
+      say(parts.energy, quantity(column.energy_change[last], "J"));
+      say(parts.cost, steps > 0 ? `${quantity(column.cpu[last] / steps, "s")}` : "–");
+      say(parts.ops, steps > 0 ? `${Math.round(column.ops[last] / steps)} ops` : "");
+    });
+  }
+
+  function update() {
+    const wait = REDRAW - (performance.now() - painted);
+    if (wait <= 0) {
+      paint();
+    } else if (!timer) {
+      timer = window.setTimeout(() => {
+        timer = 0;
+        paint();
+      }, wait);
+    }
+  }
+
+  const stop = listen(store, { methods: rebuild, view: showView });
+  return {
+    update,
+    dispose() {
+      stop();
+      clearTimeout(timer);
+      el.replaceChildren();
+    },
+  };
+}

@@ -1,0 +1,99 @@
+// @ts-check
+// The cut joint under a magnifying glass: its two halves, and the gap between them in red with its true size.
+import { ROUNDING, magnification, niceBelow, quantity } from "../state/format.js";
+import { listen } from "../state/store.js";
+import { h, s, say, set } from "../widgets/dom.js";
+
+const SIZE = 144; // [px] of the drawn square
+const METRE = 150; // [px] a metre at magnification 1
+const FULL = 62; // [px] the longest gap drawn
+const LEAST = 14; // [px] below it the glass is changed for a stronger one
+const STRONGEST = 1e9;
+
+/** @param {HTMLElement} el @param {import("../state/store.js").Store} store */
+export function createTear(el, store) {
+  const data = store.data;
+  const segment = s("path", { class: "tear" });
+  const first = s("circle", { r: 10, class: "half first" });
+  const second = s("circle", { r: 10, class: "half second" });
+  const joint = s("g", {}, first, second, segment);
+  const glass = s(
+    "svg",
+    { viewBox: `0 0 ${SIZE} ${SIZE}`, class: "glass", "aria-hidden": "true" },
+    s("circle", { cx: SIZE / 2, cy: SIZE / 2, r: SIZE / 2 - 1, class: "rim" }),
+    joint,
+  );
+  const power = h("span", { class: "power" });
+  const size = h("span", { class: "number" });
+  const whose = h("span", { class: "whose" });
+  const figure = h("figure", { class: "tear-inset" }, glass, h("figcaption", {}, power, size, whose));
+  el.append(figure);
+  let glassPower = STRONGEST;
+
+  /** The cut whose halves are farthest apart. @param {ArrayLike<number>} points */
+  function widest(points) {
+    let best = null;
+    for (const { p, q, name } of data.scene?.drawing.tears ?? []) {
+      const dx = points[3 * q] - points[3 * p];
+      const dy = points[3 * q + 1] - points[3 * p + 1];
+      const gap = Math.hypot(dx, dy, points[3 * q + 2] - points[3 * p + 2]);
+      if (!best || gap > best.gap) {
+        best = { dx, dy, gap, name };
+      }
+    }
+    return best;
+  }
+
+  /** 1, 2, 5 times a power of ten, changed only when the picture would no longer be good. @param {number} gap */
+  function choosePower(gap) {
+    const drawn = gap * METRE * glassPower;
+    if (drawn > FULL || drawn < LEAST) {
+      glassPower = gap > 0 ? Math.min(STRONGEST, niceBelow(FULL / (gap * METRE))) : STRONGEST;
+    }
+  }
+
+  function update() {
+    const history = data.history;
+    const m = data.view.selected;
+    const now = data.view.shown < 0 ? (history?.count ?? 0) - 1 : data.view.shown;
+    if (!history || now < 0 || !data.methods[m]) {
+      return;
+    }
+    const tear = widest(history.pointsAt(m, now));
+    figure.classList.toggle("none", !tear);
+    if (!tear || !Number.isFinite(tear.gap)) {
+      say(power, "no cut");
+      say(size, "no loop to close");
+      say(whose, "");
+      return;
+    }
+    choosePower(tear.gap);
+    const k = METRE * glassPower;
+    const half = [(tear.dx * k) / 2, (-tear.dy * k) / 2];
+    const centre = SIZE / 2;
+    set(joint, { class: `slot-${data.methods[m].slot}` });
+    set(first, { cx: (centre - half[0]).toFixed(2), cy: (centre - half[1]).toFixed(2) });
+    set(second, { cx: (centre + half[0]).toFixed(2), cy: (centre + half[1]).toFixed(2) });
+    set(segment, {
+      d: `M${(centre - half[0]).toFixed(2)} ${(centre - half[1]).toFixed(2)}L${(centre + half[0]).toFixed(2)} ${(centre + half[1]).toFixed(2)}`,
+    });
+    const closed = tear.gap < ROUNDING;
+    say(power, magnification(glassPower));
+    say(size, closed ? `closed, ${quantity(tear.gap, "m")}` : `gap ${quantity(tear.gap, "m")}`);
+    say(whose, `${data.methods[m].label}, cut ${tear.name || "joint"}`);
+  }
+
+  const stop = listen(store, {
+    methods: () => {
+      glassPower = STRONGEST;
+    },
+    view: update,
+  });
+  return {
+    update,
+    dispose() {
+      stop();
+      figure.remove();
+    },
+  };
+}

@@ -1,0 +1,148 @@
+// @ts-check
+// A slider with a number field beside it: the field takes what people type ("0,02", "2e-2 s"), the slider keeps to round values.
+import { plain } from "../state/format.js";
+import { h, say, set } from "./dom.js";
+
+const LEADS = [1, 1.5, 2, 3, 4, 5, 6, 8];
+const INPUT_PAUSE = 140; // [ms] a dragged slider asks at most this often
+
+/** Round values from min to max, eight a decade. @param {number} min @param {number} max */
+function logScale(min, max) {
+  const values = [];
+  for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); e++) {
+    for (const lead of LEADS) {
+      const value = Number((lead * 10 ** e).toPrecision(3));
+      if (value >= min * (1 - 1e-9) && value <= max * (1 + 1e-9)) {
+        values.push(value);
+      }
+    }
+  }
+  return {
+    attributes: { min: 0, max: values.length - 1, step: 1 },
+    to: (value) => values.reduce((best, v, i) => (Math.abs(Math.log(v / value)) < Math.abs(Math.log(values[best] / value)) ? i : best), 0),
+    from: (position) => values[Math.round(position)],
+  };
+}
+
+/** @param {number} min @param {number} max @param {number} [step] */
+function linearScale(min, max, step) {
+  const chosen = step ?? Number(((max - min) / 200).toPrecision(1));
+  return {
+    attributes: { min, max, step: chosen },
+    to: (value) => Math.min(max, Math.max(min, value)),
+    from: (position) => Number(Number(position).toPrecision(6)),
+  };
+}
+
+/**
+ * @param {{id: string, label: string, unit: string, hint: string, scale?: "log" | "linear", min: number, max: number, step?: number,
+ *   read: (text: string) => number, check: (value: number) => {error?: string, warning?: string},
+ *   commit: (value: number) => Promise<void>}} options `read` gives NaN for what is no number
+ */
+export function createSliderField(options) {
+  const scale = options.scale === "log" ? logScale(options.min, options.max) : linearScale(options.min, options.max, options.step);
+  const hintId = `${options.id}-hint`;
+  const range = h("input", { type: "range", id: `${options.id}-slider`, "aria-label": options.label, "aria-describedby": hintId, ...scale.attributes });
+  const field = h("input", {
+    type: "text",
+    id: options.id,
+    inputmode: "decimal",
+    autocomplete: "off",
+    spellcheck: "false",
+    "aria-describedby": hintId,
+  });
+  const hint = h("p", { id: hintId, class: "hint", role: "status" }, options.hint);
+  const el = h(
+    "div",
+    { class: "setting" },
+    h("label", { for: options.id }, options.label),
+    range,
+    h("span", { class: "entry" }, field, h("span", { class: "unit", "aria-hidden": "true" }, options.unit)),
+    hint,
+  );
+  let value = NaN;
+  let timer = 0;
+  /** what the server has not answered yet; meanwhile the widget shows what was asked */
+  let pending = 0;
+
+  /** @param {"" | "error" | "warning"} kind @param {string} text */
+  function tell(kind, text) {
+    el.dataset.kind = kind;
+    set(field, { "aria-invalid": kind === "error" ? "true" : null });
+    say(hint, text || options.hint);
+  }
+
+  function show() {
+    range.value = String(scale.to(value));
+    const words = `${plain(value)} ${options.unit}`.trim();
+    set(range, { "aria-valuetext": words });
+    if (document.activeElement !== field || field.getAttribute("aria-invalid") !== "true") {
+      field.value = plain(value);
+    }
+  }
+
+  /** @param {number} wanted */
+  async function commit(wanted) {
+    const verdict = Number.isNaN(wanted) ? { error: `type a number${options.unit ? ` in ${options.unit}` : ""}, such as ${plain(value)}` } : options.check(wanted);
+    if (verdict.error) {
+      tell("error", verdict.error);
+      return;
+    }
+    const before = value;
+    value = wanted;
+    tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
+    show();
+    pending++;
+    try {
+      await options.commit(wanted);
+    } catch (error) {
+      value = before;
+      tell("error", error.sentence ?? error.message);
+      range.value = String(scale.to(value));
+    } finally {
+      pending--;
+    }
+  }
+
+  set(range, {
+    oninput: () => {
+      const wanted = scale.from(Number(range.value));
+      field.value = plain(wanted);
+      set(range, { "aria-valuetext": `${plain(wanted)} ${options.unit}`.trim() });
+      clearTimeout(timer);
+      timer = window.setTimeout(() => commit(wanted), INPUT_PAUSE);
+    },
+    onchange: () => {
+      clearTimeout(timer);
+      commit(scale.from(Number(range.value)));
+    },
+  });
+  set(field, {
+    onchange: () => commit(options.read(field.value)),
+    onkeydown: (event) => {
+      if (event.key === "Enter") {
+        commit(options.read(field.value));
+      } else if (event.key === "Escape") {
+        tell("", "");
+        show();
+      }
+    },
+  });
+
+  return {
+    el,
+    /** What the server holds. @param {number} held */
+    update(held) {
+      if (pending === 0 && held !== value) {
+        value = held;
+        const verdict = options.check(held);
+        tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
+        show();
+      }
+    },
+    dispose() {
+      clearTimeout(timer);
+      el.remove();
+    },
+  };
+}
