@@ -10,6 +10,9 @@ SHELL := /bin/sh
 Q   := $(if $(V),,@)
 say  = $(if $(V),,@echo '$(if $(filter release,$(VARIANT)),,[$(VARIANT)] )$(1)')
 
+# all processors, unless make was told how many
+JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
+
 PREFIX ?= /usr/local
 PORT   ?= 8080
 
@@ -83,7 +86,7 @@ BROWSER       := $(sort $(wildcard tests/browser/test_*))
 .PHONY: all programs
 # `make` alone assumes nothing but itself, so the compilers come first
 all: build/.packages-run
-	@$(MAKE) --no-print-directory $(PROGRAM) $(LIBRARY)
+	@$(MAKE) $(JOBS) --no-print-directory $(PROGRAM) $(LIBRARY)
 
 $(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(LIBRARY)
 	$(call say,link $@)
@@ -199,19 +202,19 @@ help:
 .PHONY: test test-quick asan tsan bench run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) --no-print-directory $(WEB_READY) $(BROWSER_READY))
-	@$(MAKE) --no-print-directory run-suite
+	@$(MAKE) $(JOBS) --no-print-directory run-suite
 
 test-quick: build/.packages-test
-	@$(MAKE) --no-print-directory run-unit
+	@$(MAKE) $(JOBS) --no-print-directory run-unit
 
 asan: build/.packages-test
-	@$(MAKE) --no-print-directory VARIANT=asan run-unit
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit
 
 tsan: build/.packages-test
-	@$(MAKE) --no-print-directory VARIANT=tsan run-server
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=tsan run-server
 
 bench: all
-	@$(MAKE) --no-print-directory run-bench
+	@$(MAKE) $(JOBS) --no-print-directory run-bench
 
 # HOLONOM tells the scripts which program to drive
 run-suite: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW)
@@ -232,8 +235,8 @@ run-bench: $(BENCH)
 .PHONY: check check-layers check-headers check-format format
 check: build/.packages-check check-layers
 	@$(MAKE) --no-print-directory check-headers
-	@$(MAKE) --no-print-directory VARIANT=gcc programs
-	@$(MAKE) --no-print-directory VARIANT=clang programs
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=gcc programs
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=clang programs
 	@$(MAKE) --no-print-directory check-format
 	@echo 'check: all good'
 
