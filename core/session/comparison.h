@@ -63,6 +63,7 @@ typedef struct hn_run_request {
     long long max_steps;
     /// called now and then with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
+    const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"
     void *user;
 } hn_run_request;
 

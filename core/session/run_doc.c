@@ -240,7 +240,7 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
 }
 
 static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_status ended,
-                    const table *tab) {
+                    const char *stop_reason, const table *tab) {
     hn_run_summary s = hn_run_get_summary(run);
     char spelling[HN_SPEC_MAX];
     hn_method_format(hn_run_spec(run), spelling);
@@ -248,8 +248,7 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_s
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "method", spelling);
     hn_json_put_string(b, "status", hn_status_name(ended));
-    hn_json_put_string(
-        b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? "stopped on request" : s.reason);
+    hn_json_put_string(b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? stop_reason : s.reason);
     hn_json_put_number(b, "t_reached", s.t);
     put_names(b, model);
     put_samples(b, tab);
@@ -289,7 +288,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
-        put_run(b, model, run, *ended, &tab);
+        put_run(b, model, run, *ended,
+                request->stop_reason ? request->stop_reason : "stopped on request", &tab);
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }
     hn_arena_free(tab.arena);

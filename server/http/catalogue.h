@@ -1,0 +1,17 @@
+#ifndef HN_HTTP_CATALOGUE_H
+#define HN_HTTP_CATALOGUE_H
+// What there is: the index with the bounds, scenes, methods, looks, lessons, problems, kinds of errors, health.
+
+struct hn_request;
+
+void hn_handle_index(struct hn_request *r);
+void hn_handle_health(struct hn_request *r);
+void hn_handle_scenes(struct hn_request *r);
+void hn_handle_scene(struct hn_request *r);
+void hn_handle_methods(struct hn_request *r);
+void hn_handle_look(struct hn_request *r);
+void hn_handle_lessons(struct hn_request *r);
+void hn_handle_problems(struct hn_request *r);
+void hn_handle_errors(struct hn_request *r);
+void hn_handle_error(struct hn_request *r);
+#endif

@@ -1,0 +1,40 @@
+#ifndef HN_HTTP_SERVER_H
+#define HN_HTTP_SERVER_H
+// The HTTP server: one thread speaks with the clients, a pool does long work, each comparison has a thread of its own.
+
+#include "base/diag.h"
+#include "session/library.h"
+
+enum { HN_MAX_HOSTS = 16 };
+
+/// Every bound of the server. The index lists them.
+typedef struct hn_http_opts {
+    const char *host;         ///< address or name to listen on; NULL: 127.0.0.1
+    int port;                 ///< 0: any free one
+    int next_ports;           ///< how many following ports are tried when the port is taken
+    const char *const *allow_hosts;
+    int n_allow_hosts;
+    int max_connections, max_comparisons, max_streams, max_events;
+    long long max_body, max_event_bytes; ///< bytes; event bytes per comparison
+    double max_duration;      ///< of a comparison, simulated [s]
+    long long max_samples;    ///< of one run
+    double max_run_cpu;       ///< of one stateless run [s]
+    double frame_cpu;         ///< of one method in one frame [s]
+    int pool, queue;          ///< threads for long requests; how many may wait
+    double idle_pause, expiry, keep_alive; ///< without a reader; untouched; between comment lines [s]
+    int connection_timeout;   ///< without any progress [s]
+} hn_http_opts;
+hn_http_opts hn_http_opts_default(void);
+
+typedef struct hn_server hn_server;
+
+/// Listens and serves until hn_server_stop(). `lib` must outlive the server. HN_ERR_IO when no port could be had: diag says which
+/// and why (a privileged port, an address that is not ours).
+HN_MUST_CHECK hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts,
+                                        hn_server **out, hn_diag *diag);
+/// "http://127.0.0.1:8080"
+const char *hn_server_address(const hn_server *server);
+int hn_server_port(const hn_server *server);
+/// Ends streams, comparisons and pool, then the listening; frees everything.
+void hn_server_stop(hn_server *server);
+#endif

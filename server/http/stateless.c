@@ -1,0 +1,156 @@
+#include "http/stateless.h"
+
+#include "http/server_internal.h"
+#include "session/comparison.h"
+
+#include <string.h>
+#include <time.h>
+
+/// Loads the scene that the body names; NULL with a problem as reply.
+static hn_model *load_model(hn_request *r, int allow_open) {
+    hn_scene_order order = {0};
+    hn_diags diags = {0};
+    hn_model *model = NULL;
+    hn_status status = hn_scene_order_read(&order, r->json, &diags);
+    if (status == HN_OK) {
+        status = hn_scene_order_load(&order, r->server->lib, allow_open, &model, &diags);
+    }
+    hn_scene_order_reset(&order);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return NULL;
+    }
+    return model;
+}
+
+/// Sends what was written, or the faults, and frees the model.
+static void conclude(hn_request *r, hn_model *model, hn_status status, hn_strbuf *b,
+                     const hn_diags *diags) {
+    hn_model_free(model);
+    if (status == HN_OK) {
+        hn_reply_json(r, MHD_HTTP_OK, b);
+    } else {
+        hn_strbuf_reset(b);
+        hn_reply_diags(r, status, diags);
+    }
+}
+
+void hn_handle_terms(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    const cJSON *state = cJSON_GetObjectItemCaseSensitive(r->json, "state"), *item;
+    int n = 0;
+    hn_state_entry *entries = calloc((size_t)cJSON_GetArraySize(state) + 1, sizeof *entries);
+    hn_status status = entries ? HN_OK : HN_ERR_MEMORY;
+    if (entries) {
+        cJSON_ArrayForEach(item, state) {
+            entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
+        }
+        status = hn_model_terms_json(&b, model, hn_body_number(r->json, "t", 0), entries, n, &diags);
+    }
+    free(entries);
+    conclude(r, model, status, &b, &diags);
+}
+
+void hn_handle_assemble(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (model) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_model_assembly_json(&b, model);
+        conclude(r, model, HN_OK, &b, NULL);
+    }
+}
+
+void hn_handle_inspect(hn_request *r) {
+    hn_model *model = load_model(r, 1);
+    if (model) {
+        hn_strbuf b;
+        hn_diags diags = {0};
+        hn_strbuf_init(&b);
+        hn_status status = hn_model_inspect_json(&b, model, &diags);
+        conclude(r, model, status, &b, &diags);
+    }
+}
+
+void hn_handle_equations(hn_request *r) {
+    hn_model *model = load_model(r, 1);
+    if (!model) {
+        return;
+    }
+    const char *format = hn_body_text(r->json, "format");
+    format = format ? format : "text";
+    hn_equation_form form = strcmp(format, "latex") == 0  ? HN_EQUATIONS_LATEX
+                            : strcmp(format, "json") == 0 ? HN_EQUATIONS_JSON
+                                                          : HN_EQUATIONS_TEXT;
+    hn_strbuf text, b;
+    hn_diags diags = {0};
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&b);
+    hn_status status = hn_model_equations(&text, model, form, &diags);
+    if (form == HN_EQUATIONS_JSON) {
+        conclude(r, model, status, &text, &diags);
+        return;
+    }
+    hn_json_object(&b);
+    hn_json_put_string(&b, "format", format);
+    hn_json_put_string(&b, "text", hn_strbuf_text(&text));
+    hn_json_end_object(&b);
+    b.failed |= text.failed;
+    hn_strbuf_reset(&text);
+    conclude(r, model, status, &b, &diags);
+}
+
+/// CPU time of this thread [s].
+static double thread_cpu(void) {
+    struct timespec ts;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
+    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+}
+
+typedef struct allowance {
+    hn_server *server;
+    double cpu_end;
+} allowance;
+
+/// A run goes on while it has computing time left and the server is up.
+static int may_go_on(void *user, double share) {
+    const allowance *a = user;
+    (void)share;
+    return thread_cpu() < a->cpu_end && !atomic_load(&a->server->stopping);
+}
+
+void hn_handle_run(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    allowance a = {.server = r->server, .cpu_end = thread_cpu() + r->server->opts.max_run_cpu};
+    const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
+    double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
+    hn_run_request request = {.method = hn_body_text(r->json, "method"),
+                              .time = hn_body_number(r->json, "time", 0),
+                              .at = at ? times : NULL,
+                              .every = hn_body_number(r->json, "every", 0),
+                              .max_samples = r->server->opts.max_samples,
+                              .progress = may_go_on,
+                              .stop_reason = "the computing time of one request is used up",
+                              .user = &a};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    hn_status ended = HN_OK, status = HN_ERR_MEMORY;
+    if (times) {
+        cJSON_ArrayForEach(item, at) {
+            times[request.n_at++] = item->valuedouble;
+        }
+        status = hn_model_run_json(&b, model, &request, &ended, &diags);
+    }
+    free(times);
+    conclude(r, model, status, &b, &diags);
+}

@@ -1,0 +1,12 @@
+#ifndef HN_HTTP_STATELESS_H
+#define HN_HTTP_STATELESS_H
+// Questions that are one POST and one answer.
+
+struct hn_request;
+
+void hn_handle_terms(struct hn_request *r);
+void hn_handle_assemble(struct hn_request *r);
+void hn_handle_inspect(struct hn_request *r);
+void hn_handle_equations(struct hn_request *r);
+void hn_handle_run(struct hn_request *r);
+#endif
