@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_PATH_CHARS = 4096, MAX_TEXT = 1 << 20, MAX_TITLE = 200 };
+enum { MAX_TEXT = 1 << 20, MAX_TITLE = 200 };
 
 /// The whole file, zero-terminated, owned by the caller; NULL when it cannot be read or is too long.
 static char *read_file(const char *path) {
@@ -25,9 +25,11 @@ static char *read_file(const char *path) {
 
 /// The first heading of a lesson's text, or its id.
 static void find_title(const char *folder, const char *id, char title[MAX_TITLE]) {
-    char path[MAX_PATH_CHARS];
-    snprintf(path, sizeof path, "%s/text.md", folder);
-    char *text = read_file(path);
+    hn_strbuf path;
+    hn_strbuf_init(&path);
+    hn_strbuf_printf(&path, "%s/text.md", folder);
+    char *text = path.failed ? NULL : read_file(hn_strbuf_text(&path));
+    hn_strbuf_reset(&path);
     const char *heading = text ? strstr(text, "# ") : NULL;
     if (heading) {
         snprintf(title, MAX_TITLE, "%.*s", (int)strcspn(heading + 2, "\r\n"), heading + 2);
@@ -43,8 +45,11 @@ static int lies_in(const char *path, const char *folder) {
 }
 
 static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
-    char folder[MAX_PATH_CHARS], title[MAX_TITLE];
-    snprintf(folder, sizeof folder, "%s/%s", hn_library_lessons(lib), id);
+    char title[MAX_TITLE];
+    hn_strbuf place;
+    hn_strbuf_init(&place);
+    hn_strbuf_printf(&place, "%s/%s", hn_library_lessons(lib), id);
+    const char *folder = hn_strbuf_text(&place);
     find_title(folder, id, title);
     hn_json_object(b);
     hn_json_put_string(b, "id", id);
@@ -68,6 +73,8 @@ static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
     }
     hn_json_end_array(b);
     hn_json_end_object(b);
+    b->failed |= place.failed;
+    hn_strbuf_reset(&place);
 }
 
 static int is_lesson(const struct dirent *e) {

@@ -248,7 +248,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_s
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "method", spelling);
     hn_json_put_string(b, "status", hn_status_name(ended));
-    hn_json_put_string(b, "reason", ended == HN_ERR_BUDGET && s.status == HN_OK ? stop_reason : s.reason);
+    hn_json_put_string(b, "reason",
+                       ended == HN_ERR_BUDGET && s.status == HN_OK ? stop_reason : s.reason);
     hn_json_put_number(b, "t_reached", s.t);
     put_names(b, model);
     put_samples(b, tab);

@@ -186,7 +186,8 @@ hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char 
         if (!f) {
             one = tell_unknown(item->string, fields, pointer, diags);
         } else if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item) {
-            one = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
+            one =
+                hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
         } else {
             one = check_member(item, f, pointer, diags);
         }
@@ -195,8 +196,8 @@ hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char 
     for (const hn_field *f = fields; f->name; f++) {
         if (f->required && !cJSON_GetObjectItemCaseSensitive(object, f->name)) {
             member_pointer(pointer, parent, f->name);
-            status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is missing: %s", f->name,
-                                  f->about);
+            status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is missing: %s",
+                                  f->name, f->about);
         }
     }
     return status;

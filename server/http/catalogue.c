@@ -4,6 +4,7 @@
 #include "http/server_internal.h"
 #include "integrators/spec.h"
 #include "render/look.h"
+#include "session/comparison.h"
 #include "session/lists.h"
 #include "session/model.h"
 

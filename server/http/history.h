@@ -7,11 +7,11 @@
 
 #include <stdint.h>
 
-#define HN_EVENT_LIST(X)            \
-    X(HN_EVENT_FRAME, "frame")      \
+#define HN_EVENT_LIST(X)             \
+    X(HN_EVENT_FRAME, "frame")       \
     X(HN_EVENT_INCIDENT, "incident") \
-    X(HN_EVENT_RESET, "reset")      \
-    X(HN_EVENT_STATE, "state")      \
+    X(HN_EVENT_RESET, "reset")       \
+    X(HN_EVENT_STATE, "state")       \
     X(HN_EVENT_END, "end")
 
 typedef enum hn_event_kind {

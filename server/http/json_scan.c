@@ -34,8 +34,9 @@ static void skip_space(scan *s) {
 static size_t utf8_length(const scan *s) {
     static const struct {
         unsigned char lo, hi, second_lo, second_hi, more;
-    } rows[] = {{0xc2, 0xdf, 0x80, 0xbf, 1}, {0xe0, 0xe0, 0xa0, 0xbf, 2}, {0xe1, 0xec, 0x80, 0xbf, 2},
-                {0xed, 0xed, 0x80, 0x9f, 2}, {0xee, 0xef, 0x80, 0xbf, 2}, {0xf0, 0xf0, 0x90, 0xbf, 3},
+    } rows[] = {{0xc2, 0xdf, 0x80, 0xbf, 1}, {0xe0, 0xe0, 0xa0, 0xbf, 2},
+                {0xe1, 0xec, 0x80, 0xbf, 2}, {0xed, 0xed, 0x80, 0x9f, 2},
+                {0xee, 0xef, 0x80, 0xbf, 2}, {0xf0, 0xf0, 0x90, 0xbf, 3},
                 {0xf1, 0xf3, 0x80, 0xbf, 3}, {0xf4, 0xf4, 0x80, 0x8f, 3}};
     const unsigned char *p = s->text + s->at;
     size_t left = s->n - s->at;
@@ -186,7 +187,8 @@ static int scan_array(scan *s) {
         }
         int c = peek(s);
         if (c != ',' && c != ']') {
-            return fail(s, s->at, c < 0 ? "the text ends inside an array" : "',' or ']' is expected");
+            return fail(s, s->at,
+                        c < 0 ? "the text ends inside an array" : "',' or ']' is expected");
         }
         s->at++;
         if (c == ']') {
@@ -205,8 +207,9 @@ static int scan_object(scan *s) {
     for (;;) {
         skip_space(s);
         if (peek(s) != '"') {
-            return fail(s, s->at, peek(s) < 0 ? "the text ends inside an object"
-                                              : "a name in double quotes is expected");
+            return fail(s, s->at,
+                        peek(s) < 0 ? "the text ends inside an object"
+                                    : "a name in double quotes is expected");
         }
         if (!scan_string(s)) {
             return 0;
@@ -221,7 +224,8 @@ static int scan_object(scan *s) {
         }
         int c = peek(s);
         if (c != ',' && c != '}') {
-            return fail(s, s->at, c < 0 ? "the text ends inside an object" : "',' or '}' is expected");
+            return fail(s, s->at,
+                        c < 0 ? "the text ends inside an object" : "',' or '}' is expected");
         }
         s->at++;
         if (c == '}') {
@@ -239,8 +243,9 @@ static int scan_word(scan *s) {
             return 1;
         }
     }
-    return fail(s, s->at, peek(s) < 0 ? "the text ends where a value is expected"
-                                      : "a value is expected (JSON has no NaN, Infinity or bare words)");
+    return fail(s, s->at,
+                peek(s) < 0 ? "the text ends where a value is expected"
+                            : "a value is expected (JSON has no NaN, Infinity or bare words)");
 }
 
 /// One value with the space around it.
@@ -250,11 +255,11 @@ static int scan_value(scan *s) {
     }
     skip_space(s);
     int c = peek(s);
-    int ok = c == '{'                     ? scan_object(s)
-             : c == '['                   ? scan_array(s)
-             : c == '"'                   ? scan_string(s)
+    int ok = c == '{'                  ? scan_object(s)
+             : c == '['                ? scan_array(s)
+             : c == '"'                ? scan_string(s)
              : c == '-' || is_digit(c) ? scan_number(s)
-                                          : scan_word(s);
+                                       : scan_word(s);
     skip_space(s);
     s->depth--;
     return ok;

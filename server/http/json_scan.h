@@ -8,8 +8,8 @@
 enum { HN_JSON_MAX_DEPTH = 64 };
 
 typedef struct hn_json_fault {
-    size_t offset;     ///< byte at which the text stops being JSON
-    const char *what;  ///< one clause; static text
+    size_t offset;    ///< byte at which the text stops being JSON
+    const char *what; ///< one clause; static text
 } hn_json_fault;
 
 /// 1 when the n bytes are one JSON value; otherwise 0 and `fault` is filled.

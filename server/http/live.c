@@ -39,8 +39,8 @@ hn_status hn_bench_create(const hn_live *live, const hn_scene_order *scene,
         opts.frame_dt = live->asked_frame_dt;
         opts.duration = live->asked_duration;
         opts.cpu_budget = live->opts->frame_cpu;
-        status =
-            hn_comparison_create(bench->model, methods, n_methods, &opts, &bench->comparison, diags);
+        status = hn_comparison_create(bench->model, methods, n_methods, &opts, &bench->comparison,
+                                      diags);
     }
     if (status != HN_OK) {
         hn_bench_reset(bench);
@@ -111,8 +111,7 @@ hn_status hn_live_publish_setup(hn_live *live) {
     hn_model_json(&scene, live->bench.model);
     hn_comparison_json(&comparison, live->bench.comparison);
     hn_scene_order_settings_json(&settings, &live->bench.scene);
-    hn_status status =
-        scene.failed || comparison.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
+    hn_status status = scene.failed || comparison.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
     if (status == HN_OK) {
         pthread_mutex_lock(&live->lock);
         swap_text(&live->scene_json, &scene);
@@ -461,7 +460,8 @@ void hn_live_end(hn_live *live, int deleted) {
 int hn_live_tick(hn_live *live) {
     double now = hn_now();
     pthread_mutex_lock(&live->lock);
-    int expired = live->n_streams == 0 && !live->patches && now - live->touched > live->opts->expiry;
+    int expired =
+        live->n_streams == 0 && !live->patches && now - live->touched > live->opts->expiry;
     for (hn_stream *s = live->streams; s; s = hn_stream_next(s)) {
         hn_stream_tick(s, now);
     }

@@ -33,8 +33,8 @@ struct hn_live {
     hn_live_state state;
     double speed;
     long long frame, generation;
-    double lag;          ///< real time by which the frames came too late, in all [s]
-    double anchor_time;  ///< pacing: frame `anchor_frame` was due then
+    double lag;         ///< real time by which the frames came too late, in all [s]
+    double anchor_time; ///< pacing: frame `anchor_frame` was due then
     long long anchor_frame;
     double frame_dt, duration;
     hn_strbuf scene_json, comparison_json, settings_json, latest;
@@ -44,7 +44,7 @@ struct hn_live {
     hn_request *patches, **patches_end; ///< queue
     struct hn_stream *streams;          ///< list
     int n_streams;
-    double touched;      ///< last look by anybody [s, monotonic]
+    double touched; ///< last look by anybody [s, monotonic]
     int ending, deleted, thread_ended;
 };
 

@@ -124,56 +124,90 @@ static const struct {
     const char *name, *schema;
 } SCHEMAS[] = {
     {"Document", "{\"type\":\"object\"}"},
-    {"Health", "{\"type\":\"object\",\"required\":[\"status\"],\"properties\":{\"status\":{\"const\":\"ok\"},"
-               "\"version\":" TEXT ",\"build\":" TEXT "}}"},
-    {"Index", "{\"type\":\"object\",\"required\":[\"name\",\"version\",\"links\",\"limits\",\"routes\"],\"properties\":{"
+    {"Health",
+     "{\"type\":\"object\",\"required\":[\"status\"],\"properties\":{\"status\":{\"const\":\"ok\"},"
+     "\"version\":" TEXT ",\"build\":" TEXT "}}"},
+    {"Index", "{\"type\":\"object\",\"required\":[\"name\",\"version\",\"links\",\"limits\","
+              "\"routes\"],\"properties\":{"
               "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "},"
-              "\"limits\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},\"routes\":" OBJECTS "}}"},
-    {"Scenes", "{\"type\":\"object\",\"required\":[\"scenes\"],\"properties\":{\"scenes\":" OBJECTS "}}"},
-    {"Lessons", "{\"type\":\"object\",\"required\":[\"lessons\"],\"properties\":{\"lessons\":" OBJECTS "}}"},
-    {"Problems", "{\"type\":\"object\",\"required\":[\"problems\"],\"properties\":{\"problems\":" OBJECTS "}}"},
-    {"Scene", "{\"type\":\"object\",\"required\":[\"id\",\"title\",\"parameters\",\"coordinates\",\"drawing\"],\"properties\":{"
-              "\"id\":" TEXT ",\"title\":" TEXT ",\"parameters\":" OBJECTS ",\"coordinates\":" OBJECTS
-              ",\"drawing\":{\"type\":\"object\"},\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
-              "\"methods\":" TEXTS ",\"duration\":{\"type\":\"number\"},\"step\":{\"type\":\"number\"}}}"},
-    {"Methods", "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
-                "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
+              "\"limits\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},"
+              "\"routes\":" OBJECTS "}}"},
+    {"Scenes",
+     "{\"type\":\"object\",\"required\":[\"scenes\"],\"properties\":{\"scenes\":" OBJECTS "}}"},
+    {"Lessons",
+     "{\"type\":\"object\",\"required\":[\"lessons\"],\"properties\":{\"lessons\":" OBJECTS "}}"},
+    {"Problems",
+     "{\"type\":\"object\",\"required\":[\"problems\"],\"properties\":{\"problems\":" OBJECTS "}}"},
+    {"Scene",
+     "{\"type\":\"object\",\"required\":[\"id\",\"title\",\"parameters\",\"coordinates\","
+     "\"drawing\"],\"properties\":{"
+     "\"id\":" TEXT ",\"title\":" TEXT ",\"parameters\":" OBJECTS ",\"coordinates\":" OBJECTS
+     ",\"drawing\":{\"type\":\"object\"},\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     "},"
+     "\"methods\":" TEXTS ",\"duration\":{\"type\":\"number\"},\"step\":{\"type\":\"number\"}}}"},
+    {"Methods",
+     "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
+     "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
     {"Equations", "{\"type\":\"object\",\"properties\":{\"format\":" TEXT ",\"text\":" TEXT "}}"},
-    {"Run", "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_reached\",\"coordinates\",\"samples\","
-            "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},\"method\":" TEXT ",\"status\":" TEXT
-            ",\"reason\":" TEXT ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ","
-            "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS "}},\"incidents\":" OBJECTS
-            ",\"cost\":{\"type\":\"object\"}}}"},
-    {"ComparisonList", "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS "}}"},
-    {"Frame", "{\"type\":\"object\",\"description\":\"data of the event frame\",\"required\":[\"generation\",\"frame\",\"t\",\"methods\"],"
-              "\"properties\":{\"generation\":{\"type\":\"integer\"},\"frame\":{\"type\":\"integer\"},\"t\":{\"type\":\"number\"},"
-              "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\",\"status\"],\"properties\":{"
-              "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"t\":{\"type\":\"number\"},"
-              "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER ",\"velocity_gap\":" MAYBE_NUMBER
-              ",\"energy_change\":" MAYBE_NUMBER ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
-              "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
-    {"Incident", "{\"type\":\"object\",\"description\":\"data of the event incident\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
-                 "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":\"integer\"},\"code\":" TEXT
-                 ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":[\"string\",\"null\"]},\"value\":" MAYBE_NUMBER
-                 ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT ",\"remedies\":" TEXTS "}}"},
-    {"Comparison", "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\",\"duration\",\"generation\","
-                   "\"scene\",\"comparison\",\"settings\",\"latest\",\"links\"],\"properties\":{\"id\":" TEXT
-                   ",\"state\":{\"enum\":[\"paused\",\"running\",\"finished\"]},\"speed\":{\"type\":\"number\"},"
-                   "\"frame\":{\"type\":\"integer\"},\"t\":{\"type\":\"number\"},\"frame_dt\":{\"type\":\"number\"},"
-                   "\"duration\":{\"type\":\"number\"},\"generation\":{\"type\":\"integer\"},\"lag\":{\"type\":\"number\"},"
-                   "\"last_event\":{\"type\":\"integer\"},\"scene\":{\"$ref\":\"#/components/schemas/Scene\"},"
-                   "\"comparison\":{\"type\":\"object\"},\"settings\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},"
-                   "\"latest\":{\"oneOf\":[{\"$ref\":\"#/components/schemas/Frame\"},{\"type\":\"null\"}]},"
-                   "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
-    {"Events", "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), incident (Incident), "
-               "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
+    {"Run", "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
+            "reached\",\"coordinates\",\"samples\","
+            "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
+            "\"method\":" TEXT ",\"status\":" TEXT ",\"reason\":" TEXT
+            ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ","
+            "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
+            "}},\"incidents\":" OBJECTS ",\"cost\":{\"type\":\"object\"}}}"},
+    {"ComparisonList",
+     "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS
+     "}}"},
+    {"Frame",
+     "{\"type\":\"object\",\"description\":\"data of the event "
+     "frame\",\"required\":[\"generation\",\"frame\",\"t\",\"methods\"],"
+     "\"properties\":{\"generation\":{\"type\":\"integer\"},\"frame\":{\"type\":\"integer\"},\"t\":"
+     "{\"type\":\"number\"},"
+     "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\","
+     "\"status\"],\"properties\":{"
+     "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"t\":{\"type\":\"number\"},"
+     "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
+     ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy_change\":" MAYBE_NUMBER
+     ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
+     "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
+    {"Incident",
+     "{\"type\":\"object\",\"description\":\"data of the event "
+     "incident\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
+     "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
+     "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
+                                   "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER
+     ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT ",\"remedies\":" TEXTS "}}"},
+    {"Comparison",
+     "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
+     "\"duration\",\"generation\","
+     "\"scene\",\"comparison\",\"settings\",\"latest\",\"links\"],\"properties\":{\"id\":" TEXT
+     ",\"state\":{\"enum\":[\"paused\",\"running\",\"finished\"]},\"speed\":{\"type\":\"number\"},"
+     "\"frame\":{\"type\":\"integer\"},\"t\":{\"type\":\"number\"},\"frame_dt\":{\"type\":"
+     "\"number\"},"
+     "\"duration\":{\"type\":\"number\"},\"generation\":{\"type\":\"integer\"},\"lag\":{\"type\":"
+     "\"number\"},"
+     "\"last_event\":{\"type\":\"integer\"},\"scene\":{\"$ref\":\"#/components/schemas/Scene\"},"
+     "\"comparison\":{\"type\":\"object\"},\"settings\":{\"type\":\"object\","
+     "\"additionalProperties\":{\"type\":\"number\"}},"
+     "\"latest\":{\"oneOf\":[{\"$ref\":\"#/components/schemas/Frame\"},{\"type\":\"null\"}]},"
+     "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
+    {"Events",
+     "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
+     "incident (Incident), "
+     "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
     {"Verdict", "{\"type\":\"object\"}"},
     {"Picture", "{\"type\":\"string\",\"contentMediaType\":\"image/png\"}"},
-    {"Problem", "{\"type\":\"object\",\"description\":\"RFC 9457\",\"required\":[\"type\",\"title\",\"status\",\"detail\"],\"properties\":{"
-                "\"type\":" TEXT ",\"title\":" TEXT ",\"status\":{\"type\":\"integer\"},\"detail\":" TEXT ",\"hint\":" TEXT
-                ",\"instance\":" TEXT ",\"offset\":{\"type\":\"integer\",\"description\":\"byte at which the body stops being JSON\"},"
-                "\"errors\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"detail\",\"pointer\"],\"properties\":{"
-                "\"detail\":" TEXT ",\"pointer\":" TEXT ",\"hint\":" TEXT ",\"column\":{\"type\":\"integer\"}}}}}}"},
+    {"Problem",
+     "{\"type\":\"object\",\"description\":\"RFC "
+     "9457\",\"required\":[\"type\",\"title\",\"status\",\"detail\"],\"properties\":{"
+     "\"type\":" TEXT ",\"title\":" TEXT ",\"status\":{\"type\":\"integer\"},\"detail\":" TEXT
+     ",\"hint\":" TEXT ",\"instance\":" TEXT ",\"offset\":{\"type\":\"integer\",\"description\":"
+                                             "\"byte at which the body stops being JSON\"},"
+     "\"errors\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"detail\","
+     "\"pointer\"],\"properties\":{"
+     "\"detail\":" TEXT ",\"pointer\":" TEXT ",\"hint\":" TEXT
+     ",\"column\":{\"type\":\"integer\"}}}}}}"},
 };
 
 static void put_components(hn_strbuf *b) {
@@ -187,7 +221,8 @@ static void put_components(hn_strbuf *b) {
     }
     hn_json_end_object(b);
     hn_json_key(b, "responses");
-    hn_json_raw(b, "{\"Problem\":{\"description\":\"A problem document\",\"content\":{\"application/problem+json\":{\"schema\":"
+    hn_json_raw(b, "{\"Problem\":{\"description\":\"A problem "
+                   "document\",\"content\":{\"application/problem+json\":{\"schema\":"
                    "{\"$ref\":\"#/components/schemas/Problem\"}}}}}");
     hn_json_end_object(b);
 }

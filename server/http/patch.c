@@ -34,7 +34,8 @@ static int fits_state(const hn_live *live, const change *c, hn_request *r) {
                          "a running comparison cannot be stepped");
         return 0;
     }
-    if (live->state == HN_LIVE_FINISHED && !restart && (c->step > 0 || (c->wants_state && c->run))) {
+    if (live->state == HN_LIVE_FINISHED && !restart &&
+        (c->step > 0 || (c->wants_state && c->run))) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"reset\": true as well",
                          "the comparison has finished");
         return 0;

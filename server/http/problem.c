@@ -33,7 +33,7 @@ static void put_errors(hn_strbuf *b, const hn_diags *diags) {
 }
 
 void hn_http_problem_json(hn_strbuf *b, hn_http_problem kind, const char *detail, const char *hint,
-                     const char *instance, long long offset, const hn_diags *diags) {
+                          const char *instance, long long offset, const hn_diags *diags) {
     const hn_http_problem_info *info = &INFOS[kind];
     hn_strbuf type;
     hn_strbuf_init(&type);

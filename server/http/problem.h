@@ -53,5 +53,5 @@ const hn_http_problem_info *hn_http_problem_get_info(hn_http_problem kind);
 
 /// The document. `instance` (the address asked) may be NULL; `diags` may be NULL; `offset` < 0 is left out; `hint` may be NULL.
 void hn_http_problem_json(hn_strbuf *b, hn_http_problem kind, const char *detail, const char *hint,
-                     const char *instance, long long offset, const hn_diags *diags);
+                          const char *instance, long long offset, const hn_diags *diags);
 #endif

@@ -78,8 +78,8 @@ void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *resp
 }
 
 /// Writes the document; when even that has no memory, the status stands alone.
-static void reply_document(hn_request *r, hn_http_problem kind, const char *detail, const char *hint,
-                           long long offset, const hn_diags *diags) {
+static void reply_document(hn_request *r, hn_http_problem kind, const char *detail,
+                           const char *hint, long long offset, const hn_diags *diags) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_http_problem_json(&b, kind, detail, hint, r->path, offset, diags);
@@ -92,7 +92,8 @@ static void reply_document(hn_request *r, hn_http_problem kind, const char *deta
     hn_reply_bytes(r, status, "application/problem+json", &b);
 }
 
-void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format, ...) {
+void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
+                      ...) {
     char detail[HN_DIAG_MESSAGE];
     va_list args;
     va_start(args, format);

@@ -32,12 +32,12 @@ typedef struct hn_request {
     hn_request_stage stage;
     const hn_route *route;
     int is_head;
-    char path[HN_HEADER_TEXT];              ///< as asked, cut when longer (for messages)
+    char path[HN_HEADER_TEXT];                ///< as asked, cut when longer (for messages)
     char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
-    char origin_host[HN_HEADER_TEXT];       ///< the Host header
+    char origin_host[HN_HEADER_TEXT];         ///< the Host header
     char *body;
     size_t n_body, body_cap, body_dropped;
-    cJSON *json;      ///< the parsed body, when the route takes fields
+    cJSON *json;             ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue
 
     // the reply
@@ -64,8 +64,8 @@ void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_s
 void hn_reply_empty(hn_request *r, unsigned status);
 /// Takes the response.
 void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);
-void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format, ...)
-    HN_PRINTF(4, 5);
+void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
+                      ...) HN_PRINTF(4, 5);
 void hn_reply_bad_json(hn_request *r, size_t offset, const char *what);
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);

@@ -20,10 +20,11 @@ typedef struct hn_route {
     const char *method, *path; ///< "/api/v1/scenes/{id}"
     hn_work work;
     void (*handle)(struct hn_request *r);
-    const hn_field *fields;  ///< of the JSON body; NULL: no body
-    const char *media_type;  ///< of the answer
-    const char *status;      ///< of the answer when all is well
-    const char *schema;      ///< name of the answer's schema in the OpenAPI document, NULL when it has no body
+    const hn_field *fields; ///< of the JSON body; NULL: no body
+    const char *media_type; ///< of the answer
+    const char *status;     ///< of the answer when all is well
+    const char
+        *schema; ///< name of the answer's schema in the OpenAPI document, NULL when it has no body
     const char *summary;
     const hn_route_query *query; ///< ends with a row without a name; may be NULL
 } hn_route;

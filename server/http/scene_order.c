@@ -45,8 +45,8 @@ hn_status hn_scene_order_read_settings(hn_scene_order *order, const cJSON *setti
     forget_settings(order);
     const cJSON *item;
     cJSON_ArrayForEach(item, settings) {
-        hn_status status = hn_scene_order_add(order, item->string, strlen(item->string),
-                                              item->valuedouble, diags);
+        hn_status status =
+            hn_scene_order_add(order, item->string, strlen(item->string), item->valuedouble, diags);
         if (status != HN_OK) {
             return status;
         }
@@ -64,8 +64,8 @@ hn_status hn_scene_order_read(hn_scene_order *order, const cJSON *body, hn_diags
     if (!order->name && !order->text) {
         return HN_ERR_MEMORY;
     }
-    return hn_scene_order_read_settings(
-        order, cJSON_GetObjectItemCaseSensitive(body, "settings"), diags);
+    return hn_scene_order_read_settings(order, cJSON_GetObjectItemCaseSensitive(body, "settings"),
+                                        diags);
 }
 
 hn_status hn_scene_order_copy(hn_scene_order *to, const hn_scene_order *from) {

@@ -326,9 +326,10 @@ hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts, hn_se
     if (status == HN_OK) {
         s->jobs = hn_jobs_create(opts->pool, opts->queue, run_job);
         s->comparisons = hn_comparisons_create(&s->opts, lib);
-        status = s->jobs && s->comparisons
-                     ? hn_listen(opts->host, opts->port, opts->next_ports, &fd, &s->port, host, diag)
-                     : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
+        status =
+            s->jobs && s->comparisons
+                ? hn_listen(opts->host, opts->port, opts->next_ports, &fd, &s->port, host, diag)
+                : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
     }
     if (status == HN_OK) {
         snprintf(s->address, sizeof s->address, "http://%s:%d", host, s->port);

@@ -75,8 +75,7 @@ void hn_sha256_base64(const void *bytes, size_t n, char out[HN_SHA256_BASE64]) {
     calc_digest(bytes, n, digest);
     char *o = out;
     for (int i = 0; i < DIGEST; i += 3) {
-        uint32_t group =
-            (uint32_t)digest[i] << 16 | (uint32_t)digest[i + 1] << 8 | digest[i + 2];
+        uint32_t group = (uint32_t)digest[i] << 16 | (uint32_t)digest[i + 1] << 8 | digest[i + 2];
         for (int k = 18; k >= 0; k -= 6) {
             *o++ = letters[group >> k & 63];
         }

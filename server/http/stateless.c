@@ -51,7 +51,8 @@ void hn_handle_terms(hn_request *r) {
         cJSON_ArrayForEach(item, state) {
             entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
         }
-        status = hn_model_terms_json(&b, model, hn_body_number(r->json, "t", 0), entries, n, &diags);
+        status =
+            hn_model_terms_json(&b, model, hn_body_number(r->json, "t", 0), entries, n, &diags);
     }
     free(entries);
     conclude(r, model, status, &b, &diags);

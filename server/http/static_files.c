@@ -54,7 +54,8 @@ static const char *find_media_type(const char *name) {
 
 static int is_left_out(const char *name) {
     return name[0] == '.' || strcmp(name, "node_modules") == 0 ||
-           (strncmp(name, "package", 7) == 0 && strcmp(find_media_type(name), "application/json") == 0);
+           (strncmp(name, "package", 7) == 0 &&
+            strcmp(find_media_type(name), "application/json") == 0);
 }
 
 static hn_status add_file(hn_static_files *s, const char *path, size_t n_root) {

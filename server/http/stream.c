@@ -1,5 +1,6 @@
 #include "http/stream.h"
 
+#include "build.h"
 #include "http/live_internal.h"
 #include "http/server_internal.h"
 
@@ -186,7 +187,7 @@ static int choose_cursor(hn_stream *s, hn_request *r, long long last) {
                          (unsigned long long)h->last_id);
         return 0;
     }
-    s->cursor = last >= 0   ? (uint64_t)last + 1
+    s->cursor = last >= 0  ? (uint64_t)last + 1
                 : s->skips ? h->last_frame_id
                            : hn_history_first_id(h);
     if (last >= 0 && is_at_end(s)) {

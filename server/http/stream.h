@@ -12,5 +12,6 @@ void hn_stream_open(hn_live *live, struct hn_request *r, _Atomic int *n_open);
 // for the comparison, with its lock held
 hn_stream *hn_stream_next(const hn_stream *s);
 void hn_stream_wake(hn_stream *s);
-void hn_stream_tick(hn_stream *s, double now); ///< wakes it when its reader should hear a comment line
+void hn_stream_tick(hn_stream *s,
+                    double now); ///< wakes it when its reader should hear a comment line
 #endif

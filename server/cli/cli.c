@@ -1,0 +1,168 @@
+#include "cli/cli.h"
+
+#include "build.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define MODEL_OPTIONS "--set"
+
+static hn_exit print_help(const hn_library *lib, const hn_args *args);
+static hn_exit print_version(const hn_library *lib, const hn_args *args);
+
+static const hn_command COMMANDS[] = {
+    {"serve", "", "the page, the API and the stream, on this machine alone",
+     "--host --port --allow-host --open --history --max-comparisons --max-streams --idle-pause "
+     "--expiry --keep-alive",
+     0, 0, hn_command_serve},
+    {"list", "scenes|methods|lessons|problems", "what there is", "", 1, 1, hn_command_list},
+    {"inspect", "SCENE", "sizes, tree, loops, rank, operations kept and left out", MODEL_OPTIONS, 1,
+     1, hn_command_inspect},
+    {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
+     MODEL_OPTIONS " --format", 1, 1, hn_command_equations},
+    {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
+     MODEL_OPTIONS " --t --q --v", 1, 1, hn_command_terms},
+    {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
+     MODEL_OPTIONS " --method --time --at --every --format", 1, 1, hn_command_run},
+    {"compare", "SCENE", "several methods on one clock, and where they part",
+     MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
+    {"help", "[COMMAND]", "this text, or a command's options", "", 0, 1, print_help},
+    {"version", "", "what this program is", "", 0, 0, print_version},
+};
+enum { N_COMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
+
+int hn_command_count(void) {
+    return N_COMMANDS;
+}
+
+const hn_command *hn_command_at(int i) {
+    return &COMMANDS[i];
+}
+
+static const hn_command *find_command(const char *name) {
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(COMMANDS[i].name, name) == 0) {
+            return &COMMANDS[i];
+        }
+    }
+    return NULL;
+}
+
+static void describe_all(hn_strbuf *b) {
+    hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods on one clock\n\n");
+    for (int i = 0; i < N_COMMANDS; i++) {
+        char head[80];
+        snprintf(head, sizeof head, "%s %s", COMMANDS[i].name, COMMANDS[i].words);
+        hn_strbuf_printf(b, "  holonom %-38s %s\n", head, COMMANDS[i].about);
+    }
+    hn_strbuf_add(b, "\nSCENE is a shipped scene's name, a file, or - for standard input.\n"
+                     "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
+                     "projection@rk4:h=1e-3.\n"
+                     "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault, 4 a "
+                     "run ended early and said why.\n");
+}
+
+static void describe_one(hn_strbuf *b, const hn_command *command) {
+    hn_strbuf_printf(b, "holonom %s %s\n  %s\n\n", command->name, command->words, command->about);
+    hn_args_describe(b, command);
+}
+
+static hn_diag unknown_command(const char *name) {
+    const char *names[N_COMMANDS];
+    for (int i = 0; i < N_COMMANDS; i++) {
+        names[i] = COMMANDS[i].name;
+    }
+    const char *near = hn_nearest_name(name, names, N_COMMANDS);
+    char hint[HN_DIAG_HINT];
+    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help%s' lists the commands",
+             near ? near : "");
+    hn_diag diag;
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "there is no command '%.60s'", name);
+    return diag;
+}
+
+static hn_exit print_help(const hn_library *lib, const hn_args *args) {
+    (void)lib;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->words.n == 0) {
+        describe_all(&b);
+        return hn_print(&b);
+    }
+    const hn_command *command = find_command(args->words.word[0]);
+    if (!command) {
+        hn_diag diag = unknown_command(args->words.word[0]);
+        return hn_report_diag(args, &diag);
+    }
+    describe_one(&b, command);
+    return hn_print(&b);
+}
+
+static hn_exit print_version(const hn_library *lib, const hn_args *args) {
+    (void)lib;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->json) {
+        hn_json_object(&b);
+        hn_json_put_string(&b, "name", "holonom");
+        hn_json_put_string(&b, "version", HN_VERSION);
+        hn_json_put_string(&b, "build", HN_BUILD);
+        hn_json_end_object(&b);
+    } else {
+        hn_strbuf_printf(&b, "holonom %s\n", HN_BUILD);
+    }
+    return hn_print(&b);
+}
+
+/// Help and version speak without a library of scenes.
+static int needs_library(const hn_command *command) {
+    return command->run != print_help && command->run != print_version;
+}
+
+static hn_exit run_command(const hn_command *command, const hn_args *args) {
+    hn_library *lib = NULL;
+    hn_diag diag = {0};
+    if (args->help) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        describe_one(&b, command);
+        return hn_print(&b);
+    }
+    if (needs_library(command) && hn_library_open(NULL, &lib, &diag) != HN_OK) {
+        hn_report_diag(args, &diag);
+        return HN_EXIT_PROGRAM;
+    }
+    hn_exit status = command->run(lib, args);
+    hn_library_free(lib);
+    return status;
+}
+
+/// "--help" and "--version" are the commands of these names.
+static const char *command_word(const char *word) {
+    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 ? "help"
+           : strcmp(word, "--version") == 0                       ? "version"
+                                                                  : word;
+}
+
+int hn_cli_main(int argc, char **argv) {
+    hn_args args = {0};
+    hn_diag diag = {0};
+    if (argc < 2) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        describe_all(&b);
+        fputs(hn_strbuf_text(&b), stderr);
+        hn_strbuf_reset(&b);
+        return HN_EXIT_INPUT;
+    }
+    const char *name = command_word(argv[1]);
+    const hn_command *command = find_command(name);
+    if (!command) {
+        diag = unknown_command(name);
+        return hn_report_diag(NULL, &diag);
+    }
+    hn_status status = hn_args_parse(&args, command, argc - 2, argv + 2, &diag);
+    hn_exit result = status == HN_OK ? run_command(command, &args) : hn_report_diag(&args, &diag);
+    hn_args_reset(&args);
+    return result;
+}

@@ -1,0 +1,130 @@
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static hn_exit exit_of(hn_status status) {
+    switch (status) {
+    case HN_ERR_MEMORY:
+    case HN_ERR_INTERNAL:
+        return HN_EXIT_PROGRAM;
+    default:
+        return HN_EXIT_INPUT;
+    }
+}
+
+static void tell(const hn_diag *d) {
+    fprintf(stderr, "holonom: %s", d->message);
+    if (d->pointer[0]) {
+        fprintf(stderr, " (at %s", d->pointer);
+        if (d->column > 0) {
+            fprintf(stderr, ", column %d", d->column);
+        }
+        fputc(')', stderr);
+    }
+    fputc('\n', stderr);
+    if (d->hint[0]) {
+        fprintf(stderr, "         %s\n", d->hint);
+    }
+}
+
+hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *diags) {
+    if (args && args->json) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_json_object(&b);
+        hn_json_put_string(&b, "status", hn_status_name(status));
+        hn_json_key(&b, "errors");
+        hn_json_diags(&b, diags);
+        hn_json_end_object(&b);
+        hn_print(&b);
+        return exit_of(status);
+    }
+    for (int i = 0; i < diags->n; i++) {
+        tell(&diags->item[i]);
+    }
+    if (diags->n == 0) {
+        fprintf(stderr, "holonom: %s\n", hn_status_text(status));
+    }
+    if (diags->found > diags->n) {
+        fprintf(stderr, "holonom: and %d more\n", diags->found - diags->n);
+    }
+    return exit_of(status);
+}
+
+hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag) {
+    hn_diags diags = {.n = 1, .found = 1, .item = {*diag}};
+    return hn_report_diags(args, diag->status, &diags);
+}
+
+hn_exit hn_print(hn_strbuf *text) {
+    int ok = !text->failed;
+    if (ok) {
+        ok = fwrite(hn_strbuf_text(text), 1, text->n, stdout) == text->n;
+        if (ok && text->n > 0 && text->text[text->n - 1] != '\n') {
+            ok = fputc('\n', stdout) != EOF;
+        }
+        ok = ok && fflush(stdout) == 0;
+    }
+    if (!ok) {
+        fprintf(stderr, "holonom: %s\n",
+                text->failed ? hn_status_text(HN_ERR_MEMORY) : strerror(errno));
+    }
+    hn_strbuf_reset(text);
+    return ok ? HN_EXIT_DONE : HN_EXIT_PROGRAM;
+}
+
+hn_exit hn_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
+    if (!path || strcmp(path, "-") == 0) {
+        return hn_print(bytes);
+    }
+    hn_diag diag;
+    FILE *f = bytes->failed ? NULL : fopen(path, "wb");
+    if (!f) {
+        hn_diag_set(&diag, bytes->failed ? HN_ERR_MEMORY : HN_ERR_IO, NULL, NULL,
+                    "cannot write '%.200s': %s", path,
+                    bytes->failed ? hn_status_text(HN_ERR_MEMORY) : strerror(errno));
+        hn_strbuf_reset(bytes);
+        return hn_report_diag(args, &diag);
+    }
+    int ok = fwrite(hn_strbuf_text(bytes), 1, bytes->n, f) == bytes->n;
+    ok = fclose(f) == 0 && ok;
+    hn_strbuf_reset(bytes);
+    if (!ok) {
+        hn_diag_set(&diag, HN_ERR_IO, NULL, NULL, "cannot write '%.200s': %s", path,
+                    strerror(errno));
+        return hn_report_diag(args, &diag);
+    }
+    return HN_EXIT_DONE;
+}
+
+static double now(void) {
+    struct timespec ts;
+    clock_gettime(CLOCK_MONOTONIC, &ts);
+    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+}
+
+void hn_progress_tell(hn_progress *p, const char *what, double share) {
+    static const double PATIENCE = 1, BETWEEN = 0.1; // [s]
+    double t = now();
+    if (p->started == 0) {
+        p->started = t;
+    }
+    if (t - p->started < PATIENCE || t - p->last < BETWEEN || !isatty(STDERR_FILENO)) {
+        return;
+    }
+    fprintf(stderr, "\r%s %3.0f %%", what, 100 * share);
+    fflush(stderr);
+    p->last = t;
+    p->shown = 1;
+}
+
+void hn_progress_end(hn_progress *p) {
+    if (p->shown) {
+        fputs("\r\033[K", stderr);
+        p->shown = 0;
+    }
+}
