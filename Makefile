@@ -225,7 +225,7 @@ run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
 	    tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
 
 run-server: $(PROGRAM)
-	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66 \
+	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
 	    tests/run-tests.sh $(filter tests/api/%,$(SCRIPTS))
 
 run-bench: $(BENCH)

@@ -81,7 +81,7 @@ void hn_canvas_end_layer(hn_canvas *c);
 void hn_canvas_clip(hn_canvas *c, int x, int y, int width, int height);
 void hn_canvas_unclip(hn_canvas *c);
 
-// painting: may be called more than once, and drawing may go on after it -------------------------------------------
+// painting: may be called more than once, and from several threads: they take turns --------------
 
 /// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED when OSMesa
 /// cannot give a context; HN_ERR_INTERNAL when GL reports a fault.

@@ -5,12 +5,17 @@
 
 #include <GL/osmesa.h>
 #include <png.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
 
 // a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the sheet
 enum { TILE = 256, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_STENCIL = 255 };
+
+// OSMesa 22 keeps one list of drawing buffers for the process and changes it without a lock, so two threads must not
+// make contexts at once. The lock guards OSMesa, not state of ours.
+static pthread_mutex_t osmesa_lock = PTHREAD_MUTEX_INITIALIZER;
 
 typedef struct tile {
     int x0, y0, x1, y1; ///< [px], always TILE by TILE: the last ones reach over the sheet's edge
@@ -141,32 +146,35 @@ static hn_status paint_tiles(const hn_canvas *c, const unsigned char *samples, u
     return HN_OK;
 }
 
+/// Makes a context that draws into the samples, paints, and lets it go.
+static hn_status paint_with_context(const hn_canvas *c, unsigned char *samples, unsigned char *rgb,
+                                    hn_diag *diag) {
+    OSMesaContext context = OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
+    if (context == NULL || !OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
+        if (context != NULL) {
+            OSMesaDestroyContext(context);
+        }
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "install libosmesa6",
+                           "OSMesa gives no off-screen drawing context, so no picture can be made");
+    }
+    const hn_status status = paint_tiles(c, samples, rgb, diag);
+    OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
+    OSMesaDestroyContext(context);
+    return status;
+}
+
 hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
     HN_ASSERT(c != NULL && rgb != NULL && !c->in_layer);
     if (c->failed) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "memory ran out while drawing");
     }
-    hn_status status = HN_OK;
-    OSMesaContext context = NULL;
     unsigned char *samples = malloc((size_t)4 * SIDE * SIDE);
     if (samples == NULL) {
-        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
-        goto done;
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
     }
-    context = OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
-    if (context == NULL || !OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
-        status = hn_diag_set(
-            diag, HN_ERR_UNSUPPORTED, NULL, "install libosmesa6 with its software drivers",
-            "OSMesa gives no off-screen drawing context, so no picture can be made");
-        goto done;
-    }
-    status = paint_tiles(c, samples, rgb, diag);
-
-done:
-    if (context != NULL) {
-        OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
-        OSMesaDestroyContext(context);
-    }
+    pthread_mutex_lock(&osmesa_lock);
+    const hn_status status = paint_with_context(c, samples, rgb, diag);
+    pthread_mutex_unlock(&osmesa_lock);
     free(samples);
     return status;
 }

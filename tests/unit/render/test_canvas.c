@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <png.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -313,6 +314,38 @@ static void the_png_reads_back_to_the_same_pixels_and_twice_the_same_bytes(void 
     hn_canvas_free(c);
 }
 
+static void *paint_in_thread(void *rgb) {
+    for (int i = 0; i < 5; i++) {
+        hn_canvas *c = NULL;
+        if (hn_canvas_create(220, 100, HN_THEME_LIGHT, &c, NULL) == HN_OK) {
+            draw_a_little_of_everything(c);
+            if (hn_canvas_paint(c, rgb, NULL) != HN_OK) {
+                memset(rgb, 0, 3 * 220 * 100);
+            }
+            hn_canvas_free(c);
+        }
+    }
+    return NULL;
+}
+
+static void threads_that_paint_at_once_get_the_same_pixels(void **state) {
+    (void)state;
+    static unsigned char rgb[4][3 * 220 * 100];
+    hn_canvas *c = create(220, 100);
+    draw_a_little_of_everything(c);
+    picture alone = paint(c);
+    pthread_t threads[4];
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(pthread_create(&threads[i], NULL, paint_in_thread, rgb[i]), 0);
+    }
+    for (int i = 0; i < 4; i++) {
+        pthread_join(threads[i], NULL);
+        assert_memory_equal(rgb[i], alone.rgb, sizeof rgb[i]);
+    }
+    free(alone.rgb);
+    hn_canvas_free(c);
+}
+
 static void a_file_is_saved_and_a_folder_that_is_not_there_is_told(void **state) {
     (void)state;
     hn_canvas *c = create(32, 32);
@@ -383,6 +416,7 @@ int main(void) {
         cmocka_unit_test(every_marker_leaves_ink_of_its_own),
         cmocka_unit_test(sizes_out_of_bounds_are_refused_by_name),
         cmocka_unit_test(the_png_reads_back_to_the_same_pixels_and_twice_the_same_bytes),
+        cmocka_unit_test(threads_that_paint_at_once_get_the_same_pixels),
         cmocka_unit_test(a_file_is_saved_and_a_folder_that_is_not_there_is_told),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
     };
