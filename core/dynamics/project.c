@@ -1,0 +1,446 @@
+#include "dynamics/project.h"
+
+#include "dynamics/eval.h"
+#include "dynamics/factor.h"
+#include "expr/tape.h"
+#include "linalg/dense.h"
+#include "linalg/saddle.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
+static const double CONTRACTION = 0.1; // a frozen factor that does worse is made again
+static const double NEAR =
+    1e-2; // a factor made this close (in any coordinate) is worth trying for the speeds
+static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
+static const double VELOCITY_TOL = 4e-15; // of (1 + length) max |v_i| sqrt(nc)
+// A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic there, and a step
+// phi / sigma would be larger than the range in which J means something.
+static const double PROJECTOR_RANK_TOL = 1e-7;
+
+struct hn_projector {
+    const hn_system *sys;
+    hn_weight weight;
+    int nq, nv, nc;
+    double length;
+
+    hn_tape *phi_tape, *gap_tape; // (q, v, t) -> phi; -> J v + phi_t
+    double *in, *phi_work, *gap_work;
+    hn_factor *factor;
+    hn_eval *terms; // M and J for the dense solve
+    hn_saddle_ws *saddle;
+    double *unit; // identity, Euclidean weight only
+    double *zero; // nv
+
+    int have_factor, dense, rank;
+    double factor_t, *factor_q;
+
+    double *gap, *step, *multiplier; // nc, nv, nc
+    double *best, *impulse, *closed; // nv; nc: sums over a velocity projection
+
+    long long evals, factorisations, fallbacks, solves;
+    double ops;
+};
+
+// --- creation ------------------------------------------------------------------------------------------------
+
+/// Tapes of phi and of J v + phi_t, row by row over what is not zero.
+static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
+    hn_system_exprs ex = hn_system_get_exprs(p->sys);
+    hn_graph *g = hn_system_graph(p->sys);
+    int n_in = p->nq + p->nv + 1;
+    int *symbols = hn_arena_ints(arena, (size_t)n_in);
+    hn_ex *rows = hn_arena_get(arena, (size_t)p->nc * sizeof *rows);
+    hn_ex *terms = hn_arena_get(arena, ((size_t)p->nv + 1) * sizeof *terms);
+    if (!symbols || !rows || !terms) {
+        return HN_ERR_MEMORY;
+    }
+    memcpy(symbols, ex.q_symbols, (size_t)p->nq * sizeof *symbols);
+    memcpy(symbols + p->nq, ex.v_symbols, (size_t)p->nv * sizeof *symbols);
+    symbols[n_in - 1] = ex.t_symbol;
+
+    for (int i = 0; i < p->nc; i++) {
+        int n = 0;
+        terms[n++] = ex.phi_t[i];
+        for (int j = 0; j < p->nv; j++) {
+            hn_ex entry = ex.J[(size_t)i * p->nv + j];
+            if (!hn_is_zero(entry)) {
+                terms[n++] = hn_mul(g, entry, hn_graph_symbol_expr(g, ex.v_symbols[j]));
+            }
+        }
+        rows[i] = hn_sum(g, terms, n);
+    }
+    if (hn_graph_failed(g)) {
+        return HN_ERR_MEMORY;
+    }
+    hn_status status = hn_tape_compile(g, ex.phi, p->nc, symbols, n_in, &p->phi_tape);
+    if (status == HN_OK) {
+        status = hn_tape_compile(g, rows, p->nc, symbols, n_in, &p->gap_tape);
+    }
+    return status;
+}
+
+static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
+    int mass = p->weight == HN_WEIGHT_MASS;
+    hn_status status =
+        hn_factor_create(p->sys, mass ? HN_FACTOR_MASS : HN_FACTOR_IDENTITY, arena, &p->factor);
+    if (status == HN_OK) {
+        status = hn_eval_create(p->sys, mass ? HN_TERM_M | HN_TERM_J : HN_TERM_J, arena, &p->terms);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    p->saddle = hn_saddle_ws_create(arena, p->nv, p->nc);
+    if (!p->saddle) {
+        return HN_ERR_MEMORY;
+    }
+    if (!mass) {
+        p->unit = hn_arena_doubles(arena, (size_t)p->nv * p->nv);
+        for (int i = 0; p->unit && i < p->nv; i++) {
+            p->unit[(size_t)i * p->nv + i] = 1;
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status create_parts(hn_projector *p, hn_arena *arena) {
+    hn_status status = compile_tapes(p, arena);
+    if (status == HN_OK) {
+        status = create_solvers(p, arena);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    size_t nv = (size_t)p->nv, nc = (size_t)p->nc, nq = (size_t)p->nq;
+    p->in = hn_arena_doubles(arena, nq + nv + 1);
+    p->phi_work = hn_arena_doubles(arena, hn_tape_work_size(p->phi_tape));
+    p->gap_work = hn_arena_doubles(arena, hn_tape_work_size(p->gap_tape));
+    p->zero = hn_arena_doubles(arena, nv);
+    p->factor_q = hn_arena_doubles(arena, nq);
+    p->step = hn_arena_doubles(arena, nv);
+    p->best = hn_arena_doubles(arena, nq > nv ? nq : nv);
+    p->gap = hn_arena_doubles(arena, nc);
+    p->multiplier = hn_arena_doubles(arena, nc);
+    p->impulse = hn_arena_doubles(arena, nc);
+    p->closed = hn_arena_doubles(arena, nc);
+    if (hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    hn_tape_prepare(p->phi_tape, p->phi_work);
+    hn_tape_prepare(p->gap_tape, p->gap_work);
+    return HN_OK;
+}
+
+hn_status hn_projector_create(const hn_system *sys, hn_weight weight, hn_arena *arena,
+                              hn_projector **out) {
+    hn_system_info info = hn_system_get_info(sys);
+    HN_ASSERT(info.nq == info.nv); // corrections of q are taken as rates
+    hn_projector *p = hn_arena_get(arena, sizeof *p);
+    if (!p) {
+        return HN_ERR_MEMORY;
+    }
+    *p = (hn_projector){.sys = sys,
+                        .weight = weight,
+                        .nq = info.nq,
+                        .nv = info.nv,
+                        .nc = info.nc,
+                        .length = hn_system_length(sys)};
+    hn_status status = create_parts(p, arena);
+    if (status != HN_OK) {
+        hn_projector_free(p);
+        return status;
+    }
+    *out = p;
+    return HN_OK;
+}
+
+void hn_projector_free(hn_projector *p) {
+    if (p) {
+        hn_tape_free(p->phi_tape);
+        hn_tape_free(p->gap_tape);
+        hn_factor_free(p->factor);
+        hn_eval_free(p->terms);
+        p->phi_tape = p->gap_tape = NULL;
+        p->factor = NULL;
+        p->terms = NULL;
+    }
+}
+
+// --- the two ways to solve K [x; -y] = [0; -gap] -------------------------------------------------------------
+
+/// Operations of one dense factorisation and of one solve with it and its refinement, to leading order (linalg/saddle.h).
+static double dense_factor_ops(const hn_projector *p) {
+    double nv = p->nv, nc = p->nc;
+    return 2 * nv * nc * nc + 4 * nv * nv * nc + nv * nv * nv / 3;
+}
+
+static double dense_solve_ops(const hn_projector *p) {
+    double nv = p->nv, nc = p->nc;
+    return 4 * nv * nv + 8 * nv * nc;
+}
+
+static hn_status factor_dense(hn_projector *p, double t, const double *q) {
+    hn_saddle_opts opts = hn_saddle_opts_default();
+    opts.rank_tol = PROJECTOR_RANK_TOL;
+    opts.residual_tol = HUGE_VAL; // rows that cannot all be met are met as well as can be
+    hn_eval_run(p->terms, t, q, p->zero);
+    const double *W = p->weight == HN_WEIGHT_MASS ? hn_eval_get(p->terms, HN_TERM_M) : p->unit;
+    hn_saddle_info info = {0};
+    hn_status status = hn_saddle_factor(p->nv, p->nc, W, hn_eval_get(p->terms, HN_TERM_J), &info,
+                                        &opts, p->saddle);
+    p->ops += hn_eval_info(p->terms).ops + dense_factor_ops(p);
+    p->fallbacks++;
+    p->dense = 1;
+    p->rank = info.rank;
+    return status;
+}
+
+/// `force_dense`: the sparse factor was tried and did not contract.
+static hn_status make_factor(hn_projector *p, double t, const double *q, int force_dense) {
+    p->evals++;
+    p->factorisations++;
+    p->have_factor = 0;
+    hn_status status = HN_ERR_SINGULAR;
+    if (!force_dense) {
+        status = hn_factor_update(p->factor, t, q, NULL);
+        p->ops += hn_factor_get_info(p->factor).update_ops;
+        p->dense = 0;
+        p->rank = p->nc;
+    }
+    if (status == HN_ERR_SINGULAR) {
+        status = factor_dense(p, t, q);
+    }
+    if (status == HN_OK) {
+        p->have_factor = 1;
+        p->factor_t = t;
+        memcpy(p->factor_q, q, (size_t)p->nq * sizeof *q);
+    }
+    return status;
+}
+
+/// step and multiplier such that J step = -gap.
+static hn_status solve(hn_projector *p) {
+    p->solves++;
+    if (!p->dense) {
+        for (int i = 0; i < p->nc; i++) {
+            p->gap[i] = -p->gap[i];
+        }
+        hn_factor_solve(p->factor, NULL, p->gap, p->step, p->multiplier);
+        p->ops += hn_factor_get_info(p->factor).solve_ops;
+        return hn_all_finite(p->nv, p->step) ? HN_OK : HN_ERR_DIVERGED;
+    }
+    p->ops += dense_solve_ops(p);
+    return hn_saddle_apply(p->zero, p->gap, p->step, p->multiplier, NULL, p->saddle);
+}
+
+// --- position ------------------------------------------------------------------------------------------------
+
+static double eval_phi(hn_projector *p, double t, const double *q) {
+    memcpy(p->in, q, (size_t)p->nq * sizeof *q);
+    p->in[p->nq + p->nv] = t;
+    hn_tape_eval(p->phi_tape, p->in, p->gap, p->phi_work);
+    p->evals++;
+    p->ops += hn_tape_get_info(p->phi_tape).ops + 2.0 * p->nc;
+    return hn_norm2(p->nc, p->gap);
+}
+
+/// Iterates from q in place. Returns HN_OK when the gap went below tol or what is left belongs to a lost direction.
+static hn_status close_gap(hn_projector *p, double t, double *q, double tol,
+                           hn_project_info *info) {
+    double gap = eval_phi(p, t, q);
+    *info = (hn_project_info){.iterations = 1, .gap_before = gap, .gap = gap, .rank = p->nc};
+    p->have_factor = 0;
+    int fresh = 0; // steps taken with the present factor
+    while (gap > tol) {
+        if (info->iterations >= MAX_ITERATIONS) {
+            return HN_ERR_NO_CONVERGENCE;
+        }
+        if (!p->have_factor) {
+            hn_status status = make_factor(p, t, q, 0);
+            fresh = 0;
+            if (status != HN_OK) {
+                return status;
+            }
+        }
+        hn_status status = solve(p);
+        if (status != HN_OK) {
+            return status;
+        }
+        hn_axpy(p->nq, 1, p->step, q);
+        p->ops += p->nq;
+        double before = gap;
+        gap = eval_phi(p, t, q);
+        info->iterations++;
+        info->rank = p->rank;
+        info->gap = gap;
+        if (!isfinite(gap)) {
+            return HN_ERR_DIVERGED;
+        }
+
+        if (gap > tol && gap > CONTRACTION * before) {
+            int stuck = fresh == 0 && p->dense && p->rank < p->nc && gap > 0.5 * before;
+            if (stuck) {
+                return gap <= LOST_RANK_GAP * p->length && gap <= info->gap_before
+                           ? HN_OK
+                           : HN_ERR_NO_CONVERGENCE;
+            }
+            p->have_factor = 0;
+        }
+        fresh++;
+    }
+    return isfinite(gap) ? HN_OK : HN_ERR_DIVERGED;
+}
+
+hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
+                              hn_project_info *info) {
+    hn_project_info local;
+    info = info ? info : &local;
+    *info = (hn_project_info){.rank = p->nc};
+    if (!hn_all_finite(p->nq, q)) {
+        return HN_ERR_DIVERGED;
+    }
+    if (p->nc == 0) {
+        return HN_OK;
+    }
+    double rounding = 4 * DBL_EPSILON * (1 + hn_norm_max(p->nq, q));
+    memcpy(p->best, q, (size_t)p->nq * sizeof *q);
+    hn_status status = close_gap(p, t, q, fmax(tol, rounding) * p->length, info);
+    if (status != HN_OK) {
+        memcpy(q, p->best, (size_t)p->nq * sizeof *q);
+    }
+    return status;
+}
+
+// --- velocity ------------------------------------------------------------------------------------------------
+
+static double eval_velocity_gap(hn_projector *p, double t, const double *q, const double *v) {
+    memcpy(p->in, q, (size_t)p->nq * sizeof *q);
+    memcpy(p->in + p->nq, v, (size_t)p->nv * sizeof *v);
+    p->in[p->nq + p->nv] = t;
+    hn_tape_eval(p->gap_tape, p->in, p->gap, p->gap_work);
+    p->evals++;
+    p->ops += hn_tape_get_info(p->gap_tape).ops + 2.0 * p->nc;
+    return hn_norm2(p->nc, p->gap);
+}
+
+static int factor_is_near(const hn_projector *p, double t, const double *q) {
+    if (!p->have_factor || p->factor_t != t) {
+        return 0;
+    }
+    for (int i = 0; i < p->nq; i++) {
+        if (fabs(q[i] - p->factor_q[i]) > NEAR) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/// One correction of v; the sums for the energy follow. 1/2 dv' M dv = 1/2 (J dv)' y, as M dv = J' y.
+static hn_status correct_velocity(hn_projector *p, double *v) {
+    hn_status status = solve(p);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_axpy(p->nv, 1, p->step, v);
+    hn_axpy(p->nc, 1, p->multiplier, p->impulse);
+    p->ops += p->nv + p->nc;
+    return HN_OK;
+}
+
+static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, double *v,
+                                    double tol, hn_project_info *info) {
+    double gap = info->gap;
+    int made_here = 0, tried_dense = 0;
+    if (!factor_is_near(p, t, q)) {
+        hn_status status = make_factor(p, t, q, 0);
+        if (status != HN_OK) {
+            return status;
+        }
+        made_here = 1;
+    }
+    while (gap > tol && info->iterations < MAX_VELOCITY_ITERATIONS) {
+        hn_status status = correct_velocity(p, v);
+        if (status != HN_OK) {
+            return status;
+        }
+        double before = gap;
+        gap = eval_velocity_gap(p, t, q, v);
+        info->iterations++;
+        info->gap = gap;
+        if (gap <= tol || gap <= CONTRACTION * before) {
+            continue;
+        }
+        if (p->dense && made_here) {
+            break; // linear, and solved as well as it can be: what is left is outside the range of J, or rounding
+        }
+        tried_dense = made_here;
+        status = make_factor(p, t, q, tried_dense);
+        made_here = 1;
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    return isfinite(gap) ? HN_OK : HN_ERR_DIVERGED;
+}
+
+hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double *v,
+                              hn_project_info *info) {
+    hn_project_info local;
+    info = info ? info : &local;
+    *info = (hn_project_info){.rank = p->nc};
+    if (!hn_all_finite(p->nq, q) || !hn_all_finite(p->nv, v)) {
+        return HN_ERR_DIVERGED;
+    }
+    if (p->nc == 0) {
+        return HN_OK;
+    }
+    double tol = VELOCITY_TOL * (1 + p->length) * hn_norm_max(p->nv, v) * sqrt(p->nc);
+    info->iterations = 1;
+    info->gap_before = info->gap = eval_velocity_gap(p, t, q, v);
+    if (!isfinite(info->gap)) {
+        return HN_ERR_DIVERGED;
+    }
+    memcpy(p->closed, p->gap, (size_t)p->nc * sizeof *p->closed);
+    memset(p->impulse, 0, (size_t)p->nc * sizeof *p->impulse);
+    memcpy(p->best, v, (size_t)p->nv * sizeof *v);
+    hn_status status = info->gap > tol ? close_velocity_gap(p, t, q, v, tol, info) : HN_OK;
+    if (status == HN_OK && info->gap > info->gap_before) {
+        // no better than before: rounding if the gap was small already
+        status = info->gap_before <= 100 * tol ? HN_OK : HN_ERR_NO_CONVERGENCE;
+        info->gap = info->gap_before;
+        memcpy(v, p->best, (size_t)p->nv * sizeof *v);
+        return status;
+    }
+    if (status != HN_OK) {
+        memcpy(v, p->best, (size_t)p->nv * sizeof *v);
+        return status;
+    }
+    info->rank = p->have_factor ? p->rank : p->nc;
+    if (p->weight == HN_WEIGHT_MASS) {
+        hn_axpy(p->nc, -1, p->gap, p->closed);
+        info->energy_removed = -0.5 * hn_dot(p->nc, p->closed, p->impulse);
+    }
+    return HN_OK;
+}
+
+long long hn_projector_evals(const hn_projector *p) {
+    return p->evals;
+}
+
+double hn_projector_ops(const hn_projector *p) {
+    return p->ops;
+}
+
+long long hn_projector_factorisations(const hn_projector *p) {
+    return p->factorisations;
+}
+
+long long hn_projector_fallbacks(const hn_projector *p) {
+    return p->fallbacks;
+}
+
+long long hn_projector_solves(const hn_projector *p) {
+    return p->solves;
+}
