@@ -264,7 +264,7 @@ static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side
     return count;
 }
 
-/// The shortest remedies: which one side to lengthen or shorten. Sides of several bodies change with their pin.
+/// The smallest changes that mend it: one side longer or shorter by what is missing. A side of several bodies has no length to set.
 static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
                           size_t size) {
     size_t used = 0;
@@ -277,9 +277,6 @@ static void list_remedies(const side *sides, int n, int longest, double missing,
         int wrote = snprintf(text + used, size - used, "%s%s %.6g m", used ? " or " : "make ",
                              sides[k].name, to);
         used += wrote > 0 ? (size_t)wrote : 0;
-    }
-    if (used == 0) {
-        (void)snprintf(text, size, "release a pin");
     }
 }
 
@@ -372,11 +369,10 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
     char pins[128], reason[256] = "", hint[HN_DIAG_HINT] = "";
     list_pins(s, loop, pins, sizeof pins);
     explain_ring(s, loop, reason, sizeof reason, hint, sizeof hint);
-    if (!hint[0]) {
-        (void)snprintf(hint, sizeof hint, "%s",
-                       pins[0] ? "release a pin, or start from another guess"
-                               : "start from another guess, or change a length");
-    }
+    size_t used = strlen(hint);
+    const char *other =
+        pins[0] ? "release a pin" : (used ? "" : "start from another guess, or change a length");
+    (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
     const char *unit = loop_has_lengths(s, loop) ? " m" : "";
     hn_diags_add(s->diags, HN_ERR_UNREACHABLE, first_pin_pointer(s), hint,
                  "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s%s",
