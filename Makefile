@@ -249,8 +249,8 @@ check-layers:
 
 check-headers:
 	@for h in $(HEADERS); do \
-	    $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -Icore -Iserver -Itests -fsyntax-only -x c \
-	        -include $$h /dev/null || { echo "$$h does not compile alone"; exit 1; }; done
+	    echo 'extern int not_empty;' | $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -Icore -Iserver -Itests \
+	        -fsyntax-only -include $$h -x c - || { echo "$$h does not compile alone"; exit 1; }; done
 
 check-format:
 	@clang-format --dry-run --Werror $(ALL_C) $(HEADERS)
