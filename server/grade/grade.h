@@ -42,7 +42,7 @@ void hn_problem_json(hn_strbuf *b, const hn_problem *problem);
 
 /// What became of one entry.
 typedef struct hn_entry_verdict {
-    char name[24]; ///< "J11"
+    char name[32]; ///< "J11"
     int row, column;
     double points, max_points;
     int right;

@@ -1,0 +1,161 @@
+// The exam of a problem: phi read and differentiated, states drawn.
+
+#include "grade/problem.h"
+
+#include "base/hash.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_DRAWS = 10000 }; // states are drawn again until the loop closes within the given ranges
+
+static int lookup(void *user, const char *name, hn_ex *out) {
+    hn_exam *exam = user;
+    const hn_problem *p = exam->problem;
+    for (int i = 0; i < p->n_aliases; i++) {
+        if (strcmp(name, p->aliases[i].key) == 0) {
+            name = p->aliases[i].text;
+            break;
+        }
+    }
+    for (int i = 0; i < p->n_names; i++) {
+        if (strcmp(name, p->names[i].name) == 0) {
+            *out = hn_graph_symbol_expr(exam->graph, exam->symbol[i]);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *diag) {
+    const hn_problem *p = exam->problem;
+    const char *known[HN_GRADE_MAX_NAMES];
+    for (int i = 0; i < p->n_names; i++) {
+        known[i] = p->names[i].name;
+    }
+    hn_parse_opts opts = {.lookup = lookup,
+                          .user = exam,
+                          .known = known,
+                          .n_known = p->n_names,
+                          .max_depth = 100,
+                          .max_chars = HN_GRADE_MAX_FORMULA};
+    hn_status status = hn_parse(exam->graph, text, &opts, out, diag);
+    return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : status;
+}
+
+double hn_exam_value(hn_exam *exam, hn_ex e, int state) {
+    // symbols were made in the order of the names
+    return hn_graph_eval(exam->graph, e, exam->state[state]);
+}
+
+double hn_exam_allowed(const hn_exam *exam, double expected) {
+    return exam->problem->absolute + exam->problem->relative * fabs(expected);
+}
+
+/// The k-th random number in [0, 1) of a seed.
+static double draw(uint64_t seed, uint64_t k) {
+    return (double)(hn_hash_mix(seed + 0x9E3779B97F4A7C15ull * (k + 1)) >> 11) * 0x1p-53;
+}
+
+/// One state; 1 if every derived value lies in its range.
+static int draw_state(hn_exam *exam, uint64_t seed, uint64_t *k, int closed, const hn_ex *derived,
+                      int index) {
+    const hn_problem *p = exam->problem;
+    double *x = exam->state[index];
+    int fits = 1;
+    for (int i = 0; i < p->n_names; i++) {
+        x[i] = p->names[i].low + (p->names[i].high - p->names[i].low) * draw(seed, (*k)++);
+    }
+    double random[HN_GRADE_MAX_NAMES];
+    memcpy(random, x, sizeof random);
+    for (int i = 0; i < p->n_names && closed; i++) {
+        if (p->names[i].formula) {
+            x[i] = hn_graph_eval(exam->graph, derived[i], random);
+            fits &= x[i] >= p->names[i].low && x[i] <= p->names[i].high;
+        }
+    }
+    return fits;
+}
+
+static hn_status draw_states(hn_exam *exam, uint64_t seed, hn_diag *diag) {
+    const hn_problem *p = exam->problem;
+    hn_ex derived[HN_GRADE_MAX_NAMES];
+    for (int i = 0; i < p->n_names; i++) {
+        hn_status status = p->names[i].formula
+                               ? hn_exam_parse(exam, p->names[i].formula, &derived[i], diag)
+                               : HN_OK;
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    uint64_t k = 0;
+    int draws = 0;
+    exam->n_states = p->n_closed + p->n_open;
+    for (int s = 0; s < exam->n_states; s++) {
+        while (!draw_state(exam, seed, &k, s < p->n_closed, derived, s)) {
+            if (++draws > MAX_DRAWS) {
+                return hn_diag_set(diag, HN_ERR_INPUT, "/parameters", NULL,
+                                   "the loop does not close within the given ranges in %d draws",
+                                   MAX_DRAWS);
+            }
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status build(hn_exam *exam, hn_diag *diag) {
+    const hn_problem *p = exam->problem;
+    int by[HN_GRADE_MAX_COLUMNS];
+    for (int i = 0; i < p->n_names; i++) {
+        hn_ex e = hn_symbol(exam->graph, p->names[i].name, NULL);
+        exam->symbol[i] = hn_ex_symbol(exam->graph, e);
+        if (exam->symbol[i] != i && !hn_graph_failed(exam->graph)) {
+            return hn_diag_set(diag, HN_ERR_INPUT, "/coordinates", NULL,
+                               "the name '%.40s' is given twice", p->names[i].name);
+        }
+    }
+    for (int j = 0; j < p->n_columns; j++) {
+        by[j] = hn_graph_find_symbol(exam->graph, p->by[j]);
+        if (by[j] < 0) {
+            return hn_diag_set(diag, HN_ERR_INPUT, "/answer/by", NULL, "'%.40s' is no coordinate",
+                               p->by[j]);
+        }
+    }
+    for (int i = 0; i < p->n_rows; i++) {
+        hn_status status = hn_exam_parse(exam, p->phi[i], &exam->phi[i], diag);
+        if (status != HN_OK) {
+            return status;
+        }
+        hn_diff(exam->graph, exam->phi[i], by, p->n_columns, &exam->reference[i * p->n_columns]);
+    }
+    return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : HN_OK;
+}
+
+hn_status hn_exam_init(hn_exam *exam, const hn_problem *problem, uint64_t seed, hn_diag *diag) {
+    memset(exam, 0, sizeof *exam);
+    exam->problem = problem;
+    exam->graph = hn_graph_create();
+    if (!exam->graph) {
+        return HN_ERR_MEMORY;
+    }
+    hn_status status = build(exam, diag);
+    if (status == HN_OK) {
+        status = draw_states(exam, seed ? seed : problem->seed, diag);
+    }
+    for (int k = 0; k < problem->n_rows * problem->n_columns && status == HN_OK; k++) {
+        for (int s = 0; s < exam->n_states; s++) {
+            exam->expected[k][s] = hn_exam_value(exam, exam->reference[k], s);
+            if (!isfinite(exam->expected[k][s])) {
+                status = hn_diag_set(diag, HN_ERR_INPUT, "/phi", NULL,
+                                     "the reference has no finite value at a random state");
+                break;
+            }
+        }
+    }
+    return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : status;
+}
+
+void hn_exam_reset(hn_exam *exam) {
+    hn_graph_free(exam->graph);
+    exam->graph = NULL;
+}

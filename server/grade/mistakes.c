@@ -1,0 +1,214 @@
+// Known mistakes: each row makes the formulas that a wrong entry would show. The first row one of whose formulas agrees
+// with the entry at every state, closed or open, names the mistake; so more special rows stand first.
+
+#include "grade/problem.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_VARIANTS = 64 };
+
+/// What a wrong entry might be: formulas, and for each what it refers to ("J21", "th2 for th1").
+typedef struct variants {
+    int n;
+    hn_ex e[MAX_VARIANTS];
+    char by[MAX_VARIANTS][32];
+} variants;
+
+typedef struct place {
+    hn_exam *exam;
+    int row, column;
+    hn_ex reference, given;
+} place;
+
+static void add(variants *v, hn_ex e, const char *by) {
+    if (v->n < MAX_VARIANTS) {
+        v->e[v->n] = e;
+        snprintf(v->by[v->n++], sizeof v->by[0], "%s", by);
+    }
+}
+
+static hn_ex reference_at(const place *at, int row, int column) {
+    return at->exam->reference[row * at->exam->problem->n_columns + column];
+}
+
+static void entry_name(const place *at, int row, int column, char *out, size_t size) {
+    snprintf(out, size, "%.8s%d%d", at->exam->problem->answer, row + 1, column + 1);
+}
+
+/// `e` with the names from..to-1 each replaced by a + b * itself.
+static hn_ex replace_names(const place *at, hn_ex e, int from, int to, double a, double b) {
+    hn_graph *g = at->exam->graph;
+    int symbols[HN_GRADE_MAX_NAMES], n = 0;
+    hn_ex with[HN_GRADE_MAX_NAMES], out = e;
+    for (int i = from; i < to; i++) {
+        symbols[n] = at->exam->symbol[i];
+        with[n++] = hn_add(g, hn_num(a), hn_scale(b, hn_graph_symbol_expr(g, at->exam->symbol[i])));
+    }
+    hn_substitute(g, &e, 1, symbols, with, n, &out);
+    return out;
+}
+
+// the rows ------------------------------------------------------------------------------------------
+
+static void make_zero(const place *at, variants *v) {
+    (void)at;
+    add(v, hn_num(0), "");
+}
+
+static void make_sign(const place *at, variants *v) {
+    add(v, hn_neg(at->reference), "");
+}
+
+/// Angles taken in degrees, or turned into degrees; with and without the factor that differentiation brings.
+static void make_degrees(const place *at, variants *v) {
+    const double factor = acos(-1) / 180;
+    const hn_problem *p = at->exam->problem;
+    for (int inverse = 0; inverse < 2; inverse++) {
+        double k = inverse ? 1 / factor : factor;
+        hn_ex e = replace_names(at, at->reference, p->n_params, p->n_names, 0, k);
+        add(v, e, inverse ? "180/pi" : "pi/180");
+        add(v, hn_scale(k, e), inverse ? "180/pi" : "pi/180");
+    }
+    add(v, hn_scale(factor, at->reference), "pi/180");
+    add(v, hn_scale(1 / factor, at->reference), "180/pi");
+}
+
+/// The entry of another row of the same column.
+static void make_row(const place *at, variants *v) {
+    for (int i = 0; i < at->exam->problem->n_rows; i++) {
+        char name[32];
+        entry_name(at, i, at->column, name, sizeof name);
+        if (i != at->row) {
+            add(v, reference_at(at, i, at->column), name);
+        }
+    }
+}
+
+/// sin for cos and cos for sin: every coordinate x becomes pi/2 - x.
+static void make_swapped(const place *at, variants *v) {
+    const hn_problem *p = at->exam->problem;
+    hn_ex e = replace_names(at, at->reference, p->n_params, p->n_names, acos(-1) / 2, -1);
+    add(v, e, "");
+    add(v, hn_neg(e), "");
+}
+
+static void make_column(const place *at, variants *v) {
+    for (int j = 0; j < at->exam->problem->n_columns; j++) {
+        char name[32];
+        entry_name(at, at->row, j, name, sizeof name);
+        if (j != at->column) {
+            add(v, reference_at(at, at->row, j), name);
+            add(v, hn_neg(reference_at(at, at->row, j)), name);
+        }
+    }
+}
+
+/// One parameter, or all of them, left out.
+static void make_length(const place *at, variants *v) {
+    const hn_problem *p = at->exam->problem;
+    for (int i = 0; i <= p->n_params; i++) {
+        hn_ex e = i < p->n_params ? replace_names(at, at->reference, i, i + 1, 1, 0)
+                                  : replace_names(at, at->reference, 0, p->n_params, 1, 0);
+        add(v, e, i < p->n_params ? p->names[i].name : "");
+        add(v, hn_neg(e), i < p->n_params ? p->names[i].name : "");
+    }
+}
+
+/// One name in place of another of its kind.
+static void make_variable(const place *at, variants *v) {
+    const hn_problem *p = at->exam->problem;
+    hn_graph *g = at->exam->graph;
+    for (int i = 0; i < p->n_names; i++) {
+        if (!hn_depends_on(g, at->reference, at->exam->symbol[i])) {
+            continue;
+        }
+        for (int k = i < p->n_params ? 0 : p->n_params;
+             k < (i < p->n_params ? p->n_params : p->n_names); k++) {
+            char by[32];
+            hn_ex with = hn_graph_symbol_expr(g, at->exam->symbol[k]), e = at->reference;
+            hn_substitute(g, &at->reference, 1, &at->exam->symbol[i], &with, 1, &e);
+            snprintf(by, sizeof by, "%.8s for %.8s", p->names[k].name, p->names[i].name);
+            if (k != i) {
+                add(v, e, by);
+                add(v, hn_neg(e), by);
+            }
+        }
+    }
+}
+
+static void make_phi(const place *at, variants *v) {
+    add(v, at->exam->phi[at->row], "");
+}
+
+/// The derivative of the wrong thing: of the whole row by time would hold rates, so only factors are left.
+static void make_factor(const place *at, variants *v) {
+    static const double factors[] = {2, 0.5, -2, -0.5};
+    for (int i = 0; i < 4; i++) {
+        add(v, hn_scale(factors[i], at->reference), "");
+    }
+}
+
+static void make_number(const place *at, variants *v) {
+    if (hn_is_number(at->given, NULL)) {
+        add(v, at->given, "");
+    }
+}
+
+static const struct {
+    const char *id, *text;
+    void (*make)(const place *, variants *);
+} MISTAKES[] = {
+    {"zero", "the entry is 0, but phi does depend on this coordinate", make_zero},
+    {"number", "a number cannot be right at every state: a formula is asked for", make_number},
+    {"sign", "the sign is wrong", make_sign},
+    {"row",
+     "this is the entry of the other row; a term that was not differentiated looks like that too",
+     make_row},
+    {"swapped", "sine and cosine are exchanged", make_swapped},
+    {"degrees", "this looks like degrees; angles are in radians", make_degrees},
+    {"length", "a length is missing", make_length},
+    {"column", "this is the entry of another column, perhaps with its sign", make_column},
+    {"variable", "a name stands in place of another", make_variable},
+    {"undifferentiated", "this is phi itself, not its derivative", make_phi},
+    {"factor", "right but for a factor", make_factor},
+};
+
+int hn_grade_is_mistake(const char *id) {
+    int known = strcmp(id, "transposed") == 0; // of the whole matrix, found by its shape
+    for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
+        known |= strcmp(id, MISTAKES[k].id) == 0;
+    }
+    return known;
+}
+
+static int agrees(const place *at, hn_ex e, const double *value) {
+    for (int s = 0; s < at->exam->n_states; s++) {
+        double x = hn_exam_value(at->exam, e, s);
+        if (!(fabs(x - value[s]) <= hn_exam_allowed(at->exam, x))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
+                                       const double *value) {
+    place at = {.exam = exam, .row = row, .column = column, .given = given};
+    at.reference = reference_at(&at, row, column);
+    for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
+        variants v = {.n = 0};
+        MISTAKES[k].make(&at, &v);
+        for (int i = 0; i < v.n; i++) {
+            if (agrees(&at, v.e[i], value)) {
+                hn_grade_mistake found = {.id = MISTAKES[k].id, .text = MISTAKES[k].text};
+                memcpy(found.by, v.by[i], sizeof found.by);
+                return found;
+            }
+        }
+    }
+    return (hn_grade_mistake){
+        .id = "other",
+        .text = "no known mistake gives this: differentiate the row once more, term by term"};
+}

@@ -1,0 +1,195 @@
+// One verdict, told to a person, to a program, and to Gradescope.
+
+#include "grade/grade.h"
+#include "grade/problem.h"
+
+#include "base/hash.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/// "at l1 = 1.2, ..., th4 = -0.3"
+static void add_state(hn_strbuf *b, const hn_verdict *v) {
+    for (int i = 0; i < v->n_names; i++) {
+        hn_strbuf_printf(b, "%s%s = %.6g", i ? ", " : "", v->names[i], v->values[i]);
+    }
+}
+
+static void add_number(hn_strbuf *b, double x) {
+    if (isfinite(x)) {
+        hn_strbuf_printf(b, "%.9g", x);
+    } else {
+        hn_strbuf_add(b, "no finite value");
+    }
+}
+
+/// What is to be said under one entry; nothing for one that is simply right.
+static void add_entry_detail(hn_strbuf *b, const hn_entry_verdict *e, const char *indent) {
+    if (e->explanation[0]) {
+        hn_strbuf_printf(b, "%s%s\n", indent, e->explanation);
+    }
+    if (e->right || !e->given[0]) {
+        return;
+    }
+    hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
+    if (e->state >= 0) {
+        hn_strbuf_add(b, " = ");
+        add_number(b, e->given_value);
+        hn_strbuf_printf(b, "\n%sexpected  ", indent);
+        add_number(b, e->expected_value);
+        hn_strbuf_printf(b, " (a difference of %.2g is allowed)", e->allowed);
+    }
+    hn_strbuf_add(b, "\n");
+}
+
+void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
+    hn_strbuf_printf(b, "%s: %s\n", v->problem->id, v->problem->title);
+    if (v->kind == HN_VERDICT_UNGRADABLE) {
+        hn_strbuf_printf(b, "cannot be graded: %s\n", v->reason);
+        if (v->hint[0]) {
+            hn_strbuf_printf(b, "  %s\n", v->hint);
+        }
+        return;
+    }
+    hn_strbuf_printf(b, "score %g of %g: %s\n", v->score, v->max_score, v->summary);
+    if (v->note[0]) {
+        hn_strbuf_printf(b, "note: %s\n", v->note);
+    }
+    for (int k = 0; k < v->n_entries; k++) {
+        const hn_entry_verdict *e = &v->entry[k];
+        hn_strbuf_printf(b, "  %-5s %4g / %g  %s\n", e->name, e->points, e->max_points,
+                         e->mistake[0] ? e->mistake : "right");
+        add_entry_detail(b, e, "        ");
+        if (k == v->shown_entry) {
+            hn_strbuf_add(b, "        at        ");
+            add_state(b, v);
+            hn_strbuf_add(b, "\n");
+        }
+    }
+    hn_strbuf_printf(b, "compared at %d random states, seed %llu\n", v->n_states,
+                     (unsigned long long)v->seed);
+}
+
+static void put_entry(hn_strbuf *b, const hn_entry_verdict *e) {
+    hn_json_object(b);
+    hn_json_put_string(b, "name", e->name);
+    hn_json_put_number(b, "points", e->points);
+    hn_json_put_number(b, "max_points", e->max_points);
+    hn_json_put_bool(b, "right", e->right);
+    hn_json_put_bool(b, "closed_only", e->closed_only);
+    hn_json_put_string(b, "mistake", e->mistake);
+    hn_json_put_string(b, "explanation", e->explanation);
+    hn_json_put_string(b, "given", e->given);
+    hn_json_put_string(b, "expected", e->expected);
+    if (e->state >= 0) {
+        hn_json_put_int(b, "state", e->state);
+        hn_json_put_number(b, "given_value", e->given_value);
+        hn_json_put_number(b, "expected_value", e->expected_value);
+        hn_json_put_number(b, "allowed", e->allowed);
+    }
+    hn_json_end_object(b);
+}
+
+/// What reproduces the verdict, and the state of the picture.
+static void put_origin(hn_strbuf *b, const hn_verdict *v) {
+    char hash[17], seed[32];
+    hn_hash_hex(v->problem->hash, hash);
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)v->seed);
+    hn_json_put_string(b, "problem", v->problem->id);
+    hn_json_put_string(b, "problem_hash", hash);
+    hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
+    hn_json_put_int(b, "states", v->n_states);
+    if (v->shown_entry >= 0) {
+        hn_json_put_string(b, "shown_entry", v->entry[v->shown_entry].name);
+        hn_json_put_string(b, "shown_scene", v->problem->scene);
+        hn_json_key(b, "shown_state");
+        hn_json_object(b);
+        for (int i = 0; i < v->n_names; i++) {
+            hn_json_put_number(b, v->names[i], v->values[i]);
+        }
+        hn_json_end_object(b);
+    }
+}
+
+void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
+    hn_json_object(b);
+    put_origin(b, v);
+    hn_json_put_string(b, "status", v->kind == HN_VERDICT_GRADED ? "graded" : "ungradable");
+    if (v->kind == HN_VERDICT_UNGRADABLE) {
+        hn_json_put_string(b, "reason", v->reason);
+        hn_json_put_string(b, "hint", v->hint);
+    } else {
+        hn_json_put_number(b, "score", v->score);
+        hn_json_put_string(b, "summary", v->summary);
+    }
+    hn_json_put_number(b, "max_score", v->max_score);
+    hn_json_put_string(b, "note", v->note);
+    hn_json_key(b, "entries");
+    hn_json_array(b);
+    for (int k = 0; k < v->n_entries; k++) {
+        put_entry(b, &v->entry[k]);
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
+static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e) {
+    char number[32];
+    hn_strbuf detail;
+    hn_strbuf_init(&detail);
+    add_entry_detail(&detail, e, "");
+    snprintf(number, sizeof number, "%d.%d", e->row + 1, e->column + 1);
+    hn_json_object(b);
+    hn_strbuf name;
+    hn_strbuf_init(&name);
+    hn_strbuf_printf(&name, "%s = d phi_%d / d %s", e->name, e->row + 1, v->problem->by[e->column]);
+    hn_json_put_string(b, "name", hn_strbuf_text(&name));
+    hn_json_put_string(b, "number", number);
+    hn_json_put_number(b, "score", e->points);
+    hn_json_put_number(b, "max_score", e->max_points);
+    hn_json_put_string(b, "status", e->points == e->max_points ? "passed" : "failed");
+    hn_json_put_string(b, "output", detail.n ? hn_strbuf_text(&detail) : "right");
+    hn_json_put_string(b, "output_format", "text");
+    hn_json_put_string(b, "visibility", "visible");
+    hn_json_end_object(b);
+    b->failed |= detail.failed | name.failed;
+    hn_strbuf_reset(&detail);
+    hn_strbuf_reset(&name);
+}
+
+void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_time) {
+    int graded = v->kind == HN_VERDICT_GRADED;
+    hn_strbuf output;
+    hn_strbuf_init(&output);
+    hn_strbuf_printf(&output, graded ? "%s%s" : "The submission cannot be graded: %s. %s",
+                     graded ? v->summary : v->reason, graded ? "" : v->hint);
+    if (graded && v->note[0]) {
+        hn_strbuf_printf(&output, "\nNote: %s.", v->note);
+    }
+    hn_json_object(b);
+    hn_json_put_number(b, "score", v->score);
+    if (execution_time >= 0) {
+        hn_json_put_number(b, "execution_time", execution_time);
+    }
+    hn_json_put_string(b, "output", hn_strbuf_text(&output));
+    hn_json_put_string(b, "output_format", "text");
+    hn_json_put_string(b, "test_output_format", "text");
+    hn_json_put_string(b, "test_name_format", "text");
+    hn_json_put_string(b, "visibility", "visible");
+    hn_json_put_string(b, "stdout_visibility", "hidden");
+    hn_json_key(b, "tests");
+    hn_json_array(b);
+    for (int k = 0; k < v->n_entries; k++) {
+        put_test(b, v, &v->entry[k]);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "extra_data");
+    hn_json_object(b);
+    hn_json_put_string(b, "status", graded ? "graded" : "ungradable");
+    put_origin(b, v);
+    hn_json_end_object(b);
+    hn_json_end_object(b);
+    b->failed |= output.failed;
+    hn_strbuf_reset(&output);
+}
