@@ -1,0 +1,311 @@
+#include "support/near.h"
+
+#include "session/comparison.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static hn_library *open_library(void) {
+    hn_library *lib = NULL;
+    hn_diag diag = {0};
+    assert_int_equal(hn_library_open(".", &lib, &diag), HN_OK);
+    return lib;
+}
+
+static hn_model *load(const hn_library *lib, const char *name) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    const hn_model_source source = {.name = name};
+    if (hn_model_load(lib, &source, &model, &diags) != HN_OK) {
+        fail_msg("%s: %s %s", name, diags.item[0].pointer, diags.item[0].message);
+    }
+    return model;
+}
+
+static hn_comparison *compare(const hn_model *model, const char *const *methods, int n,
+                              const hn_comparison_opts *opts) {
+    hn_comparison *c = NULL;
+    hn_diags diags = {0};
+    if (hn_comparison_create(model, methods, n, opts, &c, &diags) != HN_OK) {
+        fail_msg("%s: %s", diags.item[0].pointer, diags.item[0].message);
+    }
+    return c;
+}
+
+/// The text of one frame; free() it.
+static char *frame_text(hn_comparison *c) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_comparison_frame_json(&b, c);
+    char *text = hn_strbuf_take(&b);
+    assert_non_null(text);
+    return text;
+}
+
+static double number(const cJSON *object, const char *key) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+    assert_true(cJSON_IsNumber(item));
+    return item->valuedouble;
+}
+
+static const char *const FIVE[] = {"index1@rk4:h=0.01", "baumgarte:alpha=5,beta=5@rk4:h=0.01",
+                                   "projection@rk4:h=0.01", "nullspace@rk4:h=0.01",
+                                   "reduced@rk4:h=0.01"};
+
+static void all_methods_share_one_clock_and_one_start(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_comparison *c = compare(model, FIVE, 5, NULL);
+    assert_near(hn_comparison_frame_dt(c), 0.02, 1e-15); // two steps of 0.01 s are above 1/60 s
+    hn_sample first = {0}, other = {0};
+    const int n = hn_system_get_info(hn_model_system(model)).n_user;
+    assert_true(hn_comparison_sample(c, 0, &first));
+    for (int i = 1; i < 5; i++) {
+        assert_true(hn_comparison_sample(c, i, &other));
+        assert_all_near(other.q, first.q, (size_t)n, 1e-14);
+    }
+    for (int k = 0; k < 10; k++) {
+        hn_comparison_next(c);
+    }
+    assert_int_equal(hn_comparison_frame(c), 10);
+    for (int i = 0; i < 5; i++) {
+        assert_true(hn_comparison_sample(c, i, &other));
+        assert_near(other.t, 0.2, 1e-14);
+        assert_int_equal(hn_run_get_summary(hn_comparison_run(c, i)).steps, 20);
+    }
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_comparison *c[2] = {compare(model, FIVE, 5, NULL), compare(model, FIVE, 5, NULL)};
+    hn_comparison_next(c[0]);
+    hn_comparison_reset(c[0]);
+    const int n = hn_system_get_info(hn_model_system(model)).n_user;
+    for (int k = 0; k < 50; k++) {
+        hn_comparison_next(c[0]);
+        hn_comparison_next(c[1]);
+    }
+    for (int i = 0; i < 5; i++) {
+        hn_sample a = {0}, b = {0};
+        assert_true(hn_comparison_sample(c[0], i, &a));
+        assert_true(hn_comparison_sample(c[1], i, &b));
+        assert_memory_equal(a.q, b.q, (size_t)n * sizeof(double));
+        assert_memory_equal(a.v, b.v, (size_t)n * sizeof(double));
+    }
+    hn_comparison_free(c[0]);
+    hn_comparison_free(c[1]);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+// a step of 0.4 s on a crank that turns at 4 rad/s cannot hold: the loop opens and the state blows up
+static void a_failed_method_stays_with_its_last_state_and_its_reason(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    const char *const methods[] = {"baumgarte:alpha=200,beta=200@rk4:h=0.1",
+                                   "projection@rk4:h=0.01"};
+    hn_comparison *c = compare(model, methods, 2, &(hn_comparison_opts){.duration = 4});
+    while (!hn_comparison_finished(c)) {
+        hn_comparison_next(c);
+    }
+    assert_near((double)hn_comparison_frame(c) * hn_comparison_frame_dt(c), 4, 1e-9);
+    const hn_run_summary s = hn_run_get_summary(hn_comparison_run(c, 0));
+    assert_int_equal(s.state, HN_RUN_FAILED);
+    assert_true(strlen(s.reason) > 10);
+    assert_int_equal(hn_run_get_summary(hn_comparison_run(c, 1)).status, HN_OK);
+    char *text = frame_text(c);
+    cJSON *frame = cJSON_Parse(text);
+    assert_non_null(frame);
+    const cJSON *failed = cJSON_GetArrayItem(cJSON_GetObjectItem(frame, "methods"), 0);
+    assert_string_equal(cJSON_GetObjectItem(failed, "state")->valuestring, "failed");
+    assert_true(number(failed, "t") < 4);
+    const cJSON *points = cJSON_GetObjectItem(failed, "points");
+    assert_true(cJSON_GetArraySize(points) > 0);
+    const cJSON *p;
+    cJSON_ArrayForEach(p, points) {
+        assert_true(cJSON_IsNumber(p)); // null would be a coordinate that is not finite
+    }
+    cJSON_Delete(frame);
+    free(text);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static void bad_methods_are_named_by_their_place(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_comparison *c = NULL;
+    hn_diags diags = {0};
+    const char *const methods[] = {"index1@rk4:h=0.01", "baumgart@rk4:h=0.01"};
+    assert_int_equal(hn_comparison_create(model, methods, 2, NULL, &c, &diags), HN_ERR_INPUT);
+    assert_string_equal(diags.item[0].pointer, "/methods/1");
+    assert_non_null(strstr(diags.item[0].hint, "baumgarte"));
+    diags = (hn_diags){0};
+    assert_int_equal(hn_comparison_create(model, methods, 0, NULL, &c, &diags), HN_ERR_INPUT);
+    assert_string_equal(diags.item[0].pointer, "/methods");
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static void two_methods_of_one_formulation_get_two_colours(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    const char *const methods[] = {"index1@rk4:h=0.01", "index1@rk4:h=0.02",
+                                   "baumgarte@rk4:h=0.01"};
+    hn_comparison *c = compare(model, methods, 3, NULL);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_comparison_json(&b, c);
+    cJSON *doc = cJSON_Parse(hn_strbuf_text(&b));
+    assert_non_null(doc);
+    const cJSON *list = cJSON_GetObjectItem(doc, "methods");
+    const double first = number(cJSON_GetArrayItem(list, 0), "slot");
+    const double second = number(cJSON_GetArrayItem(list, 1), "slot");
+    const double third = number(cJSON_GetArrayItem(list, 2), "slot");
+    assert_true(first != second && second != third && first != third);
+    cJSON_Delete(doc);
+    hn_strbuf_reset(&b);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static cJSON *run_document(const hn_model *model, const hn_run_request *request, hn_status *ended) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    if (hn_model_run_json(&b, model, request, ended, &diags) != HN_OK) {
+        fail_msg("%s: %s", diags.item[0].pointer, diags.item[0].message);
+    }
+    cJSON *doc = cJSON_Parse(hn_strbuf_text(&b));
+    assert_non_null(doc);
+    hn_strbuf_reset(&b);
+    return doc;
+}
+
+static void the_columns_of_a_run_have_one_length(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_status ended = HN_ERR_INTERNAL;
+    const hn_run_request request = {
+        .method = "projection@dopri5:rtol=1e-8", .time = 1, .every = 0.3};
+    cJSON *doc = run_document(model, &request, &ended);
+    assert_int_equal(ended, HN_OK);
+    const cJSON *samples = cJSON_GetObjectItem(doc, "samples");
+    const cJSON *column;
+    cJSON_ArrayForEach(column, samples) {
+        assert_int_equal(cJSON_GetArraySize(column), 5); // 0, 0.3, 0.6, 0.9 and the end
+    }
+    const cJSON *t = cJSON_GetObjectItem(samples, "t");
+    assert_near(cJSON_GetArrayItem(t, 3)->valuedouble, 0.9, 1e-12);
+    assert_near(cJSON_GetArrayItem(t, 4)->valuedouble, 1, 0);
+    cJSON_Delete(doc);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+// 0.0137 is no multiple of the step: the sample comes from a side step, and the run goes on as if nobody had looked
+static void looking_between_steps_does_not_change_a_run(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_status ended = HN_ERR_INTERNAL;
+    const double at[] = {0.0137, 0.5}, end[] = {0.5};
+    const hn_run_request often = {.method = "index1@rk4:h=0.01", .time = 0.5, .at = at, .n_at = 2};
+    const hn_run_request once = {.method = "index1@rk4:h=0.01", .time = 0.5, .at = end, .n_at = 1};
+    cJSON *a = run_document(model, &often, &ended), *b = run_document(model, &once, &ended);
+    const cJSON *qa =
+        cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(a, "samples"), "q"), 1);
+    const cJSON *qb =
+        cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(b, "samples"), "q"), 0);
+    assert_true(cJSON_Compare(qa, qb, 1));
+    cJSON_Delete(a);
+    cJSON_Delete(b);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static int stop_at_once(void *user, double share) {
+    (void)share;
+    return (*(int *)user)++ < 1;
+}
+
+static void a_run_stops_when_it_is_told_to(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_status ended = HN_OK;
+    int asked = 0;
+    const hn_run_request request = {.method = "index1@rk4:h=1e-6",
+                                    .time = 1000,
+                                    .every = 1000,
+                                    .progress = stop_at_once,
+                                    .user = &asked};
+    cJSON *doc = run_document(model, &request, &ended);
+    assert_int_equal(ended, HN_ERR_BUDGET);
+    assert_true(number(doc, "t_reached") < 1);
+    cJSON_Delete(doc);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static void bad_requests_name_their_field(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    const double back[] = {1, 0.5}, late[] = {2};
+    const struct {
+        hn_run_request request;
+        const char *pointer;
+    } cases[] = {
+        {{.method = "index1@rk4:h=0.01", .time = 0}, "/time"},
+        {{.method = "index1@rk4:h=0.01", .time = NAN}, "/time"},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .every = -1}, "/every"},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .every = 1e-12}, "/every"},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .at = back, .n_at = 2}, "/at"},
+        {{.method = "index1@rk4:h=0.01", .time = 1, .at = late, .n_at = 1}, "/at"},
+        {{.method = "index1@rk4:h=0", .time = 1}, "/method"},
+        {{.method = "", .time = 1}, "/method"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_diags diags = {0};
+        hn_status ended = HN_OK;
+        const hn_status status = hn_model_run_json(&b, model, &cases[i].request, &ended, &diags);
+        assert_true(status == HN_ERR_INPUT || status == HN_ERR_LIMIT);
+        assert_string_equal(diags.item[0].pointer, cases[i].pointer);
+        assert_int_equal(b.n, 0);
+        hn_strbuf_reset(&b);
+    }
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_methods_share_one_clock_and_one_start),
+        cmocka_unit_test(a_second_comparison_and_a_reset_give_the_same_bits),
+        cmocka_unit_test(a_failed_method_stays_with_its_last_state_and_its_reason),
+        cmocka_unit_test(bad_methods_are_named_by_their_place),
+        cmocka_unit_test(two_methods_of_one_formulation_get_two_colours),
+        cmocka_unit_test(the_columns_of_a_run_have_one_length),
+        cmocka_unit_test(looking_between_steps_does_not_change_a_run),
+        cmocka_unit_test(a_run_stops_when_it_is_told_to),
+        cmocka_unit_test(bad_requests_name_their_field),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
