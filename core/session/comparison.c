@@ -1,12 +1,12 @@
 #include "session/comparison.h"
 
-#include "base/arena.h"
+#include "render/look.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { STEPS_BETWEEN_CLOCKS = 256, N_SLOTS = 7 };
+enum { STEPS_BETWEEN_CLOCKS = 256 };
 static const double SHORTEST_FRAME = 1.0 / 60; // [s]
 
 /// One method of the comparison.
@@ -46,8 +46,8 @@ static int choose_slot(const hn_comparison *c, const hn_formulation *formulation
     while (wanted < hn_formulation_count() && hn_formulation_at(wanted) != formulation) {
         wanted++;
     }
-    for (int shift = 0; shift < N_SLOTS; shift++) {
-        int slot = (wanted + shift) % N_SLOTS, taken = 0;
+    for (int shift = 0; shift < HN_LOOK_METHODS; shift++) {
+        int slot = (wanted + shift) % HN_LOOK_METHODS, taken = 0;
         for (int i = 0; i < c->n; i++) {
             taken |= c->entries[i].slot == slot;
         }
@@ -55,7 +55,7 @@ static int choose_slot(const hn_comparison *c, const hn_formulation *formulation
             return slot;
         }
     }
-    return wanted % N_SLOTS;
+    return wanted % HN_LOOK_METHODS;
 }
 
 static hn_status add_method(hn_comparison *c, const char *text, const hn_comparison_opts *opts,
@@ -165,6 +165,10 @@ long long hn_comparison_frame(const hn_comparison *c) {
 
 const hn_run *hn_comparison_run(const hn_comparison *c, int method) {
     return c->entries[method].run;
+}
+
+int hn_comparison_slot(const hn_comparison *c, int method) {
+    return c->entries[method].slot;
 }
 
 static int is_live(const entry *e) {

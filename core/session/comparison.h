@@ -40,6 +40,7 @@ void hn_comparison_reset(hn_comparison *c);
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
                                           double value, hn_diag *diag);
 const hn_run *hn_comparison_run(const hn_comparison *c, int method);
+int hn_comparison_slot(const hn_comparison *c, int method); ///< colour and dash, see render/look.h
 /// The sample of a method at the present frame; 0 when the method has failed (then it is its last good one).
 int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out);
 

@@ -37,6 +37,11 @@ typedef struct hn_state_entry {
     double value;
 } hn_state_entry;
 
+/// q (nq), v (nv) in system coordinates: the start with the entries put in their places; nothing else moves, so
+/// the loops may open. Unknown names are told with the nearest one (pointer "/state/NAME").
+HN_MUST_CHECK hn_status hn_model_state(const hn_model *model, const hn_state_entry *entries,
+                                       int n_entries, double *q, double *v, hn_diags *diags);
+
 // documents ---------------------------------------------------------------------------------------------------
 /// Every shipped scene: {"scenes":[{"id","title","about","kind","freedoms","parameters":[...]}...]}; a scene that does not load stands there with its "errors".
 void hn_scenes_json(hn_strbuf *b, const hn_library *lib);

@@ -1,15 +1,7 @@
 // The documents that describe a scene: the list of scenes, one scene for a page, its assembly.
-#include "dynamics/eval.h"
 #include "session/caption.h"
+#include "session/envelope.h"
 #include "session/model.h"
-#include "study/run.h"
-
-#include <math.h>
-
-/// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene makes it slow.
-enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
-static const double ENVELOPE_SECONDS = 10;
-static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
 static void put_params(hn_strbuf *b, const hn_scene *scene) {
     hn_json_key(b, "parameters");
@@ -142,56 +134,14 @@ static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a) {
     hn_json_put_number(b, "energy", a->energy);
 }
 
-/// Box around every point that moves or stands, from points (3 n).
-static void grow_box(double box[4], const double *points, int n) {
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < 2; k++) {
-            double x = points[3 * i + k];
-            if (isfinite(x)) {
-                box[k] = fmin(box[k], x);
-                box[2 + k] = fmax(box[2 + k], x);
-            }
-        }
-    }
-}
-
-/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
-static void grow_box_by_motion(double box[4], const hn_model *model) {
-    hn_system_info info = hn_system_get_info(hn_model_system(model));
-    hn_method_spec spec;
-    hn_run *run = NULL;
-    hn_run_opts opts = hn_run_opts_default();
-    opts.max_steps = ENVELOPE_MAX_STEPS;
-    if (!hn_model_assembly(model)->ok || info.nc > ENVELOPE_MAX_ROWS ||
-        hn_method_parse(ENVELOPE_METHOD, &spec, NULL) != HN_OK ||
-        hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts,
-                      &run, NULL) != HN_OK) {
-        return;
-    }
-    hn_run_watch(run, 0);
-    double end = fmin(ENVELOPE_SECONDS, hn_model_scene(model)->duration);
-    for (int k = 1; k <= ENVELOPE_SAMPLES; k++) {
-        double t = end * k / ENVELOPE_SAMPLES;
-        hn_sample sample;
-        if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
-            break;
-        }
-        grow_box(box, sample.points, info.n_points);
-    }
-    hn_run_free(run);
-}
-
 /// World points at the start and the box around the motion: [xmin, ymin, xmax, ymax].
 static void put_points(hn_strbuf *b, const hn_model *model) {
-    int n = hn_system_get_info(hn_model_system(model)).n_points;
+    const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
-    hn_eval *eval = NULL;
-    if (arena && hn_eval_create(hn_model_system(model), HN_TERM_POINTS, arena, &eval) == HN_OK) {
-        hn_eval_run(eval, 0, hn_model_q(model), hn_model_v(model));
-        const double *points = hn_eval_get(eval, HN_TERM_POINTS);
-        double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-        grow_box(box, points, n);
-        grow_box_by_motion(box, model);
+    double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
+    double box[4];
+    if (points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
+        hn_model_envelope(model, box);
         hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
         if (n > 0) {
             hn_json_put_numbers(b, "envelope", box, 4);
@@ -199,7 +149,6 @@ static void put_points(hn_strbuf *b, const hn_model *model) {
     } else {
         b->failed = 1;
     }
-    hn_eval_free(eval);
     hn_arena_free(arena);
 }
 

@@ -3,7 +3,6 @@
 #include "session/model.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -26,52 +25,6 @@ typedef struct terms {
 static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
     return &hn_model_scene(model)
                 ->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
-}
-
-static hn_status unknown_entry(const hn_model *model, const char *name, int n, hn_diags *diags) {
-    const char *names[2 * MAX_DENSE];
-    for (int i = 0; i < n; i++) {
-        names[2 * i] = user_coordinate(model, i)->name;
-        names[2 * i + 1] = user_coordinate(model, i)->rate;
-    }
-    const char *near = hn_nearest_name(name, names, 2 * n);
-    char hint[HN_DIAG_HINT] = "name a coordinate or a rate of the scene";
-    if (near) {
-        snprintf(hint, sizeof hint, "did you mean '%.80s'?", near);
-    }
-    char pointer[HN_DIAG_POINTER];
-    snprintf(pointer, sizeof pointer, "/state/%.80s", name);
-    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint,
-                        "the scene has no free coordinate or rate '%.80s'", name);
-}
-
-/// The assembled start with the given entries put in their places.
-static hn_status set_state(terms *w, const hn_state_entry *entries, int n_entries,
-                           hn_diags *diags) {
-    const hn_system *sys = hn_model_system(w->model);
-    hn_system_to_user(sys, hn_model_q(w->model), w->uq);
-    hn_system_rates_to_user(sys, hn_model_v(w->model), w->uv);
-    hn_status status = HN_OK;
-    for (int k = 0; k < n_entries; k++) {
-        double *place = NULL;
-        for (int i = 0; i < w->info.n_user && !place; i++) {
-            const hn_coordinate *c = user_coordinate(w->model, i);
-            place = strcmp(c->name, entries[k].name) == 0   ? &w->uq[i]
-                    : strcmp(c->rate, entries[k].name) == 0 ? &w->uv[i]
-                                                            : NULL;
-        }
-        if (!place) {
-            status = unknown_entry(w->model, entries[k].name, w->info.n_user, diags);
-        } else if (!isfinite(entries[k].value)) {
-            status = hn_diags_add(diags, HN_ERR_INPUT, "/state", NULL,
-                                  "'%.80s' is not a finite number", entries[k].name);
-        } else {
-            *place = entries[k].value;
-        }
-    }
-    hn_system_from_user(sys, w->uq, w->q);
-    hn_system_rates_from_user(sys, w->uv, w->v);
-    return status;
 }
 
 static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
@@ -271,7 +224,9 @@ hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
     }
     if (status == HN_OK) {
         w.t = t;
-        status = set_state(&w, entries, n_entries, diags);
+        status = hn_model_state(model, entries, n_entries, w.q, w.v, diags);
+        hn_system_to_user(hn_model_system(model), w.q, w.uq);
+        hn_system_rates_to_user(hn_model_system(model), w.v, w.uv);
     }
     if (status == HN_OK) {
         calc_user_terms(&w);

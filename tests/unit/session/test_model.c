@@ -2,6 +2,7 @@
 
 #include "session/caption.h"
 #include "session/model.h"
+#include "session/picture.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -196,6 +197,39 @@ static void equations_keep_the_names_of_parameters(void **state) {
     hn_model_free(model);
 }
 
+static void a_picture_is_a_png_and_says_what_it_shows(void **state) {
+    (void)state;
+    hn_model *model = load(&(hn_model_source){.name = "four-bar"});
+    hn_strbuf png, words;
+    hn_strbuf_init(&png);
+    hn_strbuf_init(&words);
+    hn_diags diags = {0};
+    hn_status ended = HN_ERR_INTERNAL;
+    const char *const methods[] = {"index1@rk4:h=0.02", "projection@rk4:h=0.02"};
+    const hn_picture_request request = {
+        .methods = methods, .n_methods = 2, .time = 0.5, .width = 320, .height = 200};
+    assert_int_equal(hn_model_picture(&png, &words, model, &request, &ended, &diags), HN_OK);
+    assert_int_equal(ended, HN_OK);
+    assert_true(png.n > 1000);
+    assert_memory_equal(png.text, "\x89PNG\r\n\x1a\n", 8);
+    cJSON *doc = parse_and_reset(&words);
+    const cJSON *picture = cJSON_GetObjectItem(doc, "picture");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(picture, "poses")), 2);
+    assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(picture, "tears")) >= 1);
+    cJSON_Delete(doc);
+    // a pose that somebody names, such as the one at which a wrong entry shows
+    hn_strbuf_clear(&png);
+    const hn_state_entry entry_of_crank = {hn_model_scene(model)->coordinates[0].name, 0.4};
+    const hn_picture_request pose = {
+        .entries = &entry_of_crank, .n_entries = 1, .width = 320, .height = 200};
+    assert_int_equal(hn_model_picture(&png, NULL, model, &pose, NULL, &diags), HN_OK);
+    assert_memory_equal(png.text, "\x89PNG\r\n\x1a\n", 8);
+    const hn_picture_request late = {.methods = methods, .n_methods = 2, .time = -1};
+    assert_int_equal(hn_model_picture(&png, NULL, model, &late, NULL, &diags), HN_ERR_INPUT);
+    hn_strbuf_reset(&png);
+    hn_model_free(model);
+}
+
 static void a_parameter_changes_the_mechanism(void **state) {
     (void)state;
     const hn_setting triple = {"l1", 0.9}; // 0.9 + 1.2 > 0.8 + 1.0 with the shortest link 0.8
@@ -217,6 +251,7 @@ int main(void) {
         cmocka_unit_test(terms_balance_in_the_coordinates_of_the_scene),
         cmocka_unit_test(a_state_with_an_unknown_name_is_refused_with_a_hint),
         cmocka_unit_test(equations_keep_the_names_of_parameters),
+        cmocka_unit_test(a_picture_is_a_png_and_says_what_it_shows),
         cmocka_unit_test(a_parameter_changes_the_mechanism),
     };
     return cmocka_run_group_tests(tests, open_library, close_library);
