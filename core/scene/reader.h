@@ -11,8 +11,8 @@
 
 enum {
     HN_RD_MAX_REPEAT = 5000, ///< repetitions of one "for"
-    HN_RD_MAX_POINTS = 20000,
-    HN_RD_MAX_SHAPES = 20000,
+    HN_RD_MAX_POINTS = 10000,
+    HN_RD_MAX_SHAPES = 10000,
     HN_RD_MAX_LOADS = 4000,
     HN_RD_MAX_NAME = 60,   ///< characters of a name
     HN_RD_MAX_FAULTS = 64, ///< then reading stops
@@ -25,6 +25,16 @@ typedef enum hn_rd_scope {
     HN_RD_POSE,  ///< and t, coordinates
     HN_RD_STATE  ///< and rates
 } hn_rd_scope;
+
+/// What a name in formulas stands for.
+typedef enum hn_rd_meaning {
+    HN_RD_NOTHING,
+    HN_RD_PARAM,
+    HN_RD_COORDINATE,
+    HN_RD_RATE
+} hn_rd_meaning;
+
+enum { HN_RD_SLOTS = 1 << 14 }; ///< about twice the names there can be
 
 /// A parameter as written, and how far its evaluation is.
 typedef struct hn_rd_param {
@@ -52,6 +62,10 @@ typedef struct hn_reader {
     int body_at;       ///< the body whose drawing is read
     int shape_kind;    ///< the kind whose list is read
     hn_rd_scope scope; ///< of the formula that is being parsed
+    struct {
+        unsigned char meaning;
+        int index;
+    } slot[HN_RD_SLOTS]; ///< names of parameters, coordinates, rates: open addressing by hash
 } hn_reader;
 
 // where we are, what is wrong --------------------------------------------------------------------
@@ -101,6 +115,11 @@ int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int require
 int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
 /// Value of a formula in parameters, for braces and "for".
 int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out);
+
+// names in formulas: found in constant time, for a scene may hold thousands and use them a million times
+void hn_rd_put_name(hn_reader *r, hn_rd_meaning meaning,
+                    int index); ///< of a parameter or coordinate that stands in the scene
+hn_rd_meaning hn_rd_find_name(const hn_reader *r, const char *name, int *index);
 
 // parts of a scene ------------------------------------------------------------------------------------
 void hn_rd_params(hn_reader *r, const cJSON *root);

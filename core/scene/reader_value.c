@@ -2,6 +2,7 @@
 
 #include "scene/reader.h"
 
+#include "base/hash.h"
 #include "base/strbuf.h"
 
 #include <ctype.h>
@@ -17,6 +18,34 @@ static int is_name(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
+static const char *name_of(const hn_scene *s, hn_rd_meaning meaning, int index) {
+    return meaning == HN_RD_PARAM        ? s->params[index].name
+           : meaning == HN_RD_COORDINATE ? s->coordinates[index].name
+                                         : s->coordinates[index].rate;
+}
+
+/// The slot that holds `name`, or the free one where it belongs.
+static unsigned find_slot(const hn_reader *r, const char *name) {
+    unsigned k = (unsigned)(hn_hash_mix(hn_hash_text(HN_HASH_START, name)) % HN_RD_SLOTS);
+    while (r->slot[k].meaning != HN_RD_NOTHING &&
+           strcmp(name_of(r->scene, r->slot[k].meaning, r->slot[k].index), name) != 0) {
+        k = (k + 1) % HN_RD_SLOTS;
+    }
+    return k;
+}
+
+void hn_rd_put_name(hn_reader *r, hn_rd_meaning meaning, int index) {
+    unsigned k = find_slot(r, name_of(r->scene, meaning, index));
+    r->slot[k].meaning = (unsigned char)meaning;
+    r->slot[k].index = index;
+}
+
+hn_rd_meaning hn_rd_find_name(const hn_reader *r, const char *name, int *index) {
+    unsigned k = find_slot(r, name);
+    *index = r->slot[k].index;
+    return r->slot[k].meaning;
+}
+
 /// What a name stands for in a formula of the reader's present scope.
 static int lookup(void *user, const char *name, hn_ex *out) {
     hn_reader *r = user;
@@ -24,22 +53,16 @@ static int lookup(void *user, const char *name, hn_ex *out) {
         *out = hn_num((double)r->loop_value);
         return 1;
     }
-    int k = hn_scene_find_param(r->scene, name);
-    if (k >= 0) {
+    int k;
+    hn_rd_meaning meaning = hn_rd_find_name(r, name, &k);
+    if (meaning == HN_RD_PARAM) {
         double value = 1;
         hn_rd_param_value(r, k, &value);
         *out = hn_num(value);
         return 1;
     }
-    if (r->scope == HN_RD_CONST) {
-        return 0;
-    }
-    int found = strcmp(name, "t") == 0;
-    for (int i = 0; i < r->scene->n_coordinates && !found; i++) {
-        const hn_coordinate *c = &r->scene->coordinates[i];
-        found =
-            strcmp(name, c->name) == 0 || (r->scope == HN_RD_STATE && strcmp(name, c->rate) == 0);
-    }
+    int found = r->scope != HN_RD_CONST && (strcmp(name, "t") == 0 || meaning == HN_RD_COORDINATE);
+    found |= r->scope == HN_RD_STATE && meaning == HN_RD_RATE;
     if (found) {
         *out = hn_symbol(r->graph, name, NULL);
     }

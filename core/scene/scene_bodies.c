@@ -245,15 +245,15 @@ int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, cons
         return -1;
     }
     s->coordinates = all;
-    all[s->n_coordinates] =
-        (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
-    // the coordinate is there already, so that a rate of the same name is found out; its own rate is not
-    all[s->n_coordinates].rate = "";
-    s->n_coordinates++;
+    int k = s->n_coordinates++;
+    all[k] = (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
+    all[k].actuated = hn_rd_flag(r, node, "actuated");
+    hn_rd_put_name(r, HN_RD_COORDINATE, k);
     ok = hn_rd_check_identifier(r, rate);
-    all[s->n_coordinates - 1].rate = rate;
-    all[s->n_coordinates - 1].actuated = hn_rd_flag(r, node, "actuated");
-    return ok ? s->n_coordinates - 1 : -1;
+    if (ok) {
+        hn_rd_put_name(r, HN_RD_RATE, k);
+    }
+    return ok ? k : -1;
 }
 
 static void check_joint_name(hn_reader *r, const hn_joint *j) {

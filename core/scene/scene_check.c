@@ -55,25 +55,12 @@ void hn_rd_check_tree(hn_reader *r, const cJSON *node) {
 // names ---------------------------------------------------------------------------------------------
 
 static const char *taken(const hn_reader *r, const char *name) {
-    const hn_scene *s = r->scene;
+    static const char *const by[] = {NULL, "a parameter", "a coordinate", "a rate"};
+    int index;
     if (strcmp(name, "t") == 0) {
         return "the time";
     }
-    if (hn_op_find(name) != HN_OP_COUNT) {
-        return "a function";
-    }
-    if (hn_scene_find_param(s, name) >= 0) {
-        return "a parameter";
-    }
-    for (int i = 0; i < s->n_coordinates; i++) {
-        if (strcmp(s->coordinates[i].name, name) == 0) {
-            return "a coordinate";
-        }
-        if (strcmp(s->coordinates[i].rate, name) == 0) {
-            return "a rate";
-        }
-    }
-    return NULL;
+    return hn_op_find(name) != HN_OP_COUNT ? "a function" : by[hn_rd_find_name(r, name, &index)];
 }
 
 int hn_rd_check_identifier(hn_reader *r, const char *name) {

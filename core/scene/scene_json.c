@@ -219,11 +219,11 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
     }
     if (status == HN_OK) {
         scene->arena = arena;
-        *r = (hn_reader){.scene = scene,
-                         .arena = arena,
-                         .diags = diags,
-                         .settings = settings,
-                         .n_settings = n_settings};
+        r->scene = scene;
+        r->arena = arena;
+        r->diags = diags;
+        r->settings = settings;
+        r->n_settings = n_settings;
         status = read_tree(r, root, id);
     }
     if (status == HN_OK) {

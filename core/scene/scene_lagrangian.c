@@ -11,11 +11,10 @@ int hn_rd_coordinate(hn_reader *r, const char *name, int rates) {
     const hn_scene *s = r->scene;
     const char *names[ROOM];
     int n = 0;
-    for (int i = 0; i < s->n_coordinates; i++) {
-        if (strcmp(name, s->coordinates[i].name) == 0 ||
-            (rates && strcmp(name, s->coordinates[i].rate) == 0)) {
-            return i;
-        }
+    int k;
+    hn_rd_meaning meaning = hn_rd_find_name(r, name, &k);
+    if (meaning == HN_RD_COORDINATE || (rates && meaning == HN_RD_RATE)) {
+        return k;
     }
     for (int i = 0; i < s->n_coordinates && n < ROOM; i++) {
         names[n++] = s->coordinates[i].name;

@@ -99,7 +99,10 @@ static void read_param(hn_reader *r, const cJSON *node, const char *key) {
     r->param_src = src;
     params[s->n_params] = p;
     src[s->n_params] = source;
-    s->n_params += p.name != NULL;
+    if (p.name) {
+        s->n_params++;
+        hn_rd_put_name(r, HN_RD_PARAM, s->n_params - 1);
+    }
 }
 
 static const hn_setting *find_setting(const hn_reader *r, const char *name) {
