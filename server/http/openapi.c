@@ -176,8 +176,8 @@ static const struct {
      "incident\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
      "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
      "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
-                                   "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER
-     ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT ",\"remedies\":" TEXTS "}}"},
+     "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
+     ",\"remedies\":" TEXTS "}}"},
     {"Comparison",
      "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
      "\"duration\",\"generation\","
@@ -203,7 +203,7 @@ static const struct {
      "9457\",\"required\":[\"type\",\"title\",\"status\",\"detail\"],\"properties\":{"
      "\"type\":" TEXT ",\"title\":" TEXT ",\"status\":{\"type\":\"integer\"},\"detail\":" TEXT
      ",\"hint\":" TEXT ",\"instance\":" TEXT ",\"offset\":{\"type\":\"integer\",\"description\":"
-                                             "\"byte at which the body stops being JSON\"},"
+     "\"byte at which the body stops being JSON\"},"
      "\"errors\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"detail\","
      "\"pointer\"],\"properties\":{"
      "\"detail\":" TEXT ",\"pointer\":" TEXT ",\"hint\":" TEXT

@@ -1,0 +1,168 @@
+#include "cli/document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+cJSON *hn_document_parse(hn_strbuf *text) {
+    cJSON *document = text->failed ? NULL : cJSON_Parse(hn_strbuf_text(text));
+    hn_strbuf_reset(text);
+    return document;
+}
+
+const cJSON *hn_document_get(const cJSON *object, const char *key) {
+    return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+double hn_document_number(const cJSON *object, const char *key) {
+    const cJSON *item = hn_document_get(object, key);
+    return cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+}
+
+const char *hn_document_text(const cJSON *object, const char *key) {
+    const char *text = cJSON_GetStringValue(hn_document_get(object, key));
+    return text ? text : "";
+}
+
+void hn_document_put_number(hn_strbuf *b, const cJSON *number) {
+    if (cJSON_IsNumber(number)) {
+        hn_strbuf plain; // a buffer of its own: no commas
+        hn_strbuf_init(&plain);
+        hn_json_number(&plain, number->valuedouble);
+        hn_strbuf_add(b, hn_strbuf_text(&plain));
+        b->failed |= plain.failed;
+        hn_strbuf_reset(&plain);
+    }
+}
+
+/// A scalar as a person would write it.
+static void format_scalar(const cJSON *item, char out[HN_TABLE_CELL]) {
+    if (cJSON_IsString(item)) {
+        snprintf(out, HN_TABLE_CELL, "%s", item->valuestring);
+    } else if (cJSON_IsNumber(item)) {
+        snprintf(out, HN_TABLE_CELL, "%.6g", item->valuedouble);
+    } else {
+        snprintf(out, HN_TABLE_CELL, "%s",
+                 cJSON_IsTrue(item)    ? "yes"
+                 : cJSON_IsFalse(item) ? "no"
+                                       : "-");
+    }
+}
+
+void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *columns, int n) {
+    hn_table t;
+    hn_table_init(&t);
+    for (int c = 0; c < n; c++) {
+        hn_table_column(&t, columns[c].head, columns[c].unit != NULL);
+    }
+    const cJSON *row;
+    cJSON_ArrayForEach(row, array) {
+        for (int c = 0; c < n; c++) {
+            char text[HN_TABLE_CELL];
+            const cJSON *item = hn_document_get(row, columns[c].key);
+            if (columns[c].unit && columns[c].unit[0] && cJSON_IsNumber(item)) {
+                hn_table_quantity(&t, item->valuedouble, columns[c].unit);
+                continue;
+            }
+            format_scalar(item, text);
+            hn_table_cell(&t, "%s", item ? text : "");
+        }
+    }
+    hn_table_write(b, &t);
+    hn_table_reset(&t);
+}
+
+static int is_scalar(const cJSON *item) {
+    return !cJSON_IsArray(item) && !cJSON_IsObject(item);
+}
+
+static int holds_objects(const cJSON *array) {
+    return cJSON_IsObject(array->child);
+}
+
+/// A table of objects, its columns the scalar members of the first one.
+static void put_objects(hn_strbuf *b, const cJSON *array) {
+    hn_list_column columns[HN_TABLE_COLUMNS];
+    int n = 0;
+    for (const cJSON *m = array->child->child; m && n < HN_TABLE_COLUMNS; m = m->next) {
+        if (is_scalar(m)) {
+            columns[n++] = (hn_list_column){m->string, m->string, cJSON_IsNumber(m) ? "" : NULL};
+        }
+    }
+    hn_document_list(b, array, columns, n);
+}
+
+static void put_line(hn_strbuf *b, const cJSON *array) {
+    char text[HN_TABLE_CELL];
+    const cJSON *item;
+    cJSON_ArrayForEach(item, array) {
+        if (cJSON_IsArray(item)) {
+            hn_strbuf_add(b, "[");
+            put_line(b, item);
+            hn_strbuf_add(b, "]");
+        } else {
+            format_scalar(item, text);
+            hn_strbuf_add(b, text);
+        }
+        hn_strbuf_add(b, item->next ? ", " : "");
+    }
+}
+
+void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
+    char text[HN_TABLE_CELL];
+    int width = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object) {
+        int n = (int)strlen(item->string);
+        width = n > width && is_scalar(item) ? n : width;
+    }
+    cJSON_ArrayForEach(item, object) {
+        if (is_scalar(item)) {
+            format_scalar(item, text);
+            hn_strbuf_printf(b, "%*s%-*s  %s\n", indent, "", width, item->string, text);
+        } else if (cJSON_IsObject(item)) {
+            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
+            hn_document_outline(b, item, indent + 2);
+        } else if (item->child && holds_objects(item)) {
+            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
+            put_objects(b, item);
+        } else {
+            hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
+            put_line(b, item);
+            hn_strbuf_add(b, "\n");
+        }
+    }
+}
+
+void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const cJSON *row_names,
+                        const cJSON *column_names) {
+    if (!cJSON_IsArray(rows)) {
+        return;
+    }
+    hn_strbuf_printf(b, "%s\n", name);
+    int width = 0;
+    const cJSON *item, *cell;
+    cJSON_ArrayForEach(item, row_names) {
+        int n = (int)strlen(item->valuestring);
+        width = n > width ? n : width;
+    }
+    if (column_names) {
+        hn_strbuf_printf(b, "  %*s", width, "");
+        cJSON_ArrayForEach(item, column_names) {
+            hn_strbuf_printf(b, " %13s", item->valuestring);
+        }
+        hn_strbuf_add(b, "\n");
+    }
+    int i = 0;
+    cJSON_ArrayForEach(item, rows) {
+        const cJSON *row_name = cJSON_GetArrayItem(row_names, i++);
+        hn_strbuf_printf(b, "  %-*s", width, row_name ? row_name->valuestring : "");
+        if (cJSON_IsNumber(item)) {
+            hn_strbuf_printf(b, " %13.6g", item->valuedouble);
+        }
+        cJSON_ArrayForEach(cell, item) {
+            hn_strbuf_printf(b, " %13.6g", cell->valuedouble);
+        }
+        hn_strbuf_add(b, "\n");
+    }
+}

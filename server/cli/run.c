@@ -1,0 +1,212 @@
+// holonom run: one method, its samples as CSV, NDJSON or JSON.
+#include "cli/cli.h"
+#include "cli/document.h"
+#include "session/comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/// A column of the output: a name, and where its values are.
+typedef struct column {
+    char name[96];
+    const cJSON *list; ///< of samples
+    int part;          ///< index within each entry; -1: the entry itself
+} column;
+
+enum { MAX_RUN_COLUMNS = 4096 };
+
+static int add_parts(column *columns, int n, const cJSON *samples, const char *key,
+                     const char *prefix, const cJSON *names) {
+    int part = 0;
+    const cJSON *name;
+    cJSON_ArrayForEach(name, names) {
+        if (n == MAX_RUN_COLUMNS) {
+            return n;
+        }
+        column *c = &columns[n++];
+        snprintf(c->name, sizeof c->name, "%s%s", prefix, name->valuestring);
+        c->list = hn_document_get(samples, key);
+        c->part = part++;
+    }
+    return n;
+}
+
+/// t, coordinates, rates, multipliers by row, and the three measures.
+static int find_columns(column *columns, const cJSON *run) {
+    static const char *const last[] = {"gap", "velocity_gap", "energy"};
+    const cJSON *samples = hn_document_get(run, "samples");
+    columns[0] = (column){.name = "t", .list = hn_document_get(samples, "t"), .part = -1};
+    int n = add_parts(columns, 1, samples, "q", "", hn_document_get(run, "coordinates"));
+    n = add_parts(columns, n, samples, "v", "", hn_document_get(run, "rates"));
+    n = add_parts(columns, n, samples, "lambda", "lambda ", hn_document_get(run, "rows"));
+    for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
+        columns[n] = (column){.list = hn_document_get(samples, last[i]), .part = -1};
+        snprintf(columns[n++].name, sizeof columns[0].name, "%s", last[i]);
+    }
+    return n;
+}
+
+/// Entries of the lists are walked, not indexed: a list of a parsed document is a chain.
+typedef struct cursor {
+    const cJSON *entry;
+} cursor;
+
+static void put_row(hn_strbuf *b, const column *columns, cursor *cursors, int n) {
+    for (int c = 0; c < n; c++) {
+        const cJSON *entry = cursors[c].entry;
+        hn_strbuf_add(b, c ? "," : "");
+        const cJSON *value =
+            columns[c].part < 0 ? entry : cJSON_GetArrayItem(entry, columns[c].part);
+        hn_document_put_number(b, value);
+        cursors[c].entry = entry ? entry->next : NULL;
+    }
+}
+
+/// A field in quotes where it holds a comma or a quote (RFC 4180).
+static void put_csv_name(hn_strbuf *b, const char *name) {
+    if (!strpbrk(name, ",\"\n")) {
+        hn_strbuf_add(b, name);
+        return;
+    }
+    hn_strbuf_add(b, "\"");
+    for (; *name; name++) {
+        hn_strbuf_add_n(b, name, 1);
+        hn_strbuf_add(b, *name == '"' ? "\"" : "");
+    }
+    hn_strbuf_add(b, "\"");
+}
+
+static void put_head(hn_strbuf *b, const column *columns, int n, int ndjson, const cJSON *run) {
+    if (!ndjson) {
+        for (int c = 0; c < n; c++) {
+            hn_strbuf_add(b, c ? "," : "");
+            put_csv_name(b, columns[c].name);
+        }
+        hn_strbuf_add(b, "\n");
+        return;
+    }
+    hn_strbuf line;
+    hn_strbuf_init(&line);
+    hn_json_object(&line);
+    hn_json_put_string(&line, "scene", hn_document_text(run, "scene"));
+    hn_json_put_string(&line, "method", hn_document_text(run, "method"));
+    hn_json_key(&line, "columns");
+    hn_json_array(&line);
+    for (int c = 0; c < n; c++) {
+        hn_json_string(&line, columns[c].name);
+    }
+    hn_json_end_array(&line);
+    hn_json_end_object(&line);
+    hn_strbuf_printf(b, "%s\n", hn_strbuf_text(&line));
+    b->failed |= line.failed;
+    hn_strbuf_reset(&line);
+}
+
+/// NDJSON closes with everything but the samples.
+static void put_tail(hn_strbuf *b, cJSON *run) {
+    cJSON_DeleteItemFromObjectCaseSensitive(run, "samples");
+    char *text = cJSON_PrintUnformatted(run);
+    hn_strbuf_add(b, text ? text : "");
+    hn_strbuf_add(b, "\n");
+    b->failed |= text == NULL;
+    cJSON_free(text);
+}
+
+static void put_samples(hn_strbuf *b, cJSON *run, int ndjson) {
+    column *columns = calloc(MAX_RUN_COLUMNS, sizeof *columns);
+    cursor *cursors = calloc(MAX_RUN_COLUMNS, sizeof *cursors);
+    if (!columns || !cursors) {
+        b->failed = 1;
+    } else {
+        int n = find_columns(columns, run);
+        for (int c = 0; c < n; c++) {
+            cursors[c].entry = columns[c].list ? columns[c].list->child : NULL;
+        }
+        put_head(b, columns, n, ndjson, run);
+        while (cursors[0].entry) {
+            hn_strbuf_add(b, ndjson ? "[" : "");
+            put_row(b, columns, cursors, n);
+            hn_strbuf_add(b, ndjson ? "]\n" : "\n");
+        }
+        if (ndjson) {
+            put_tail(b, run);
+        }
+    }
+    free(columns);
+    free(cursors);
+}
+
+static int tell_progress(void *user, double share) {
+    hn_progress_tell(user, "running", share);
+    return 1;
+}
+
+static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf *b,
+                           hn_status *ended, hn_diags *diags) {
+    hn_model *model = NULL;
+    hn_progress progress = {0};
+    hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, diags);
+    if (status == HN_OK) {
+        const hn_scene *scene = hn_model_scene(model);
+        hn_run_request request = {.method = args->method           ? args->method
+                                            : scene->n_methods > 0 ? scene->methods[0]
+                                                                   : "projection@dopri5:rtol=1e-8",
+                                  .time = isnan(args->time) ? scene->duration : args->time,
+                                  .at = args->at.n > 0 ? args->at.value : NULL,
+                                  .n_at = args->at.n,
+                                  .every = isnan(args->every) ? 0 : args->every,
+                                  .progress = tell_progress,
+                                  .user = &progress};
+        if (!isnan(args->every) && !(args->every > 0)) {
+            status = hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
+                                  "the output interval is %g s; it must be above 0", args->every);
+        } else {
+            status = hn_model_run_json(b, model, &request, ended, diags);
+        }
+        hn_progress_end(&progress);
+    }
+    hn_model_free(model);
+    return status;
+}
+
+/// "csv", "ndjson" or "json"; NULL with a fault told.
+static const char *choose_format(const hn_args *args, hn_diags *diags) {
+    static const char *const formats[] = {"csv", "ndjson", "json"};
+    const char *wanted = args->json ? "json" : args->format ? args->format : "csv";
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(wanted, formats[i]) == 0) {
+            return formats[i];
+        }
+    }
+    hn_diags_add(diags, HN_ERR_INPUT, NULL, "csv, ndjson or json",
+                 "'%.40s' is not a form of samples", wanted);
+    return NULL;
+}
+
+hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
+    hn_diags diags = {0};
+    hn_status ended = HN_OK;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    const char *format = choose_format(args, &diags);
+    hn_status status = format ? run_scene(lib, args, &b, &ended, &diags) : HN_ERR_INPUT;
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        return hn_report_diags(args, status, &diags);
+    }
+    cJSON *run = NULL;
+    char reason[300] = "";
+    if (strcmp(format, "json") != 0) {
+        run = hn_document_parse(&b);
+        snprintf(reason, sizeof reason, "%s at t = %.6g s: %.200s", hn_document_text(run, "status"),
+                 hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
+        put_samples(&b, run, strcmp(format, "ndjson") == 0);
+        cJSON_Delete(run);
+    }
+    hn_exit result = hn_print(&b);
+    if (ended != HN_OK && reason[0]) {
+        fprintf(stderr, "holonom: the run ended early, %s\n", reason);
+    }
+    return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
+}

@@ -1,0 +1,162 @@
+// holonom inspect, equations, terms: questions about one scene.
+#include "cli/cli.h"
+#include "cli/document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags);
+    if (status == HN_OK) {
+        status = hn_model_inspect_json(&b, model, &diags);
+    }
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        return hn_report_diags(args, status, &diags);
+    }
+    if (args->json) {
+        return hn_print(&b);
+    }
+    cJSON *document = hn_document_parse(&b);
+    hn_document_outline(&b, document, 0);
+    b.failed |= document == NULL;
+    cJSON_Delete(document);
+    return hn_print(&b);
+}
+
+static hn_status choose_form(const hn_args *args, hn_equation_form *form, hn_diags *diags) {
+    static const char *const names[] = {"text", "latex", "json"};
+    static const hn_equation_form forms[] = {HN_EQUATIONS_TEXT, HN_EQUATIONS_LATEX,
+                                             HN_EQUATIONS_JSON};
+    *form = args->json ? HN_EQUATIONS_JSON : HN_EQUATIONS_TEXT;
+    if (!args->format) {
+        return HN_OK;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(args->format, names[i]) == 0) {
+            *form = forms[i];
+            return HN_OK;
+        }
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, NULL, "text, latex or json",
+                        "'%.40s' is not a form of equations", args->format);
+}
+
+hn_exit hn_command_equations(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_equation_form form;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = choose_form(args, &form, &diags);
+    if (status == HN_OK) {
+        status = hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags);
+    }
+    if (status == HN_OK) {
+        status = hn_model_equations(&b, model, form, &diags);
+    }
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        return hn_report_diags(args, status, &diags);
+    }
+    return hn_print(&b);
+}
+
+enum { MAX_ENTRIES = 400 };
+
+typedef struct state {
+    int n;
+    hn_state_entry entries[MAX_ENTRIES];
+    char names[MAX_ENTRIES][64];
+} state;
+
+static hn_status see_entry(void *user, const char *name, double value) {
+    state *s = user;
+    if (s->n == MAX_ENTRIES) {
+        return HN_ERR_LIMIT;
+    }
+    snprintf(s->names[s->n], sizeof s->names[s->n], "%s", name);
+    s->entries[s->n] = (hn_state_entry){.name = s->names[s->n], .value = value};
+    s->n++;
+    return HN_OK;
+}
+
+static void put_vector(hn_strbuf *b, const char *title, const cJSON *document, const char *key,
+                       const cJSON *names) {
+    const cJSON *values = hn_document_get(document, key);
+    if (cJSON_GetArraySize(values) > 0) {
+        hn_document_matrix(b, title, values, names, NULL);
+    }
+}
+
+static void put_terms(hn_strbuf *b, const cJSON *d) {
+    static const struct {
+        const char *title, *key;
+        int matrix, by_row;
+    } parts[] = {{"q", "q", 0, 0},
+                 {"v", "v", 0, 0},
+                 {"M, mass matrix", "M", 1, 0},
+                 {"f = Q - h, forces", "f", 0, 0},
+                 {"J, Jacobian of the loops", "J", 1, 1},
+                 {"gamma = Jdot v", "gamma", 0, 1},
+                 {"phi, gap of the loops", "phi", 0, 1},
+                 {"a, accelerations", "a", 0, 0},
+                 {"lambda, multipliers", "lambda", 0, 1}};
+    const cJSON *names = hn_document_get(d, "coordinates"), *rows = hn_document_get(d, "rows");
+    hn_strbuf_printf(b, "%s at t = %g s: %s\n", hn_document_text(d, "scene"),
+                     hn_document_number(d, "t"), hn_document_text(d, "equations"));
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        const cJSON *row_names = parts[i].by_row ? rows : names;
+        if (parts[i].matrix && cJSON_GetArraySize(hn_document_get(d, parts[i].key)) > 0) {
+            hn_document_matrix(b, parts[i].title, hn_document_get(d, parts[i].key), row_names,
+                               names);
+        } else if (!parts[i].matrix) {
+            put_vector(b, parts[i].title, d, parts[i].key, row_names);
+        }
+    }
+    hn_strbuf_printf(b, "rank %g, gap %.3g, velocity gap %.3g, energy %.9g J\n",
+                     hn_document_number(d, "rank"), hn_document_number(d, "gap"),
+                     hn_document_number(d, "velocity_gap"),
+                     hn_document_number(d, "kinetic") + hn_document_number(d, "potential"));
+}
+
+hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    state *s = calloc(1, sizeof *s);
+    hn_status status =
+        s ? hn_assignments_read(&args->state_q, "--q", see_entry, s, &diags) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_assignments_read(&args->state_v, "--v", see_entry, s, &diags);
+    }
+    if (status == HN_OK) {
+        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
+    }
+    if (status == HN_OK) {
+        status =
+            hn_model_terms_json(&b, model, isnan(args->t) ? 0 : args->t, s->entries, s->n, &diags);
+    }
+    hn_model_free(model);
+    free(s);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        return hn_report_diags(args, status, &diags);
+    }
+    if (args->json) {
+        return hn_print(&b);
+    }
+    cJSON *document = hn_document_parse(&b);
+    put_terms(&b, document);
+    b.failed |= document == NULL;
+    cJSON_Delete(document);
+    return hn_print(&b);
+}
