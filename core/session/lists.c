@@ -1,6 +1,5 @@
 #include "session/lists.h"
 
-#include <cjson/cJSON.h>
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,35 +91,6 @@ void hn_lessons_json(hn_strbuf *b, const hn_library *lib) {
         free(entries[i]);
     }
     free(entries);
-    hn_json_end_array(b);
-    hn_json_end_object(b);
-}
-
-static void put_text_member(hn_strbuf *b, const cJSON *file, const char *key) {
-    hn_json_put_string(b, key, cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(file, key)));
-}
-
-void hn_problems_json(hn_strbuf *b, const hn_library *lib) {
-    hn_json_object(b);
-    hn_json_key(b, "problems");
-    hn_json_array(b);
-    for (int i = 0; i < hn_library_n_problems(lib); i++) {
-        const char *id = hn_library_problem_id(lib, i);
-        char *text = read_file(hn_library_problem_path(lib, id));
-        cJSON *file = text ? cJSON_Parse(text) : NULL;
-        hn_json_object(b);
-        hn_json_put_string(b, "id", id);
-        if (file) {
-            put_text_member(b, file, "title");
-            put_text_member(b, file, "lesson");
-            put_text_member(b, file, "scene");
-        } else {
-            hn_json_put_string(b, "error", "the file cannot be read as JSON");
-        }
-        hn_json_end_object(b);
-        cJSON_Delete(file);
-        free(text);
-    }
     hn_json_end_array(b);
     hn_json_end_object(b);
 }

@@ -35,6 +35,14 @@ static hn_status check_time(double time, hn_diags *diags) {
     return HN_OK;
 }
 
+static double cpu_used(const hn_comparison *c) {
+    double sum = 0;
+    for (int i = 0; i < hn_comparison_n_methods(c); i++) {
+        sum += hn_run_get_summary(hn_comparison_run(c, i)).cpu_seconds;
+    }
+    return sum;
+}
+
 /// Runs every method to the wanted time. The clock advances in whole frames, so a frame is a part of that time.
 static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
@@ -49,6 +57,11 @@ static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     status = hn_comparison_create(p->model, r->methods, r->n_methods, &opts, &p->comparison, diags);
     for (int k = 0; k < frames && status == HN_OK; k++) {
         hn_comparison_next(p->comparison);
+        if (r->cpu_budget > 0 && cpu_used(p->comparison) > r->cpu_budget) {
+            status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a larger step or less time",
+                                  "%g s of computing were used up at t = %g s", r->cpu_budget,
+                                  (k + 1) * opts.frame_dt);
+        }
     }
     return status;
 }

@@ -15,6 +15,7 @@ typedef struct hn_picture_request {
     const char *caption; ///< NULL: the scene's
     int width, height;   ///< [px]; 0: 1200 x 720
     hn_theme theme;
+    double cpu_budget; ///< seconds of stepping allowed in all: HN_ERR_LIMIT beyond; 0: not bounded
 } hn_picture_request;
 
 /// Appends the bytes of a PNG file. `describe` (may be NULL) receives in words and numbers what the picture shows, as JSON:

@@ -26,6 +26,12 @@ static const hn_command COMMANDS[] = {
      MODEL_OPTIONS " --method --time --at --every --format", 1, 1, hn_command_run},
     {"compare", "SCENE", "several methods on one clock, and where they part",
      MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
+    {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
+     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme", 1, 1,
+     hn_command_snapshot},
+    {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
+    {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",
+     "--format --out -o --seed", 2, HN_CLI_MAX_WORDS, hn_command_grade},
     {"help", "[COMMAND]", "this text, or a command's options", "", 0, 1, print_help},
     {"version", "", "what this program is", "", 0, 0, print_version},
 };

@@ -37,7 +37,7 @@ typedef struct hn_args {
     const char *method, *format, *out, *host, *theme;
     double time, every, t, port, width, height, seed, frame_dt;
     double history, max_comparisons, max_streams, idle_pause, expiry, keep_alive;
-    int json, open, help, quiet;
+    int json, open, help;
 } hn_args;
 
 typedef struct hn_command {
@@ -96,5 +96,8 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_serve(const hn_library *lib, const hn_args *args);
 #endif

@@ -3,6 +3,7 @@
 #include "cli/document.h"
 
 #include "integrators/spec.h"
+#include "problem_shelf.h"
 #include "session/lists.h"
 
 #include <stdio.h>
@@ -51,10 +52,10 @@ static const struct {
      hn_lessons_json,
      {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}}}},
     {"problems",
-     hn_problems_json,
+     hn_shelf_problems_json,
      {{"problems",
        3,
-       {{"problem", "id", NULL}, {"title", "title", NULL}, {"lesson", "lesson", NULL}}}}},
+       {{"problem", "id", NULL}, {"title", "title", NULL}, {"points", "points", ""}}}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 

@@ -3,6 +3,7 @@
 #include "build.h"
 #include "http/server_internal.h"
 #include "integrators/spec.h"
+#include "problem_shelf.h"
 #include "render/look.h"
 #include "session/comparison.h"
 #include "session/lists.h"
@@ -190,7 +191,7 @@ void hn_handle_lessons(hn_request *r) {
 }
 
 void hn_handle_problems(hn_request *r) {
-    reply_list(r, hn_problems_json);
+    reply_list(r, hn_shelf_problems_json);
 }
 
 static void put_error(hn_strbuf *b, const hn_http_problem_info *info) {

@@ -5,6 +5,7 @@
 #include "http/openapi.h"
 #include "http/request.h"
 #include "http/stateless.h"
+#include "render/canvas.h"
 #include "session/comparison.h"
 
 #include <stdio.h>
@@ -94,6 +95,48 @@ static const hn_field COMPARISON[] = {
     {.name = "paused", .type = HN_FIELD_BOOL, .about = "true when left out"},
     END_OF_FIELDS};
 
+static const char *const THEMES[] = {"light", "dark", NULL};
+
+static const hn_field SNAPSHOT[] = {
+    SCENE_FIELDS,
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .required = 1,
+     .min = 1,
+     .max = HN_COMPARISON_MAX_METHODS,
+     .about = "spellings of methods; the first is opaque"},
+    {.name = "time",
+     .type = HN_FIELD_NUMBER,
+     .required = 1,
+     .min = 0,
+     .max = LONGEST_RUN,
+     .about = "time of the picture [s]"},
+    {.name = "width",
+     .type = HN_FIELD_INTEGER,
+     .min = HN_CANVAS_MIN,
+     .max = HN_CANVAS_MAX,
+     .about = "pixels"},
+    {.name = "height",
+     .type = HN_FIELD_INTEGER,
+     .min = HN_CANVAS_MIN,
+     .max = HN_CANVAS_MAX,
+     .about = "pixels"},
+    {.name = "theme", .type = HN_FIELD_CHOICE, .choices = THEMES, .about = "paper or slate"},
+    END_OF_FIELDS};
+
+static const hn_field GRADE[] = {
+    {.name = "problem", .type = HN_FIELD_TEXT, .required = 1, .about = "id of a problem"},
+    {.name = "submission",
+     .type = HN_FIELD_ANY,
+     .required = 1,
+     .about = "what a submission's file would hold"},
+    {.name = "seed",
+     .type = HN_FIELD_INTEGER,
+     .min = 0,
+     .max = 9007199254740991.0,
+     .about = "chooses the states at which answers are compared"},
+    END_OF_FIELDS};
+
 static const hn_field SET[] = {
     {.name = "method",
      .type = HN_FIELD_INTEGER,
@@ -179,6 +222,12 @@ static const hn_route ROUTES[] = {
      "Equations", "The equations of motion with parameters as symbols", NULL},
     {"POST", "/api/v1/runs", HN_WORK_HEAVY, hn_handle_run, RUN, JSON, "200", "Run",
      "One run with its samples as columns", NULL},
+    {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
+     "Picture", "A picture of where the methods have taken a scene", NULL},
+    {"GET", "/api/v1/problems/{id}", HN_WORK_LIGHT, hn_handle_problem, NULL, JSON, "200",
+     "Document", "A problem's text and what to hand in", NULL},
+    {"POST", "/api/v1/grade", HN_WORK_HEAVY, hn_handle_grade, GRADE, JSON, "200", "Verdict",
+     "Grades one submission", NULL},
     {"GET", "/api/v1/comparisons", HN_WORK_LIGHT, hn_handle_comparisons_list, NULL, JSON, "200",
      "ComparisonList", "Ids of the comparisons there are", NULL},
     {"POST", "/api/v1/comparisons", HN_WORK_HEAVY, hn_handle_comparisons_create, COMPARISON, JSON,

@@ -1,7 +1,9 @@
 #include "http/stateless.h"
 
 #include "http/server_internal.h"
+#include "problem_shelf.h"
 #include "session/comparison.h"
+#include "session/picture.h"
 
 #include <string.h>
 #include <time.h>
@@ -154,4 +156,82 @@ void hn_handle_run(hn_request *r) {
     }
     free(times);
     conclude(r, model, status, &b, &diags);
+}
+
+void hn_handle_snapshot(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    const char *methods[HN_COMPARISON_MAX_METHODS], *theme = hn_body_text(r->json, "theme");
+    const cJSON *item;
+    int n = 0;
+    hn_status ended = HN_OK;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->json, "methods")) {
+        methods[n++] = item->valuestring;
+    }
+    hn_picture_request request = {.methods = methods,
+                                  .n_methods = n,
+                                  .time = hn_body_number(r->json, "time", 0),
+                                  .width = (int)hn_body_number(r->json, "width", 0),
+                                  .height = (int)hn_body_number(r->json, "height", 0),
+                                  .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
+                                                                               : HN_THEME_LIGHT,
+                                  .cpu_budget = r->server->opts.max_run_cpu};
+    hn_strbuf png;
+    hn_diags diags = {0};
+    hn_strbuf_init(&png);
+    hn_status status = hn_model_picture(&png, NULL, model, &request, &ended, &diags);
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&png);
+        hn_reply_diags(r, status, &diags);
+        return;
+    }
+    hn_reply_bytes(r, MHD_HTTP_OK, "image/png", &png);
+    hn_reply_header_add(r, "Holonom-Status", "%s", hn_status_name(ended));
+}
+
+void hn_handle_problem(hn_request *r) {
+    hn_problem *problem = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = hn_shelf_problem_load(r->server->lib, r->parts[0], &problem, &diags);
+    if (status == HN_OK) {
+        hn_problem_json(&b, problem);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+    } else if (!hn_library_problem_path(r->server->lib, r->parts[0])) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, diags.item[0].hint, "%s", diags.item[0].message);
+    } else {
+        hn_reply_diags(r, status, &diags);
+    }
+    hn_problem_free(problem);
+}
+
+void hn_handle_grade(hn_request *r) {
+    hn_problem *problem = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_verdict *v = calloc(1, sizeof *v);
+    char *submission =
+        cJSON_PrintUnformatted(cJSON_GetObjectItemCaseSensitive(r->json, "submission"));
+    hn_status status = v && submission
+                           ? hn_shelf_problem_load(r->server->lib, hn_body_text(r->json, "problem"),
+                                                   &problem, &diags)
+                           : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_grade_json(problem, submission, strlen(submission),
+                               (uint64_t)hn_body_number(r->json, "seed", 0), v);
+    }
+    if (status == HN_OK) {
+        hn_verdict_json(&b, v);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+    } else {
+        hn_reply_diags(r, status, &diags);
+    }
+    hn_problem_free(problem);
+    cJSON_free(submission);
+    free(v);
 }
