@@ -312,7 +312,6 @@ static void place_link(const hn_scene *scene, hn_tree *tree, int index, int alig
 
     if (link->type == HN_JOINT_PRISMATIC) {
         link->carry = HN_CARRY_RIGID;
-        link->sign = link->reversed ? -1 : 1;
         link->angle_ref = -1;
         link->angle = parent->angle;
         link->group = parent->group;
@@ -360,7 +359,6 @@ static void choose_ground_frame(const hn_scene *scene, hn_tree *tree) {
             (void)find_group(scene, tree, tree->ground, axis);
             return;
         }
-        link->coordinate = -1;
         place_link(scene, tree, index, 0);
     }
 }

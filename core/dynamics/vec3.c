@@ -130,6 +130,17 @@ hn_mat3 hn_mat3_turn_z(hn_ex c, hn_ex s) {
     return (hn_mat3){{{c, hn_neg(s), zero}, {s, c, zero}, {zero, zero, one}}};
 }
 
+void hn_mat3_snap(hn_mat3 *m) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double value;
+            if (hn_is_number(m->x[i][j], &value) && fabs(value - round(value)) < SNAP) {
+                m->x[i][j] = hn_num(round(value));
+            }
+        }
+    }
+}
+
 /// Row i of the symmetric matrix.
 static hn_vec3 sym3_row(const hn_sym3 *m, int i) {
     static const int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
@@ -164,6 +175,20 @@ hn_sym3 hn_sym3_rotate(hn_graph *g, const hn_mat3 *R, const hn_sym3 *m) {
     for (int k = 0; k < 6; k++) {
         out.x[k] = hn_vec3_dot(g, half[row[k]], r[column[k]]);
     }
+    return out;
+}
+
+hn_sym3 hn_sym3_turn_z(hn_graph *g, hn_ex c, hn_ex s, const hn_sym3 *m) {
+    // with k = c (xx - yy) - 2 s xy:  xx' = yy + c k,  xy' = xy + s k,  yy' = xx - c k
+    hn_ex k = add(g, mul(g, c, add(g, m->x[0], hn_neg(m->x[1]))), mul(g, s, hn_scale(-2, m->x[3])));
+    hn_ex ck = mul(g, c, k);
+    hn_sym3 out;
+    out.x[0] = add(g, m->x[1], ck);
+    out.x[1] = add(g, m->x[0], hn_neg(ck));
+    out.x[2] = m->x[2];
+    out.x[3] = add(g, m->x[3], mul(g, s, k));
+    out.x[4] = add(g, mul(g, c, m->x[4]), hn_neg(mul(g, s, m->x[5])));
+    out.x[5] = add(g, mul(g, s, m->x[4]), mul(g, c, m->x[5]));
     return out;
 }
 

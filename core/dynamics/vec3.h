@@ -37,10 +37,15 @@ hn_vec3 hn_mat3_column(const hn_mat3 *m, int j);
 /// Rotation about z by the angle whose cosine and sine are given.
 hn_mat3 hn_mat3_turn_z(hn_ex c, hn_ex s);
 
+/// Number entries within 1e-14 of 0, 1 and -1 become exactly that.
+void hn_mat3_snap(hn_mat3 *m);
+
 hn_vec3 hn_sym3_apply(hn_graph *g, const hn_sym3 *m, hn_vec3 a);
 hn_sym3 hn_sym3_add(hn_graph *g, const hn_sym3 *a, const hn_sym3 *b);
 /// R m R'.
 hn_sym3 hn_sym3_rotate(hn_graph *g, const hn_mat3 *R, const hn_sym3 *m);
+/// The same for a rotation about z.
+hn_sym3 hn_sym3_turn_z(hn_graph *g, hn_ex c, hn_ex s, const hn_sym3 *m);
 /// What the inertia of a set with mass m and first moment s about its own point gains when it is referred to a point from
 /// which its own point lies at r: 2 (r.s) 1 - (r s' + s r') + m (r^2 1 - r r'). `only_zz`: the rest is left zero.
 hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz);

@@ -1,0 +1,94 @@
+#ifndef HN_DYNAMICS_SYSTEM_IMPL_H
+#define HN_DYNAMICS_SYSTEM_IMPL_H
+// Inside a system; for the files of dynamics/ only. See system.h for what it means to the outside.
+
+#include "dynamics/drawing.h"
+#include "dynamics/entries.h"
+#include "dynamics/system.h"
+#include "dynamics/tree.h"
+#include "dynamics/vec3.h"
+
+typedef struct hn_row {
+    const char *name;
+    int loop;
+    int is_length;
+} hn_row;
+
+typedef struct hn_loop {
+    const char *name;
+    int joint;      ///< scene joint, -1: a tear or formula
+    const char *why;///< why this joint was cut, for telling; static text
+} hn_loop;
+
+struct hn_system {
+    const hn_scene *scene;
+    hn_system_opts opts;
+    hn_arena *arena;
+    hn_graph *g;
+    hn_diags *diags;      ///< while compiling
+    hn_tree tree;         ///< bodies and joints only
+    int nv, nc;
+    hn_system_info info;
+
+    // symbols
+    hn_ex *q, *v;         ///< nv each
+    hn_ex t, alpha, beta; ///< alpha, beta: Baumgarte's gains
+    int *q_symbols, *v_symbols;
+    int t_symbol, alpha_symbol, beta_symbol;
+    hn_ex *params;        ///< per scene parameter: a number, or its symbol
+    hn_ex *user_q, *user_v; ///< per SCENE coordinate; a cut joint's is derived
+    char *user_known;     ///< per scene coordinate: 0 has no expression here
+
+    // terms
+    hn_entries M;         ///< lower triangle with diagonal: row >= col
+    hn_entries J;
+    hn_ex *f, *phi, *phi_t, *gamma, *points;
+    hn_ex kinetic, potential;
+    hn_ex *M_dense, *J_dense;
+
+    hn_row *rows;
+    int n_loops;
+    hn_loop *loops;
+    double length;
+    hn_drawing drawing;
+};
+
+/// The expression of a quantity: its number, or its formula in parameters and, where it varies, the state.
+HN_MUST_CHECK hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out);
+/// Three at once.
+HN_MUST_CHECK hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out);
+/// A closure row: kept, dropped when it vanishes identically, or refused when it is a constant that is not zero. `J`
+/// holds n_J entries (row ignored). is_length decides the unit in messages.
+typedef struct hn_new_row {
+    const char *name;
+    int loop, is_length;
+    hn_ex phi, phi_t, gamma;
+    const hn_entry *J;
+    int n_J;
+    const char *pointer; ///< of the joint or formula
+} hn_new_row;
+HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row);
+
+// the two kinds of scenes: fill symbols, terms, rows, loops, points, drawing
+HN_MUST_CHECK hn_status hn_bodies_compile(hn_system *sys);
+HN_MUST_CHECK hn_status hn_lagrangian_compile(hn_system *sys);
+/// Loads of either kind, after symbols and user coordinates stand: adds to f and potential.
+struct hn_point_motion;
+/// The difference p - q of two scene points with what its motion needs: coefficients of the rates and their sum.
+typedef struct hn_span {
+    hn_vec3 delta;       ///< in some frame that does not matter
+    int n;
+    int *coordinate;
+    hn_vec3 *coefficient;///< d delta / d t = sum coefficient u
+} hn_span;
+/// How the kind of scene gives spans and world forces: filled by hn_bodies_compile or hn_lagrangian_compile.
+typedef struct hn_geometry {
+    void *self;
+    /// point p minus point q (-1: nothing, p alone seen from the world's origin, in world axes)
+    hn_status (*span)(void *self, int p, int q, hn_span *out);
+} hn_geometry;
+HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
+
+/// Name of a new symbol that collides with nothing in the scene: "stem" with underscores added.
+const char *hn_system_free_name(hn_system *sys, const char *stem);
+#endif
