@@ -1,155 +1,219 @@
-#include "dynamics/lagrangian.h"
+// A scene of formulas, compiled by exact differentiation. With L = T - V and p = dT/dv:
+//     M = dp/dv,   h = (dp/dq) v - dT/dq + dV/dq,   f = Q - h                                          (1)
+//     J = dphi/dq, phi_t, gamma = d/dt (J v + phi_t) at zero u-dot: the directional derivative, twice,
+//     along (q', v', t') = (v, 0, 1), so that terms of t come in by themselves.                         (2)
+#include "dynamics/system_impl.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
-/// Scratch expressions of one call, freed at once.
-typedef struct scratch {
-    hn_ex *p, *seed, *a, *b; ///< n + 1 (or m) each
-    int *symbols;            ///< n + 1: q, then t
-} scratch;
-
-static int scratch_create(scratch *s, const hn_lagrange_input *in) {
-    const size_t n = (size_t)(in->n > in->m ? in->n : in->m) + 1;
-    s->p = calloc(4 * n, sizeof *s->p);
-    s->symbols = calloc((size_t)in->n + 1, sizeof *s->symbols);
-    if (!s->p || !s->symbols) {
-        return 0;
+static hn_status make_symbols(hn_system *sys) {
+    const hn_scene *scene = sys->scene;
+    size_t n = (size_t)scene->n_coordinates + 1;
+    const char **names = hn_arena_get(sys->arena, n * sizeof *names);
+    const char **rates = hn_arena_get(sys->arena, n * sizeof *rates);
+    if (!names || !rates) {
+        return HN_ERR_MEMORY;
     }
-    s->seed = s->p + n;
-    s->a = s->p + 2 * n;
-    s->b = s->p + 3 * n;
-    return 1;
+    for (int i = 0; i < scene->n_coordinates; i++) {
+        names[i] = scene->coordinates[i].name;
+        rates[i] = scene->coordinates[i].rate;
+    }
+    hn_status status = hn_system_make_symbols(sys, scene->n_coordinates, names, rates);
+    for (int i = 0; i < scene->n_coordinates; i++) {
+        sys->user_q[i] = sys->q[i];
+        sys->user_v[i] = sys->v[i];
+        sys->user_known[i] = 1;
+    }
+    return status;
 }
 
-static void scratch_free(scratch *s) {
-    free(s->p);
-    free(s->symbols);
-}
-
-static int depends_on_any(const hn_graph *g, hn_ex e, const int *symbols, int n) {
-    for (int i = 0; i < n; i++) {
-        if (hn_depends_on(g, e, symbols[i])) {
+static int depends_on_any(const hn_system *sys, hn_ex e, const int *symbols) {
+    for (int i = 0; i < sys->nv; i++) {
+        if (hn_depends_on(sys->g, e, symbols[i])) {
             return 1;
         }
     }
     return 0;
 }
 
-/// What the formulas must not depend on, told before anything is differentiated.
-static hn_status check_dependence(const hn_graph *g, const hn_lagrange_input *in, hn_diags *diags) {
-    if (hn_depends_on(g, in->kinetic, in->t)) {
-        return hn_diags_add(
-            diags, HN_ERR_INPUT, "/lagrangian/kinetic",
-            "drive a coordinate by a constraint instead",
-            "the kinetic energy depends on t; it must be a quadratic form in the rates");
+/// Values of a formula with every rate zero.
+static hn_ex at_rest(hn_system *sys, hn_ex e) {
+    hn_ex *zeros = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *zeros);
+    hn_ex out = hn_num(0);
+    if (zeros) {
+        hn_substitute(sys->g, &e, 1, sys->v_symbols, zeros, sys->nv, &out);
     }
-    if (depends_on_any(g, in->potential, in->v, in->n)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian/potential", "put dampers into forces",
-                            "the potential energy depends on a rate");
+    return out;
+}
+
+// kinetic and potential energy ---------------------------------------------------------------------------------------
+
+static hn_status refuse_kinetic(hn_system *sys, const char *what) {
+    return hn_diags_add(sys->diags, HN_ERR_INPUT, sys->scene->lagrangian.kinetic.pointer,
+                        "each term must be (something of the coordinates) * rate * rate",
+                        "the kinetic energy must be quadratic in the rates: %s", what);
+}
+
+static hn_status trace_mass(hn_system *sys, const hn_ex *p) {
+    hn_ex *row = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *row);
+    if (!row) {
+        return HN_ERR_MEMORY;
     }
-    for (int i = 0; i < in->m; i++) {
-        if (depends_on_any(g, in->constraints[i], in->v, in->n)) {
-            char pointer[64] = "/lagrangian/constraints";
-            return hn_diags_add(
-                diags, HN_ERR_INPUT, pointer, "write it between coordinates and t",
-                "constraint %d depends on a rate; only holonomic constraints are served", i + 1);
+    for (int i = 0; i < sys->nv; i++) {
+        hn_diff(sys->g, p[i], sys->v_symbols, i + 1, row);
+        for (int j = 0; j <= i; j++) {
+            if (depends_on_any(sys, row[j], sys->v_symbols)) {
+                return refuse_kinetic(sys, "its second derivative by the rates still contains a rate");
+            }
+            hn_entries_add(&sys->M, i, j, row[j]);
+        }
+        if (!hn_is_zero(at_rest(sys, p[i]))) {
+            return refuse_kinetic(sys, "it has a term that is linear in a rate");
         }
     }
     return HN_OK;
 }
 
-/// T must equal v' M v / 2 with M free of v; M's own formulas show the second, three arbitrary states the first.
-static hn_status check_quadratic(hn_graph *g, const hn_lagrange_input *in, const hn_ex *M,
-                                 hn_diags *diags) {
-    hn_ex rest = hn_scale(-1, in->kinetic);
-    for (int i = 0; i < in->n; i++) {
-        for (int j = 0; j <= i; j++) {
-            const hn_ex m = M[i * in->n + j];
-            if (depends_on_any(g, m, in->v, in->n)) {
-                return hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian/kinetic", NULL,
-                                    "the kinetic energy is not quadratic in the rates");
-            }
-            const hn_ex vv =
-                hn_mul(g, hn_graph_symbol_expr(g, in->v[i]), hn_graph_symbol_expr(g, in->v[j]));
-            rest = hn_add(g, rest, hn_scale(i == j ? 0.5 : 1, hn_mul(g, m, vv)));
-        }
+static hn_status trace_energies(hn_system *sys) {
+    const hn_lagrangian *l = &sys->scene->lagrangian;
+    hn_graph *g = sys->g;
+    size_t n = (size_t)sys->nv + 1;
+    hn_ex *p = hn_arena_get(sys->arena, 4 * n * sizeof *p);
+    hn_status status = hn_system_quantity(sys, &l->kinetic, &sys->kinetic);
+    if (status == HN_OK) {
+        status = hn_system_quantity(sys, &l->potential, &sys->potential);
     }
-    const int n_symbols = hn_graph_n_symbols(g);
-    double *x = calloc((size_t)n_symbols + 1, sizeof *x);
-    if (!x) {
-        return HN_ERR_MEMORY;
+    if (status != HN_OK || !p) {
+        return status == HN_OK ? HN_ERR_MEMORY : status;
     }
-    int quadratic = 1;
-    for (int k = 1; k <= 3; k++) {
-        for (int i = 0; i < n_symbols; i++) {
-            x[i] = 0.3 + 0.61803398875 * fmod(i * 0.754877666 + k * 0.569840291, 1.0);
-        }
-        const double T = hn_graph_eval(g, in->kinetic, x), off = hn_graph_eval(g, rest, x);
-        // some hundred roundings of terms as large as T; a state outside a formula's domain says nothing
-        quadratic &= !(isfinite(T) && isfinite(off)) || fabs(off) <= 1e-9 * (1 + fabs(T));
+    if (hn_depends_on(g, sys->kinetic, sys->t_symbol)) {
+        return refuse_kinetic(sys, "it depends on t, which is not served");
     }
-    free(x);
-    return quadratic
-               ? HN_OK
-               : hn_diags_add(diags, HN_ERR_INPUT, "/lagrangian/kinetic",
-                              "each term needs two rates, as in m*v^2/2",
-                              "the kinetic energy has terms that are not quadratic in the rates");
+    if (depends_on_any(sys, sys->potential, sys->v_symbols)) {
+        return hn_diags_add(sys->diags, HN_ERR_INPUT, l->potential.pointer, "write it as a force on a coordinate",
+                            "the potential energy contains a rate");
+    }
+    if (!hn_is_zero(at_rest(sys, sys->kinetic))) {
+        return refuse_kinetic(sys, "it does not vanish with the rates");
+    }
+    hn_ex *p_rate = p + n, *T_q = p + 2 * n, *V_q = p + 3 * n;
+    hn_diff_reverse(g, sys->kinetic, sys->v_symbols, sys->nv, p);
+    hn_diff_forward(g, p, sys->nv, sys->q_symbols, sys->v, sys->nv, p_rate);
+    hn_diff_reverse(g, sys->kinetic, sys->q_symbols, sys->nv, T_q);
+    hn_diff_reverse(g, sys->potential, sys->q_symbols, sys->nv, V_q);
+    for (int i = 0; i < sys->nv; i++) {
+        hn_ex terms[3] = {T_q[i], hn_neg(p_rate[i]), hn_neg(V_q[i])};
+        sys->f[i] = hn_sum(g, terms, 3);
+    }
+    return trace_mass(sys, p);
 }
 
-static void calc_mass_and_force(hn_graph *g, const hn_lagrange_input *in, const scratch *s,
-                                hn_ex *M, hn_ex *f) {
-    const int n = in->n;
-    hn_diff_reverse(g, in->kinetic, in->v, n, s->p);
-    for (int i = 0; i < n; i++) {
-        hn_diff(g, s->p[i], in->v, i + 1, s->a);
-        for (int j = 0; j <= i; j++) {
-            M[i * n + j] = M[j * n + i] = s->a[j];
+// constraints --------------------------------------------------------------------------------------------------------
+
+static hn_status add_constraint(hn_system *sys, int i) {
+    const hn_lagrangian *l = &sys->scene->lagrangian;
+    hn_graph *g = sys->g;
+    int n = sys->nv;
+    hn_new_row row = {.name = l->constraint_names[i], .loop = i, .is_length = 0, .pointer = l->constraints[i].pointer};
+    hn_ex *along = hn_arena_get(sys->arena, 2 * ((size_t)n + 1) * sizeof *along);
+    hn_entry *entries = hn_arena_get(sys->arena, (size_t)n * sizeof *entries);
+    int *symbols = hn_arena_ints(sys->arena, (size_t)n + 1);
+    hn_status status = hn_system_quantity(sys, &l->constraints[i], &row.phi);
+    if (status != HN_OK || !along || !entries || !symbols) {
+        return status == HN_OK ? HN_ERR_MEMORY : status;
+    }
+    if (depends_on_any(sys, row.phi, sys->v_symbols)) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, row.pointer, "write the constraint on positions",
+                            "constraint '%s' contains a rate; only constraints on positions are served", row.name);
+    }
+    hn_ex *J = along + n + 1;
+    for (int j = 0; j < n; j++) {
+        symbols[j] = sys->q_symbols[j];
+        along[j] = sys->v[j];
+    }
+    symbols[n] = sys->t_symbol;
+    along[n] = hn_num(1);
+    hn_ex rate;
+    hn_diff_reverse(g, row.phi, sys->q_symbols, n, J);
+    hn_diff(g, row.phi, &sys->t_symbol, 1, &row.phi_t);
+    hn_diff_forward(g, &row.phi, 1, symbols, along, n + 1, &rate);
+    hn_diff_forward(g, &rate, 1, symbols, along, n + 1, &row.gamma);
+    for (int j = 0; j < n; j++) {
+        entries[j] = (hn_entry){0, j, J[j]};
+    }
+    row.J = entries;
+    row.n_J = n;
+    return hn_system_add_row(sys, &row);
+}
+
+static hn_status trace_constraints(hn_system *sys) {
+    const hn_lagrangian *l = &sys->scene->lagrangian;
+    for (int i = 0; i < l->n_constraints; i++) {
+        sys->loops[i] = (hn_loop){.name = l->constraint_names[i], .joint = -1, .why = "a constraint of the scene"};
+        hn_status status = add_constraint(sys, i);
+        if (status != HN_OK) {
+            return status;
         }
-        s->seed[i] = hn_graph_symbol_expr(g, in->v[i]);
     }
-    hn_diff_forward(g, s->p, n, in->q, s->seed, n, s->a); // p_q v
-    hn_diff_reverse(g, hn_sub(g, in->kinetic, in->potential), in->q, n, s->b);
-    for (int i = 0; i < n; i++) {
-        const hn_ex terms[3] = {in->force[i], hn_neg(s->a[i]), s->b[i]};
-        f[i] = hn_sum(g, terms, 3);
-    }
+    return HN_OK;
 }
 
-static void calc_constraints(hn_graph *g, const hn_lagrange_input *in, scratch *s, hn_ex *J,
-                             hn_ex *phi_t, hn_ex *gamma) {
-    const int n = in->n, m = in->m;
-    for (int i = 0; i < n; i++) {
-        s->symbols[i] = in->q[i];
-        s->seed[i] = hn_graph_symbol_expr(g, in->v[i]);
+// points -------------------------------------------------------------------------------------------------------------
+
+static hn_status trace_points(hn_system *sys) {
+    for (int k = 0; k < sys->scene->n_points; k++) {
+        hn_vec3 p;
+        hn_status status = hn_system_vector(sys, sys->scene->points[k].at, &p);
+        if (status != HN_OK) {
+            return status;
+        }
+        for (int i = 0; i < 3; i++) {
+            sys->points[3 * k + i] = p.x[i];
+        }
     }
-    for (int i = 0; i < m; i++) {
-        hn_diff(g, in->constraints[i], in->q, n, J + i * n);
-        hn_diff(g, in->constraints[i], &in->t, 1, phi_t + i);
-    }
-    // along (v, 1) twice: the rate of phi, and the rate of that at constant v
-    s->symbols[n] = in->t;
-    s->seed[n] = hn_num(1);
-    hn_diff_forward(g, in->constraints, m, s->symbols, s->seed, n + 1, s->a);
-    hn_diff_forward(g, s->a, m, s->symbols, s->seed, n + 1, gamma);
+    return HN_OK;
 }
 
-hn_status hn_lagrange_terms(hn_graph *g, const hn_lagrange_input *in, hn_ex *M, hn_ex *f, hn_ex *J,
-                            hn_ex *phi_t, hn_ex *gamma, hn_diags *diags) {
-    hn_status status = check_dependence(g, in, diags);
-    if (status != HN_OK) {
-        return status;
-    }
-    scratch s = {0};
-    if (!scratch_create(&s, in)) {
-        scratch_free(&s);
+static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
+    hn_system *sys = self;
+    size_t n = (size_t)sys->nv;
+    hn_ex *gradient = hn_arena_get(sys->arena, n * sizeof *gradient);
+    out->coordinate = hn_arena_ints(sys->arena, n);
+    out->coefficient = hn_arena_get(sys->arena, n * sizeof *out->coefficient);
+    if (!gradient || !out->coordinate || !out->coefficient) {
         return HN_ERR_MEMORY;
     }
-    calc_mass_and_force(g, in, &s, M, f);
-    calc_constraints(g, in, &s, J, phi_t, gamma);
-    scratch_free(&s);
-    if (hn_graph_failed(g)) {
-        return HN_ERR_MEMORY;
+    out->n = sys->nv;
+    for (int i = 0; i < 3; i++) {
+        out->delta.x[i] = q < 0 ? sys->points[3 * p + i] : hn_sub(sys->g, sys->points[3 * p + i], sys->points[3 * q + i]);
+        hn_diff_reverse(sys->g, out->delta.x[i], sys->q_symbols, sys->nv, gradient);
+        for (int j = 0; j < sys->nv; j++) {
+            out->coordinate[j] = j;
+            out->coefficient[j].x[i] = gradient[j];
+        }
     }
-    return check_quadratic(g, in, M, diags);
+    return HN_OK;
+}
+
+hn_status hn_lagrangian_compile(hn_system *sys) {
+    const hn_scene *scene = sys->scene;
+    int m = scene->lagrangian.n_constraints;
+    hn_status status = hn_system_allocate(sys, scene->n_coordinates, m, m, scene->n_points);
+    if (status == HN_OK) {
+        status = make_symbols(sys);
+    }
+    if (status == HN_OK) {
+        status = trace_energies(sys);
+    }
+    if (status == HN_OK) {
+        status = trace_constraints(sys);
+    }
+    if (status == HN_OK) {
+        status = trace_points(sys);
+    }
+    if (status == HN_OK) {
+        hn_geometry geometry = {.self = sys, .span = span_of_points};
+        status = hn_loads_compile(sys, &geometry);
+    }
+    return status == HN_OK ? hn_system_make_drawing(sys, scene->n_tears) : status;
 }

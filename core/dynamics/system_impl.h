@@ -69,26 +69,30 @@ typedef struct hn_new_row {
 } hn_new_row;
 HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row);
 
-// the two kinds of scenes: fill symbols, terms, rows, loops, points, drawing
+// the two kinds of scenes: symbols, terms, rows, loops, points, drawing -------------------------------------------
 HN_MUST_CHECK hn_status hn_bodies_compile(hn_system *sys);
 HN_MUST_CHECK hn_status hn_lagrangian_compile(hn_system *sys);
-/// Loads of either kind, after symbols and user coordinates stand: adds to f and potential.
-struct hn_point_motion;
-/// The difference p - q of two scene points with what its motion needs: coefficients of the rates and their sum.
+
+/// The difference of two scene points, and how the rates move it.
 typedef struct hn_span {
-    hn_vec3 delta;       ///< in some frame that does not matter
+    hn_vec3 delta;        ///< point p minus point q
     int n;
-    int *coordinate;
-    hn_vec3 *coefficient;///< d delta / d t = sum coefficient u
+    int *coordinate;      ///< n system coordinates
+    hn_vec3 *coefficient; ///< d delta / dt = sum coefficient u (without what t alone moves)
 } hn_span;
-/// How the kind of scene gives spans and world forces: filled by hn_bodies_compile or hn_lagrangian_compile.
+
+/// How a kind of scene gives spans: p minus q in any one frame (only lengths and powers are taken from it), or, with
+/// q < 0, p seen from the world's origin in world axes.
 typedef struct hn_geometry {
     void *self;
-    /// point p minus point q (-1: nothing, p alone seen from the world's origin, in world axes)
     hn_status (*span)(void *self, int p, int q, hn_span *out);
 } hn_geometry;
+/// Loads of either kind, by virtual work: adds to f, springs also to potential.
 HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
 
-/// Name of a new symbol that collides with nothing in the scene: "stem" with underscores added.
-const char *hn_system_free_name(hn_system *sys, const char *stem);
+/// Symbols of nv coordinates and rates under these names (a name that is taken gets underscores), then t and the gains.
+HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names, const char *const *rates);
+/// Allocates what is sized by nv, and rows for at most max_rows.
+HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, int n_points);
+HN_MUST_CHECK hn_status hn_system_make_drawing(hn_system *sys, int n_tears);
 #endif

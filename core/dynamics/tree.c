@@ -275,12 +275,12 @@ static int is_aligned(const double arm[2], double turned) {
 static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta, double D[3][3], int align) {
     double arm[2];
     link->offset = 0;
-    if (!main_arm(scene, body, link->joint, D, hn_link_at_own(scene, link), arm) || is_aligned(arm, delta)) {
+    if (!align || !main_arm(scene, body, link->joint, D, hn_link_at_own(scene, link), arm) || is_aligned(arm, delta)) {
         return;
     }
     if (is_aligned(arm, 0)) {
         link->offset = delta; // the angle of the body's own axes
-    } else if (align) {
+    } else {
         link->offset = remainder(delta + atan2(arm[1], arm[0]), 2 * M_PI);
     }
 }

@@ -65,7 +65,7 @@ typedef struct hn_tree {
     int *link_of;    ///< per system coordinate: link
 } hn_tree;
 
-/// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that people read). Memory from
+/// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that people read: an absolute angle is then a plain sum of the scene's). Memory from
 /// `arena`. Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *out, hn_diags *diags);
 

@@ -1,0 +1,235 @@
+// A scene of bodies and joints, compiled: an outline of the passes of mech.h.
+#include "dynamics/mech.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+// symbols --------------------------------------------------------------------------------------------------------
+
+/// 1 if the system coordinate is the scene's own.
+static int is_own(const hn_link *l) {
+    return l->type == HN_JOINT_PRISMATIC || (l->angle_ref < 0 && l->sign > 0 && l->offset == 0);
+}
+
+static int scene_knows(const hn_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_coordinates; i++) {
+        if (!strcmp(scene->coordinates[i].name, name) || !strcmp(scene->coordinates[i].rate, name)) {
+            return 1;
+        }
+    }
+    return hn_scene_find_param(scene, name) >= 0;
+}
+
+/// "theta_coupler" for the absolute angle of body "coupler".
+static const char *angle_name(hn_system *sys, const char *stem, const char *body) {
+    char name[96];
+    int n = snprintf(name, sizeof name - 8, "%s_%s", stem, body);
+    n = n > (int)sizeof name - 9 ? (int)sizeof name - 9 : n;
+    for (int i = 0; i < n; i++) {
+        if (!isalnum((unsigned char)name[i])) {
+            name[i] = '_';
+        }
+    }
+    while (scene_knows(sys->scene, name) && n < (int)sizeof name - 1) {
+        name[n++] = '_';
+        name[n] = 0;
+    }
+    return hn_arena_strdup(sys->arena, name);
+}
+
+static hn_status make_symbols(hn_system *sys) {
+    size_t n = (size_t)sys->nv + 1;
+    const char **names = hn_arena_get(sys->arena, n * sizeof *names);
+    const char **rates = hn_arena_get(sys->arena, n * sizeof *rates);
+    if (!names || !rates) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        int link = sys->tree.link_of[i];
+        const hn_coordinate *c = &sys->scene->coordinates[sys->tree.user[i]];
+        int own = is_own(&sys->tree.links[link]);
+        names[i] = own ? c->name : angle_name(sys, "theta", sys->scene->bodies[link].name);
+        rates[i] = own ? c->rate : angle_name(sys, "omega", sys->scene->bodies[link].name);
+        if (!names[i] || !rates[i]) {
+            return HN_ERR_MEMORY;
+        }
+    }
+    return hn_system_make_symbols(sys, sys->nv, names, rates);
+}
+
+/// The scene's coordinates of tree joints in terms of the system's.
+static void express_user_coordinates(hn_system *sys) {
+    for (int i = 0; i < sys->nv; i++) {
+        const hn_link *l = &sys->tree.links[sys->tree.link_of[i]];
+        int user = sys->tree.user[i];
+        hn_ex q = sys->q[i], v = sys->v[i];
+        if (l->angle_ref >= 0) {
+            q = hn_sub(sys->g, q, sys->q[l->angle_ref]);
+            v = hn_sub(sys->g, v, sys->v[l->angle_ref]);
+        }
+        sys->user_q[user] = hn_scale(l->sign, hn_sub(sys->g, q, hn_num(l->offset)));
+        sys->user_v[user] = hn_scale(l->sign, v);
+        sys->user_known[user] = 1;
+    }
+}
+
+// loops and points -------------------------------------------------------------------------------------------------
+
+static void name_loops(hn_system *sys) {
+    for (int k = 0; k < sys->n_loops; k++) {
+        const hn_joint *joint = &sys->scene->joints[sys->tree.cut[k]];
+        sys->loops[k].joint = sys->tree.cut[k];
+        sys->loops[k].name = joint->name;
+        sys->loops[k].why = joint->cut ? "the scene asks for it" : "both its bodies hang on the tree already";
+    }
+}
+
+static hn_status trace_points(hn_mech *m) {
+    hn_system *sys = m->sys;
+    const hn_scene *scene = sys->scene;
+    int n = 0;
+    for (int k = 0; k < scene->n_points + 2 * sys->n_loops; k++) {
+        int body = HN_GROUND;
+        const hn_quantity *at;
+        if (k < scene->n_points) {
+            body = scene->points[k].body;
+            at = scene->points[k].at;
+        } else {
+            int half = (k - scene->n_points) % 2;
+            const hn_joint *joint = &scene->joints[sys->tree.cut[(k - scene->n_points) / 2]];
+            body = half ? joint->child : joint->parent;
+            at = half ? joint->child_at : joint->parent_at;
+        }
+        int link = hn_tree_link(m->tree, body);
+        hn_vec3 arm;
+        hn_status status = hn_mech_arm_of(m, link, at, &arm);
+        if (status != HN_OK) {
+            return status;
+        }
+        hn_vec3 p = hn_mech_world(m, link, arm);
+        for (int i = 0; i < 3; i++) {
+            sys->points[n++] = p.x[i];
+        }
+    }
+    return HN_OK;
+}
+
+// loads ------------------------------------------------------------------------------------------------------------
+
+static hn_status get_span(hn_mech *m, int p, int q, hn_relative *rel) {
+    const hn_point *points = m->sys->scene->points;
+    int a = hn_tree_link(m->tree, points[p].body);
+    int b = q >= 0 ? hn_tree_link(m->tree, points[q].body) : m->tree->ground;
+    hn_vec3 arm_a, arm_b = hn_vec3_zero();
+    hn_status status = hn_mech_arm_of(m, a, points[p].at, &arm_a);
+    if (status == HN_OK && q >= 0) {
+        status = hn_mech_arm_of(m, b, points[q].at, &arm_b);
+    }
+    int common = hn_tree_common(m->tree, a, b);
+    return status == HN_OK ? hn_mech_relate(m, common, a, arm_a, b, arm_b, rel) : status;
+}
+
+static void add_levers(hn_mech *m, const hn_reach *end, double sign, const hn_mat3 *turn, hn_span *out) {
+    for (int k = 0; k < end->n; k++) {
+        hn_vec3 c = hn_vec3_scale(m->g, hn_num(sign), hn_lever_coefficient(m->g, &end->levers[k]));
+        c = turn ? hn_mat3_apply(m->g, turn, c) : c;
+        int at = 0;
+        while (at < out->n && out->coordinate[at] != end->levers[k].coordinate) {
+            at++;
+        }
+        if (at == out->n) {
+            out->coordinate[out->n] = end->levers[k].coordinate;
+            out->coefficient[out->n++] = c;
+        } else {
+            out->coefficient[at] = hn_vec3_add(m->g, out->coefficient[at], c);
+        }
+    }
+}
+
+static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
+    hn_mech *m = self;
+    hn_relative rel;
+    hn_status status = get_span(m, p, q, &rel);
+    if (status != HN_OK) {
+        return status;
+    }
+    size_t cap = (size_t)(rel.a.n + rel.b.n) + 1;
+    out->n = 0;
+    out->coordinate = hn_arena_ints(m->sys->arena, cap);
+    out->coefficient = hn_arena_get(m->sys->arena, cap * sizeof *out->coefficient);
+    if (!out->coordinate || !out->coefficient) {
+        return HN_ERR_MEMORY;
+    }
+    hn_mat3 to_world = hn_mat3_identity();
+    const hn_mat3 *turn = NULL;
+    out->delta = hn_vec3_sub(m->g, rel.a.pos, rel.b.pos);
+    if (q < 0 && !rel.aligned) {
+        to_world = hn_mat3_num(rel.to_world);
+        turn = &to_world;
+        out->delta = hn_mat3_apply(m->g, turn, out->delta);
+    }
+    add_levers(m, &rel.a, 1, turn, out);
+    add_levers(m, &rel.b, -1, turn, out);
+    return HN_OK;
+}
+
+// the whole ----------------------------------------------------------------------------------------------------------
+
+static hn_status make_mech(hn_system *sys, hn_mech *m) {
+    const hn_tree *tree = &sys->tree;
+    size_t nl = (size_t)tree->n_links, ng = (size_t)tree->n_groups;
+    *m = (hn_mech){.sys = sys, .g = sys->g, .tree = tree};
+    m->at = hn_arena_get(sys->arena, nl * sizeof *m->at);
+    m->base_w = hn_arena_get(sys->arena, ng * sizeof *m->base_w);
+    m->base_al = hn_arena_get(sys->arena, ng * sizeof *m->base_al);
+    m->to_world = hn_arena_get(sys->arena, ng * sizeof *m->to_world);
+    m->position = hn_arena_get(sys->arena, nl * sizeof *m->position);
+    m->path = hn_arena_ints(sys->arena, nl);
+    return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+static hn_status trace_terms(hn_mech *m) {
+    hn_status status = hn_mech_trace_geometry(m);
+    if (status == HN_OK) {
+        status = hn_mech_cut_coordinates(m);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_mech_trace_composites(m);
+    hn_mech_trace_mass(m);
+    hn_mech_trace_bias(m);
+    hn_mech_trace_energy(m);
+    status = hn_mech_trace_loops(m);
+    if (status == HN_OK) {
+        hn_geometry geometry = {.self = m, .span = span_of_points};
+        status = hn_loads_compile(m->sys, &geometry);
+    }
+    return status == HN_OK ? trace_points(m) : status;
+}
+
+enum { ROWS_PER_JOINT = 5 };
+
+hn_status hn_bodies_compile(hn_system *sys) {
+    const hn_scene *scene = sys->scene;
+    hn_mech m;
+    hn_status status = hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
+    if (status == HN_OK) {
+        int n_cut = sys->tree.n_cut;
+        status = hn_system_allocate(sys, sys->tree.n_coordinates, ROWS_PER_JOINT * n_cut, n_cut,
+                                    scene->n_points + 2 * n_cut);
+    }
+    if (status == HN_OK) {
+        status = make_symbols(sys);
+    }
+    if (status == HN_OK) {
+        express_user_coordinates(sys);
+        name_loops(sys);
+        status = make_mech(sys, &m);
+    }
+    if (status == HN_OK) {
+        status = trace_terms(&m);
+    }
+    return status == HN_OK ? hn_system_make_drawing(sys, sys->n_loops) : status;
+}

@@ -1,0 +1,67 @@
+#include "dynamics/drawing.h"
+#include "dynamics/system_impl.h"
+
+/// Bodies and joints: points of the scene, then the two half-joints of every cut joint. Lagrangian: the scene's own tears.
+hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
+    const hn_scene *scene = sys->scene;
+    size_t n = (size_t)n_tears + 1;
+    const char **labels = hn_arena_get(sys->arena, ((size_t)sys->info.n_points + 1) * sizeof *labels);
+    int(*tears)[2] = hn_arena_get(sys->arena, n * sizeof *tears);
+    const char **names = hn_arena_get(sys->arena, n * sizeof *names);
+    if (!labels || !tears || !names) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < scene->n_points; i++) {
+        labels[i] = scene->points[i].name;
+    }
+    for (int i = 0; i < n_tears; i++) {
+        for (int half = 0; half < 2; half++) {
+            tears[i][half] = scene->is_lagrangian ? scene->tears[i][half] : scene->n_points + 2 * i + half;
+        }
+        names[i] = i < sys->n_loops ? sys->loops[i].name : "tear";
+    }
+    sys->drawing = (hn_drawing){.n_points = sys->info.n_points, .labels = labels, .n_shapes = scene->n_shapes,
+                                .shapes = scene->shapes, .n_tears = n_tears, .tears = (const int(*)[2])tears,
+                                .tear_names = names};
+    return HN_OK;
+}
+
+hn_drawing hn_system_drawing(const hn_system *sys) {
+    return sys->drawing;
+}
+
+static void write_shape(hn_strbuf *b, const hn_shape *shape) {
+    hn_json_object(b);
+    hn_json_put_string(b, "kind", hn_shape_kind_name(shape->kind));
+    hn_json_put_int(b, "p", shape->p);
+    hn_json_put_int(b, "q", shape->q);
+    hn_json_put_int(b, "n", shape->n);
+    hn_json_put_number(b, "width", shape->width);
+    hn_json_put_int(b, "body", shape->body);
+    hn_json_end_object(b);
+}
+
+void hn_drawing_json(hn_strbuf *b, const hn_system *sys) {
+    const hn_drawing *d = &sys->drawing;
+    hn_json_object(b);
+    hn_json_put_int(b, "points", d->n_points);
+    hn_json_key(b, "labels");
+    hn_json_strings(b, d->labels, (size_t)d->n_points);
+    hn_json_key(b, "shapes");
+    hn_json_array(b);
+    for (int i = 0; i < d->n_shapes; i++) {
+        write_shape(b, &d->shapes[i]);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "tears");
+    hn_json_array(b);
+    for (int i = 0; i < d->n_tears; i++) {
+        hn_json_object(b);
+        hn_json_put_int(b, "p", d->tears[i][0]);
+        hn_json_put_int(b, "q", d->tears[i][1]);
+        hn_json_put_string(b, "name", d->tear_names[i]);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
