@@ -38,7 +38,8 @@ static void trace_rotation(hn_mech *m, int link) {
     trace_base(m, link);
     hn_vec3 uz = hn_vec3_scale(m->g, m->sys->v[l->coordinate], hn_vec3_num(Z));
     hn_vec3 w = hn_vec3_add(m->g, m->base_w[l->group], uz);
-    hn_vec3 al = hn_vec3_add(m->g, m->base_al[l->group], hn_vec3_cross(m->g, m->base_w[l->group], uz));
+    hn_vec3 al =
+        hn_vec3_add(m->g, m->base_al[l->group], hn_vec3_cross(m->g, m->base_w[l->group], uz));
     if (!hn_mech_is_planar(m, link)) { // into E
         hn_mat3 R = hn_mat3_turn_z(at->c, at->s);
         w = hn_mat3_apply_transposed(m->g, &R, w);

@@ -14,7 +14,8 @@ static int is_own(const hn_link *l) {
 
 static int scene_knows(const hn_scene *scene, const char *name) {
     for (int i = 0; i < scene->n_coordinates; i++) {
-        if (!strcmp(scene->coordinates[i].name, name) || !strcmp(scene->coordinates[i].rate, name)) {
+        if (!strcmp(scene->coordinates[i].name, name) ||
+            !strcmp(scene->coordinates[i].rate, name)) {
             return 1;
         }
     }
@@ -81,7 +82,8 @@ static void name_loops(hn_system *sys) {
         const hn_joint *joint = &sys->scene->joints[sys->tree.cut[k]];
         sys->loops[k].joint = sys->tree.cut[k];
         sys->loops[k].name = joint->name;
-        sys->loops[k].why = joint->cut ? "the scene asks for it" : "both its bodies hang on the tree already";
+        sys->loops[k].why =
+            joint->cut ? "the scene asks for it" : "both its bodies hang on the tree already";
     }
 }
 
@@ -130,7 +132,8 @@ static hn_status get_span(hn_mech *m, int p, int q, hn_relative *rel) {
     return status == HN_OK ? hn_mech_relate(m, common, a, arm_a, b, arm_b, rel) : status;
 }
 
-static void add_levers(hn_mech *m, const hn_reach *end, double sign, const hn_mat3 *turn, hn_span *out) {
+static void add_levers(hn_mech *m, const hn_reach *end, double sign, const hn_mat3 *turn,
+                       hn_span *out) {
     for (int k = 0; k < end->n; k++) {
         hn_vec3 c = hn_vec3_scale(m->g, hn_num(sign), hn_lever_coefficient(m->g, &end->levers[k]));
         c = turn ? hn_mat3_apply(m->g, turn, c) : c;
@@ -214,7 +217,8 @@ enum { ROWS_PER_JOINT = 5 };
 hn_status hn_bodies_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
     hn_mech m;
-    hn_status status = hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
+    hn_status status =
+        hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
     if (status == HN_OK) {
         int n_cut = sys->tree.n_cut;
         status = hn_system_allocate(sys, sys->tree.n_coordinates, ROWS_PER_JOINT * n_cut, n_cut,

@@ -5,7 +5,8 @@
 hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     const hn_scene *scene = sys->scene;
     size_t n = (size_t)n_tears + 1;
-    const char **labels = hn_arena_get(sys->arena, ((size_t)sys->info.n_points + 1) * sizeof *labels);
+    const char **labels =
+        hn_arena_get(sys->arena, ((size_t)sys->info.n_points + 1) * sizeof *labels);
     int(*tears)[2] = hn_arena_get(sys->arena, n * sizeof *tears);
     const char **names = hn_arena_get(sys->arena, n * sizeof *names);
     if (!labels || !tears || !names) {
@@ -16,12 +17,17 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     }
     for (int i = 0; i < n_tears; i++) {
         for (int half = 0; half < 2; half++) {
-            tears[i][half] = scene->is_lagrangian ? scene->tears[i][half] : scene->n_points + 2 * i + half;
+            tears[i][half] =
+                scene->is_lagrangian ? scene->tears[i][half] : scene->n_points + 2 * i + half;
         }
         names[i] = i < sys->n_loops ? sys->loops[i].name : "tear";
     }
-    sys->drawing = (hn_drawing){.n_points = sys->info.n_points, .labels = labels, .n_shapes = scene->n_shapes,
-                                .shapes = scene->shapes, .n_tears = n_tears, .tears = (const int(*)[2])tears,
+    sys->drawing = (hn_drawing){.n_points = sys->info.n_points,
+                                .labels = labels,
+                                .n_shapes = scene->n_shapes,
+                                .shapes = scene->shapes,
+                                .n_tears = n_tears,
+                                .tears = (const int(*)[2])tears,
                                 .tear_names = names};
     return HN_OK;
 }

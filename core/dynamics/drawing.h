@@ -10,9 +10,10 @@ typedef struct hn_drawing {
     int n_points;
     const char *const *labels; ///< n_points, NULL where none
     int n_shapes;
-    const hn_shape *shapes;    ///< p, q are indices of world points
+    const hn_shape *shapes; ///< p, q are indices of world points
     int n_tears;
-    const int (*tears)[2];     ///< the two half-joints of each cut: they coincide when the loop is closed
+    const int (
+        *tears)[2]; ///< the two half-joints of each cut: they coincide when the loop is closed
     const char *const *tear_names;
 } hn_drawing;
 

@@ -21,13 +21,17 @@ enum { HN_TERM_COUNT = 8 };
 typedef struct hn_eval hn_eval;
 
 /// An evaluator of the terms in the mask. Memory from `arena`, the tape owned by the eval (hn_eval_free).
-HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_eval **out);
+HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena,
+                                       hn_eval **out);
 void hn_eval_free(hn_eval *e); ///< frees the tape; NULL is legal
-/// Evaluates all its terms; allocates nothing.
+/// Evaluates all its terms; allocates nothing. v may be NULL: zero.
 void hn_eval_run(hn_eval *e, double t, const double *q, const double *v);
 /// Where the values of one term stand (borrowed, same place for life). M and J: entries that are identically zero
 /// are set once; only the others are written by a run.
 const double *hn_eval_get(const hn_eval *e, hn_term term);
+/// Entries of a term that are not identically zero: returns their number, and their rows and columns (borrowed). M: the lower
+/// triangle; vectors: column 0. For large scenes, where going through dense arrays would cost more than the evaluation.
+int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int **cols);
 hn_tape_info hn_eval_info(const hn_eval *e);
 long long hn_eval_count(const hn_eval *e); ///< runs so far
 
@@ -43,19 +47,22 @@ typedef struct hn_accel_opts {
 } hn_accel_opts;
 
 typedef struct hn_accel_info {
-    int fallback;        ///< 1: the dense solve answered
-    int rank;            ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
-    double pivot_ratio;  ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
-    double residual;     ///< dense solve only: max |J a + gamma|
+    int fallback; ///< 1: the dense solve answered
+    int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
+    double
+        pivot_ratio; ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
 
-HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena, hn_accel **out);
+HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
+                                        hn_arena *arena, hn_accel **out);
 void hn_accel_free(hn_accel *s);
 /// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without baumgarte. Fails: HN_ERR_SINGULAR,
 /// HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite); outputs then untouched. Allocates nothing.
-HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
-                                      double beta, double *a, double *lambda, hn_accel_info *info);
+HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
+                                      double alpha, double beta, double *a, double *lambda,
+                                      hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 long long hn_accel_count(const hn_accel *s);
 long long hn_accel_fallbacks(const hn_accel *s);

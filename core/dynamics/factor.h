@@ -16,21 +16,23 @@ typedef struct hn_factor hn_factor;
 typedef enum hn_factor_weight { HN_FACTOR_MASS, HN_FACTOR_IDENTITY } hn_factor_weight;
 
 typedef struct hn_factor_info {
-    int available;    ///< 0: no static order exists for this system; hn_factor_update() always says HN_ERR_SINGULAR
-    int n_blocks;     ///< pivots (1 x 1 or 2 x 2)
-    int nnz;          ///< entries of L below the diagonal blocks
-    int update_ops;   ///< arithmetic operations of one update
-    int solve_ops;    ///< arithmetic operations of one solve
+    int available; ///< 0: no static order exists for this system; hn_factor_update() always says HN_ERR_SINGULAR
+    int n_blocks;   ///< pivots (1 x 1 or 2 x 2)
+    int nnz;        ///< entries of L below the diagonal blocks
+    int update_ops; ///< arithmetic operations of one update
+    int solve_ops;  ///< arithmetic operations of one solve
 } hn_factor_info;
 
 /// Memory from `arena`, the tape owned by the factor (hn_factor_free). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
-HN_MUST_CHECK hn_status hn_factor_create(const hn_system *sys, hn_factor_weight weight, hn_arena *arena, hn_factor **out);
+HN_MUST_CHECK hn_status hn_factor_create(const hn_system *sys, hn_factor_weight weight,
+                                         hn_arena *arena, hn_factor **out);
 void hn_factor_free(hn_factor *f); ///< NULL is legal
 hn_factor_info hn_factor_get_info(const hn_factor *f);
 
 /// Factors K at (t, q). *pivot_ratio (may be NULL) as in hn_accel_info. Fails: HN_ERR_SINGULAR when a pivot fell below
 /// HN_PIVOT_GUARD times its reference (use the dense solve then), HN_ERR_DIVERGED when q is not finite. Allocates nothing.
-HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivot_ratio);
+HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q,
+                                         double *pivot_ratio);
 
 /// Solves K [x; -y] = [r1; r2] with the last successful factor: x (nv), y (nc); y may be NULL. The right-hand side and the
 /// solution may be the same arrays. r1 or r2 may be NULL, which means zero. Allocates nothing.

@@ -54,14 +54,16 @@ hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex 
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
     if (status == HN_OK && s.refused) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
-                            "cut another joint of its loop, or use coordinates of joints that are not cut",
-                            "'%s' belongs to a cut joint between bodies that do not turn about parallel axes, so it has no formula",
-                            s.refused);
+        return hn_diags_add(
+            sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+            "cut another joint of its loop, or use coordinates of joints that are not cut",
+            "'%s' belongs to a cut joint between bodies that do not turn about parallel axes, so "
+            "it has no formula",
+            s.refused);
     }
     if (status != HN_OK) {
-        (void)hn_diags_add(sys->diags, status, quantity->pointer, diag.hint, "in '%s': %s", quantity->formula,
-                           diag.message);
+        (void)hn_diags_add(sys->diags, status, quantity->pointer, diag.hint, "in '%s': %s",
+                           quantity->formula, diag.message);
     }
     return status;
 }

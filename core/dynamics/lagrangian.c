@@ -63,7 +63,8 @@ static hn_status trace_mass(hn_system *sys, const hn_ex *p) {
         hn_diff(sys->g, p[i], sys->v_symbols, i + 1, row);
         for (int j = 0; j <= i; j++) {
             if (depends_on_any(sys, row[j], sys->v_symbols)) {
-                return refuse_kinetic(sys, "its second derivative by the rates still contains a rate");
+                return refuse_kinetic(sys,
+                                      "its second derivative by the rates still contains a rate");
             }
             hn_entries_add(&sys->M, i, j, row[j]);
         }
@@ -90,7 +91,8 @@ static hn_status trace_energies(hn_system *sys) {
         return refuse_kinetic(sys, "it depends on t, which is not served");
     }
     if (depends_on_any(sys, sys->potential, sys->v_symbols)) {
-        return hn_diags_add(sys->diags, HN_ERR_INPUT, l->potential.pointer, "write it as a force on a coordinate",
+        return hn_diags_add(sys->diags, HN_ERR_INPUT, l->potential.pointer,
+                            "write it as a force on a coordinate",
                             "the potential energy contains a rate");
     }
     if (!hn_is_zero(at_rest(sys, sys->kinetic))) {
@@ -114,7 +116,10 @@ static hn_status add_constraint(hn_system *sys, int i) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
     hn_graph *g = sys->g;
     int n = sys->nv;
-    hn_new_row row = {.name = l->constraint_names[i], .loop = i, .is_length = 0, .pointer = l->constraints[i].pointer};
+    hn_new_row row = {.name = l->constraint_names[i],
+                      .loop = i,
+                      .is_length = 0,
+                      .pointer = l->constraints[i].pointer};
     hn_ex *along = hn_arena_get(sys->arena, 2 * ((size_t)n + 1) * sizeof *along);
     hn_entry *entries = hn_arena_get(sys->arena, (size_t)n * sizeof *entries);
     int *symbols = hn_arena_ints(sys->arena, (size_t)n + 1);
@@ -123,8 +128,9 @@ static hn_status add_constraint(hn_system *sys, int i) {
         return status == HN_OK ? HN_ERR_MEMORY : status;
     }
     if (depends_on_any(sys, row.phi, sys->v_symbols)) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, row.pointer, "write the constraint on positions",
-                            "constraint '%s' contains a rate; only constraints on positions are served", row.name);
+        return hn_diags_add(
+            sys->diags, HN_ERR_UNSUPPORTED, row.pointer, "write the constraint on positions",
+            "constraint '%s' contains a rate; only constraints on positions are served", row.name);
     }
     hn_ex *J = along + n + 1;
     for (int j = 0; j < n; j++) {
@@ -149,7 +155,8 @@ static hn_status add_constraint(hn_system *sys, int i) {
 static hn_status trace_constraints(hn_system *sys) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
     for (int i = 0; i < l->n_constraints; i++) {
-        sys->loops[i] = (hn_loop){.name = l->constraint_names[i], .joint = -1, .why = "a constraint of the scene"};
+        sys->loops[i] = (hn_loop){
+            .name = l->constraint_names[i], .joint = -1, .why = "a constraint of the scene"};
         hn_status status = add_constraint(sys, i);
         if (status != HN_OK) {
             return status;
@@ -185,7 +192,8 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     }
     out->n = sys->nv;
     for (int i = 0; i < 3; i++) {
-        out->delta.x[i] = q < 0 ? sys->points[3 * p + i] : hn_sub(sys->g, sys->points[3 * p + i], sys->points[3 * q + i]);
+        out->delta.x[i] = q < 0 ? sys->points[3 * p + i]
+                                : hn_sub(sys->g, sys->points[3 * p + i], sys->points[3 * q + i]);
         hn_diff_reverse(sys->g, out->delta.x[i], sys->q_symbols, sys->nv, gradient);
         for (int j = 0; j < sys->nv; j++) {
             out->coordinate[j] = j;

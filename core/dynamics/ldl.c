@@ -1,441 +1,338 @@
 #include "dynamics/ldl.h"
+#include "dynamics/eval.h"
+#include "dynamics/symmat.h"
 
+#include <math.h>
 #include <string.h>
-
-/// A growing list of terms that are added up when the entry is needed.
-typedef struct terms {
-    hn_ex *t;
-    int n, cap;
-} terms;
-
-/// One unknown: its neighbours in the elimination graph and the entries of K between.
-typedef struct unknown {
-    int *neighbour, *entry;
-    int n, cap;
-    int eliminated;
-    terms own;       ///< diagonal: as given, and what speeds left there
-    terms from_rows; ///< what multipliers left there
-    int has_pivot;   ///< the diagonal is structurally not zero
-} unknown;
 
 typedef struct work {
     hn_graph *g;
-    hn_arena *arena;
-    const hn_ldl_input *in;
+    hn_symmat *K;
     hn_ldl *out;
-    int n;
-    unknown *u;
-    terms *entries;
-    int n_entries, entries_cap;
-    int L_cap, n_L, n_done;
+    hn_arena *arena;
+    char *gone;    ///< per unknown
+    char *massive; ///< coordinates whose own entry of W is not zero
+    int *partner;  ///< per unknown: the other half of its pair, -1: alone
+    int *degree;   ///< live neighbours; -1: not eligible now
+    hn_ex *ref;    ///< per unknown: reference of its pivot
+    int *live;     ///< scratch: live neighbours of a block
+    char *marked;
+    int cap_rows;
 } work;
 
-/// A longer copy in the arena; the old one stays there unused (doubling keeps that below what is used).
-static void *grow(hn_arena *arena, void *old, size_t used, size_t size) {
-    void *p = hn_arena_get(arena, size);
-    if (p && used > 0) {
-        memcpy(p, old, used);
+// setting up -------------------------------------------------------------------------------------------------------
+
+static void fill(work *w, const hn_system *sys, int identity) {
+    for (int i = 0; i < sys->nv && identity; i++) {
+        hn_symmat_set(w->K, i, i, hn_num(1));
     }
-    return p;
+    for (int k = 0; k < sys->M.n && !identity; k++) {
+        hn_symmat_set(w->K, sys->M.at[k].row, sys->M.at[k].col, sys->M.at[k].e);
+    }
+    for (int k = 0; k < sys->J.n; k++) {
+        hn_symmat_set(w->K, sys->nv + sys->J.at[k].row, sys->J.at[k].col, sys->J.at[k].e);
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        w->ref[i] = hn_symmat_get(w->K, i, i);
+        w->massive[i] = !hn_is_zero(w->ref[i]);
+    }
 }
 
-static int add_term(hn_arena *arena, terms *list, hn_ex e) {
-    if (hn_is_zero(e)) {
-        return 1;
-    }
-    if (list->n == list->cap) {
-        const int cap = list->cap ? 2 * list->cap : 4;
-        hn_ex *t = grow(arena, list->t, (size_t)list->n * sizeof *t, (size_t)cap * sizeof *t);
-        if (!t) {
+static int same_pattern(const hn_system *sys, int first, int second, int n) {
+    for (int k = 0; k < n; k++) {
+        if (sys->J.at[first + k].col != sys->J.at[second + k].col) {
             return 0;
         }
-        list->t = t;
-        list->cap = cap;
     }
-    list->t[list->n++] = e;
     return 1;
 }
 
-static int add_neighbour(work *w, int i, int j, int entry) {
-    unknown *u = &w->u[i];
-    if (u->n == u->cap) {
-        const int cap = u->cap ? 2 * u->cap : 4;
-        int *nb = grow(w->arena, u->neighbour, (size_t)u->n * sizeof *nb, (size_t)cap * sizeof *nb);
-        int *en = grow(w->arena, u->entry, (size_t)u->n * sizeof *en, (size_t)cap * sizeof *en);
-        if (!nb || !en) {
-            return 0;
+/// Multipliers next to each other that touch the same coordinates.
+static void pair_rows(work *w, const hn_system *sys) {
+    int start = 0, free_row = -1, free_start = 0, free_n = 0;
+    for (int row = 0; row < sys->nc; row++) {
+        int n = 0;
+        while (start + n < sys->J.n && sys->J.at[start + n].row == row) {
+            n++;
         }
-        u->neighbour = nb;
-        u->entry = en;
-        u->cap = cap;
-    }
-    u->neighbour[u->n] = j;
-    u->entry[u->n++] = entry;
-    return 1;
-}
-
-/// The entry between i and j; made when there is none yet. -1 when memory is out.
-static int find_entry(work *w, int i, int j) {
-    const unknown *u = &w->u[i];
-    for (int k = 0; k < u->n; k++) {
-        if (u->neighbour[k] == j) {
-            return u->entry[k];
+        if (free_row >= 0 && free_n == n && same_pattern(sys, free_start, start, n)) {
+            w->partner[sys->nv + row] = sys->nv + free_row;
+            w->partner[sys->nv + free_row] = sys->nv + row;
+            free_row = -1;
+        } else {
+            free_row = row;
+            free_start = start;
+            free_n = n;
         }
+        start += n;
     }
-    if (w->n_entries == w->entries_cap) {
-        const int cap = w->entries_cap ? 2 * w->entries_cap : 64;
-        terms *t =
-            grow(w->arena, w->entries, (size_t)w->n_entries * sizeof *t, (size_t)cap * sizeof *t);
-        if (!t) {
-            return -1;
-        }
-        w->entries = t;
-        w->entries_cap = cap;
-    }
-    const int e = w->n_entries++;
-    return add_neighbour(w, i, j, e) && add_neighbour(w, j, i, e) ? e : -1;
 }
 
-static int put_entry(work *w, int i, int j, hn_ex e) {
-    if (hn_is_zero(e)) {
-        return 1;
-    }
-    const int at = find_entry(w, i, j);
-    return at >= 0 && add_term(w->arena, &w->entries[at], e);
-}
+// order --------------------------------------------------------------------------------------------------------------
 
-static hn_ex sum_terms(hn_graph *g, const terms *list) {
-    return list->n ? hn_sum(g, list->t, list->n) : hn_num(0);
-}
-
-/// Fills the graph of K from its structurally nonzero entries.
-static int load_pattern(work *w) {
-    const hn_ldl_input *in = w->in;
-    const int nv = in->nv;
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j < i; j++) {
-            if (!put_entry(w, i, j, in->A[i * nv + j])) {
-                return 0;
+/// Live neighbours of an unknown and its partner, into w->live; returns how many. *blocked: a massive coordinate is among them.
+static int list_live(work *w, int i, int *blocked) {
+    int n = 0, pair[2] = {i, w->partner[i]};
+    *blocked = 0;
+    for (int p = 0; p < 2 && pair[p] >= 0; p++) {
+        const int *list;
+        int n_list = hn_symmat_neighbours(w->K, pair[p], &list);
+        for (int k = 0; k < n_list; k++) {
+            int j = list[k];
+            if (w->gone[j] || w->marked[j] || j == pair[0] || j == pair[1] ||
+                hn_is_zero(hn_symmat_get(w->K, pair[p], j))) {
+                continue;
             }
-        }
-        if (!add_term(w->arena, &w->u[i].own, in->A[i * nv + i])) {
-            return 0;
-        }
-        w->u[i].has_pivot = w->u[i].own.n > 0;
-    }
-    for (int i = 0; i < in->nc; i++) {
-        for (int j = 0; j < nv; j++) {
-            if (!put_entry(w, nv + i, j, in->J[i * nv + j])) {
-                return 0;
-            }
+            w->marked[j] = 1;
+            w->live[n++] = j;
+            *blocked |= j < w->out->nv && w->massive[j];
         }
     }
-    return 1;
-}
-
-static int degree(const work *w, int i) {
-    int n = 0;
-    for (int k = 0; k < w->u[i].n; k++) {
-        n += !w->u[w->u[i].neighbour[k]].eliminated;
+    for (int k = 0; k < n; k++) {
+        w->marked[w->live[k]] = 0;
     }
     return n;
 }
 
-/// 1 if i may be the next pivot: its diagonal is there, and a multiplier waits for the speeds it touches.
-static int is_ready(const work *w, int i) {
-    const unknown *u = &w->u[i];
-    if (u->eliminated || !u->has_pivot) {
-        return 0;
-    }
-    for (int k = 0; k < u->n && i >= w->in->nv; k++) {
-        const int j = u->neighbour[k];
-        if (j < w->in->nv && !w->u[j].eliminated && w->u[j].has_pivot) {
-            return 0;
+static void update_degree(work *w, int i) {
+    int blocked, partner = w->partner[i];
+    int n = list_live(w, i, &blocked);
+    int has_pivot = !hn_is_zero(hn_symmat_get(w->K, i, i)) &&
+                    (partner < 0 || !hn_is_zero(hn_symmat_get(w->K, partner, partner)));
+    int eligible = has_pivot && (i < w->out->nv || !blocked);
+    w->degree[i] = eligible ? n : -1;
+    if (partner >= 0) {
+        w->degree[partner] = -1; // the pair goes by its first half
+        if (partner < i) {
+            w->degree[partner] = w->degree[i];
+            w->degree[i] = -1;
         }
     }
-    return 1;
 }
 
-/// The ready unknown of least degree, or -1.
-static int choose_pivot(const work *w) {
-    int best = -1, best_degree = 0;
-    for (int i = 0; i < w->n; i++) {
-        if (is_ready(w, i)) {
-            const int d = degree(w, i);
-            if (best < 0 || d < best_degree) {
-                best = i;
-                best_degree = d;
-            }
+static int choose(const work *w) {
+    int best = -1;
+    for (int i = 0; i < w->out->n; i++) {
+        if (!w->gone[i] && w->degree[i] >= 0 && (best < 0 || w->degree[i] < w->degree[best])) {
+            best = i;
         }
     }
     return best;
 }
 
-/// Another multiplier of the same loop that is ready too and linked to this one, or -1.
-static int choose_partner(const work *w, int i) {
-    const int nv = w->in->nv;
-    if (i < nv || !w->in->row_loop) {
-        return -1;
+// elimination ----------------------------------------------------------------------------------------------------------
+
+/// Keeps a pivot and its reference for the run, or checks them at once when both are numbers. Returns 0 if the pivot is lost.
+static int guard(work *w, hn_ex pivot, hn_ex ref) {
+    double p, r;
+    if (hn_is_number(pivot, &p)) {
+        return p != 0 && (!hn_is_number(ref, &r) || fabs(p) >= HN_PIVOT_GUARD * fabs(r));
     }
-    for (int k = 0; k < w->u[i].n; k++) {
-        const int j = w->u[i].neighbour[k];
-        if (j >= nv && w->in->row_loop[j - nv] == w->in->row_loop[i - nv] && is_ready(w, j)) {
-            return j;
-        }
+    if (pivot.n == ref.n && ref.c != 0 && fabs(pivot.c) >= HN_PIVOT_GUARD * fabs(ref.c)) {
+        return 1; // the same value: nothing was subtracted from it
     }
-    return -1;
+    w->out->guard[w->out->n_guards][0] = pivot;
+    w->out->guard[w->out->n_guards][1] = ref;
+    w->out->n_guards++;
+    return 1;
 }
 
-static hn_ex pivot_of(const work *w, int i) {
-    terms all = {0};
-    all.n = w->u[i].own.n + w->u[i].from_rows.n;
-    all.t = hn_arena_get(w->arena, (size_t)(all.n + 1) * sizeof *all.t);
-    if (!all.t) {
-        return hn_num(0);
-    }
-    if (w->u[i].own.n) {
-        memcpy(all.t, w->u[i].own.t, (size_t)w->u[i].own.n * sizeof *all.t);
-    }
-    if (w->u[i].from_rows.n) {
-        memcpy(all.t + w->u[i].own.n, w->u[i].from_rows.t,
-               (size_t)w->u[i].from_rows.n * sizeof *all.t);
-    }
-    return sum_terms(w->g, &all);
+static hn_ex reciprocal(work *w, hn_ex e) {
+    return hn_div(w->g, hn_num(1), e);
 }
 
-static void add_guard(work *w, hn_ex pivot, hn_ex reference) {
-    if (!hn_ex_same(pivot, reference) && !hn_is_zero(reference)) {
-        w->out->guards[w->out->n_guards++] = (hn_ldl_guard){pivot, reference};
-    }
-}
-
-/// A speed is measured by its own inertia, a multiplier by what the speeds alone gave it: -J A^-1 J' without the other rows.
-static void guard_pivot(work *w, int i, hn_ex pivot) {
-    const unknown *u = &w->u[i];
-    add_guard(w, pivot, i < w->in->nv ? w->in->A[i * w->in->nv + i] : sum_terms(w->g, &u->own));
-}
-
-static hn_ex recip(hn_graph *g, hn_ex e) {
-    return hn_div(g, hn_num(1), e);
-}
-
-/// Writes the inverse of the pivot block and its guards.
-static void invert_block(work *w, const int *p, int size, hn_ex inverse[3]) {
+/// Inverse of the pivot block. Returns 0 if it is singular by structure.
+static int invert(work *w, const int pair[2], hn_ex inverse[3]) {
     hn_graph *g = w->g;
-    const hn_ex a = pivot_of(w, p[0]);
-    guard_pivot(w, p[0], a);
-    if (size == 1) {
-        inverse[0] = recip(g, a);
-        inverse[1] = inverse[2] = hn_num(0);
-        return;
-    }
-    const hn_ex c = pivot_of(w, p[1]);
-    guard_pivot(w, p[1], c);
-    const hn_ex b = sum_terms(g, &w->entries[find_entry(w, p[0], p[1])]);
-    const hn_ex ac = hn_mul(g, a, c);
-    const hn_ex det = hn_sub(g, ac, hn_mul(g, b, b));
-    add_guard(w, det, ac);
-    const hn_ex r = recip(g, det);
-    inverse[0] = hn_mul(g, c, r);
-    inverse[1] = hn_neg(hn_mul(g, b, r));
-    inverse[2] = hn_mul(g, a, r);
-}
-
-/// Unknowns that are still there and touch the block, once each; returns how many.
-static int gather_rows(const work *w, const int *p, int size, int *rows) {
-    int n = 0;
-    for (int k = 0; k < size; k++) {
-        const unknown *u = &w->u[p[k]];
-        for (int e = 0; e < u->n; e++) {
-            const int j = u->neighbour[e];
-            int known = w->u[j].eliminated || j == p[0] || j == p[size - 1];
-            for (int i = 0; i < n && !known; i++) {
-                known = rows[i] == j;
-            }
-            if (!known) {
-                rows[n++] = j;
-            }
+    hn_ex a = hn_symmat_get(w->K, pair[0], pair[0]);
+    inverse[1] = inverse[2] = hn_num(0);
+    if (pair[1] < 0) {
+        if (!guard(w, a, w->ref[pair[0]])) {
+            return 0;
         }
-    }
-    return n;
-}
-
-/// The entry between i and j as it stands, or zero.
-static hn_ex entry_value(const work *w, int i, int j) {
-    const unknown *u = &w->u[i];
-    for (int k = 0; k < u->n; k++) {
-        if (u->neighbour[k] == j) {
-            return sum_terms(w->g, &w->entries[u->entry[k]]);
-        }
-    }
-    return hn_num(0);
-}
-
-static int reserve_L(work *w, int n) {
-    if (w->n_L + n <= w->L_cap) {
+        inverse[0] = reciprocal(w, a);
         return 1;
     }
-    const int cap = 2 * (w->n_L + n) + 64;
+    hn_ex b = hn_symmat_get(w->K, pair[0], pair[1]), c = hn_symmat_get(w->K, pair[1], pair[1]);
+    hn_ex det = hn_sub(g, hn_mul(g, a, c), hn_mul(g, b, b));
+    if (hn_is_zero(det) || !guard(w, det, hn_mul(g, w->ref[pair[0]], w->ref[pair[1]]))) {
+        return 0;
+    }
+    hn_ex t = reciprocal(w, det);
+    inverse[0] = hn_mul(g, c, t);
+    inverse[1] = hn_neg(hn_mul(g, b, t));
+    inverse[2] = hn_mul(g, a, t);
+    return 1;
+}
+
+static int reserve_rows(work *w, int more) {
     hn_ldl *out = w->out;
-    int *row = grow(w->arena, out->row, (size_t)w->n_L * sizeof *row, (size_t)cap * sizeof *row);
-    hn_ex *L = grow(w->arena, out->L, (size_t)w->n_L * sizeof *L, (size_t)cap * sizeof *L);
+    if (out->nnz + more <= w->cap_rows) {
+        return 1;
+    }
+    int cap = 2 * (out->nnz + more) + 64;
+    int *row = hn_arena_ints(w->arena, (size_t)cap);
+    hn_ex(*L)[2] = hn_arena_get(w->arena, (size_t)cap * sizeof *L);
     if (!row || !L) {
         return 0;
     }
+    if (out->nnz) {
+        memcpy(row, out->row, (size_t)out->nnz * sizeof *row);
+        memcpy(L, out->L, (size_t)out->nnz * sizeof *L);
+    }
     out->row = row;
     out->L = L;
-    w->L_cap = cap;
+    w->cap_rows = cap;
     return 1;
 }
 
-/// A_ij -= l_i . a_j for every pair of rows; l: rows x 2, a: rows x 2.
-static int update_rest(work *w, const int *rows, int n, const hn_ex *l, const hn_ex *a, int size,
-                       int is_row) {
-    hn_graph *g = w->g;
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j <= i; j++) {
-            for (int k = 0; k < size; k++) {
-                const hn_ex term = hn_neg(hn_mul(g, l[2 * i + k], a[2 * j + k]));
-                if (hn_is_zero(term)) {
-                    continue;
-                }
-                unknown *u = &w->u[rows[i]];
-                const int ok = i == j ? add_term(w->arena, is_row ? &u->from_rows : &u->own, term)
-                                      : put_entry(w, rows[i], rows[j], term);
-                if (!ok) {
-                    return 0;
-                }
-                w->u[rows[i]].has_pivot |= i == j;
-            }
-        }
-    }
-    return 1;
+static hn_ex two_products(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
+    hn_ex first = hn_mul(g, a, b);
+    return hn_is_zero(c) || hn_is_zero(d) ? first : hn_add(g, first, hn_mul(g, c, d));
 }
 
-/// Eliminates one block: its inverse, its columns of L, and what it leaves to the rest.
-static int eliminate(work *w, const int *p, int size, int *rows, hn_ex *l, hn_ex *a) {
-    hn_graph *g = w->g;
+/// Subtracts the block's part from what is left of the matrix.
+static void reduce(work *w, const int pair[2], int first_row, int n, int counts) {
     hn_ldl *out = w->out;
-    hn_ex *inv = out->inverse + 3 * out->n_blocks;
-    invert_block(w, p, size, inv);
-    const int n = gather_rows(w, p, size, rows);
-    for (int i = 0; i < n; i++) {
-        a[2 * i] = entry_value(w, rows[i], p[0]);
-        a[2 * i + 1] = size == 2 ? entry_value(w, rows[i], p[1]) : hn_num(0);
-        l[2 * i] = hn_add(g, hn_mul(g, a[2 * i], inv[0]), hn_mul(g, a[2 * i + 1], inv[1]));
-        l[2 * i + 1] = hn_add(g, hn_mul(g, a[2 * i], inv[1]), hn_mul(g, a[2 * i + 1], inv[2]));
-    }
-    for (int k = 0; k < size; k++) {
-        if (!reserve_L(w, n)) {
-            return 0;
-        }
-        w->u[p[k]].eliminated = 1;
-        out->order[w->n_done++] = p[k];
-        for (int i = 0; i < n; i++) {
-            if (!hn_is_zero(l[2 * i + k])) {
-                out->row[w->n_L] = rows[i];
-                out->L[w->n_L++] = l[2 * i + k];
+    for (int a = 0; a < n; a++) {
+        int i = out->row[first_row + a];
+        const hn_ex *L = out->L[first_row + a];
+        for (int b = a; b < n; b++) {
+            int j = out->row[first_row + b];
+            hn_ex k1 = hn_symmat_get(w->K, j, pair[0]);
+            hn_ex k2 = pair[1] >= 0 ? hn_symmat_get(w->K, j, pair[1]) : hn_num(0);
+            hn_ex part = two_products(w->g, L[0], k1, L[1], k2);
+            if (hn_is_zero(part)) {
+                continue;
+            }
+            hn_symmat_set(w->K, i, j, hn_sub(w->g, hn_symmat_get(w->K, i, j), part));
+            if (i == j && i >= out->nv && counts) {
+                w->ref[i] = hn_sub(w->g, w->ref[i], part);
             }
         }
-        out->start[w->n_done] = w->n_L;
     }
-    out->block[++out->n_blocks] = w->n_done;
-    return update_rest(w, rows, n, l, a, size, p[0] >= w->in->nv);
 }
 
-/// Arrays whose size is known from the start.
-static int reserve(work *w) {
-    const size_t n = (size_t)w->n;
+static hn_status eliminate(work *w, int i) {
     hn_ldl *out = w->out;
-    w->u = hn_arena_get(w->arena, (n + 1) * sizeof *w->u);
-    out->block = hn_arena_ints(w->arena, n + 2);
-    out->order = hn_arena_ints(w->arena, n + 1);
-    out->start = hn_arena_ints(w->arena, n + 2);
-    out->inverse = hn_arena_get(w->arena, (3 * n + 1) * sizeof *out->inverse);
-    out->guards = hn_arena_get(w->arena, (3 * n + 1) * sizeof *out->guards);
-    return !hn_arena_failed(w->arena);
+    int pair[2] = {i, w->partner[i]}, blocked;
+    int n = list_live(w, i, &blocked);
+    hn_ex *inverse = out->Dinv[out->n_blocks];
+    if (!reserve_rows(w, n)) {
+        return HN_ERR_MEMORY;
+    }
+    if (!invert(w, pair, inverse)) {
+        out->available = 0;
+        return HN_OK;
+    }
+    int first_row = out->nnz, at = out->block[out->n_blocks];
+    for (int p = 0; p < 2 && pair[p] >= 0; p++) {
+        out->unknown[at++] = pair[p];
+        w->gone[pair[p]] = 1;
+    }
+    for (int k = 0; k < n; k++) {
+        int row = w->live[k];
+        hn_ex k1 = hn_symmat_get(w->K, row, pair[0]);
+        hn_ex k2 = pair[1] >= 0 ? hn_symmat_get(w->K, row, pair[1]) : hn_num(0);
+        out->row[out->nnz] = row;
+        out->L[out->nnz][0] = two_products(w->g, k1, inverse[0], k2, inverse[1]);
+        out->L[out->nnz][1] =
+            pair[1] >= 0 ? two_products(w->g, k1, inverse[1], k2, inverse[2]) : hn_num(0);
+        out->nnz++;
+    }
+    reduce(w, pair, first_row, n, i < out->nv && w->massive[i]);
+    out->n_blocks++;
+    out->block[out->n_blocks] = at;
+    out->column[out->n_blocks] = out->nnz;
+    for (int k = 0; k < n; k++) {
+        update_degree(w, out->row[first_row + k]);
+    }
+    return hn_symmat_failed(w->K) || hn_graph_failed(w->g) ? HN_ERR_MEMORY : HN_OK;
 }
 
-hn_status hn_ldl_factor(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_ldl *out) {
-    *out = (hn_ldl){.n = in->nv + in->nc, .nv = in->nv, .nc = in->nc};
-    work w = {.g = g, .arena = arena, .in = in, .out = out, .n = out->n};
-    int ok = reserve(&w) && load_pattern(&w);
-    int *rows = hn_arena_ints(arena, (size_t)out->n + 1);
-    hn_ex *l = hn_arena_get(arena, (2 * (size_t)out->n + 2) * sizeof *l);
-    hn_ex *a = hn_arena_get(arena, (2 * (size_t)out->n + 2) * sizeof *a);
-    ok = ok && rows && l && a;
-    while (ok && w.n_done < w.n) {
-        int p[2] = {choose_pivot(&w), -1};
-        if (p[0] < 0) {
-            return HN_OK; // no static order: available stays 0
-        }
-        p[1] = choose_partner(&w, p[0]);
-        ok = eliminate(&w, p, p[1] < 0 ? 1 : 2, rows, l, a);
+static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
+    size_t n = (size_t)(nv + nc);
+    memset(out, 0, sizeof *out);
+    out->n = nv + nc;
+    out->nv = nv;
+    out->nc = nc;
+    out->unknown = hn_arena_ints(w->arena, n);
+    out->block = hn_arena_ints(w->arena, n + 1);
+    out->column = hn_arena_ints(w->arena, n + 1);
+    out->Dinv = hn_arena_get(w->arena, n * sizeof *out->Dinv);
+    out->guard = hn_arena_get(w->arena, n * sizeof *out->guard);
+    w->gone = hn_arena_get(w->arena, n);
+    w->massive = hn_arena_get(w->arena, n);
+    w->marked = hn_arena_get(w->arena, n);
+    w->partner = hn_arena_ints(w->arena, n);
+    w->degree = hn_arena_ints(w->arena, n);
+    w->live = hn_arena_ints(w->arena, n);
+    w->ref = hn_arena_get(w->arena, n * sizeof *w->ref);
+    if (hn_arena_failed(w->arena)) {
+        return HN_ERR_MEMORY;
     }
-    out->available = ok;
-    return ok && !hn_graph_failed(g) ? HN_OK : HN_ERR_MEMORY;
+    for (size_t i = 0; i < n; i++) {
+        w->partner[i] = -1;
+    }
+    return HN_OK;
 }
 
-void hn_ldl_solve(hn_graph *g, const hn_ldl *f, const hn_ex *r1, const hn_ex *r2, hn_ex *x,
-                  hn_ex *y, hn_ex *b) {
-    for (int i = 0; i < f->n; i++) {
-        b[i] = i < f->nv ? r1[i] : r2[i - f->nv];
+hn_status hn_ldl_build(hn_system *sys, const hn_ldl_opts *opts, hn_arena *arena, hn_ldl *out) {
+    work w = {.g = sys->g, .out = out, .arena = arena};
+    hn_status status = allocate(&w, out, sys->nv, sys->nc);
+    if (status != HN_OK) {
+        return status;
     }
-    for (int k = 0; k < f->n; k++) {
-        for (int e = f->start[k]; e < f->start[k + 1]; e++) {
-            b[f->row[e]] = hn_sub(g, b[f->row[e]], hn_mul(g, f->L[e], b[f->order[k]]));
+    w.K = hn_symmat_create(out->n);
+    if (!w.K) {
+        return HN_ERR_MEMORY;
+    }
+    fill(&w, sys, opts->identity);
+    if (opts->pairs) {
+        pair_rows(&w, sys);
+    }
+    for (int i = 0; i < out->n; i++) {
+        update_degree(&w, i);
+    }
+    out->available = 1;
+    while (status == HN_OK && out->available && out->block[out->n_blocks] < out->n) {
+        int next = choose(&w);
+        if (next < 0) {
+            out->available = 0;
+        } else {
+            status = eliminate(&w, next);
         }
     }
-    for (int m = f->n_blocks - 1; m >= 0; m--) {
-        const int first = f->block[m], two = f->block[m + 1] - first == 2;
-        const hn_ex *inv = f->inverse + 3 * m;
-        const int p = f->order[first], q = f->order[first + two];
-        const hn_ex bp = b[p], bq = b[q];
-        b[p] = hn_mul(g, inv[0], bp);
+    hn_symmat_free(w.K);
+    return status;
+}
+
+hn_status hn_ldl_solve(hn_graph *g, const hn_ldl *ldl, const hn_ex *rhs, hn_ex *x) {
+    memmove(x, rhs, (size_t)ldl->n * sizeof *x);
+    for (int b = 0; b < ldl->n_blocks; b++) {
+        const int *at = &ldl->unknown[ldl->block[b]];
+        int two = ldl->block[b + 1] - ldl->block[b] == 2;
+        for (int k = ldl->column[b]; k < ldl->column[b + 1]; k++) {
+            hn_ex part =
+                two_products(g, ldl->L[k][0], x[at[0]], ldl->L[k][1], two ? x[at[1]] : hn_num(0));
+            x[ldl->row[k]] = hn_sub(g, x[ldl->row[k]], part);
+        }
+    }
+    for (int b = ldl->n_blocks - 1; b >= 0; b--) {
+        const int *at = &ldl->unknown[ldl->block[b]];
+        const hn_ex *D = ldl->Dinv[b];
+        int two = ldl->block[b + 1] - ldl->block[b] == 2;
+        hn_ex y1 = x[at[0]], y2 = two ? x[at[1]] : hn_num(0);
+        hn_ex z[2] = {two_products(g, D[0], y1, D[1], y2), two_products(g, D[1], y1, D[2], y2)};
+        for (int k = ldl->column[b]; k < ldl->column[b + 1]; k++) {
+            hn_ex known = x[ldl->row[k]];
+            z[0] = hn_sub(g, z[0], hn_mul(g, ldl->L[k][0], known));
+            z[1] = hn_sub(g, z[1], hn_mul(g, ldl->L[k][1], known));
+        }
+        x[at[0]] = z[0];
         if (two) {
-            b[p] = hn_add(g, b[p], hn_mul(g, inv[1], bq));
-            b[q] = hn_add(g, hn_mul(g, inv[1], bp), hn_mul(g, inv[2], bq));
-        }
-        for (int k = first; k < f->block[m + 1]; k++) {
-            for (int e = f->start[k]; e < f->start[k + 1]; e++) {
-                b[f->order[k]] = hn_sub(g, b[f->order[k]], hn_mul(g, f->L[e], b[f->row[e]]));
-            }
+            x[at[1]] = z[1];
         }
     }
-    memcpy(x, b, (size_t)f->nv * sizeof *x);
-    for (int i = 0; i < f->nc && y; i++) {
-        y[i] = hn_neg(b[f->nv + i]);
-    }
-}
-
-void hn_ldl_solve_numbers(const hn_ldl *f, const double *L, const double *inverse, const double *r1,
-                          const double *r2, double *x, double *y, double *b) {
-    for (int i = 0; i < f->n; i++) {
-        b[i] = i < f->nv ? (r1 ? r1[i] : 0) : (r2 ? r2[i - f->nv] : 0);
-    }
-    for (int k = 0; k < f->n; k++) {
-        for (int e = f->start[k]; e < f->start[k + 1]; e++) {
-            b[f->row[e]] -= L[e] * b[f->order[k]];
-        }
-    }
-    for (int m = f->n_blocks - 1; m >= 0; m--) {
-        const int first = f->block[m], two = f->block[m + 1] - first == 2;
-        const double *inv = inverse + 3 * m;
-        const int p = f->order[first], q = f->order[first + two];
-        const double bp = b[p], bq = b[q];
-        b[p] = inv[0] * bp;
-        if (two) {
-            b[p] += inv[1] * bq;
-            b[q] = inv[1] * bp + inv[2] * bq;
-        }
-        for (int k = first; k < f->block[m + 1]; k++) {
-            for (int e = f->start[k]; e < f->start[k + 1]; e++) {
-                b[f->order[k]] -= L[e] * b[f->row[e]];
-            }
-        }
-    }
-    memcpy(x, b, (size_t)f->nv * sizeof *x);
-    for (int i = 0; i < f->nc && y; i++) {
-        y[i] = -b[f->nv + i];
-    }
+    return hn_graph_failed(g) ? HN_ERR_MEMORY : HN_OK;
 }

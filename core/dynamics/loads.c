@@ -16,7 +16,8 @@ static hn_status read_law(hn_system *sys, const hn_load *load, hn_ex *k, hn_ex *
 /// A spring whose law changes with the state has no potential that could be told.
 static void add_spring_energy(hn_system *sys, const hn_load *load, hn_ex k, hn_ex stretch_squared) {
     if (!load->stiffness.varies && !load->rest.varies) {
-        sys->potential = hn_add(sys->g, sys->potential, hn_scale(0.5, hn_mul(sys->g, k, stretch_squared)));
+        sys->potential =
+            hn_add(sys->g, sys->potential, hn_scale(0.5, hn_mul(sys->g, k, stretch_squared)));
     }
 }
 
@@ -61,7 +62,8 @@ static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex ta
     if (!sys->user_known[load->coordinate]) {
         return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
                             "cut another joint of its loop",
-                            "a load on '%s' is not served: its joint is cut between bodies that do not turn about parallel axes",
+                            "a load on '%s' is not served: its joint is cut between bodies that do "
+                            "not turn about parallel axes",
                             sys->scene->coordinates[load->coordinate].name);
     }
     hn_ex *gradient = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *gradient);
@@ -75,7 +77,8 @@ static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex ta
     return HN_OK;
 }
 
-static hn_status add_joint_spring(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+static hn_status add_joint_spring(hn_system *sys, const hn_geometry *geometry,
+                                  const hn_load *load) {
     (void)geometry;
     hn_ex k, rest, c;
     hn_status status = read_law(sys, load, &k, &rest, &c);

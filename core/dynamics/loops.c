@@ -14,7 +14,7 @@
 /// A direction fixed to one end of the loop, with its first derivative and the second at zero u-dot, in the loop's frame.
 typedef struct direction {
     const hn_reach *end;
-    double sign;          ///< +1: the parent's side, -1: the child's
+    double sign; ///< +1: the parent's side, -1: the child's
     hn_vec3 v, d1, d2;
 } direction;
 
@@ -23,10 +23,10 @@ typedef struct loop {
     int index, joint;
     hn_relative rel;
     hn_vec3 delta, delta_rate, delta_acc; ///< parent side minus child side
-    int n;                 ///< coordinates met, those of side a first
+    int n;                                ///< coordinates met, those of side a first
     int *coordinate;
-    hn_vec3 *coefficient;  ///< d delta / d u
-    hn_entry *entries;     ///< scratch of a row, n
+    hn_vec3 *coefficient; ///< d delta / d u
+    hn_entry *entries;    ///< scratch of a row, n
 } loop;
 
 static hn_status begin_loop(hn_mech *m, int index, loop *out) {
@@ -69,7 +69,8 @@ static void add_coefficient(loop *l, int coordinate, hn_vec3 c) {
 static void collect_coefficients(loop *l) {
     hn_graph *g = l->m->g;
     for (int k = 0; k < l->rel.a.n; k++) {
-        add_coefficient(l, l->rel.a.levers[k].coordinate, hn_lever_coefficient(g, &l->rel.a.levers[k]));
+        add_coefficient(l, l->rel.a.levers[k].coordinate,
+                        hn_lever_coefficient(g, &l->rel.a.levers[k]));
     }
     for (int k = 0; k < l->rel.b.n; k++) {
         hn_vec3 c = hn_lever_coefficient(g, &l->rel.b.levers[k]);
@@ -97,7 +98,8 @@ static direction fixed_direction(loop *l, int on_child, const double v[3]) {
     direction d = {.end = on_child ? &l->rel.b : &l->rel.a, .sign = on_child ? -1 : 1};
     double in_E[3][3], column[3][3] = {{v[0], 0, 0}, {v[1], 0, 0}, {v[2], 0, 0}};
     hn_num3_mul(m->tree->links[link].C, column, in_E);
-    d.v = hn_mat3_apply(m->g, &d.end->U, hn_vec3_num((double[3]){in_E[0][0], in_E[1][0], in_E[2][0]}));
+    d.v = hn_mat3_apply(m->g, &d.end->U,
+                        hn_vec3_num((double[3]){in_E[0][0], in_E[1][0], in_E[2][0]}));
     d.d1 = hn_vec3_cross(m->g, d.end->w, d.v);
     d.d2 = hn_mat3_apply(m->g, &d.end->B, d.v);
     return d;
@@ -108,7 +110,8 @@ static hn_status add_row(loop *l, const char *what, int is_length, hn_ex phi, hn
     const hn_joint *joint = &sys->scene->joints[l->joint];
     char name[160];
     snprintf(name, sizeof name, "%s: %s", joint->name, what);
-    hn_new_row row = {.name = hn_arena_strdup(sys->arena, name), .loop = l->index, .is_length = is_length};
+    hn_new_row row = {
+        .name = hn_arena_strdup(sys->arena, name), .loop = l->index, .is_length = is_length};
     row.phi = phi;
     row.phi_t = hn_num(0);
     row.gamma = gamma;
@@ -119,7 +122,8 @@ static hn_status add_row(loop *l, const char *what, int is_length, hn_ex phi, hn
 }
 
 static const char *axis_name(const loop *l, int i) {
-    static const char *const world[3] = {"x", "y", "z"}, *const own[3] = {"1st axis", "2nd axis", "3rd axis"};
+    static const char *const world[3] = {"x", "y", "z"}, *const own[3] = {"1st axis", "2nd axis",
+                                                                          "3rd axis"};
     return l->rel.aligned ? world[i] : own[i];
 }
 
@@ -164,7 +168,8 @@ static int turning_entries(loop *l, const direction *p, hn_vec3 r, const hn_reac
 }
 
 /// p on the parent's side stays perpendicular to r on the child's.
-static hn_status perpendicular_row(loop *l, const char *what, const direction *p, const direction *r) {
+static hn_status perpendicular_row(loop *l, const char *what, const direction *p,
+                                   const direction *r) {
     hn_graph *g = l->m->g;
     int n = turning_entries(l, p, r->v, r->end, 0);
     n = turning_entries(l, r, p->v, p->end, n);
@@ -183,10 +188,12 @@ static measured along(loop *l, const direction *p) {
     hn_graph *g = l->m->g;
     measured out = {.n = 0};
     for (int k = 0; k < l->n; k++) {
-        l->entries[out.n++] = (hn_entry){0, l->coordinate[k], hn_vec3_dot(g, p->v, l->coefficient[k])};
+        l->entries[out.n++] =
+            (hn_entry){0, l->coordinate[k], hn_vec3_dot(g, p->v, l->coefficient[k])};
     }
     out.n = turning_entries(l, p, l->delta, NULL, out.n);
-    hn_ex terms[3] = {hn_vec3_dot(g, p->d2, l->delta), hn_scale(2, hn_vec3_dot(g, p->d1, l->delta_rate)),
+    hn_ex terms[3] = {hn_vec3_dot(g, p->d2, l->delta),
+                      hn_scale(2, hn_vec3_dot(g, p->d1, l->delta_rate)),
                       hn_vec3_dot(g, p->v, l->delta_acc)};
     out.value = hn_vec3_dot(g, p->v, l->delta);
     out.gamma = hn_sum(g, terms, 3);
@@ -292,7 +299,8 @@ static int revolute_coordinate(hn_mech *m, const hn_joint *joint, int index) {
     return 1;
 }
 
-static hn_status prismatic_coordinate(hn_mech *m, int loop_index, const hn_joint *joint, int index) {
+static hn_status prismatic_coordinate(hn_mech *m, int loop_index, const hn_joint *joint,
+                                      int index) {
     loop l;
     hn_status status = begin_loop(m, loop_index, &l);
     if (status != HN_OK) {

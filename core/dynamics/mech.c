@@ -196,8 +196,8 @@ static hn_sym3 no_inertia(void) {
     return (hn_sym3){{zero, zero, zero, zero, zero, zero}};
 }
 
-static void add_moved(hn_mech *m, hn_vec3 *s, hn_sym3 *I, hn_ex mass, hn_vec3 s_more, hn_sym3 I_more, hn_vec3 r,
-                      int only_zz) {
+static void add_moved(hn_mech *m, hn_vec3 *s, hn_sym3 *I, hn_ex mass, hn_vec3 s_more,
+                      hn_sym3 I_more, hn_vec3 r, int only_zz) {
     move_set(m, mass, &s_more, &I_more, r, only_zz);
     add_set(m, s, I, s_more, I_more);
 }
@@ -242,11 +242,12 @@ static void add_child(hn_mech *m, int parent, int child) {
         add_moved(m, &p->sB, &p->IB, c->m, c->sB, c->IB, c->arm, planar);
         hn_vec3 zr = hn_vec3_cross(m->g, hn_vec3_num((double[3]){0, 0, 1}), c->arm);
         p->sigma = hn_vec3_add(m->g, p->sigma, c->sigma);
-        p->eta = hn_vec3_add(m->g, p->eta, hn_vec3_add(m->g, c->eta, hn_vec3_cross(m->g, c->sigma, zr)));
+        p->eta =
+            hn_vec3_add(m->g, p->eta, hn_vec3_add(m->g, c->eta, hn_vec3_cross(m->g, c->sigma, zr)));
     } else {
         int carried = l->carry == HN_CARRY_NEW && child_moves;
-        add_moved(m, &p->sK, &p->IK, c->m, carried ? s_full : none, carried ? I_full : no_inertia(), c->arm,
-                  planar);
+        add_moved(m, &p->sK, &p->IK, c->m, carried ? s_full : none, carried ? I_full : no_inertia(),
+                  c->arm, planar);
         add_moved(m, &p->sB, &p->IB, c->m, none, no_inertia(), c->arm, planar);
         if (l->carry == HN_CARRY_GROUP && !planar) {
             hn_vec3 zr = hn_vec3_cross(m->g, hn_vec3_num((double[3]){0, 0, 1}), c->arm);
@@ -342,7 +343,8 @@ void hn_mech_trace_mass(hn_mech *m) {
                 link = i;
             }
             int row = tree->links[i].coordinate;
-            hn_entries_add(&m->sys->M, row > j ? row : j, row > j ? j : row, project_wrench(m, i, &w));
+            hn_entries_add(&m->sys->M, row > j ? row : j, row > j ? j : row,
+                           project_wrench(m, i, &w));
         }
     }
 }

@@ -11,10 +11,11 @@
 #include "dynamics/system_impl.h"
 
 typedef struct hn_link_trace {
-    hn_ex c, s;        ///< of theta; 1, 0 where the link never rotates
-    hn_vec3 arm;       ///< from the parent's joint point to this one's, in E(parent), with the slide of a prismatic joint
-    hn_vec3 slide;     ///< prismatic: direction of a growing coordinate, in E(parent)
-    hn_vec3 r;         ///< arm in the parent's work frame
+    hn_ex c, s; ///< of theta; 1, 0 where the link never rotates
+    hn_vec3
+        arm; ///< from the parent's joint point to this one's, in E(parent), with the slide of a prismatic joint
+    hn_vec3 slide; ///< prismatic: direction of a growing coordinate, in E(parent)
+    hn_vec3 r;     ///< arm in the parent's work frame
 
     // own body, about its joint point, in E
     hn_ex mass;
@@ -29,13 +30,14 @@ typedef struct hn_link_trace {
     hn_vec3 sigma, eta; ///< of group children: sum of full first moments; sum s x (z x r)
 
     // motion at zero u-dot, in the work frame
-    hn_vec3 w, al, a;   ///< angular velocity and acceleration; acceleration of the joint point, minus gravity
-    hn_mat3 B;          ///< a point at r accelerates by a + B r
-    hn_vec3 kappa;      ///< prismatic: 2 w x d q', work frame of the parent
+    hn_vec3 w, al,
+        a; ///< angular velocity and acceleration; acceleration of the joint point, minus gravity
+    hn_mat3 B;     ///< a point at r accelerates by a + B r
+    hn_vec3 kappa; ///< prismatic: 2 w x d q', work frame of the parent
     hn_vec3 gravity;
 
     // bias forces, in the work frame
-    hn_vec3 f, gf, pf;  ///< whole; without m a; without B s either
+    hn_vec3 f, gf, pf;                   ///< whole; without m a; without B s either
     hn_vec3 n_rest, n_own, n_new, n_all; ///< see bias.c
 } hn_link_trace;
 
@@ -43,11 +45,11 @@ typedef struct hn_mech {
     hn_system *sys;
     hn_graph *g;
     const hn_tree *tree;
-    hn_link_trace *at;      ///< per link
+    hn_link_trace *at;         ///< per link
     hn_vec3 *base_w, *base_al; ///< per group, in F
-    hn_mat3 *to_world;      ///< per group: F to world
-    hn_vec3 *position;      ///< per link: joint point in the world
-    int *path;              ///< scratch, n_links
+    hn_mat3 *to_world;         ///< per group: F to world
+    hn_vec3 *position;         ///< per link: joint point in the world
+    int *path;                 ///< scratch, n_links
 } hn_mech;
 
 /// 1 when the link's work frame is F.
@@ -59,9 +61,12 @@ hn_vec3 hn_mech_up(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_down(const hn_mech *m, int link, hn_vec3 v);
 /// A cross product where the link can only use the z component of moments, a whole one elsewhere.
 hn_vec3 hn_mech_moment(const hn_mech *m, int link, hn_vec3 r, hn_vec3 f);
-hn_vec3 hn_mech_slide(const hn_mech *m, int link); ///< prismatic: direction in the work frame (its own and its parent's)
+hn_vec3
+hn_mech_slide(const hn_mech *m,
+              int link); ///< prismatic: direction in the work frame (its own and its parent's)
 /// A point given in a body's own axes: from the link's joint point, in E.
-HN_MUST_CHECK hn_status hn_mech_arm_of(const hn_mech *m, int link, const hn_quantity *at, hn_vec3 *out);
+HN_MUST_CHECK hn_status hn_mech_arm_of(const hn_mech *m, int link, const hn_quantity *at,
+                                       hn_vec3 *out);
 /// Its position in the world.
 hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm);
 
@@ -77,9 +82,9 @@ typedef struct hn_lever {
     int coordinate;
     int is_slide;
     int group;
-    int open;       ///< still turns whatever comes: at the end of a path, the end link
-    hn_vec3 axis;   ///< of the turn or slide
-    hn_vec3 lever;  ///< sum of the arms it turns
+    int open;      ///< still turns whatever comes: at the end of a path, the end link
+    hn_vec3 axis;  ///< of the turn or slide
+    hn_vec3 lever; ///< sum of the arms it turns
 } hn_lever;
 
 /// Motion of one link and of a point on it, relative to a common ancestor, in one frame of that ancestor's.
@@ -93,15 +98,15 @@ typedef struct hn_reach {
 } hn_reach;
 
 typedef struct hn_relative {
-    int common;             ///< link both are seen from
+    int common; ///< link both are seen from
     hn_reach a, b;
-    int aligned;            ///< the frame's axes are the world's (seen from the ground)
-    double to_world[3][3];  ///< frame to world, where `common` does not rotate
+    int aligned;           ///< the frame's axes are the world's (seen from the ground)
+    double to_world[3][3]; ///< frame to world, where `common` does not rotate
 } hn_relative;
 
 /// Point `arm_a` (in E) of link a and point `arm_b` of link b. Memory from the system's arena.
-HN_MUST_CHECK hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b, hn_vec3 arm_b,
-                                       hn_relative *out);
+HN_MUST_CHECK hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b,
+                                       hn_vec3 arm_b, hn_relative *out);
 /// d pos / d u of one lever.
 hn_vec3 hn_lever_coefficient(hn_graph *g, const hn_lever *lever);
 /// Closure rows of every cut joint, and the coordinates of cut joints.

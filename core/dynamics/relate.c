@@ -13,7 +13,7 @@ typedef struct walk {
     int common, fixed; ///< fixed: the frame is fixed in the ancestor
     int group;         ///< group whose frame this is, -1: the theta-free frame of the ancestor
     hn_reach *out;
-    hn_mat3 W;         ///< F of the present group to the frame
+    hn_mat3 W; ///< F of the present group to the frame
     hn_vec3 base_w, base_al;
     hn_vec3 al;
 } walk;
@@ -186,7 +186,8 @@ static void tell_world(walk *w, hn_relative *out) {
     }
 }
 
-hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b, hn_vec3 arm_b, hn_relative *out) {
+hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b, hn_vec3 arm_b,
+                         hn_relative *out) {
     walk w = {.m = m, .common = common};
     choose_frame(&w, a, b);
     out->common = common;

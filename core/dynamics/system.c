@@ -32,7 +32,8 @@ static hn_ex new_symbol(hn_system *sys, const char *stem, int *number) {
     return e;
 }
 
-hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names, const char *const *rates) {
+hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names,
+                                 const char *const *rates) {
     for (int i = 0; i < nv; i++) {
         sys->q[i] = new_symbol(sys, names[i], &sys->q_symbols[i]);
     }
@@ -44,13 +45,15 @@ hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *name
     sys->beta = new_symbol(sys, "beta", &sys->beta_symbol);
     for (int i = 0; i < sys->scene->n_params; i++) {
         const hn_param *param = &sys->scene->params[i];
-        sys->params[i] = sys->opts.symbolic_params ? hn_symbol(sys->g, param->name, NULL) : hn_num(param->value);
+        sys->params[i] =
+            sys->opts.symbolic_params ? hn_symbol(sys->g, param->name, NULL) : hn_num(param->value);
     }
     return hn_graph_failed(sys->g) ? HN_ERR_MEMORY : HN_OK;
 }
 
 static hn_ex *get_exprs(hn_system *sys, size_t n) {
-    return hn_arena_get(sys->arena, (n ? n : 1) * sizeof(hn_ex)); // zeroed: {0, HN_NODE_ONE} is the number zero
+    return hn_arena_get(sys->arena,
+                        (n ? n : 1) * sizeof(hn_ex)); // zeroed: {0, HN_NODE_ONE} is the number zero
 }
 
 hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, int n_points) {
@@ -78,9 +81,11 @@ hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, 
 
 static hn_status refuse_row(hn_system *sys, const hn_new_row *row, double offset) {
     const char *unit = row->is_length ? " m" : "";
-    return hn_diags_add(sys->diags, HN_ERR_INPUT, row->pointer,
-                        row->is_length ? "check where the joint sits on its two bodies, and the axes" : "check the axes of the loop's joints",
-                        "the loop can never close: '%s' is off by %.6g%s in every pose", row->name, offset, unit);
+    return hn_diags_add(
+        sys->diags, HN_ERR_INPUT, row->pointer,
+        row->is_length ? "check where the joint sits on its two bodies, and the axes"
+                       : "check the axes of the loop's joints",
+        "the loop can never close: '%s' is off by %.6g%s in every pose", row->name, offset, unit);
 }
 
 hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
@@ -92,7 +97,8 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     double value;
     if (!moves) {
         if (!hn_is_number(row->phi, &value)) {
-            return hn_diags_add(sys->diags, HN_ERR_INPUT, row->pointer, "a constraint must contain a coordinate",
+            return hn_diags_add(sys->diags, HN_ERR_INPUT, row->pointer,
+                                "a constraint must contain a coordinate",
                                 "'%s' depends on no coordinate", row->name);
         }
         if (fabs(value) > CLOSED * (row->is_length ? sys->length : 1)) {
@@ -129,7 +135,8 @@ static hn_status check_freedoms(hn_system *sys) {
     for (int i = 0; i < sys->nv; i++) {
         if (!touched[i]) {
             const hn_coordinate *c = &sys->scene->coordinates[hn_system_user_coordinate(sys, i)];
-            return hn_diags_add(sys->diags, HN_ERR_INPUT, c->joint >= 0 ? sys->scene->joints[c->joint].pointer : NULL,
+            return hn_diags_add(sys->diags, HN_ERR_INPUT,
+                                c->joint >= 0 ? sys->scene->joints[c->joint].pointer : NULL,
                                 "give the body a mass or an inertia about the joint",
                                 "coordinate '%s' moves nothing that has mass", c->name);
         }
@@ -207,7 +214,8 @@ static double characteristic_length(const hn_scene *scene) {
     return length > 0 ? length : 1;
 }
 
-hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, hn_system **out, hn_diags *diags) {
+hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, hn_system **out,
+                            hn_diags *diags) {
     HN_ASSERT(scene && out);
     hn_system *sys = calloc(1, sizeof *sys);
     hn_status status = HN_ERR_MEMORY;
@@ -309,9 +317,17 @@ hn_graph *hn_system_graph(const hn_system *sys) {
 }
 
 hn_system_exprs hn_system_get_exprs(const hn_system *sys) {
-    return (hn_system_exprs){.M = sys->M_dense, .f = sys->f, .phi = sys->phi, .phi_t = sys->phi_t, .J = sys->J_dense,
-                             .gamma = sys->gamma, .points = sys->points, .kinetic = sys->kinetic,
-                             .potential = sys->potential, .q_symbols = sys->q_symbols, .v_symbols = sys->v_symbols,
+    return (hn_system_exprs){.M = sys->M_dense,
+                             .f = sys->f,
+                             .phi = sys->phi,
+                             .phi_t = sys->phi_t,
+                             .J = sys->J_dense,
+                             .gamma = sys->gamma,
+                             .points = sys->points,
+                             .kinetic = sys->kinetic,
+                             .potential = sys->potential,
+                             .q_symbols = sys->q_symbols,
+                             .v_symbols = sys->v_symbols,
                              .t_symbol = sys->t_symbol};
 }
 

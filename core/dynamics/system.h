@@ -27,18 +27,21 @@ hn_system_opts hn_system_opts_default(void);
 
 /// Compiles. The scene must outlive the system. Fails with HN_ERR_INPUT (a closure row that is a nonzero constant: the
 /// loop can never close; massless freedom; formula faults), HN_ERR_UNSUPPORTED, HN_ERR_LIMIT, HN_ERR_MEMORY; told in diags.
-HN_MUST_CHECK hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, hn_system **out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts,
+                                          hn_system **out, hn_diags *diags);
 void hn_system_free(hn_system *sys);
 const hn_scene *hn_system_scene(const hn_system *sys);
 
 typedef struct hn_system_info {
-    int nq, nv, nc;          ///< sizes in system coordinates; nc rows left after identically zero rows are gone
-    int n_user;              ///< scene coordinates that carry freedom (tree joints), same number as nq for now
-    int n_loops;             ///< joints (or tears) that close a loop
-    int n_points;            ///< world points for drawing
-    int rows_before, rows_dropped; ///< closure rows written down, and those that vanished identically
-    int has_time;            ///< phi or f depend on t explicitly
-    int nodes;               ///< graph size
+    int nq, nv,
+        nc;      ///< sizes in system coordinates; nc rows left after identically zero rows are gone
+    int n_user;  ///< scene coordinates that carry freedom (tree joints), same number as nq for now
+    int n_loops; ///< joints (or tears) that close a loop
+    int n_points; ///< world points for drawing
+    int rows_before,
+        rows_dropped; ///< closure rows written down, and those that vanished identically
+    int has_time;     ///< phi or f depend on t explicitly
+    int nodes;        ///< graph size
 } hn_system_info;
 hn_system_info hn_system_get_info(const hn_system *sys);
 
@@ -72,13 +75,13 @@ void hn_system_kinematics(const hn_system *sys, const double *q, const double *v
 // expressions, for printing, exporting and grading; borrowed arrays in the system's graph ------------------
 hn_graph *hn_system_graph(const hn_system *sys);
 typedef struct hn_system_exprs {
-    const hn_ex *M;     ///< nv x nv row-major
-    const hn_ex *f;     ///< nv
-    const hn_ex *phi;   ///< nc
-    const hn_ex *phi_t; ///< nc
-    const hn_ex *J;     ///< nc x nv row-major
-    const hn_ex *gamma; ///< nc
-    const hn_ex *points;///< 3 n_points, world [m]
+    const hn_ex *M;      ///< nv x nv row-major
+    const hn_ex *f;      ///< nv
+    const hn_ex *phi;    ///< nc
+    const hn_ex *phi_t;  ///< nc
+    const hn_ex *J;      ///< nc x nv row-major
+    const hn_ex *gamma;  ///< nc
+    const hn_ex *points; ///< 3 n_points, world [m]
     hn_ex kinetic, potential;
     const int *q_symbols, *v_symbols; ///< symbol numbers of q (nq), v (nv)
     int t_symbol;

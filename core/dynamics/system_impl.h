@@ -16,8 +16,8 @@ typedef struct hn_row {
 
 typedef struct hn_loop {
     const char *name;
-    int joint;      ///< scene joint, -1: a tear or formula
-    const char *why;///< why this joint was cut, for telling; static text
+    int joint;       ///< scene joint, -1: a tear or formula
+    const char *why; ///< why this joint was cut, for telling; static text
 } hn_loop;
 
 struct hn_system {
@@ -25,8 +25,8 @@ struct hn_system {
     hn_system_opts opts;
     hn_arena *arena;
     hn_graph *g;
-    hn_diags *diags;      ///< while compiling
-    hn_tree tree;         ///< bodies and joints only
+    hn_diags *diags; ///< while compiling
+    hn_tree tree;    ///< bodies and joints only
     int nv, nc;
     hn_system_info info;
 
@@ -35,12 +35,12 @@ struct hn_system {
     hn_ex t, alpha, beta; ///< alpha, beta: Baumgarte's gains
     int *q_symbols, *v_symbols;
     int t_symbol, alpha_symbol, beta_symbol;
-    hn_ex *params;        ///< per scene parameter: a number, or its symbol
+    hn_ex *params;          ///< per scene parameter: a number, or its symbol
     hn_ex *user_q, *user_v; ///< per SCENE coordinate; a cut joint's is derived
-    char *user_known;     ///< per scene coordinate: 0 has no expression here
+    char *user_known;       ///< per scene coordinate: 0 has no expression here
 
     // terms
-    hn_entries M;         ///< lower triangle with diagonal: row >= col
+    hn_entries M; ///< lower triangle with diagonal: row >= col
     hn_entries J;
     hn_ex *f, *phi, *phi_t, *gamma, *points;
     hn_ex kinetic, potential;
@@ -75,7 +75,7 @@ HN_MUST_CHECK hn_status hn_lagrangian_compile(hn_system *sys);
 
 /// The difference of two scene points, and how the rates move it.
 typedef struct hn_span {
-    hn_vec3 delta;        ///< point p minus point q
+    hn_vec3 delta; ///< point p minus point q
     int n;
     int *coordinate;      ///< n system coordinates
     hn_vec3 *coefficient; ///< d delta / dt = sum coefficient u (without what t alone moves)
@@ -91,8 +91,10 @@ typedef struct hn_geometry {
 HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
 
 /// Symbols of nv coordinates and rates under these names (a name that is taken gets underscores), then t and the gains.
-HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names, const char *const *rates);
+HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names,
+                                               const char *const *rates);
 /// Allocates what is sized by nv, and rows for at most max_rows.
-HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, int n_points);
+HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops,
+                                           int n_points);
 HN_MUST_CHECK hn_status hn_system_make_drawing(hn_system *sys, int n_tears);
 #endif

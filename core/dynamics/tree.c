@@ -4,8 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double PARALLEL = 1e-12; ///< |sin| of the angle between axes that count as parallel [-]
-static const double ALIGNED = 1e-12;  ///< a component this small against the vector counts as zero [-]
+static const double PARALLEL =
+    1e-12; ///< |sin| of the angle between axes that count as parallel [-]
+static const double ALIGNED =
+    1e-12; ///< a component this small against the vector counts as zero [-]
 
 const hn_quantity *hn_link_at_own(const hn_scene *scene, const hn_link *link) {
     const hn_joint *joint = &scene->joints[link->joint];
@@ -39,7 +41,8 @@ int hn_tree_common(const hn_tree *tree, int a, int b) {
 
 // the tree itself ------------------------------------------------------------------------------------------
 
-static void hang(hn_tree *tree, int child, int parent, int joint, int reversed, hn_joint_type type) {
+static void hang(hn_tree *tree, int child, int parent, int joint, int reversed,
+                 hn_joint_type type) {
     hn_link *link = &tree->links[child];
     link->parent = parent;
     link->joint = joint;
@@ -55,7 +58,8 @@ static void hang(hn_tree *tree, int child, int parent, int joint, int reversed, 
 }
 
 /// Joints that touch each link, in scene order: list[start[l]] .. list[start[l + 1] - 1].
-static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena *arena, int **start, int **list) {
+static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena *arena,
+                            int **start, int **list) {
     *start = hn_arena_ints(arena, (size_t)tree->n_links + 2);
     *list = hn_arena_ints(arena, 2 * (size_t)scene->n_joints + 1);
     if (!*start || !*list) {
@@ -63,7 +67,8 @@ static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena
     }
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < scene->n_joints; j++) {
-            int ends[2] = {hn_tree_link(tree, scene->joints[j].parent), hn_tree_link(tree, scene->joints[j].child)};
+            int ends[2] = {hn_tree_link(tree, scene->joints[j].parent),
+                           hn_tree_link(tree, scene->joints[j].child)};
             for (int e = 0; e < 2; e++) {
                 if (pass == 0) {
                     (*start)[ends[e] + 2]++;
@@ -105,8 +110,11 @@ static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_
     }
     for (int b = 0; b < tree->ground; b++) {
         if (tree->links[b].joint < 0) {
-            return hn_diags_add(diags, HN_ERR_INPUT, scene->bodies[b].pointer, "mark another joint of its loop as the cut",
-                                "body '%s' hangs on joints marked \"cut\" only, so nothing carries it", scene->bodies[b].name);
+            return hn_diags_add(
+                diags, HN_ERR_INPUT, scene->bodies[b].pointer,
+                "mark another joint of its loop as the cut",
+                "body '%s' hangs on joints marked \"cut\" only, so nothing carries it",
+                scene->bodies[b].name);
         }
     }
     return HN_OK;
@@ -240,7 +248,8 @@ static int find_group(const hn_scene *scene, hn_tree *tree, int base, const doub
 }
 
 /// The first arm of the body across the axis, in the frame that D gives: other joints first, then the centre of mass.
-static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3], const hn_quantity *own, double arm[2]) {
+static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
+                    const hn_quantity *own, double arm[2]) {
     for (int j = -1; j < scene->n_joints; j++) {
         int k = j + 1 < scene->n_joints ? j + 1 : -1; // the joints, and the centre of mass last
         const hn_quantity *at = scene->bodies[body].com;
@@ -272,10 +281,12 @@ static int is_aligned(const double arm[2], double turned) {
 }
 
 /// Where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta - offset) D.
-static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta, double D[3][3], int align) {
+static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta,
+                          double D[3][3], int align) {
     double arm[2];
     link->offset = 0;
-    if (!align || !main_arm(scene, body, link->joint, D, hn_link_at_own(scene, link), arm) || is_aligned(arm, delta)) {
+    if (!align || !main_arm(scene, body, link->joint, D, hn_link_at_own(scene, link), arm) ||
+        is_aligned(arm, delta)) {
         return;
     }
     if (is_aligned(arm, 0)) {
@@ -287,8 +298,8 @@ static void choose_offset(const hn_scene *scene, hn_link *link, int body, double
 
 /// Orientation of a revolute link in its group's frame: N Rz(s q) Ch' with N = Rz(delta) D0, D0 the identity or a half turn
 /// about x (which reverses the sense of q).
-static void place_revolute(const hn_scene *scene, hn_link *link, int body, double N[3][3], double child[3][3],
-                           int align) {
+static void place_revolute(const hn_scene *scene, hn_link *link, int body, double N[3][3],
+                           double child[3][3], int align) {
     double sigma = N[2][2] < 0 ? -1 : 1;
     double delta = atan2(N[1][0], N[0][0]);
     double D0[3][3] = {{1, 0, 0}, {0, sigma, 0}, {0, 0, sigma}}, back[3][3], D[3][3];
@@ -355,7 +366,8 @@ static void choose_ground_frame(const hn_scene *scene, hn_tree *tree) {
         }
         if (link->type == HN_JOINT_REVOLUTE) {
             double axis[3];
-            apply(parent->C, hn_link_parent_axis(scene, link), axis); // C is the world orientation so far
+            apply(parent->C, hn_link_parent_axis(scene, link),
+                  axis); // C is the world orientation so far
             (void)find_group(scene, tree, tree->ground, axis);
             return;
         }
@@ -391,7 +403,8 @@ static hn_status allocate(const hn_scene *scene, hn_arena *arena, hn_tree *tree)
     return HN_OK;
 }
 
-hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *tree, hn_diags *diags) {
+hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *tree,
+                        hn_diags *diags) {
     hn_status status = allocate(scene, arena, tree);
     if (status == HN_OK) {
         status = span(scene, arena, tree, diags);

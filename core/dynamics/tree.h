@@ -26,48 +26,50 @@ typedef enum hn_carry {
 } hn_carry;
 
 typedef struct hn_link {
-    int parent;      ///< link, -1 for the ground
-    int joint;       ///< scene joint, -1 for the ground
+    int parent; ///< link, -1 for the ground
+    int joint;  ///< scene joint, -1 for the ground
     hn_joint_type type;
     hn_carry carry;
-    int reversed;    ///< the joint's own parent is this link
+    int reversed; ///< the joint's own parent is this link
     int depth;
     int first_child, next_sibling, last_child; ///< links, -1 ends
-    int coordinate;  ///< system coordinate, -1 for the ground
-    int angle;       ///< system coordinate that is theta, -1 when the link never rotates
-    int angle_ref;   ///< revolute: coordinate of the angle that the joint's own angle is counted from, -1: none
+    int coordinate;                            ///< system coordinate, -1 for the ground
+    int angle; ///< system coordinate that is theta, -1 when the link never rotates
+    int angle_ref; ///< revolute: coordinate of the angle that the joint's own angle is counted from, -1: none
     double sign, offset; ///< user coordinate = sign * (q[coordinate] - q[angle_ref] - offset)
-    int group;       ///< frame its vectors are in; for the ground too
-    int root;        ///< the link whose rotation it shares (itself, or up through prismatic joints)
-    double C[3][3];  ///< body frame to the frame that theta turns; ground: world to its group's frame
+    int group;           ///< frame its vectors are in; for the ground too
+    int root; ///< the link whose rotation it shares (itself, or up through prismatic joints)
+    double C[3]
+            [3]; ///< body frame to the frame that theta turns; ground: world to its group's frame
 } hn_link;
 
 typedef struct hn_group {
-    int base;        ///< link whose rotation carries the frame (a root); nb: the ground
-    int moving;      ///< the base rotates
-    double R[3][3];  ///< frame to base body axes
-    double X[3][3];  ///< frame to the base's theta-free frame: C(base) R
+    int base;       ///< link whose rotation carries the frame (a root); nb: the ground
+    int moving;     ///< the base rotates
+    double R[3][3]; ///< frame to base body axes
+    double X[3][3]; ///< frame to the base's theta-free frame: C(base) R
     int n_links;
 } hn_group;
 
 typedef struct hn_tree {
-    int n_links;     ///< nb + 1
-    int ground;      ///< nb
+    int n_links; ///< nb + 1
+    int ground;  ///< nb
     hn_link *links;
-    int *order;      ///< nb links, parents first
+    int *order; ///< nb links, parents first
     int n_groups;
     hn_group *groups;
     int n_cut;
-    int *cut;        ///< scene joints that close loops, in scene order
-    int *joint_cut;  ///< per scene joint: index into cut, or -1
+    int *cut;       ///< scene joints that close loops, in scene order
+    int *joint_cut; ///< per scene joint: index into cut, or -1
     int n_coordinates;
-    int *user;       ///< per system coordinate: scene coordinate
-    int *link_of;    ///< per system coordinate: link
+    int *user;    ///< per system coordinate: scene coordinate
+    int *link_of; ///< per system coordinate: link
 } hn_tree;
 
 /// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that people read: an absolute angle is then a plain sum of the scene's). Memory from
 /// `arena`. Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena,
+                                      hn_tree *out, hn_diags *diags);
 
 /// Lowest common ancestor of two links.
 int hn_tree_common(const hn_tree *tree, int a, int b);

@@ -1,0 +1,248 @@
+#include "dynamics/eval.h"
+#include "dynamics/inputs.h"
+#include "dynamics/ldl.h"
+#include "linalg/saddle.h"
+
+#include <math.h>
+#include <string.h>
+
+struct hn_accel {
+    int nv, nc;
+    hn_accel_opts opts;
+    int available; ///< a static order exists
+    hn_inputs in;
+    hn_tape *tape;
+    double *work, *out; ///< out: a, lambda if wanted, then pivot and reference of each guard
+    int n_out, n_guards;
+    // behind it
+    hn_eval *terms;
+    hn_saddle_ws *saddle;
+    hn_saddle_opts saddle_opts;
+    double *gamma, *dense_a, *dense_lambda;
+    long long count, fallbacks;
+};
+
+// compiling --------------------------------------------------------------------------------------------------------
+
+/// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
+static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
+    hn_graph *g = sys->g;
+    if (!baumgarte) {
+        for (int i = 0; i < sys->nc; i++) {
+            rhs[i] = hn_neg(sys->gamma[i]);
+        }
+        return;
+    }
+    for (int i = 0; i < sys->nc; i++) {
+        rhs[i] = sys->phi_t[i]; // gathers J v + phi_t
+    }
+    for (int k = 0; k < sys->J.n; k++) {
+        const hn_entry *J = &sys->J.at[k];
+        rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
+    }
+    hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
+    for (int i = 0; i < sys->nc; i++) {
+        hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
+                          hn_mul(g, stiffness, sys->phi[i])};
+        rhs[i] = hn_neg(hn_sum(g, terms, 3));
+    }
+}
+
+/// Outputs of the tape: a, lambda, guards. Returns owned, or NULL.
+static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
+    hn_ex *outputs = malloc((3 * (size_t)ldl->n + 1) * sizeof *outputs);
+    if (!outputs) {
+        return NULL;
+    }
+    int n = 0;
+    for (int i = 0; i < sys->nv + (s->opts.want_lambda ? sys->nc : 0); i++) {
+        outputs[n++] = i < sys->nv ? x[i] : hn_neg(x[i]);
+    }
+    for (int k = 0; k < ldl->n_guards; k++) {
+        outputs[n++] = ldl->guard[k][0];
+        outputs[n++] = ldl->guard[k][1];
+    }
+    s->n_guards = ldl->n_guards;
+    s->n_out = n;
+    return outputs;
+}
+
+static hn_status compile_tape(hn_accel *s, hn_system *sys) {
+    hn_arena *scratch = hn_arena_create(0);
+    if (!scratch) {
+        return HN_ERR_MEMORY;
+    }
+    const hn_ldl_opts opts = {.pairs = HN_ACCEL_PAIRS};
+    hn_ldl ldl;
+    hn_ex *x = NULL, *outputs = NULL;
+    hn_status status = hn_ldl_build(sys, &opts, scratch, &ldl);
+    s->available = status == HN_OK && ldl.available;
+    if (s->available) {
+        x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
+        status = x ? HN_OK : HN_ERR_MEMORY;
+    }
+    if (status == HN_OK && s->available) {
+        memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
+        closure_rhs(sys, s->opts.baumgarte, x + sys->nv);
+        status = hn_ldl_solve(sys->g, &ldl, x, x);
+        outputs = status == HN_OK ? list_outputs(s, sys, &ldl, x) : NULL;
+        status =
+            outputs ? hn_inputs_compile(sys, &s->in, outputs, s->n_out, &s->tape) : HN_ERR_MEMORY;
+    }
+    free(outputs);
+    hn_arena_free(scratch);
+    return status;
+}
+
+static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
+    unsigned terms = HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA;
+    terms |= s->opts.baumgarte ? HN_TERM_PHI | HN_TERM_PHI_T : 0;
+    s->saddle_opts = hn_saddle_opts_default();
+    s->saddle = hn_saddle_ws_create(arena, s->nv, s->nc);
+    s->gamma = hn_arena_doubles(arena, (size_t)s->nc);
+    s->dense_a = hn_arena_doubles(arena, (size_t)s->nv);
+    s->dense_lambda = hn_arena_doubles(arena, (size_t)s->nc);
+    if (!s->saddle || hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    return hn_eval_create(sys, terms, arena, &s->terms);
+}
+
+static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
+    hn_status status = hn_inputs_create(sys, arena, &s->in);
+    if (status == HN_OK) {
+        status = compile_tape(s, sys);
+    }
+    if (status == HN_OK && s->available) {
+        s->work = hn_arena_doubles(arena, hn_tape_work_size(s->tape));
+        s->out = hn_arena_doubles(arena, (size_t)s->n_out + 1);
+        status = s->work && s->out ? HN_OK : HN_ERR_MEMORY;
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    if (s->available) {
+        hn_tape_prepare(s->tape, s->work);
+    }
+    return prepare_dense(s, sys, arena);
+}
+
+hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena,
+                          hn_accel **out) {
+    HN_ASSERT(sys && opts && arena && out);
+    hn_accel *s = hn_arena_get(arena, sizeof *s);
+    *out = NULL;
+    if (!s) {
+        return HN_ERR_MEMORY;
+    }
+    s->nv = sys->nv;
+    s->nc = sys->nc;
+    s->opts = *opts;
+    hn_status status = build(s, (hn_system *)sys, arena);
+    if (status != HN_OK) {
+        hn_accel_free(s);
+        return status;
+    }
+    *out = s;
+    return HN_OK;
+}
+
+void hn_accel_free(hn_accel *s) {
+    if (s) {
+        hn_tape_free(s->tape);
+        hn_eval_free(s->terms);
+        s->tape = NULL;
+        s->terms = NULL;
+    }
+}
+
+// running ----------------------------------------------------------------------------------------------------------
+
+/// Smallest pivot relative to its reference; NaN counts as lost.
+static double worst_pivot(const double *guards, int n) {
+    double worst = 1;
+    for (int k = 0; k < n; k++) {
+        double ratio = fabs(guards[2 * k]) / fabs(guards[2 * k + 1]);
+        if (!(ratio >= worst)) {
+            worst = ratio;
+        }
+    }
+    return worst >= 0 ? worst : 0;
+}
+
+static int all_finite(const double *x, int n) {
+    double zero = 0;
+    for (int i = 0; i < n; i++) {
+        zero += x[i] * 0; // a value that is not finite leaves NaN
+    }
+    return zero == 0;
+}
+
+static hn_status solve_dense(hn_accel *s, double alpha, double beta, double *a, double *lambda,
+                             hn_accel_info *info) {
+    s->fallbacks++;
+    if (!all_finite(s->in.x, s->in.n)) {
+        return HN_ERR_DIVERGED;
+    }
+    const double *x = s->in.x;
+    hn_eval_run(s->terms, x[2 * s->nv], x, x + s->nv);
+    const double *J = hn_eval_get(s->terms, HN_TERM_J), *v = x + s->nv;
+    memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
+    for (int i = 0; i < s->nc && s->opts.baumgarte; i++) {
+        double rate = hn_eval_get(s->terms, HN_TERM_PHI_T)[i];
+        for (int j = 0; j < s->nv; j++) {
+            rate += J[(size_t)i * (size_t)s->nv + (size_t)j] * v[j];
+        }
+        s->gamma[i] += 2 * alpha * rate + beta * beta * hn_eval_get(s->terms, HN_TERM_PHI)[i];
+    }
+    hn_saddle_info dense;
+    hn_status status = hn_saddle_solve(s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M), J,
+                                       hn_eval_get(s->terms, HN_TERM_F), s->gamma, s->dense_a,
+                                       s->dense_lambda, &dense, &s->saddle_opts, s->saddle);
+    if (status != HN_OK) {
+        return status;
+    }
+    info->rank = dense.rank;
+    info->residual = dense.residual;
+    memcpy(a, s->dense_a, (size_t)s->nv * sizeof *a);
+    if (lambda) {
+        memcpy(lambda, s->dense_lambda, (size_t)s->nc * sizeof *lambda);
+    }
+    return HN_OK;
+}
+
+hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                        double beta, double *a, double *lambda, hn_accel_info *info) {
+    HN_ASSERT(!lambda || s->opts.want_lambda);
+    hn_accel_info own;
+    info = info ? info : &own;
+    s->count++;
+    hn_inputs_set(&s->in, t, q, v, alpha, beta);
+    *info = (hn_accel_info){.fallback = 1, .rank = s->nc, .pivot_ratio = 0, .residual = 0};
+    if (s->available) {
+        int n_answer = s->nv + (s->opts.want_lambda ? s->nc : 0);
+        hn_tape_eval(s->tape, s->in.x, s->out, s->work);
+        info->pivot_ratio = worst_pivot(s->out + n_answer, s->n_guards);
+        if (info->pivot_ratio >= HN_PIVOT_GUARD && all_finite(s->out, n_answer)) {
+            info->fallback = 0;
+            memcpy(a, s->out, (size_t)s->nv * sizeof *a);
+            if (lambda) {
+                memcpy(lambda, s->out + s->nv, (size_t)s->nc * sizeof *lambda);
+            }
+            return HN_OK;
+        }
+    }
+    return solve_dense(s, alpha, beta, a, lambda, info);
+}
+
+hn_tape_info hn_accel_tape_info(const hn_accel *s) {
+    return s->available ? hn_tape_get_info(s->tape) : hn_eval_info(s->terms);
+}
+
+long long hn_accel_count(const hn_accel *s) {
+    return s->count;
+}
+
+long long hn_accel_fallbacks(const hn_accel *s) {
+    return s->fallbacks;
+}
