@@ -251,9 +251,11 @@ static int value(scan *s);
 
 static int member(scan *s) {
     if (peek(s) != '"') {
-        return expected(
-            s, peek(s) == '}' ? "remove the comma before the '}'" : "names stand in double quotes",
-            "a name in double quotes");
+        int c = peek(s);
+        const char *hint = c == '}'   ? "remove the comma before the '}'"
+                           : c == '/' ? "JSON has no comments"
+                                      : "names stand in double quotes";
+        return expected(s, hint, "a name in double quotes");
     }
     if (!string(s)) {
         return 0;

@@ -81,7 +81,8 @@ int hn_rd_stopped(const hn_reader *r) {
 }
 
 void hn_rd_suggest(char *out, size_t size, const char *word, const char *const *names, int n) {
-    const char *near = hn_nearest_name(word, names, n);
+    // any letter is near any other
+    const char *near = strlen(word) > 1 ? hn_nearest_name(word, names, n) : NULL;
     if (near) {
         snprintf(out, size, "did you mean '%s'?", near);
         return;

@@ -59,6 +59,7 @@ typedef struct hn_reader {
     const hn_setting *settings;
     int n_settings, use_settings, mark_structural;
     int chain[HN_SCENE_MAX_PARAMS], n_chain;
+    int bodies_faulty; ///< some body could not be read: a name that is not found may be its
     int body_at;       ///< the body whose drawing is read
     int shape_kind;    ///< the kind whose list is read
     hn_rd_scope scope; ///< of the formula that is being parsed

@@ -103,6 +103,13 @@ static hn_status parse(hn_reader *r, const char *text, hn_rd_scope scope, int su
     return status;
 }
 
+/// Takes every name for a number.
+static int know_any(void *user, const char *name, hn_ex *out) {
+    hn_reader *r = user;
+    *out = hn_symbol(r->graph, name, NULL);
+    return 1;
+}
+
 static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
     static const char *const allowed[] = {"only parameters may be used here",
                                           "only parameters, t and coordinates may be used here",
@@ -119,8 +126,13 @@ static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
         r->oom = 1;
         return 0;
     }
-    return hn_rd_fault(r, diag.hint[0] ? diag.hint : allowed[scope], "in the formula '%.80s'%s: %s",
-                       text, strlen(text) > 80 ? "..." : "", diag.message);
+    // it is about names only if any name would do
+    hn_diag other = {0};
+    hn_parse_opts any = {.lookup = know_any, .user = r};
+    int names = hn_parse(r->graph, text, &any, &ignored, &other) == HN_OK;
+    return hn_rd_fault(r, diag.hint[0] || !names ? diag.hint : allowed[scope],
+                       "in the formula '%.80s'%s: %s", text, strlen(text) > 80 ? "..." : "",
+                       diag.message);
 }
 
 int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out) {

@@ -77,10 +77,12 @@ static int is_list(hn_reader *r, const cJSON *node, const char *what) {
 
 void hn_rd_bodies(hn_reader *r, const cJSON *root) {
     const cJSON *node = hn_rd_get(root, "bodies");
+    int faults = r->n_faults;
     size_t mark = hn_rd_enter(r, "bodies");
     if (is_list(r, node, "bodies")) {
         hn_rd_each(r, node, read_body);
     }
+    r->bodies_faulty = r->n_faults > faults;
     hn_rd_leave(r, mark);
 }
 
@@ -88,7 +90,7 @@ int hn_rd_body(hn_reader *r, const cJSON *object, const char *key) {
     enum { ROOM = 256 };
     const char *name = hn_rd_name(r, object, key, 1);
     int body = name ? hn_scene_find_body(r->scene, name) : -2;
-    if (!name || body != -2) {
+    if (!name || body != -2 || r->bodies_faulty) {
         return body;
     }
     const char *names[ROOM + 1] = {"ground"};
@@ -296,9 +298,11 @@ static void read_joint(hn_reader *r, const cJSON *node, const char *key) {
         hn_rd_add_coordinate(r, node, coordinate, rate,
                              j.type == HN_JOINT_PRISMATIC ? HN_LENGTH : HN_ANGLE, s->n_joints);
     hn_rd_leave(r, mark);
-    hn_joint *joints = r->n_faults == faults ? hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints,
-                                                          HN_SCENE_MAX_JOINTS, "joints")
-                                             : NULL;
+    if (r->n_faults > faults || j.parent == -2 || j.child == -2) {
+        return;
+    }
+    hn_joint *joints =
+        hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints, HN_SCENE_MAX_JOINTS, "joints");
     if (joints && !r->oom) {
         s->joints = joints;
         joints[s->n_joints++] = j;

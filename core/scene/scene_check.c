@@ -29,8 +29,7 @@ static void check_keys(hn_reader *r, const cJSON *node) {
     qsort(keys, (size_t)n, sizeof *keys, compare_names);
     for (i = 1; i < n && !hn_rd_stopped(r); i++) {
         if (strcmp(keys[i - 1], keys[i]) == 0) {
-            hn_rd_fault_at(r, keys[i], NULL, "the name '%.60s' stands twice in this object",
-                           keys[i]);
+            hn_rd_fault_at(r, keys[i], NULL, "'%.60s' stands twice in this object", keys[i]);
         }
     }
     free(keys);

@@ -149,9 +149,8 @@ static void read_root(hn_reader *r, const cJSON *root, const char *id) {
         return; // every formula would fail again
     }
     read_head(r, root, id);
-    int known_kind = read_kind(r, root);
-    read_gravity(r, root);
-    if (known_kind) {
+    if (read_kind(r, root)) {
+        read_gravity(r, root);
         read_mechanism(r, root);
     }
 }

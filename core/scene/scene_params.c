@@ -190,8 +190,8 @@ static void check_range(hn_reader *r, const cJSON *node, hn_param *p) {
     } else if (!isfinite(p->value)) {
         hn_rd_fault(r, NULL, "%s must be a finite number", p->name);
     } else if (p->value < p->min || p->value > p->max) {
-        hn_rd_fault(r, NULL, "%s = %g %s is outside its range %g ... %g", p->name, p->value,
-                    p->unit, p->min, p->max);
+        hn_rd_fault(r, NULL, "%s = %g is outside its range %g ... %g %s", p->name, p->value, p->min,
+                    p->max, p->unit);
     } else if (p->integer && p->value != floor(p->value)) {
         hn_rd_fault(r, NULL, "%s = %g must be a whole number", p->name, p->value);
     }
