@@ -48,10 +48,10 @@ export function quantity(value, unit, digits = 2) {
   if (size === 0) {
     return `0${space}${unit}`;
   }
-  if (size < ROUNDING || size >= 1e12) {
+  const rounded = Number(size.toPrecision(digits));
+  if (size < ROUNDING || rounded >= 1e12) {
     return `${scientific(value)}${space}${unit}`;
   }
-  const rounded = Number(size.toPrecision(digits));
   const exponent = Math.floor(Math.log10(rounded) / 3 + 1e-9) * 3;
   const [power, prefix] = SHOWN.find(([e]) => e === exponent) ?? SHOWN[5];
   const scaled = rounded / 10 ** Number(power);

@@ -226,10 +226,10 @@ export function createSession(store) {
     },
     play() {
       data.view.shown = -1;
-      if (data.view.stepped) {
+      if (data.view.stepped && data.state !== "finished") {
         return actions.step(Math.max(1, Math.round(STEPPED_SECONDS / data.frameDt)));
       }
-      return changeOrTell({ state: "running" });
+      return changeOrTell(data.state === "finished" ? { reset: true, state: "running" } : { state: "running" });
     },
     pause: () => changeOrTell({ state: "paused" }),
     toggle: () => (data.state === "running" ? actions.pause() : actions.play()),

@@ -17,6 +17,8 @@ const CONTROLS = [
   { key: "beta", label: "Baumgarte β", unit: "1/s", scale: "linear", min: -10, max: 120, step: 1, hint: "pulls the gap back", check: warnBelowZero },
 ];
 
+const WIDE = 1000; // a range over so many times its least value is better told in decades
+
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
@@ -86,7 +88,7 @@ export function createControls(el, store, actions) {
       label: parameter.about ? `${parameter.name}, ${parameter.about}` : parameter.name,
       unit: parameter.unit,
       hint: words,
-      scale: "linear",
+      scale: span && min > 0 && max / min >= WIDE && !parameter.integer ? "log" : "linear",
       min: range[0],
       max: range[1],
       step: parameter.integer ? 1 : undefined,

@@ -46,8 +46,8 @@ export function createHappening(el, store, actions) {
   const live = h("div", { class: "live", "aria-live": "polite", "aria-atomic": "true" });
   const why = h("div", { class: "why-card" });
   const list = h("ol", { class: "incidents", "aria-label": "Incidents" });
-  const look = h("p", { class: "look-for" });
-  const scroll = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "happening-title" }, live, why, list, look);
+  const about = h("div", { class: "scene-notes" });
+  const scroll = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "happening-title" }, live, why, list, about);
   el.replaceChildren(h("div", { class: "title" }, h("h2", { id: "happening-title" }, "What is happening")), scroll);
   let saidAt = -PAUSE;
   let timer = 0;
@@ -150,6 +150,14 @@ export function createHappening(el, store, actions) {
     update();
   }
 
+  function showNotes() {
+    const notes = [
+      ["The scene", data.scene?.about],
+      ["What to look for", data.scene?.look_for],
+    ];
+    about.replaceChildren(...notes.filter(([, text]) => text).flatMap(([title, text]) => [h("h3", {}, String(title)), h("p", {}, String(text))]));
+  }
+
   function update() {
     if (!timer) {
       timer = window.setTimeout(speak, Math.max(0, PAUSE - (performance.now() - saidAt)));
@@ -161,7 +169,7 @@ export function createHappening(el, store, actions) {
       cardOf = -1;
       showIncidents();
       showCard();
-      look.textContent = data.scene?.look_for ? `Look for: ${data.scene.look_for}` : "";
+      showNotes();
       saidAt = -PAUSE;
       update();
     },

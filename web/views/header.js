@@ -42,8 +42,9 @@ export function createHeader(el, store, actions, open) {
     ready: fill,
     scene: () => {
       menu.value = data.scene?.id ?? "";
-      about.textContent = data.scene?.about ?? "";
-      about.title = about.textContent ?? "";
+      const text = data.scene?.about ?? "";
+      about.textContent = text.split(/(?<=\.)\s/)[0];
+      about.title = text;
     },
     theme: showTheme,
   });

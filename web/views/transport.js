@@ -60,12 +60,11 @@ export function createTransport(el, store, actions) {
 
   function showState() {
     const running = data.state === "running";
-    const word = running ? "Pause" : data.view.stepped ? "Step 0.1 s" : "Play";
+    const word = running ? "Pause" : data.state === "finished" ? "Again" : data.view.stepped ? "Step 0.1 s" : "Play";
     if (play.dataset.word !== word) {
       play.dataset.word = word;
       play.replaceChildren(icon(running ? "pause" : "play"), h("span", {}, word));
     }
-    play.disabled = data.state === "finished";
     motion.hidden = !data.view.stepped;
     say(speed, `${plain(data.speed)}×`);
     document.body.dataset.state = data.state;

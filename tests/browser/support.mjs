@@ -1,0 +1,164 @@
+// Starts the real server and a real browser, and keeps what a page must not do: errors on its console, requests to other hosts.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync } from "node:fs";
+import net from "node:net";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+export const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const PROGRAM = process.env.HOLONOM ? join(ROOT, process.env.HOLONOM) : join(ROOT, "build/holonom");
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const START_LIMIT = 10000; // [ms]
+const FLAGS = [
+  "--headless",
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
+
+/** A port that was free a moment ago. */
+function freePort() {
+  return new Promise((resolve, reject) => {
+    const probe = net.createServer();
+    probe.on("error", reject);
+    probe.listen(0, "127.0.0.1", () => {
+      const { port } = probe.address();
+      probe.close(() => resolve(port));
+    });
+  });
+}
+
+export async function startServer() {
+  assert.ok(existsSync(PROGRAM), `${PROGRAM} is built`);
+  const child = spawn(PROGRAM, ["serve", "--port", String(await freePort())], { cwd: ROOT, stdio: ["ignore", "pipe", "pipe"] });
+  let text = "";
+  const url = await new Promise((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error(`no address within ${START_LIMIT} ms: ${text}`)), START_LIMIT);
+    const read = (chunk) => {
+      text += chunk;
+      const address = /http:\/\/127\.0\.0\.1:\d+\//.exec(text) ?? /http:\/\/localhost:\d+\//.exec(text);
+      if (address) {
+        clearTimeout(timer);
+        resolve(address[0]);
+      }
+    };
+    child.stdout.on("data", read);
+    child.stderr.on("data", read);
+    child.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${text}`)));
+  });
+  const stop = () =>
+    new Promise((resolve) => {
+      if (child.exitCode !== null) {
+        resolve(child.exitCode);
+        return;
+      }
+      child.removeAllListeners("exit");
+      child.on("exit", resolve);
+      child.kill("SIGTERM");
+    });
+  return { url, port: Number(new URL(url).port), stop };
+}
+
+export async function startBrowser() {
+  assert.ok(existsSync(CHROMIUM), `${CHROMIUM} is installed`);
+  return chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
+}
+
+/**
+ * Opens the page and waits until it can be used.
+ * @returns {Promise<{page: any, faults: string[], close: () => Promise<void>}>} `faults` are filled while the page lives
+ */
+export async function openPage(browser, url, options = {}) {
+  const { hash = "", wait = true, init, ...context } = options;
+  const home = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "no-preference", ...context });
+  const page = await home.newPage();
+  const faults = [];
+  const host = new URL(url).host;
+  page.on("console", (message) => {
+    // the browser itself reports each refused request; refusals are part of some tests and shown by the page
+    if (message.type() === "error" && !/Failed to load resource/.test(message.text())) {
+      faults.push(`console: ${message.text()}`);
+    }
+  });
+  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
+  page.on("request", (request) => {
+    const target = new URL(request.url());
+    if (target.protocol !== "data:" && target.host !== host) {
+      faults.push(`request to ${target.host}`);
+    }
+  });
+  page.on("response", (response) => {
+    if (response.status() === 404) {
+      faults.push(`not found: ${response.url()}`);
+    }
+  });
+  if (init) {
+    await page.addInitScript(init);
+  }
+  await page.goto(`${url}${hash}`);
+  if (wait) {
+    await page.waitForFunction(() => document.querySelector("main")?.getAttribute("aria-busy") === "false");
+    await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
+  }
+  return { page, faults, close: () => home.close() };
+}
+
+/** A look at the page's data, by a function that gets it. */
+export function read(page, pick) {
+  return page.evaluate(`(${pick})(globalThis.holonom.data)`);
+}
+
+/** Waits until the data fulfil a condition. */
+export function until(page, condition, timeout = 20000) {
+  return page.waitForFunction(`(${condition})(globalThis.holonom.data)`, undefined, { timeout, polling: 30 });
+}
+
+export async function screenshot(page, name) {
+  const folder = join(ROOT, "build/screenshots");
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+}
+
+/** A line that can be cut: what connects through it loses its connection, and gets none until it is mended. */
+export async function startLine(port) {
+  const open = new Set();
+  let cut = false;
+  const line = net.createServer((client) => {
+    if (cut) {
+      client.destroy();
+      return;
+    }
+    const server = net.connect(port, "127.0.0.1");
+    for (const socket of [client, server]) {
+      open.add(socket);
+      socket.on("error", () => socket.destroy());
+      socket.on("close", () => {
+        open.delete(socket);
+        client.destroy();
+        server.destroy();
+      });
+    }
+    client.pipe(server).pipe(client);
+  });
+  await new Promise((resolve) => line.listen(0, "127.0.0.1", resolve));
+  return {
+    url: `http://127.0.0.1:${line.address().port}/`,
+    cut() {
+      cut = true;
+      open.forEach((socket) => socket.destroy());
+    },
+    mend() {
+      cut = false;
+    },
+    close() {
+      open.forEach((socket) => socket.destroy());
+      return new Promise((resolve) => line.close(resolve));
+    },
+  };
+}

@@ -1,0 +1,227 @@
+// The page's own modules, without a browser: keys, numbers, spellings, history, words.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { createHash } from "node:crypto";
+import { test } from "node:test";
+import { magnification, niceAbove, niceBelow, parseQuantity, plain, powerOfTen, quantity, scientific } from "../../web/state/format.js";
+import { createHistory, thin } from "../../web/state/history.js";
+import { KEYS, bindingOf, findKey, isCharacter } from "../../web/state/keys.js";
+import { formatSpelling, labelsOf, parseSpelling, settingOf, withSetting } from "../../web/state/spelling.js";
+import { sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
+import { INCIDENT_CODES } from "../../web/views/happening.js";
+import { bar, circle } from "../../web/widgets/shapes.js";
+import { createCamera } from "../../web/widgets/camera.js";
+
+const ROOT = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
+const CATALOGUE = {
+  formulations: [
+    { name: "index1", settings: [] },
+    { name: "baumgarte", settings: [{ key: "alpha", initial: 5 }, { key: "beta", initial: 5 }] },
+  ],
+  integrators: [{ name: "rk4", settings: [{ key: "h", initial: null }] }],
+};
+
+test("no key is bound twice in a context", () => {
+  const bindings = KEYS.map(bindingOf);
+  assert.deepEqual(bindings, [...new Set(bindings)]);
+});
+
+test("the browser keeps Tab, and Control keeps its meanings", () => {
+  assert.ok(KEYS.every(({ key }) => key !== "Tab"));
+  const event = { key: "-", shiftKey: false, ctrlKey: true, altKey: false, metaKey: false };
+  assert.equal(findKey(event, true), undefined);
+});
+
+test("a single character can be switched off, Space and the arrows stay", () => {
+  const press = (key, letters) => findKey({ key, shiftKey: false, ctrlKey: false, altKey: false, metaKey: false }, letters)?.action;
+  assert.equal(press("3", true), "select");
+  assert.equal(press("3", false), undefined);
+  assert.equal(press("-", false), undefined);
+  assert.equal(press(" ", false), "toggle");
+  assert.equal(press("ArrowRight", false), "step");
+  assert.equal(KEYS.filter(isCharacter).length, 11);
+});
+
+test("a number is read as people type it, and only in its unit", () => {
+  const cases = [
+    ["0,02", "s", 0.02],
+    ["2e-2 s", "s", 0.02],
+    ["20 ms", "s", 0.02],
+    ["20ms", "s", 0.02],
+    [" 5 ", "1/s", 5],
+    ["−3", "1/s", -3],
+    [".5", "", 0.5],
+    ["0", "s", 0],
+    ["20 m", "s", NaN],
+    ["two", "s", NaN],
+    ["", "s", NaN],
+    ["1 2", "s", NaN],
+    ["0x10", "s", NaN],
+  ];
+  for (const [text, unit, value] of cases) {
+    assert.ok(Object.is(parseQuantity(text, unit), value) || Math.abs(parseQuantity(text, unit) - value) < 1e-15, `${text} [${unit}]`);
+  }
+});
+
+test("a quantity has one to three digits before the point", () => {
+  assert.equal(quantity(0.0042, "m"), "4.2 mm");
+  assert.equal(quantity(1.3e-6, "s"), "1.3 µs");
+  assert.equal(quantity(0.9996, "m"), "1.0 m");
+  assert.equal(quantity(999.6e-6, "m", 3), "1.00 mm");
+  assert.equal(quantity(-0.57, "J"), "−570 mJ");
+  assert.equal(quantity(73, "J"), "73 J");
+  assert.equal(quantity(0, "m"), "0 m");
+  assert.equal(quantity(4.4e-16, "m"), "4.4×10⁻¹⁶ m");
+  assert.equal(quantity(NaN, "m"), "–");
+  for (let e = -11; e <= 11; e++) {
+    for (const lead of [1, 2.34, 5.5, 9.99, 9.96]) {
+      assert.match(quantity(lead * 10 ** e, "m"), /^\d{1,3}(\.\d)? ?[fpnµmkMG]?m$/);
+    }
+  }
+});
+
+test("powers, round numbers and magnifications", () => {
+  assert.equal(powerOfTen(-16), "10⁻¹⁶");
+  assert.equal(scientific(-4.44e-16), "−4.4×10⁻¹⁶");
+  assert.deepEqual([0.99, 1, 1.7, 2, 4.9, 5, 9.9, 10].map(niceBelow), [0.5, 1, 1, 2, 2, 5, 5, 10]);
+  assert.deepEqual([0.99, 1, 1.7, 2, 4.9, 5, 9.9, 10].map(niceAbove), [1, 1, 2, 2, 5, 5, 10, 10]);
+  assert.equal(magnification(20), "×20");
+  assert.equal(magnification(5e6), "×5·10⁶");
+  assert.equal(plain(0.02), "0.02");
+  assert.equal(plain(1e-6), "1e-6");
+});
+
+test("a spelling taken apart and put together is the same", () => {
+  for (const spelling of ["index1@rk4:h=1e-3", "baumgarte:alpha=20,beta=5@rk4:h=0.01", "reduced@dop853:rtol=1e-10"]) {
+    assert.equal(formatSpelling(parseSpelling(spelling)), spelling);
+  }
+});
+
+test("one setting changes and the others stay", () => {
+  assert.equal(withSetting(CATALOGUE, "baumgarte:beta=7@rk4:h=1e-3", "alpha", "20"), "baumgarte:beta=7,alpha=20@rk4:h=1e-3");
+  assert.equal(withSetting(CATALOGUE, "index1@rk4:h=1e-3", "alpha", "20"), "index1@rk4:h=1e-3");
+  assert.equal(settingOf(CATALOGUE, "baumgarte@rk4:h=1e-3", "alpha").value, 5);
+  assert.equal(settingOf(CATALOGUE, "baumgarte:alpha=8@rk4:h=1e-3", "alpha").value, 8);
+});
+
+test("methods that share a short name are told apart", () => {
+  const methods = [
+    { short: "index-1", spelling: "index1@rk4:h=1e-3" },
+    { short: "index-1", spelling: "index1@euler:h=1e-3" },
+    { short: "reduced", spelling: "reduced@rk4:h=1e-3" },
+  ];
+  assert.deepEqual(labelsOf(methods), ["index-1 rk4", "index-1 euler", "reduced"]);
+});
+
+const frame = (k, gap, extra = {}) => ({
+  frame: k,
+  t: k / 60,
+  methods: [{ state: "running", t: k / 60, points: [k, 0, 0], gap, velocity_gap: gap, energy_change: 0, ops: k, evals: k, cpu: k, steps: k, ...extra }],
+});
+
+test("a history takes each frame once, in order", () => {
+  const history = createHistory(1, 1);
+  assert.deepEqual([0, 1, 1, 0, 2].map((k) => history.push(frame(k, 1))), [true, true, false, false, true]);
+  assert.equal(history.count, 3);
+});
+
+test("a full history keeps the whole span at half the resolution", () => {
+  const history = createHistory(1, 1);
+  for (let k = 0; k < 20000; k++) {
+    history.push(frame(k, k));
+  }
+  assert.ok(history.count <= 8192);
+  assert.equal(history.t[0], 0);
+  assert.ok(history.t[history.count - 1] > 19990 / 60);
+  for (let i = 0; i < history.count; i++) {
+    assert.equal(history.columns[0].gap[i], i * history.stride);
+    assert.equal(history.pointsAt(0, i)[0], i * history.stride);
+  }
+});
+
+test("a failed method has no curve any more and keeps its last good points", () => {
+  const history = createHistory(1, 1);
+  history.push(frame(0, 1));
+  history.push({ ...frame(1, 1), methods: [{ state: "failed", t: 0.01, gap: 9, steps: 1 }] });
+  assert.ok(Number.isNaN(history.columns[0].gap[1]));
+  assert.deepEqual([...history.pointsAt(0, 1)], [0, 0, 0]);
+  assert.equal(history.ended[0], 0.01);
+});
+
+test("thinning keeps the largest value and the order of time", () => {
+  const n = 5000;
+  const t = Float64Array.from({ length: n }, (_, i) => i);
+  const y = Float64Array.from({ length: n }, (_, i) => (i === 3333 ? 100 : Math.sin(i)));
+  const [tt, yy] = thin(t, [y], n, 100, (v) => v);
+  assert.ok(tt.length <= 200);
+  assert.ok(tt.every((v, i) => i === 0 || v > tt[i - 1]));
+  assert.equal(Math.max(...yy), 100);
+});
+
+test("growth with time and with its square is growth, an oscillation is not", () => {
+  const trend = (gap) => {
+    const history = createHistory(1, 1);
+    for (let k = 0; k <= 600; k++) {
+      history.push(frame(k, gap(k / 60)));
+    }
+    return trendOf(history, 0, 600).word;
+  };
+  assert.equal(trend((t) => 1e-8 * t * t), "growing");
+  assert.equal(trend((t) => 1e-8 * t), "growing");
+  assert.equal(trend((t) => 1e-8 * (1.1 + Math.sin(4 * t))), "held");
+  assert.equal(trend((t) => 1e-3 * Math.exp(-t)), "shrinking");
+  assert.equal(trend(() => 4e-16), "closed");
+});
+
+test("the sentence names the method, its gap and its trend", () => {
+  const history = createHistory(1, 1);
+  for (let k = 0; k <= 600; k++) {
+    history.push(frame(k, 3.2e-5 * (k / 60) ** 2));
+  }
+  const data = { history, methods: [{ label: "raw" }], scene: { m: 2 }, view: { hidden: new Set() } };
+  assert.deepEqual(sentences(data, 600), ["raw: gap 3.2 mm and growing"]);
+});
+
+test("a remedy becomes a button only when it can be carried out", () => {
+  assert.deepEqual(tryOfRemedy("h=0.005"), { label: "h = 0.005", key: "h", value: 0.005 });
+  assert.equal(tryOfRemedy("projection@rk4:h=1e-3").method, "projection@rk4:h=1e-3");
+  assert.deepEqual(tryOfRemedy("look at the start"), { label: "look at the start" });
+});
+
+test("every incident of the engine has words on the page", () => {
+  const header = readFileSync(join(ROOT, "core/study/run.h"), "utf8");
+  const codes = [...header.matchAll(/X\(HN_INCIDENT_\w+, "([\w-]+)"\)/g)].map(([, code]) => code);
+  assert.ok(codes.length >= 10);
+  assert.deepEqual(codes.filter((code) => !INCIDENT_CODES.includes(code)), []);
+});
+
+test("y points up, and the envelope lies inside the view", () => {
+  const camera = createCamera([-1, -2, 3, 4], 700, 400);
+  const [x0, y0] = camera.point([-1, -2, 0], 0);
+  const [x1, y1] = camera.point([3, 4, 0], 0);
+  assert.ok(x0 < x1 && y0 > y1);
+  for (const [value, limit] of [[x0, 700], [x1, 700], [y0, 400], [y1, 400]]) {
+    assert.ok(value >= 0 && value <= limit);
+  }
+  assert.ok(Math.abs((x1 - x0) / 4 - (y0 - y1) / 6) < 1e-9);
+});
+
+test("outlines are finite even where two points coincide", () => {
+  assert.doesNotMatch(bar([5, 5], [5, 5], 3) + circle([1, 2], 3), /NaN|Infinity/);
+});
+
+test("the page allows its own import map and no other inline script", () => {
+  const html = readFileSync(join(ROOT, "web/index.html"), "utf8");
+  const inline = [...html.matchAll(/<script(?![^>]*\bsrc=)[^>]*>([\s\S]*?)<\/script>/g)].map(([, text]) => text);
+  assert.equal(inline.length, 1);
+  const hash = createHash("sha256").update(inline[0]).digest("base64");
+  assert.ok(html.includes(`'sha256-${hash}'`));
+  assert.doesNotMatch(html, /https?:\/\//);
+});
+
+test("the lock files name no address to download from", () => {
+  for (const folder of ["web", "tests/browser"]) {
+    assert.doesNotMatch(readFileSync(join(ROOT, folder, "package-lock.json"), "utf8"), /"resolved"|https?:\/\/registry/);
+  }
+});

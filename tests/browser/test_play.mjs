@@ -1,0 +1,302 @@
+// The main journey on the real server: play, pause, step, change the step size, read the gap, lose the line and find it again.
+import assert from "node:assert/strict";
+import { after, afterEach, before, test } from "node:test";
+import { openPage, read, screenshot, startBrowser, startLine, startServer, until } from "./support.mjs";
+
+const ROUNDING = 1e-12; // [m] a loop that a method keeps closed
+const METHODS = ["index1", "baumgarte", "projection", "nullspace", "reduced"];
+
+let server;
+let browser;
+let opened;
+
+before(async () => {
+  server = await startServer();
+  browser = await startBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+afterEach(async () => {
+  const faults = opened?.faults ?? [];
+  await opened?.close();
+  opened = undefined;
+  assert.deepEqual(faults, []);
+});
+
+async function open(options) {
+  opened = await openPage(browser, server.url, options);
+  return opened.page;
+}
+
+async function type(page, field, text) {
+  await page.fill(field, text);
+  await page.press(field, "Enter");
+}
+
+const time = (page) => read(page, (data) => data.latest.t);
+
+test("opens paused on five methods of the four-bar, with Play focused", async () => {
+  const page = await open();
+  assert.equal(await page.evaluate(() => document.activeElement.id), "play");
+  assert.deepEqual(await read(page, (data) => data.methods.map((m) => m.formulation)), METHODS);
+  assert.equal(await read(page, (data) => data.state), "paused");
+  assert.equal(await read(page, (data) => data.latest.t), 0);
+  assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 freedom/);
+  assert.equal(await page.locator(".ghost").count(), METHODS.length);
+  assert.match(await page.textContent("#status"), /paused · 5 methods.*1 freedom \(3 − 2\).*stream live/s);
+});
+
+test("Space plays and pauses; the unstabilised gap grows and the others stay closed", async () => {
+  const page = await open();
+  const still = await page.getAttribute(".ghost.selected .outline", "d");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 2);
+  assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), still);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  await page.waitForTimeout(200);
+  const t = await time(page);
+  await page.waitForTimeout(300);
+  assert.equal(await time(page), t);
+  const worst = await read(page, (data) => data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)));
+  assert.ok(worst[0] > 1e-9 && worst[0] < 1e-5, `index 1: ${worst[0]} m`);
+  assert.ok(worst[1] < worst[0], `Baumgarte: ${worst[1]} m`);
+  for (const gap of worst.slice(2)) {
+    assert.ok(gap < ROUNDING, `${gap} m`);
+  }
+  await page.waitForFunction(() => /gap .* and growing/.test(document.querySelector(".live").textContent));
+  assert.match(await page.textContent("tr:nth-child(1) .trend"), /growing/);
+  assert.match(await page.textContent("tr:nth-child(3) .trend"), /closed/);
+});
+
+test("the arrows step by one frame, back as well, and Backspace returns to the start", async () => {
+  const page = await open();
+  const dt = await read(page, (data) => data.frameDt);
+  for (let k = 1; k <= 3; k++) {
+    await page.keyboard.press("ArrowRight");
+    await until(page, `(data) => data.latest.frame === ${k}`);
+  }
+  assert.ok(Math.abs((await time(page)) - 3 * dt) < 1e-12);
+  await page.keyboard.press("ArrowLeft");
+  await page.waitForFunction((t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s`, 2 * dt);
+  assert.equal(await read(page, (data) => data.latest.frame), 3);
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await until(page, (data) => data.latest.frame === 4);
+  await page.keyboard.press("Backspace");
+  await until(page, (data) => data.latest?.frame === 0 && data.history.count === 1);
+  await page.waitForFunction(() => document.querySelector(".time").textContent === "t 0.00 s");
+});
+
+test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async () => {
+  const page = await open();
+  await type(page, "#set-h", "0,02");
+  await until(page, (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)) && data.latest?.frame === 0);
+  assert.equal(await page.inputValue("#set-h"), "0.02");
+  await page.focus("#play");
+  await page.keyboard.press("=");
+  await until(page, (data) => data.speed === 2);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t >= 4.5);
+  const passed = await read(page, (data) =>
+    [1e-2, 1e-1].map((limit) => data.history.t[data.history.columns[0].gap.findIndex((gap) => gap > limit)]),
+  );
+  assert.ok(passed[0] > 0.9 && passed[0] < 2, `1 cm at ${passed[0]} s`);
+  assert.ok(passed[1] > 2.8 && passed[1] < 4.4, `10 cm at ${passed[1]} s`);
+  const projection = await read(page, (data) => data.history.worst(2, "gap", 0, data.history.count - 1));
+  assert.ok(projection < ROUNDING, `${projection} m`);
+  assert.match(await page.textContent(".tear-inset"), /×[\d.]+.*gap \d+ .?m/s);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  await screenshot(page, "page-1280-light-open-loop");
+});
+
+test("the same step is reached by the slider and by 2e-2 s", async () => {
+  const page = await open();
+  await page.focus("#set-h-slider");
+  for (let k = 0; k < 10; k++) {
+    await page.keyboard.press("ArrowUp");
+  }
+  await until(page, (data) => data.methods.every((m) => Math.abs(Number(m.spelling.split("h=")[1]) - 0.015) < 1e-12));
+  await page.keyboard.press("ArrowUp");
+  await until(page, (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)));
+  assert.equal(await page.getAttribute("#set-h-slider", "aria-valuetext"), "0.02 s");
+  await type(page, "#set-h", "1e-2 s");
+  await until(page, (data) => data.methods.every((m) => /h=0\.01$/.test(m.spelling)));
+  assert.equal(await page.inputValue("#set-h"), "0.01");
+});
+
+test("a step of 0 is refused at the field and the old run goes on", async () => {
+  const page = await open();
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 0.2);
+  const before = await read(page, (data) => ({ generation: data.generation, t: data.latest.t }));
+  await type(page, "#set-h", "0");
+  assert.equal(await page.textContent("#set-h-hint"), "dt must be > 0");
+  assert.equal(await page.getAttribute("#set-h", "aria-invalid"), "true");
+  await until(page, `(data) => data.latest.t > ${before.t} + 0.3`);
+  assert.equal(await read(page, (data) => data.generation), before.generation);
+  await page.press("#set-h", "Escape");
+  assert.equal(await page.inputValue("#set-h"), "0.001");
+});
+
+test("a spelling that the server refuses is told in the dialog and changes nothing", async () => {
+  const page = await open();
+  await page.getByRole("button", { name: "add a method" }).click();
+  await page.fill("#pick-spelling", "projektion@rk4:h=1e-3");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await page.waitForFunction(() => /projection/.test(document.querySelector("#pick-error").textContent));
+  assert.equal(await read(page, (data) => data.methods.length), 5);
+  await page.fill("#pick-spelling", "index1@euler:h=1e-3");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await until(page, (data) => data.methods.length === 6 && data.view.selected === 5);
+  await page.getByRole("button", { name: /^Change or remove index-1 euler/ }).click();
+  await page.getByRole("button", { name: "Remove" }).click();
+  await until(page, (data) => data.methods.length === 5);
+});
+
+test("a length that cannot close the loop is refused at its field with the reason, and the old one goes on", async () => {
+  const page = await open();
+  await page.click(".scene-parameters summary");
+  const before = await read(page, (data) => data.generation);
+  await type(page, "#parameter-l2", "0.1");
+  await page.waitForFunction(() => document.querySelector("#parameter-l2").getAttribute("aria-invalid") === "true");
+  assert.ok((await page.textContent("#parameter-l2-hint")).length > 10);
+  assert.equal(await read(page, (data) => data.generation), before);
+  await type(page, "#parameter-l2", "1.3");
+  await until(page, (data) => data.settings.l2 === 1.3 && data.latest?.frame === 0);
+  assert.equal(await read(page, (data) => data.scene.parameters.find((p) => p.name === "l2").value), 1.3);
+});
+
+test("a negative Baumgarte constant is allowed with a warning", async () => {
+  const page = await open();
+  await type(page, "#set-beta", "-3");
+  await until(page, (data) => /beta=-3/.test(data.methods[1].spelling));
+  assert.equal(await page.textContent("#set-beta-hint"), "pushes the loop apart");
+});
+
+test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/20 closes the gap and says so", async () => {
+  const page = await open();
+  await type(page, "#set-h", "0.02");
+  await until(page, (data) => /h=0\.02$/.test(data.methods[0].spelling));
+  for (let k = 0; k < 3; k++) {
+    await page.getByRole("button", { name: /^Faster/ }).click();
+  }
+  await until(page, (data) => data.speed === 10);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 5);
+  await page.getByRole("button", { name: "Why? index-1" }).click();
+  const card = await page.textContent(".card");
+  assert.match(card, /After [\d.]+ s the loop gap is .*m \(growing\)/);
+  assert.ok((await page.textContent(".card .rule")).length > 40);
+  const old = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
+  await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
+  await until(page, (data) => /alpha=20,beta=20/.test(data.methods[1].spelling) && data.latest?.t > 5);
+  const now = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
+  assert.ok(now < old, `${now} m after ${old} m`);
+  await page.waitForFunction(() => /Baumgarte: worst gap .* before, .* now/.test(document.querySelector(".live").textContent));
+});
+
+test("the printed null-space form keeps the loop closed while its energy climbs, and wears its badge", async () => {
+  const page = await open();
+  await page.getByRole("button", { name: "add a method" }).click();
+  await page.fill("#pick-spelling", "nullspace-as-printed@rk4:h=1e-3");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await until(page, (data) => data.methods.length === 6);
+  assert.equal(await page.textContent(".badge"), "model error: halving h does not help");
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 1.02);
+  const second = await read(page, (data) => {
+    const i = data.history.indexAt(1);
+    return { gap: data.history.worst(5, "gap", 0, i), energy: data.history.worst(5, "energy_change", 0, i) };
+  });
+  assert.ok(second.gap < ROUNDING, `${second.gap} m`);
+  assert.ok(second.energy > 20 && second.energy < 100, `${second.energy} J`);
+});
+
+test("a line that drops is told, and mended it resumes without a missing or repeated frame", async () => {
+  const line = await startLine(server.port);
+  try {
+    opened = await openPage(browser, line.url);
+    const page = opened.page;
+    await page.keyboard.press("Space");
+    await until(page, (data) => data.latest.t > 0.5);
+    line.cut();
+    await page.waitForFunction(() => /reconnecting/.test(document.querySelector(".stream").textContent));
+    const seen = await read(page, (data) => data.latest.frame);
+    await page.waitForTimeout(1200);
+    line.mend();
+    await until(page, `(data) => data.stream.state === "live" && data.latest.frame > ${seen} + 30`);
+    const { stride, steps, dt } = await read(page, (data) => ({
+      stride: data.history.stride,
+      dt: data.frameDt,
+      steps: Array.from(data.history.t.subarray(1, data.history.count), (t, i) => t - data.history.t[i]),
+    }));
+    assert.equal(stride, 1);
+    assert.ok(steps.every((step) => Math.abs(step - dt) < 1e-9), "every frame follows the one before it");
+  } finally {
+    await opened.close();
+    await line.close();
+  }
+});
+
+test("a hidden page closes its stream and catches up when it is shown", async () => {
+  const page = await open();
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 0.3);
+  const show = (hidden) =>
+    page.evaluate((value) => {
+      Object.defineProperty(document, "hidden", { configurable: true, get: () => value });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }, hidden);
+  await show(true);
+  assert.match(await page.textContent(".stream"), /paused while hidden/);
+  const seen = await read(page, (data) => data.latest.frame);
+  await page.waitForTimeout(800);
+  assert.equal(await read(page, (data) => data.latest.frame), seen);
+  await show(false);
+  await until(page, `(data) => data.latest.frame > ${seen} + 40`);
+  const whole = await read(page, (data) => data.history.count === data.latest.frame + 1);
+  assert.ok(whole, "no frame is missing");
+});
+
+test("a finished run stops the clock, and Backspace starts it anew", async () => {
+  const page = await open({ hash: "#pendulum" });
+  for (let k = 0; k < 3; k++) {
+    await page.keyboard.press("=");
+  }
+  await until(page, (data) => data.speed === 10);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "finished", 60000);
+  assert.match(await page.textContent("#play"), /Again/);
+  await page.keyboard.press("Backspace");
+  await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 0.3);
+});
+
+test("a method that fails keeps its last pose, under a banner with its name, the time and the cause", async () => {
+  const page = await open();
+  await type(page, "#set-beta", "-120");
+  await until(page, (data) => /beta=-120/.test(data.methods[1].spelling));
+  await type(page, "#set-alpha", "-10");
+  await until(page, (data) => /alpha=-10/.test(data.methods[1].spelling));
+  await page.keyboard.press("2");
+  for (let k = 0; k < 3; k++) {
+    await page.getByRole("button", { name: /^Faster/ }).click();
+  }
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.methods[1].state === "failed", 30000);
+  await page.waitForSelector(".banner:not([hidden])");
+  assert.match(await page.textContent(".banner"), /Baumgarte stopped at [\d.]+ s: .{10}/);
+  assert.match(await page.textContent("tr:nth-child(2) .trend"), /stopped at/);
+  assert.doesNotMatch(await page.getAttribute(".ghost.selected .outline", "d"), /NaN/);
+  assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/);
+});
