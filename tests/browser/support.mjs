@@ -114,9 +114,13 @@ export function read(page, pick) {
   return page.evaluate(`(${pick})(globalThis.holonom.data)`);
 }
 
-/** Waits until the data fulfil a condition. */
-export function until(page, condition, timeout = 20000) {
-  return page.waitForFunction(`(${condition})(globalThis.holonom.data)`, undefined, { timeout, polling: 30 });
+/** Waits until the data fulfil a condition; asked from here, since the page forbids text as script. */
+export async function until(page, condition, timeout = 20000) {
+  const end = Date.now() + timeout;
+  while (!(await read(page, condition))) {
+    assert.ok(Date.now() < end, `within ${timeout} ms: ${condition}; notice: ${await read(page, (data) => data.notice)}`);
+    await new Promise((resolve) => setTimeout(resolve, 25));
+  }
 }
 
 export async function screenshot(page, name) {

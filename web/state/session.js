@@ -27,6 +27,9 @@ export function createSession(store) {
   let stream = null;
   /** changes go out one after the other, in the order of asking */
   let queue = Promise.resolve();
+  /** the speed that was asked for and not answered yet, or 0: quick presses count from it */
+  let asked = 0;
+  const wantedSpeed = () => asked || data.speed;
 
   /** @param {string} text */
   function notice(text) {
@@ -262,10 +265,14 @@ export function createSession(store) {
       }
     },
     reset: () => changeOrTell({ reset: true, state: "paused" }),
-    slower: () => actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < data.speed) ?? SPEEDS[0]),
-    faster: () => actions.setSpeed(SPEEDS.find((speed) => speed > data.speed) ?? SPEEDS[SPEEDS.length - 1]),
+    slower: () => actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < wantedSpeed()) ?? SPEEDS[0]),
+    faster: () => actions.setSpeed(SPEEDS.find((speed) => speed > wantedSpeed()) ?? SPEEDS[SPEEDS.length - 1]),
     /** @param {number} speed */
-    setSpeed: (speed) => changeOrTell({ speed }),
+    async setSpeed(speed) {
+      asked = speed;
+      await changeOrTell({ speed });
+      asked = asked === speed ? 0 : asked;
+    },
     /** @param {string[]} spellings */
     setMethods: (spellings) => change({ methods: spellings }),
     /** One setting of every method that has it. @param {string} key @param {number} value @param {string} [and] another key */

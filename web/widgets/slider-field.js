@@ -62,8 +62,9 @@ export function createSliderField(options) {
   );
   let value = NaN;
   let timer = 0;
-  /** what the server has not answered yet; meanwhile the widget shows what was asked */
-  let pending = 0;
+  /** while the server has not answered, the widget shows what was asked, and only the latest wish is kept */
+  let pending = false;
+  let next = NaN;
 
   /** @param {"" | "error" | "warning"} kind @param {string} text */
   function tell(kind, text) {
@@ -88,19 +89,27 @@ export function createSliderField(options) {
       tell("error", verdict.error);
       return;
     }
+    if (pending) {
+      next = wanted;
+      return;
+    }
     const before = value;
     value = wanted;
     tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
     show();
-    pending++;
+    pending = true;
     try {
       await options.commit(wanted);
     } catch (error) {
       value = before;
       tell("error", error.sentence ?? error.message);
       range.value = String(scale.to(value));
-    } finally {
-      pending--;
+    }
+    pending = false;
+    if (!Number.isNaN(next)) {
+      const latest = next;
+      next = NaN;
+      await commit(latest);
     }
   }
 
@@ -133,7 +142,7 @@ export function createSliderField(options) {
     el,
     /** What the server holds. @param {number} held */
     update(held) {
-      if (pending === 0 && held !== value) {
+      if (!pending && held !== value) {
         value = held;
         const verdict = options.check(held);
         tell(verdict.warning ? "warning" : "", verdict.warning ?? "");
