@@ -275,10 +275,8 @@ static void submission_form(hn_strbuf *b, const hn_problem *p) {
 }
 
 void hn_problem_text(hn_strbuf *b, const hn_problem *p) {
-    hn_strbuf_printf(
-        b,
-        "Problem %s: %s (lesson %s, section %s; %g points)\n\n%s\n\nHand in a JSON file: ", p->id,
-        p->title, p->lesson, p->section, hn_problem_points(p), p->statement);
+    hn_strbuf_printf(b, "Problem %s: %s (lesson %s, %s; %g points)\n\n%s\n\nHand in a JSON file: ",
+                     p->id, p->title, p->lesson, p->section, hn_problem_points(p), p->statement);
     submission_form(b, p);
     hn_strbuf_add(b, "\nEach entry is a formula in quotes; names:");
     for (int i = 0; i < p->n_names; i++) {
@@ -286,8 +284,8 @@ void hn_problem_text(hn_strbuf *b, const hn_problem *p) {
     }
     hn_strbuf_printf(b,
                      "; angles in radians; * for products, ^ for powers, sin(..), cos(..), pi.\n%g "
-                     "points for each entry; compared at %d random states.\n",
-                     p->points, p->n_closed);
+                     "point%s for each entry; compared at %d random states.\n",
+                     p->points, p->points == 1 ? "" : "s", p->n_closed);
 }
 
 void hn_problem_json(hn_strbuf *b, const hn_problem *p) {
