@@ -262,8 +262,8 @@ static hn_ex rebuilt(hn_graph *g, hn_node node, const int *at, const hn_ex *valu
     for (int i = 0; i < node.n_args; i++) {
         args[i] = at[i] >= 0 ? hn_scale(node.args[i].c, value[at[i]]) : node.args[i];
     }
-    const hn_ex result = node.op == HN_OP_SUM ? hn_sum(g, args, node.n_args)
-                                              : hn_apply(g, (hn_op)node.op, args);
+    const hn_ex result =
+        node.op == HN_OP_SUM ? hn_sum(g, args, node.n_args) : hn_apply(g, (hn_op)node.op, args);
     if (args != small) {
         free(args);
     }

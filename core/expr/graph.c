@@ -114,8 +114,8 @@ static int same_product(const hn_node *node, const hn_factor *f, int n) {
            memcmp(node->factors, f, (size_t)n * sizeof *f) == 0;
 }
 
-#define FOR_CANDIDATES(g, h, id)                                                                   \
-    for (uint32_t k_ = (uint32_t)(h) & ((g)->table_size - 1); ((id) = (g)->table[k_]) >= 0;        \
+#define FOR_CANDIDATES(g, h, id)                                                            \
+    for (uint32_t k_ = (uint32_t)(h) & ((g)->table_size - 1); ((id) = (g)->table[k_]) >= 0; \
          k_ = (k_ + 1) & ((g)->table_size - 1))
 
 static int32_t find_args(const hn_graph *g, uint64_t h, hn_op op, const hn_ex *args, int n) {
@@ -404,10 +404,10 @@ int hn_sweep_collect(const hn_graph *g, const hn_ex *e, int n, uint64_t deps) {
     }
     s->now++;
     s->n = 0;
-#define VISIT(id)                                                                                  \
-    if (s->stamp[id] != s->now && (g->nodes[id].deps & deps || deps == ~0ull)) {                   \
-        s->stamp[id] = s->now;                                                                     \
-        s->order[s->n++] = (id);                                                                   \
+#define VISIT(id)                                                                \
+    if (s->stamp[id] != s->now && (g->nodes[id].deps & deps || deps == ~0ull)) { \
+        s->stamp[id] = s->now;                                                   \
+        s->order[s->n++] = (id);                                                 \
     }
     for (int i = 0; i < n; i++) {
         VISIT(e[i].n)

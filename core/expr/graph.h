@@ -50,7 +50,10 @@ hn_ex hn_sub(hn_graph *g, hn_ex a, hn_ex b);
 hn_ex hn_neg(hn_ex a);
 hn_ex hn_scale(double k, hn_ex a);
 hn_ex hn_mul(hn_graph *g, hn_ex a, hn_ex b);
-hn_ex hn_div(hn_graph *g, hn_ex a, hn_ex b); ///< by a number: times the reciprocal; by zero: graph keeps 1/0 as a node and evaluates to inf
+hn_ex hn_div(
+    hn_graph *g, hn_ex a,
+    hn_ex
+        b); ///< by a number: times the reciprocal; by zero: graph keeps 1/0 as a node and evaluates to inf
 hn_ex hn_sum(hn_graph *g, const hn_ex *terms, int n); ///< flat sum of n terms
 /// Any operator of the table by its code; `args` holds hn_op_get_info(op)->arity expressions.
 hn_ex hn_apply(hn_graph *g, hn_op op, const hn_ex *args);
@@ -60,16 +63,17 @@ hn_ex hn_sqrt(hn_graph *g, hn_ex a);
 hn_ex hn_pow_int(hn_graph *g, hn_ex a, int power);
 
 // reading ----------------------------------------------------------------------------------------
-int hn_is_zero(hn_ex e);             ///< exactly the number 0
+int hn_is_zero(hn_ex e);                  ///< exactly the number 0
 int hn_is_number(hn_ex e, double *value); ///< 1 if constant; value may be NULL
 int hn_ex_same(hn_ex a, hn_ex b);
 
 /// One node, for printers, differentiation and the tape compiler. Arguments are borrowed.
 typedef struct hn_node_view {
-    hn_op op;            ///< HN_OP_ONE, _SYMBOL, _SUM, _MUL or a function
+    hn_op op; ///< HN_OP_ONE, _SYMBOL, _SUM, _MUL or a function
     int n_args;
-    const hn_ex *args;   ///< sum: the terms; product: two factors with coefficient 1; function: its arguments
-    int symbol;          ///< for HN_OP_SYMBOL
+    const hn_ex
+        *args; ///< sum: the terms; product: two factors with coefficient 1; function: its arguments
+    int symbol; ///< for HN_OP_SYMBOL
 } hn_node_view;
 hn_node_view hn_graph_node(const hn_graph *g, int32_t node);
 
@@ -77,11 +81,13 @@ hn_node_view hn_graph_node(const hn_graph *g, int32_t node);
 /// d e / d symbol for each of n_sym symbols: out[i]. Forward over the whole graph, results interned.
 void hn_diff(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex *out);
 /// Directional derivative of n expressions in the direction seed[i] along symbols[i] (forward mode, one sweep).
-void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *seed, int n_sym, hn_ex *out);
+void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *seed,
+                     int n_sym, hn_ex *out);
 /// Gradient of one expression by reverse mode, one sweep: out[i] = d e / d symbols[i].
 void hn_diff_reverse(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex *out);
 /// e with each symbols[i] replaced by with[i], all at once; n expressions in, n out.
-void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *with, int n_sym, hn_ex *out);
+void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *with,
+                   int n_sym, hn_ex *out);
 /// 1 if e depends on the symbol.
 int hn_depends_on(const hn_graph *g, hn_ex e, int symbol);
 /// Value at x[symbol] (array by symbol number), straight from the graph: slow, for checks and constants.

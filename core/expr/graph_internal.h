@@ -23,7 +23,7 @@ enum { HN_NODE_TRIG_SQUARE = 1 }; ///< a product with sin^2 or cos^2 among its f
 
 typedef struct hn_node {
     uint64_t hash;
-    uint64_t deps;            ///< bit (symbol % 64) for every symbol below
+    uint64_t deps; ///< bit (symbol % 64) for every symbol below
     const hn_ex *args;
     const hn_factor *factors; ///< products only
     int32_t n_args, n_factors;
@@ -64,7 +64,8 @@ int32_t hn_graph_lookup_args(const hn_graph *g, hn_op op, const hn_ex *args, int
 int32_t hn_graph_lookup_product(const hn_graph *g, const hn_factor *factors, int n);
 /// The same, created where missing; -1 when memory is out.
 int32_t hn_graph_intern_args(hn_graph *g, hn_op op, const hn_ex *args, int n_args);
-int32_t hn_graph_intern_product(hn_graph *g, const hn_factor *factors, int n, int32_t left, int32_t right);
+int32_t hn_graph_intern_product(hn_graph *g, const hn_factor *factors, int n, int32_t left,
+                                int32_t right);
 
 /// The factors of any node: those of a product, else the node itself once (in *one).
 const hn_factor *hn_node_factors(const hn_graph *g, int32_t node, hn_factor *one, int *n);

@@ -7,9 +7,9 @@
 
 // values ---------------------------------------------------------------------------------------------------
 
-#define VALUE_1(fn, expression)                                                                    \
-    static double fn(const double *x) {                                                            \
-        return expression;                                                                         \
+#define VALUE_1(fn, expression)         \
+    static double fn(const double *x) { \
+        return expression;              \
     }
 
 VALUE_1(value_recip, 1.0 / x[0])
@@ -36,8 +36,7 @@ VALUE_1(value_max, isnan(x[0]) || x[0] >= x[1] ? x[0] : x[1])
 
 // partial derivatives: d[i] = d f / d a[i], f = *self -----------------------------------------------------------
 
-#define PARTIALS(fn)                                                                               \
-    static void fn(hn_graph *g, const hn_ex *self, const hn_ex *a, hn_ex *d)
+#define PARTIALS(fn) static void fn(hn_graph *g, const hn_ex *self, const hn_ex *a, hn_ex *d)
 #define UNUSED(x) ((void)(x))
 
 static hn_ex square(hn_graph *g, hn_ex a) {
@@ -144,7 +143,7 @@ PARTIALS(partials_max) { // the first where a - b >= 0
 #define partials_step partials_flat
 
 static const hn_op_info infos[HN_OP_COUNT] = {
-#define INFO(code, name, arity, typed, parity, fn, latex, c_form)                                  \
+#define INFO(code, name, arity, typed, parity, fn, latex, c_form) \
     [code] = {name, arity, typed, HN_PARITY_##parity, value_##fn, partials_##fn, latex, c_form},
     HN_OP_LIST(INFO)
 #undef INFO

@@ -20,6 +20,7 @@ typedef struct hn_parse_opts {
 
 /// The expression of `text`. Fails with HN_ERR_INPUT and a diag that has the column, what was found and, for an
 /// unknown name or function, the nearest known one. 1/0 and log(-1) written with numbers are errors too.
-HN_MUST_CHECK hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts, hn_ex *out, hn_diag *diag);
+HN_MUST_CHECK hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts,
+                                 hn_ex *out, hn_diag *diag);
 
 #endif

@@ -8,9 +8,9 @@
 #include <string.h>
 
 enum {
-    SMALL = 48,        ///< terms that fit without asking for memory
-    MAX_EXPANSIONS = 6,///< nested sums opened in search of something that cancels
-    MAX_EXCESS = 12,   ///< a search is given up once the list grew by this much
+    SMALL = 48,         ///< terms that fit without asking for memory
+    MAX_EXPANSIONS = 6, ///< nested sums opened in search of something that cancels
+    MAX_EXCESS = 12,    ///< a search is given up once the list grew by this much
 };
 
 typedef struct terms {
@@ -202,8 +202,7 @@ static int combine_one_square(hn_graph *g, terms *s) {
 
 static void reduce(hn_graph *g, terms *s) {
     merge(s);
-    while (!g->failed && combine_one_square(g, s)) {
-    }
+    while (!g->failed && combine_one_square(g, s)) {}
 }
 
 // nested sums ----------------------------------------------------------------------------------------------
@@ -314,8 +313,7 @@ hn_ex hn_sum(hn_graph *g, const hn_ex *list, int n) {
             }
         }
         reduce(g, &s);
-        while (!g->failed && s.n > 1 && flatten_once(g, &s)) {
-        }
+        while (!g->failed && s.n > 1 && flatten_once(g, &s)) {}
         result = g->failed ? hn_zero() : finish(g, &s);
     }
     terms_reset(&s);

@@ -14,16 +14,17 @@ typedef struct hn_tape hn_tape;
 /// Exact counts of one evaluation.
 typedef struct hn_tape_info {
     int n_inputs, n_outputs;
-    int add, mul, div, sincos, sqrt, other; ///< arithmetic operations; sub counts as add, a lone sin or cos as one sincos
-    int ops;                                ///< the sum of the line above
-    int instructions;                       ///< what the interpreter dispatches
-    int slots;                              ///< doubles of workspace
+    int add, mul, div, sincos, sqrt,
+        other;        ///< arithmetic operations; sub counts as add, a lone sin or cos as one sincos
+    int ops;          ///< the sum of the line above
+    int instructions; ///< what the interpreter dispatches
+    int slots;        ///< doubles of workspace
 } hn_tape_info;
 
 /// Compiles n_out expressions; input i of the tape is symbols[i]. A symbol used but not listed is a programmer's
 /// error. Returns owned in *out. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 65,000 live values).
-HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const int *symbols,
-                                        int n_sym, hn_tape **out);
+HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out,
+                                        const int *symbols, int n_sym, hn_tape **out);
 void hn_tape_free(hn_tape *tape);
 hn_tape_info hn_tape_get_info(const hn_tape *tape);
 /// Doubles that hn_tape_eval() needs as `work`; call hn_tape_prepare() once on a fresh workspace (loads constants).

@@ -1,0 +1,434 @@
+#include "expr/parse.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFAULT_DEPTH = 200, DEFAULT_CHARS = 20000, MAX_NAME = 80, MAX_POWER = 1000 };
+
+/// Precedence climbing over the text. After a fault everything returns zero at once.
+typedef struct parser {
+    hn_graph *g;
+    const char *text;
+    size_t at;
+    const hn_parse_opts *opts;
+    hn_diag *diag;
+    hn_status status;
+    int depth, max_depth;
+} parser;
+
+static hn_ex parse_sum(parser *p);
+
+HN_PRINTF(4, 5)
+static hn_ex fail(parser *p, size_t at, const char *hint, const char *format, ...) {
+    if (p->status == HN_OK) {
+        char what[HN_DIAG_MESSAGE - 32];
+        va_list args;
+        va_start(args, format);
+        vsnprintf(what, sizeof what, format, args);
+        va_end(args);
+        p->status = hn_diag_set(p->diag, HN_ERR_INPUT, NULL, hint, "column %zu: %s", at + 1, what);
+        if (p->diag) {
+            p->diag->column = (int)at + 1;
+        }
+    }
+    return hn_num(0);
+}
+
+static char peek(parser *p) {
+    while (p->text[p->at] == ' ' || p->text[p->at] == '\t' || p->text[p->at] == '\n' ||
+           p->text[p->at] == '\r') {
+        p->at++;
+    }
+    return p->text[p->at];
+}
+
+/// What stands here, for a message: "'x'", "the end", "a byte that is not ASCII".
+static const char *found(parser *p, char out[32]) {
+    const char c = peek(p);
+    if (!c) {
+        return "the end of the formula";
+    }
+    if ((unsigned char)c >= 0x80) {
+        return "a character outside ASCII";
+    }
+    if (!isprint((unsigned char)c)) {
+        return "a control character";
+    }
+    snprintf(out, 32, "'%c'", c);
+    return out;
+}
+
+static int enter(parser *p) {
+    if (++p->depth > p->max_depth) {
+        fail(p, p->at, "split it with parameters", "nested more than %d deep", p->max_depth);
+        return 0;
+    }
+    return 1;
+}
+
+static int is_name_start(char c) {
+    return isalpha((unsigned char)c) || c == '_';
+}
+
+static int is_name_char(char c) {
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+/// Digits with an optional fraction and exponent; the end of it, or NULL. strtod alone would take hex, inf and nan.
+static const char *scan_number(const char *s) {
+    const char *c = s;
+    int digits = 0;
+    for (; isdigit((unsigned char)*c); c++) {
+        digits++;
+    }
+    if (*c == '.') {
+        for (c++; isdigit((unsigned char)*c); c++) {
+            digits++;
+        }
+    }
+    if (!digits) {
+        return NULL;
+    }
+    if (*c == 'e' || *c == 'E') {
+        const char *x = c + 1 + (c[1] == '+' || c[1] == '-');
+        if (isdigit((unsigned char)*x)) {
+            for (c = x; isdigit((unsigned char)*c); c++) {}
+        }
+    }
+    return c;
+}
+
+static hn_ex parse_number(parser *p) {
+    const size_t start = p->at;
+    const char *end = scan_number(p->text + start);
+    if (!end) {
+        return fail(p, start, NULL, "a lone '.' is not a number");
+    }
+    const double value = strtod(p->text + start, NULL);
+    p->at = (size_t)(end - p->text);
+    if (!isfinite(value)) {
+        return fail(p, start, NULL, "%.*s is too large for a double",
+                    (int)(p->at - start < 40 ? p->at - start : 40), p->text + start);
+    }
+    if (p->text[p->at] == '.') {
+        return fail(p, p->at, NULL, "a second '.' in a number");
+    }
+    const char next = peek(p);
+    if (is_name_start(next) || next == '(' || isdigit((unsigned char)next)) {
+        char buffer[32];
+        return fail(p, p->at, "write the product: 3*x",
+                    "a number is followed by %s; '*' or another operator is missing",
+                    found(p, buffer));
+    }
+    return hn_num(value);
+}
+
+/// A function applied to numbers must give a number.
+static hn_ex apply_checked(parser *p, hn_op op, const hn_ex *args, size_t at) {
+    const hn_op_info *info = hn_op_get_info(op);
+    double x[2] = {0, 0};
+    int numbers = 1;
+    for (int i = 0; i < info->arity; i++) {
+        numbers &= hn_is_number(args[i], &x[i]);
+    }
+    if (numbers && !isfinite(info->value(x))) {
+        return info->arity == 2
+                   ? fail(p, at, NULL, "%s(%g, %g) is not a finite number", info->name, x[0], x[1])
+                   : fail(p, at, NULL, "%s(%g) is not a finite number", info->name, x[0]);
+    }
+    return hn_apply(p->g, op, args);
+}
+
+static hn_ex unknown_function(parser *p, size_t at, const char *name) {
+    const char *names[HN_OP_COUNT + 1];
+    int n = 0;
+    for (int op = 0; op < HN_OP_COUNT; op++) {
+        if (hn_op_get_info((hn_op)op)->typed) {
+            names[n++] = hn_op_get_info((hn_op)op)->name;
+        }
+    }
+    names[n++] = "hypot";
+    const char *near = hn_nearest_name(name, names, n);
+    char hint[HN_DIAG_HINT] =
+        "functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, abs and their like";
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    return fail(p, at, hint, "there is no function '%.60s'", name);
+}
+
+/// The arguments behind '(' up to ')'; how many, at most `max` of them kept.
+static int parse_arguments(parser *p, hn_ex *args, int max) {
+    int n = 0;
+    p->at++; // (
+    if (peek(p) == ')') {
+        p->at++;
+        return 0;
+    }
+    for (;;) {
+        const hn_ex a = parse_sum(p);
+        if (n < max) {
+            args[n] = a;
+        }
+        n++;
+        const char c = peek(p);
+        if (p->status != HN_OK) {
+            return n;
+        }
+        if (c == ')') {
+            p->at++;
+            return n;
+        }
+        if (c != ',') {
+            char buffer[32];
+            fail(p, p->at, NULL, "%s was found where ',' or ')' is expected", found(p, buffer));
+            return n;
+        }
+        p->at++;
+    }
+}
+
+static hn_ex parse_call(parser *p, size_t at, const char *name) {
+    const int is_hypot = strcmp(name, "hypot") == 0;
+    const hn_op op = hn_op_find(name);
+    if (op == HN_OP_COUNT && !is_hypot) {
+        return unknown_function(p, at, name);
+    }
+    const int arity = is_hypot ? 2 : hn_op_get_info(op)->arity;
+    hn_ex args[2] = {hn_num(0), hn_num(0)};
+    const int n = parse_arguments(p, args, 2);
+    if (p->status != HN_OK) {
+        return hn_num(0);
+    }
+    if (n != arity) {
+        return fail(p, at, NULL, "%s takes %d argument%s; %d %s given", name, arity,
+                    arity == 1 ? "" : "s", n, n == 1 ? "was" : "were");
+    }
+    if (is_hypot) {
+        return hn_sqrt(
+            p->g, hn_add(p->g, hn_mul(p->g, args[0], args[0]), hn_mul(p->g, args[1], args[1])));
+    }
+    return apply_checked(p, op, args, at);
+}
+
+static hn_ex unknown_name(parser *p, size_t at, const char *name) {
+    char hint[HN_DIAG_HINT] = "";
+    const char *near = hn_nearest_name(name, p->opts->known, p->opts->n_known);
+    if (strcmp(name, "nan") == 0 || strcmp(name, "inf") == 0 || strcmp(name, "NaN") == 0 ||
+        strcmp(name, "Infinity") == 0) {
+        return fail(p, at, NULL, "'%s' is not a number that a formula may hold", name);
+    }
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%.80s'?", near);
+    } else if (hn_op_find(name) != HN_OP_COUNT) {
+        snprintf(hint, sizeof hint, "a function needs its argument in parentheses: %s(x)", name);
+    }
+    return fail(p, at, hint, "'%.60s' is not known here", name);
+}
+
+static hn_ex parse_name(parser *p) {
+    const size_t start = p->at;
+    char name[MAX_NAME];
+    size_t n = 0;
+    while (is_name_char(p->text[p->at])) {
+        if (n + 1 == MAX_NAME) {
+            return fail(p, start, NULL, "a name is longer than %d characters", MAX_NAME - 1);
+        }
+        name[n++] = p->text[p->at++];
+    }
+    name[n] = 0;
+    if (peek(p) == '(') {
+        return parse_call(p, start, name);
+    }
+    hn_ex value;
+    if (p->opts->lookup && p->opts->lookup(p->opts->user, name, &value)) {
+        return value;
+    }
+    if (strcmp(name, "pi") == 0) {
+        return hn_num(3.14159265358979323846);
+    }
+    if (strcmp(name, "e") == 0) {
+        return hn_num(2.71828182845904523536);
+    }
+    return unknown_name(p, start, name);
+}
+
+static hn_ex parse_group(parser *p) {
+    const size_t open = p->at++;
+    const hn_ex inside = parse_sum(p);
+    const char c = peek(p);
+    if (p->status != HN_OK) {
+        return hn_num(0);
+    }
+    if (c == ',') {
+        return fail(p, p->at, "write 0.5, not 0,5",
+                    "',' separates arguments of a function; it is no decimal point");
+    }
+    if (c != ')') {
+        char buffer[32];
+        return fail(p, p->at, NULL, "%s was found where ')' is expected, for the '(' at column %zu",
+                    found(p, buffer), open + 1);
+    }
+    p->at++;
+    return inside;
+}
+
+static hn_ex parse_atom(parser *p) {
+    const char c = peek(p);
+    if (isdigit((unsigned char)c) || c == '.') {
+        return parse_number(p);
+    }
+    if (is_name_start(c)) {
+        return parse_name(p);
+    }
+    if (c == '(') {
+        return parse_group(p);
+    }
+    char buffer[32];
+    const char *hint = (unsigned char)c >= 0x80
+                           ? "write names in ASCII: th1, omega; pi for the circle's number"
+                           : NULL;
+    return fail(p, p->at, hint, "%s was found where a number, a name or '(' is expected",
+                found(p, buffer));
+}
+
+static hn_ex raise_to(parser *p, hn_ex base, hn_ex exponent, size_t at) {
+    double n, b;
+    if (hn_is_number(exponent, &n) && n == floor(n) && fabs(n) <= MAX_POWER) {
+        if (hn_is_number(base, &b) && !isfinite(pow(b, n))) {
+            return fail(p, at, NULL, "%g^%g is not a finite number", b, n);
+        }
+        return hn_pow_int(p->g, base, (int)n);
+    }
+    const hn_ex args[2] = {base, exponent};
+    return apply_checked(p, HN_OP_POW, args, at);
+}
+
+static hn_ex parse_signed(parser *p);
+
+/// atom, or atom ^ signed power: right associative and above the sign, so that -x^2 is -(x^2).
+static hn_ex parse_power(parser *p) {
+    const hn_ex base = parse_atom(p);
+    const char c = peek(p);
+    const size_t at = p->at;
+    if (p->status != HN_OK) {
+        return hn_num(0);
+    }
+    if (c == '^' || (c == '*' && p->text[at + 1] == '*')) {
+        p->at += c == '^' ? 1 : 2;
+        const hn_ex exponent = parse_signed(p);
+        return p->status == HN_OK ? raise_to(p, base, exponent, at) : hn_num(0);
+    }
+    return base;
+}
+
+static hn_ex parse_signed(parser *p) {
+    const char c = peek(p);
+    if (!enter(p)) {
+        return hn_num(0);
+    }
+    hn_ex e;
+    if (c == '-' || c == '+') {
+        p->at++;
+        e = parse_signed(p);
+        e = c == '-' ? hn_neg(e) : e;
+    } else {
+        e = parse_power(p);
+    }
+    p->depth--;
+    return e;
+}
+
+static hn_ex parse_product(parser *p) {
+    hn_ex e = parse_signed(p);
+    while (p->status == HN_OK) {
+        const char c = peek(p);
+        const size_t at = p->at;
+        if (c != '*' && c != '/') {
+            break;
+        }
+        p->at++;
+        const hn_ex b = parse_signed(p);
+        double divisor;
+        if (c == '*') {
+            e = hn_mul(p->g, e, b);
+        } else if (hn_is_number(b, &divisor) && p->status == HN_OK &&
+                   (divisor == 0 || !isfinite(1 / divisor))) {
+            return fail(p, at, NULL, "division by %g", divisor);
+        } else {
+            e = hn_div(p->g, e, b);
+        }
+        if (!isfinite(e.c)) {
+            return fail(p, at, NULL, "the product of the numbers here is too large for a double");
+        }
+    }
+    return e;
+}
+
+static hn_ex parse_sum(parser *p) {
+    if (!enter(p)) {
+        return hn_num(0);
+    }
+    hn_ex e = parse_product(p);
+    while (p->status == HN_OK) {
+        const char c = peek(p);
+        if (c != '+' && c != '-') {
+            break;
+        }
+        const size_t at = p->at++;
+        const hn_ex b = parse_product(p);
+        e = c == '+' ? hn_add(p->g, e, b) : hn_sub(p->g, e, b);
+        if (!isfinite(e.c)) {
+            return fail(p, at, NULL, "the sum of the numbers here is too large for a double");
+        }
+    }
+    p->depth--;
+    return e;
+}
+
+static hn_ex unexpected_rest(parser *p) {
+    char buffer[32];
+    const char c = peek(p);
+    const char *hint = c == ','   ? "write 0.5, not 0,5"
+                       : c == '=' ? "write the difference: the formula is set to zero"
+                       : is_name_start(c) || isdigit((unsigned char)c) || c == '('
+                           ? "write the product: a*b"
+                           : NULL;
+    if (c == ')') {
+        return fail(p, p->at, NULL, "a ')' without its '('");
+    }
+    return fail(p, p->at, hint, "%s was found where an operator or the end is expected",
+                found(p, buffer));
+}
+
+hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts, hn_ex *out,
+                   hn_diag *diag) {
+    static const hn_parse_opts none = {0};
+    parser p = {.g = g, .text = text, .opts = opts ? opts : &none, .diag = diag};
+    p.max_depth = p.opts->max_depth > 0 ? p.opts->max_depth : DEFAULT_DEPTH;
+    const int max_chars = p.opts->max_chars > 0 ? p.opts->max_chars : DEFAULT_CHARS;
+    const size_t n = strlen(text);
+    if (n > (size_t)max_chars) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, "split it with parameters",
+                           "the formula has %zu characters; at most %d are read", n, max_chars);
+    }
+    if (peek(&p) == 0) {
+        fail(&p, 0, NULL, "the formula is empty");
+        return p.status;
+    }
+    const hn_ex e = parse_sum(&p);
+    if (p.status == HN_OK && peek(&p) != 0) {
+        unexpected_rest(&p);
+    }
+    if (p.status == HN_OK && hn_graph_failed(g)) {
+        p.status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    if (p.status == HN_OK) {
+        *out = e;
+    }
+    return p.status;
+}

@@ -1,0 +1,165 @@
+// The tape at work: evaluation and what can be read from it.
+#define _GNU_SOURCE // sincos
+
+#include "expr/tape_internal.h"
+
+#include "base/strbuf.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void hn_tape_free(hn_tape *tape) {
+    if (tape) {
+        free(tape->code);
+        free(tape->constants);
+        free(tape->outputs);
+        free(tape);
+    }
+}
+
+hn_tape_info hn_tape_get_info(const hn_tape *tape) {
+    return tape->info;
+}
+
+size_t hn_tape_work_size(const hn_tape *tape) {
+    return (size_t)tape->info.slots;
+}
+
+void hn_tape_prepare(const hn_tape *tape, double *work) {
+    memset(work, 0, (size_t)tape->info.slots * sizeof *work);
+    memcpy(work + tape->info.n_inputs, tape->constants, (size_t)tape->n_constants * sizeof *work);
+}
+
+hn_tape_code_info hn_tape_get_code_info(int code) {
+    static const hn_tape_code_info table[TAPE_SINCOS] = {
+#define TAPE_ROW(name, key, n, expression) {#expression, key, n},
+        HN_TAPE_OPS(TAPE_ROW)
+#undef TAPE_ROW
+    };
+    return code >= 0 && code < TAPE_SINCOS ? table[code] : (hn_tape_code_info){0};
+}
+
+// evaluation -----------------------------------------------------------------------------------------------
+
+// operands of the instruction at `i`
+#define a (w[i->v[1]])
+#define b (w[i->v[2]])
+#define c (w[i->v[3]])
+#define d (w[i->v[4]])
+#define e (w[i->v[5]])
+#define f (w[i->v[6]])
+
+/// One jump per instruction, from the end of the one before, so that the processor learns each one's successor.
+static void run(const hn_tape_instruction *i, double *w) {
+#define LABEL(code, key, n, expression) &&run_##code,
+#define NEXT \
+    i++;     \
+    __extension__({ goto *label[i->code]; })
+#define RUN(code, key, n, expression)       \
+    run_##code : w[i->v[0]] = (expression); \
+    NEXT;
+#define TAPE_ARITHMETIC(X) HN_TAPE_OPS_BUT_END(X)
+    __extension__ static const void *const label[TAPE_CODES] = {
+        HN_TAPE_OPS(LABEL) && run_sincos, &&run_sin, &&run_cos, &&run_call1, &&run_call2};
+    __extension__({ goto *label[i->code]; });
+
+    TAPE_ARITHMETIC(RUN)
+run_sincos:
+    sincos(a, &w[i->v[0]], &w[i->v[2]]);
+    NEXT;
+run_sin:
+    w[i->v[0]] = sin(a);
+    NEXT;
+run_cos:
+    w[i->v[0]] = cos(a);
+    NEXT;
+run_call1 : {
+    const double x = a;
+    w[i->v[0]] = hn_op_get_info((hn_op)i->v[6])->value(&x);
+    NEXT;
+}
+run_call2 : {
+    const double x[2] = {a, b};
+    w[i->v[0]] = hn_op_get_info((hn_op)i->v[6])->value(x);
+    NEXT;
+}
+run_TAPE_END:
+    return;
+#undef LABEL
+#undef NEXT
+#undef RUN
+#undef TAPE_ARITHMETIC
+}
+
+#undef a
+#undef b
+#undef c
+#undef d
+#undef e
+#undef f
+
+void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *work) {
+    if (tape->info.n_inputs > 0) {
+        memcpy(work, in, (size_t)tape->info.n_inputs * sizeof *work);
+    }
+    run(tape->code, work);
+    for (int k = 0; k < tape->info.n_outputs; k++) {
+        out[k] = work[tape->outputs[k]];
+    }
+}
+
+// listing --------------------------------------------------------------------------------------------------
+
+static const char *name_of(const hn_tape_instruction *i) {
+    switch (i->code) {
+    case TAPE_SINCOS:
+        return "sincos a";
+    case TAPE_SIN:
+        return "sin a";
+    case TAPE_COS:
+        return "cos a";
+    case TAPE_CALL1:
+    case TAPE_CALL2:
+        return hn_op_get_info((hn_op)i->v[6])->name;
+    default:
+        return hn_tape_get_code_info(i->code).text;
+    }
+}
+
+static int operands_of(const hn_tape_instruction *i) {
+    return i->code == TAPE_CALL2    ? 2
+           : i->code >= TAPE_SINCOS ? 1
+                                    : hn_tape_get_code_info(i->code).n_operands;
+}
+
+/// "in 3" for an input, the number for a constant, "s12" for a slot.
+static void list_place(const hn_tape *tape, int slot, hn_strbuf *text) {
+    const int constant = slot - tape->info.n_inputs;
+    if (constant < 0) {
+        hn_strbuf_printf(text, " in%d", slot);
+    } else if (constant < tape->n_constants) {
+        hn_strbuf_printf(text, " %.17g", tape->constants[constant]);
+    } else {
+        hn_strbuf_printf(text, " s%d", slot);
+    }
+}
+
+void hn_tape_list(const hn_tape *tape, hn_strbuf *text) {
+    for (const hn_tape_instruction *i = tape->code; i->code != TAPE_END; i++) {
+        hn_strbuf_printf(text, "s%d", i->v[0]);
+        if (i->code == TAPE_SINCOS) {
+            hn_strbuf_printf(text, " s%d", i->v[2]);
+        }
+        hn_strbuf_printf(text, " = %s :", name_of(i));
+        for (int k = 0; k < operands_of(i); k++) {
+            list_place(tape, i->v[1 + k], text);
+        }
+        hn_strbuf_add(text, "\n");
+    }
+    hn_strbuf_add(text, "out");
+    for (int k = 0; k < tape->info.n_outputs; k++) {
+        list_place(tape, tape->outputs[k], text);
+    }
+    hn_strbuf_add(text, "\n");
+}

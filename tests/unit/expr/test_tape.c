@@ -1,0 +1,286 @@
+#include "support/near.h"
+
+#include "base/strbuf.h"
+#include "expr/tape.h"
+#include "support/alloc.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N_SYMBOLS = 5, N_POOL = 120 };
+
+static unsigned next_random(unsigned *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static double random_between(unsigned *seed, double low, double high) {
+    return low + (high - low) * next_random(seed) / (double)(1u << 24);
+}
+
+/// A pool of expressions that grow on one another, values kept moderate.
+static void grow_pool(hn_graph *g, unsigned *seed, hn_ex pool[N_POOL]) {
+    char name[8] = "x0";
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        name[1] = (char)('0' + i);
+        pool[i] = hn_symbol(g, name, NULL);
+    }
+    for (int i = N_SYMBOLS; i < N_POOL; i++) {
+        const hn_ex a = pool[next_random(seed) % (unsigned)i],
+                    b = pool[next_random(seed) % (unsigned)i];
+        const hn_ex k = hn_num(floor(random_between(seed, -4, 5)) / 2);
+        switch (next_random(seed) % 9) {
+        case 0:
+            pool[i] = hn_add(g, a, b);
+            break;
+        case 1:
+            pool[i] = hn_sub(g, hn_mul(g, k, a), b);
+            break;
+        case 2:
+            pool[i] = hn_mul(g, hn_sin(g, a), b);
+            break;
+        case 3:
+            pool[i] = hn_mul(g, hn_cos(g, b), hn_scale(-0.5, a));
+            break;
+        case 4:
+            pool[i] = hn_div(g, a, hn_add(g, hn_num(2), hn_mul(g, b, b)));
+            break;
+        case 5:
+            pool[i] = hn_sqrt(g, hn_add(g, hn_num(1), hn_mul(g, a, a)));
+            break;
+        case 6:
+            pool[i] =
+                hn_apply(g, HN_OP_ATAN2, (const hn_ex[]){a, hn_add(g, hn_num(1.5), hn_cos(g, b))});
+            break;
+        case 7:
+            pool[i] = hn_add(g, hn_mul(g, hn_sin(g, a), hn_cos(g, b)), hn_mul(g, k, hn_sin(g, b)));
+            break;
+        default:
+            pool[i] = hn_apply(g, HN_OP_TANH, (const hn_ex[]){hn_sub(g, a, hn_scale(2, b))});
+            break;
+        }
+    }
+}
+
+static hn_tape *compile(hn_graph *g, const hn_ex *outputs, int n) {
+    int symbols[N_SYMBOLS];
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        symbols[i] = i;
+    }
+    hn_tape *tape = NULL;
+    assert_int_equal(hn_tape_compile(g, outputs, n, symbols, N_SYMBOLS, &tape), HN_OK);
+    return tape;
+}
+
+static double *workspace(const hn_tape *tape) {
+    double *work = malloc((hn_tape_work_size(tape) + 1) * sizeof *work);
+    assert_non_null(work);
+    hn_poison_fill(work, hn_tape_work_size(tape));
+    hn_tape_prepare(tape, work);
+    return work;
+}
+
+// the graph evaluated node by node is the other path: no fusing, no slots, no scaling
+static void random_graphs_agree_with_the_graph_itself(void **state) {
+    (void)state;
+    for (unsigned seed = 1; seed <= 300; seed++) {
+        unsigned s = seed;
+        hn_graph *g = hn_graph_create();
+        hn_ex pool[N_POOL];
+        grow_pool(g, &s, pool);
+        const int n = seed % 2 ? N_POOL : 7;
+        hn_tape *tape = compile(g, pool + N_POOL - n, n);
+        double *work = workspace(tape), x[N_SYMBOLS], out[N_POOL];
+        for (int k = 0; k < 3; k++) {
+            for (int i = 0; i < N_SYMBOLS; i++) {
+                x[i] = random_between(&s, -2, 2);
+            }
+            hn_poison_fill(out, N_POOL);
+            hn_tape_eval(tape, x, out, work);
+            for (int i = 0; i < n; i++) {
+                const double expected = hn_graph_eval(g, pool[N_POOL - n + i], x);
+                // a hundred operations whose condition is moderate
+                assert_near(out[i], expected, 1e-9 * (1 + fabs(expected)));
+            }
+        }
+        free(work);
+        hn_tape_free(tape);
+        hn_graph_free(g);
+    }
+}
+
+static void fewer_outputs_give_the_same_values_in_fewer_slots(void **state) {
+    (void)state;
+    unsigned s = 99;
+    hn_graph *g = hn_graph_create();
+    hn_ex pool[N_POOL];
+    grow_pool(g, &s, pool);
+    hn_tape *all = compile(g, pool, N_POOL), *last = compile(g, pool + N_POOL - 1, 1);
+    double *work_all = workspace(all), *work_last = workspace(last), out[N_POOL], one;
+    const double x[N_SYMBOLS] = {0.3, -1.1, 0.7, 1.9, -0.2};
+    hn_tape_eval(all, x, out, work_all);
+    hn_tape_eval(last, x, &one, work_last);
+    assert_near(one, out[N_POOL - 1], 1e-12 * (1 + fabs(one)));
+    assert_true(hn_tape_get_info(last).slots < hn_tape_get_info(all).slots);
+    assert_true(hn_tape_get_info(last).ops < hn_tape_get_info(all).ops);
+    free(work_all);
+    free(work_last);
+    hn_tape_free(all);
+    hn_tape_free(last);
+    hn_graph_free(g);
+}
+
+static void evaluation_allocates_nothing_and_repeats_to_the_bit(void **state) {
+    (void)state;
+    unsigned s = 5;
+    hn_graph *g = hn_graph_create();
+    hn_ex pool[N_POOL];
+    grow_pool(g, &s, pool);
+    hn_tape *tape = compile(g, pool, N_POOL);
+    hn_graph_free(g); // a tape outlives its graph
+    double *work = workspace(tape), first[N_POOL], second[N_POOL];
+    const double x[N_SYMBOLS] = {0.3, -1.1, 0.7, 1.9, -0.2}, y[N_SYMBOLS] = {1, 2, -1, 0.5, 0};
+    const long before = hn_alloc_count();
+    hn_tape_eval(tape, x, first, work);
+    hn_tape_eval(tape, y, second, work);
+    hn_tape_eval(tape, x, second, work);
+    assert_int_equal(hn_alloc_count(), before);
+    assert_memory_equal(first, second, sizeof first);
+    free(work);
+    hn_tape_free(tape);
+}
+
+static void operations_are_counted_exactly(void **state) {
+    (void)state;
+    hn_graph *g = hn_graph_create();
+    hn_ex x[N_SYMBOLS];
+    char name[8] = "x0";
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        name[1] = (char)('0' + i);
+        x[i] = hn_symbol(g, name, NULL);
+    }
+    // sin and cos of one argument, one product each, one sum: 1 + 2 + 1
+    const hn_ex turn =
+        hn_add(g, hn_mul(g, x[0], hn_cos(g, x[1])), hn_mul(g, x[2], hn_sin(g, x[1])));
+    hn_tape *tape = compile(g, &turn, 1);
+    hn_tape_info info = hn_tape_get_info(tape);
+    assert_int_equal(info.sincos, 1);
+    assert_int_equal(info.mul, 2);
+    assert_int_equal(info.add, 1);
+    assert_int_equal(info.ops, 4);
+    assert_int_equal(info.instructions, 2);
+    hn_tape_free(tape);
+    // a quotient is one division, a difference one addition; a negated product inside a sum costs no negation
+    const hn_ex quotient = hn_sub(g, hn_div(g, x[0], x[1]), hn_mul(g, x[2], x[3]));
+    tape = compile(g, &quotient, 1);
+    info = hn_tape_get_info(tape);
+    assert_int_equal(info.div, 1);
+    assert_int_equal(info.mul, 1);
+    assert_int_equal(info.add, 1);
+    assert_int_equal(info.ops, 3);
+    hn_tape_free(tape);
+    // inputs and constants as outputs cost nothing
+    const hn_ex plain[2] = {x[3], hn_num(2.5)};
+    tape = compile(g, plain, 2);
+    assert_int_equal(hn_tape_get_info(tape).ops, 0);
+    double *work = workspace(tape), out[2];
+    hn_tape_eval(tape, (const double[]){1, 2, 3, 4, 5}, out, work);
+    assert_near(out[0], 4, 0);
+    assert_near(out[1], 2.5, 0);
+    free(work);
+    hn_tape_free(tape);
+    hn_graph_free(g);
+}
+
+static void a_listing_shows_what_runs(void **state) {
+    (void)state;
+    hn_graph *g = hn_graph_create();
+    hn_ex x[N_SYMBOLS];
+    char name[8] = "x0";
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        name[1] = (char)('0' + i);
+        x[i] = hn_symbol(g, name, NULL);
+    }
+    const hn_ex e = hn_add(g, hn_mul(g, x[0], hn_cos(g, x[1])), hn_mul(g, x[2], hn_sin(g, x[1])));
+    hn_tape *tape = compile(g, &e, 1);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_tape_list(tape, &b);
+    assert_non_null(strstr(hn_strbuf_text(&b), "sincos a : in1"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "a * b + c * d :"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "out s"));
+    hn_strbuf_reset(&b);
+    hn_tape_free(tape);
+    hn_graph_free(g);
+}
+
+static void a_chain_of_a_hundred_thousand_nodes_compiles_and_runs(void **state) {
+    (void)state;
+    hn_graph *g = hn_graph_create();
+    hn_ex x[N_SYMBOLS];
+    char name[8] = "x0";
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        name[1] = (char)('0' + i);
+        x[i] = hn_symbol(g, name, NULL);
+    }
+    hn_ex e = x[0];
+    for (int i = 0; i < 50000; i++) {
+        e = hn_scale(0.5, hn_sin(g, hn_add(g, e, x[1])));
+    }
+    hn_tape *tape = compile(g, &e, 1);
+    assert_true(hn_tape_get_info(tape).slots < 20); // a chain needs no more than its ends
+    double *work = workspace(tape), out;
+    hn_tape_eval(tape, (const double[]){0.3, 0.4, 0, 0, 0}, &out, work);
+    double expected = 0.3;
+    for (int i = 0; i < 50000; i++) {
+        expected = 0.5 * sin(expected + 0.4);
+    }
+    assert_near(out, expected, 1e-14);
+    free(work);
+    hn_tape_free(tape);
+    hn_graph_free(g);
+}
+
+static void out_of_memory_is_told_and_leaks_nothing(void **state) {
+    (void)state;
+    unsigned s = 17;
+    hn_graph *g = hn_graph_create();
+    hn_ex pool[N_POOL];
+    grow_pool(g, &s, pool);
+    int symbols[N_SYMBOLS] = {0, 1, 2, 3, 4};
+    hn_tape *tape = NULL;
+    assert_int_equal(hn_tape_compile(g, pool, N_POOL, symbols, N_SYMBOLS, &tape), HN_OK);
+    hn_tape_free(tape);
+    const long live = hn_alloc_live();
+    int failures = 0;
+    for (long n = 1; n < 2000; n++) {
+        hn_alloc_fail_at(n);
+        const hn_status status = hn_tape_compile(g, pool, N_POOL, symbols, N_SYMBOLS, &tape);
+        const int hit = hn_alloc_has_failed();
+        hn_alloc_fail_at(0);
+        if (!hit) {
+            assert_int_equal(status, HN_OK);
+            hn_tape_free(tape);
+            break;
+        }
+        assert_int_equal(status, HN_ERR_MEMORY);
+        failures++;
+        assert_int_equal(hn_alloc_live(), live);
+    }
+    assert_true(failures > 5);
+    hn_graph_free(g);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_graphs_agree_with_the_graph_itself),
+        cmocka_unit_test(fewer_outputs_give_the_same_values_in_fewer_slots),
+        cmocka_unit_test(evaluation_allocates_nothing_and_repeats_to_the_bit),
+        cmocka_unit_test(operations_are_counted_exactly),
+        cmocka_unit_test(a_listing_shows_what_runs),
+        cmocka_unit_test(a_chain_of_a_hundred_thousand_nodes_compiles_and_runs),
+        cmocka_unit_test(out_of_memory_is_told_and_leaks_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
