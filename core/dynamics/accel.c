@@ -72,10 +72,10 @@ static hn_status compile_tape(hn_accel *s, hn_system *sys) {
     if (!scratch) {
         return HN_ERR_MEMORY;
     }
-    const hn_ldl_opts opts = {.pairs = HN_ACCEL_PAIRS};
+    const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
     hn_ldl ldl;
     hn_ex *x = NULL, *outputs = NULL;
-    hn_status status = hn_ldl_build(sys, &opts, scratch, &ldl);
+    hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
     s->available = status == HN_OK && ldl.available;
     if (s->available) {
         x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);

@@ -51,8 +51,9 @@ static void list_values(hn_factor *f, hn_ex *outputs) {
 }
 
 static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
-    const hn_ldl_opts opts = {.identity = weight == HN_FACTOR_IDENTITY, .pairs = HN_ACCEL_PAIRS};
-    hn_status status = hn_ldl_build(sys, &opts, arena, &f->ldl);
+    const hn_entries *W = weight == HN_FACTOR_MASS ? &sys->M : NULL;
+    const hn_ldl_input in = {sys->nv, sys->nc, W, &sys->J, HN_ACCEL_PAIRS};
+    hn_status status = hn_ldl_build(sys->g, &in, arena, &f->ldl);
     f->info.available = f->ldl.available;
     if (status != HN_OK || !f->ldl.available) {
         return status;

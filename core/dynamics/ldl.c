@@ -22,25 +22,25 @@ typedef struct work {
 
 // setting up -------------------------------------------------------------------------------------------------------
 
-static void fill(work *w, const hn_system *sys, int identity) {
-    for (int i = 0; i < sys->nv && identity; i++) {
+static void fill(work *w, const hn_ldl_input *in) {
+    for (int i = 0; i < in->nv && !in->W; i++) {
         hn_symmat_set(w->K, i, i, hn_num(1));
     }
-    for (int k = 0; k < sys->M.n && !identity; k++) {
-        hn_symmat_set(w->K, sys->M.at[k].row, sys->M.at[k].col, sys->M.at[k].e);
+    for (int k = 0; in->W && k < in->W->n; k++) {
+        hn_symmat_set(w->K, in->W->at[k].row, in->W->at[k].col, in->W->at[k].e);
     }
-    for (int k = 0; k < sys->J.n; k++) {
-        hn_symmat_set(w->K, sys->nv + sys->J.at[k].row, sys->J.at[k].col, sys->J.at[k].e);
+    for (int k = 0; k < in->J->n; k++) {
+        hn_symmat_set(w->K, in->nv + in->J->at[k].row, in->J->at[k].col, in->J->at[k].e);
     }
-    for (int i = 0; i < sys->nv; i++) {
+    for (int i = 0; i < in->nv; i++) {
         w->ref[i] = hn_symmat_get(w->K, i, i);
         w->massive[i] = !hn_is_zero(w->ref[i]);
     }
 }
 
-static int same_pattern(const hn_system *sys, int first, int second, int n) {
+static int same_pattern(const hn_entries *J, int first, int second, int n) {
     for (int k = 0; k < n; k++) {
-        if (sys->J.at[first + k].col != sys->J.at[second + k].col) {
+        if (J->at[first + k].col != J->at[second + k].col) {
             return 0;
         }
     }
@@ -48,16 +48,17 @@ static int same_pattern(const hn_system *sys, int first, int second, int n) {
 }
 
 /// Multipliers next to each other that touch the same coordinates.
-static void pair_rows(work *w, const hn_system *sys) {
+static void pair_rows(work *w, const hn_ldl_input *in) {
+    const hn_entries *J = in->J;
     int start = 0, free_row = -1, free_start = 0, free_n = 0;
-    for (int row = 0; row < sys->nc; row++) {
+    for (int row = 0; row < in->nc; row++) {
         int n = 0;
-        while (start + n < sys->J.n && sys->J.at[start + n].row == row) {
+        while (start + n < J->n && J->at[start + n].row == row) {
             n++;
         }
-        if (free_row >= 0 && free_n == n && same_pattern(sys, free_start, start, n)) {
-            w->partner[sys->nv + row] = sys->nv + free_row;
-            w->partner[sys->nv + free_row] = sys->nv + row;
+        if (free_row >= 0 && free_n == n && same_pattern(J, free_start, start, n)) {
+            w->partner[in->nv + row] = in->nv + free_row;
+            w->partner[in->nv + free_row] = in->nv + row;
             free_row = -1;
         } else {
             free_row = row;
@@ -277,9 +278,9 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     return HN_OK;
 }
 
-hn_status hn_ldl_build(hn_system *sys, const hn_ldl_opts *opts, hn_arena *arena, hn_ldl *out) {
-    work w = {.g = sys->g, .out = out, .arena = arena};
-    hn_status status = allocate(&w, out, sys->nv, sys->nc);
+hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_ldl *out) {
+    work w = {.g = g, .out = out, .arena = arena};
+    hn_status status = allocate(&w, out, in->nv, in->nc);
     if (status != HN_OK) {
         return status;
     }
@@ -287,9 +288,9 @@ hn_status hn_ldl_build(hn_system *sys, const hn_ldl_opts *opts, hn_arena *arena,
     if (!w.K) {
         return HN_ERR_MEMORY;
     }
-    fill(&w, sys, opts->identity);
-    if (opts->pairs) {
-        pair_rows(&w, sys);
+    fill(&w, in);
+    if (in->pairs) {
+        pair_rows(&w, in);
     }
     for (int i = 0; i < out->n; i++) {
         update_degree(&w, i);

@@ -11,7 +11,7 @@
 // multiplier the sum that the coordinates alone contributed. A pivot small against its reference is lost digits.
 
 #include "base/arena.h"
-#include "dynamics/system_impl.h"
+#include "dynamics/entries.h"
 
 typedef struct hn_ldl {
     int available; ///< 0: no static order without a zero pivot
@@ -28,14 +28,17 @@ typedef struct hn_ldl {
     hn_ex (*guard)[2]; ///< pivot, reference; constant ones were checked here and left out
 } hn_ldl;
 
-typedef struct hn_ldl_opts {
-    int identity; ///< W is the identity
-    int pairs;    ///< take multipliers in pairs
-} hn_ldl_opts;
+typedef struct hn_ldl_input {
+    int nv, nc;
+    const hn_entries *W; ///< lower triangle with diagonal; NULL: the identity
+    const hn_entries *J; ///< sorted by row, then column
+    int pairs;           ///< take multipliers in pairs
+} hn_ldl_input;
 
 /// Arrays from `arena`. Fails: HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_ldl_build(hn_system *sys, const hn_ldl_opts *opts, hn_arena *arena,
+HN_MUST_CHECK hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena,
                                      hn_ldl *out);
+
 /// Whether the solves of eval.h and factor.h pair multipliers; see ldl.c for the figures behind it.
 enum { HN_ACCEL_PAIRS = 0 };
 
