@@ -1,0 +1,509 @@
+// Grading of Problem 3: right answers in many spellings, each known mistake named, unreadable files refused with a reason.
+#include "grade/grade.h"
+
+#include "support/alloc.h"
+#include "support/near.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define P3 "lessons/01-closed-loops/problems/p3.json"
+
+// the lesson's own result, section 5
+static const char *const RIGHT[8] = {"-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)",
+                                     "l4*sin(th4)",  "l1*cos(th1)",  "l2*cos(th2)",
+                                     "-l3*cos(th3)", "-l4*cos(th4)"};
+
+static hn_problem *load_p3(void) {
+    hn_problem *p = NULL;
+    hn_diags diags = {0};
+    if (hn_problem_load_file(P3, &p, &diags) != HN_OK) {
+        fail_msg("%s: %s", diags.item[0].pointer, diags.item[0].message);
+    }
+    return p;
+}
+
+static int setup(void **state) {
+    *state = load_p3();
+    return 0;
+}
+
+static int teardown(void **state) {
+    hn_problem_free(*state);
+    return 0;
+}
+
+static void grade(const hn_problem *p, const char *text, hn_verdict *v) {
+    memset(v, 0x5A, sizeof *v);
+    assert_int_equal(hn_grade_json(p, text, strlen(text), 0, v), HN_OK);
+}
+
+/// Grades the right answer with entry `k` (0..7) replaced.
+static void grade_with(const hn_problem *p, int k, const char *formula, hn_verdict *v) {
+    char text[8192];
+    size_t at = 0;
+    for (int i = 0; i < 8; i++) {
+        at += (size_t)snprintf(text + at, sizeof text - at, "%s\"%s\"",
+                               i == 0   ? "{\"J\": [["
+                               : i == 4 ? "], ["
+                                        : ", ",
+                               i == k ? formula : RIGHT[i]);
+    }
+    snprintf(text + at, sizeof text - at, "]]}");
+    grade(p, text, v);
+}
+
+static void the_lessons_jacobian_has_full_score(void **state) {
+    hn_verdict v;
+    grade_with(*state, -1, "", &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_near(v.score, 8, 0);
+    assert_near(v.max_score, 8, 0);
+    assert_int_equal(v.n_right, 8);
+    assert_int_equal(v.shown_entry, -1);
+    assert_true(v.n_states >= 20);
+    assert_string_equal(v.entry[6].name, "J23");
+    assert_string_equal(v.summary, "all 8 entries are right");
+}
+
+static void a_right_entry_is_right_in_any_spelling(void **state) {
+    static const char *const spellings[] = {"-sin(th1)*l1",
+                                            "-(l1)*sin(th1) + 0",
+                                            "l1*cos(th1 + pi/2)",
+                                            "-l1*sqrt(1-cos(th1)^2)*sign(sin(th1))",
+                                            "-l1 * sin(th1 + 2*3.141592654)",
+                                            "-l1*sin(theta1)",
+                                            "l1*sin(-th1)",
+                                            "-l1*sin(th1)^2/sin(th1)",
+                                            "0.5*(-l1*sin(th1)) - l1*sin(th1)/2"};
+    for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
+        hn_verdict v;
+        grade_with(*state, 0, spellings[i], &v);
+        if (!v.entry[0].right) {
+            fail_msg("%s: %s", spellings[i], v.entry[0].explanation);
+        }
+        assert_false(v.entry[0].closed_only);
+    }
+}
+
+static void a_formula_that_uses_the_closed_loop_is_right_and_told(void **state) {
+    hn_verdict v;
+    // phi_2 = 0 says -l1 sin th1 = l2 sin th2 - l3 sin th3 - l4 sin th4
+    grade_with(*state, 0, "l2*sin(th2) - l3*sin(th3) - l4*sin(th4)", &v);
+    assert_true(v.entry[0].right);
+    assert_true(v.entry[0].closed_only);
+    assert_non_null(strstr(v.entry[0].explanation, "closed"));
+    assert_near(v.score, 8, 0);
+}
+
+static void each_known_mistake_is_named_and_shown_at_a_state(void **state) {
+    static const struct {
+        int entry;
+        const char *formula, *mistake;
+        double points;
+    } rows[] = {
+        {0, "l1*sin(th1)", "sign", 0.5},
+        {2, "-l3*sin(th3)", "sign", 0.5},
+        {7, "l4*cos(th4)", "sign", 0.5},
+        {0, "-l1*cos(th1)", "swapped", 0},
+        {2, "l3*cos(th3)", "swapped", 0},
+        {0, "l1*cos(th1)", "row", 0.25},
+        {4, "-l1*sin(th1)", "row", 0.25},
+        {0, "-l1*sin(th1*pi/180)", "degrees", 0.5},
+        {5, "l2*cos(180*th2/pi)", "degrees", 0.5},
+        {5, "pi/180*l2*cos(th2*pi/180)", "degrees", 0.5},
+        {0, "-sin(th1)", "length", 0.25},
+        {6, "-cos(th3)", "length", 0.25},
+        {0, "-l1*sin(th2)", "variable", 0.25},
+        {4, "l3*cos(th1)", "variable", 0.25},
+        {1, "-l1*sin(th1)", "column", 0},
+        {0, "l1*cos(th1) + l2*cos(th2) - l3*cos(th3) - l4*cos(th4)", "undifferentiated", 0},
+        {0, "-2*l1*sin(th1)", "factor", 0},
+        {0, "0", "zero", 0},
+        {0, "-0.84", "number", 0},
+        {0, "", "blank", 0},
+        {0, "th1^2", "other", 0},
+        {0, "l1*sin(th1", "unreadable", 0},
+        {0, "-l1*sin(theta)", "unreadable", 0},
+        {0, "1/(th1 - th1)", "unreadable", 0},
+        {0, "sqrt(-l1^2)", "not-finite", 0},
+        {0, "log(sin(th1))", "not-finite", 0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        hn_verdict v;
+        grade_with(*state, rows[i].entry, rows[i].formula, &v);
+        const hn_entry_verdict *e = &v.entry[rows[i].entry];
+        if (e->right || strcmp(e->mistake, rows[i].mistake) != 0) {
+            fail_msg("%s: '%s' (%s), expected '%s'", rows[i].formula, e->mistake, e->explanation,
+                     rows[i].mistake);
+        }
+        assert_true(e->explanation[0]);
+        assert_near(e->points, rows[i].points, 0);
+        assert_near(v.score, 7 + rows[i].points, 0);
+        assert_int_equal(v.n_right, 7);
+        if (e->state < 0) {
+            assert_true(strcmp(e->mistake, "blank") == 0 || strcmp(e->mistake, "unreadable") == 0);
+            assert_int_equal(v.shown_entry, -1);
+        } else {
+            assert_int_equal(v.shown_entry, rows[i].entry);
+            assert_false(fabs(e->given_value - e->expected_value) <= e->allowed);
+        }
+    }
+}
+
+static void the_state_shown_closes_the_loop_and_holds_the_expected_value(void **state) {
+    hn_verdict v;
+    grade_with(*state, 3, "l4*cos(th4)", &v);
+    assert_int_equal(v.shown_entry, 3);
+    assert_int_equal(v.n_names, 8);
+    assert_int_equal(v.n_params, 4);
+    double l[5] = {0}, th[5] = {0};
+    for (int i = 0; i < 8; i++) {
+        int k = v.names[i][strlen(v.names[i]) - 1] - '0';
+        *(i < 4 ? &l[k] : &th[k]) = v.values[i];
+    }
+    double x = 0, y = 0;
+    for (int k = 1; k <= 4; k++) {
+        x += (k < 3 ? 1 : -1) * l[k] * cos(th[k]);
+        y += (k < 3 ? 1 : -1) * l[k] * sin(th[k]);
+        assert_true(l[k] >= 0.3 && l[k] <= 3);
+    }
+    assert_near(hypot(x, y), 0, 1e-14);
+    assert_near(v.entry[3].expected_value, l[4] * sin(th[4]), 1e-15);
+    assert_near(v.entry[3].given_value, l[4] * cos(th[4]), 1e-15);
+}
+
+static void right_entries_are_never_accused_whatever_the_seed(void **state) {
+    const char *text =
+        "{\"J\": [[\"-l1*sin(th1)\",\"-l2*sin(th2)\",\"l3*sin(th3)\",\"l4*sin(th4)\"],"
+        "[\"l1*cos(th1)\",\"l2*cos(th2)\",\"-l3*cos(th3)\",\"l4*cos(th4)\"]]}";
+    for (uint64_t seed = 1; seed <= 200; seed++) {
+        hn_verdict v;
+        assert_int_equal(hn_grade_json(*state, text, strlen(text), seed, &v), HN_OK);
+        assert_int_equal(v.n_right, 7);
+        assert_string_equal(v.entry[7].mistake, "sign");
+        assert_near(v.score, 7.5, 0);
+    }
+}
+
+static void a_transposed_matrix_earns_its_share_and_is_told(void **state) {
+    hn_verdict v;
+    grade(*state,
+          "{\"J\": [[\"-l1*sin(th1)\",\"l1*cos(th1)\"],[\"-l2*sin(th2)\",\"l2*cos(th2)\"],"
+          "[\"l3*sin(th3)\",\"-l3*cos(th3)\"],[\"l4*sin(th4)\",\"-l4*cos(th4)\"]]}",
+          &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_near(v.score, 4, 0);
+    assert_non_null(strstr(v.summary, "transposed"));
+    assert_string_equal(v.entry[0].mistake, "transposed");
+}
+
+static void links_on_the_wrong_side_of_the_loop_are_told_by_column(void **state) {
+    hn_verdict v;
+    grade(*state,
+          "{\"J\": [[\"-l1*sin(th1)\",\"-l2*sin(th2)\",\"-l3*sin(th3)\",\"-l4*sin(th4)\"],"
+          "[\"l1*cos(th1)\",\"l2*cos(th2)\",\"l3*cos(th3)\",\"l4*cos(th4)\"]]}",
+          &v);
+    assert_near(v.score, 6, 0);
+    assert_non_null(strstr(v.summary, "columns 3, 4: wrong sign in every row"));
+}
+
+static void files_that_cannot_be_graded_say_why(void **state) {
+    static const struct {
+        const char *text, *word;
+    } rows[] = {
+        {"", "empty"},
+        {"   ", "white space"},
+        {"{}", "'J' is missing: the object is empty"},
+        {"{\"j\": []}", "'J' is missing"},
+        {"[]", "is a list, expected an object"},
+        {"\"J\"", "is a text"},
+        {"null", "is null"},
+        {"{\"J\": NaN}", "NaN"},
+        {"{\"J\": [[1e400,0,0,0],[0,0,0,0]]}", "1e400"},
+        {"{\"J\": [[\"a\",\"b\"", "line 1"},
+        {"{\"J\": 3}", "is a number, expected a list of 2 rows"},
+        {"{\"J\": []}", "0 rows"},
+        {"{\"J\": [1, 2]}", "row 1 of 'J' is a number"},
+        {"{\"J\": [[1,2,3,4],[1,2,3]]}", "row 2 of 'J' has 3 entries"},
+        {"{\"J\": [[1,2,3],[1,2,3]]}", "2 rows of 3 entries, expected 2 rows of 4"},
+        {"{\"J\": [[1,2,3,4]]}", "1 rows of 4"},
+        {"{\"J\": [[1,2,3,{}],[1,2,3,4]]}", "is an object"},
+        {"{\"J\": [[1,2,3,true],[1,2,3,4]]}", "true or false"},
+        {"{\"problem\": \"p5\", \"J\": []}", "answers problem 'p5'"},
+        {"[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]", "nested deeper"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        hn_verdict v;
+        grade(*state, rows[i].text, &v);
+        if (v.kind != HN_VERDICT_UNGRADABLE ||
+            (!strstr(v.reason, rows[i].word) && !strstr(v.hint, rows[i].word))) {
+            fail_msg("%s: '%s' (%s), expected '%s'", rows[i].text, v.reason, v.hint, rows[i].word);
+        }
+        assert_near(v.score, 0, 0);
+        assert_int_equal(v.n_entries, 0);
+    }
+}
+
+static void numbers_and_null_are_entries_that_are_wrong_not_unreadable_files(void **state) {
+    hn_verdict v;
+    grade(*state,
+          "{\"J\": [[1, null, -2.5, 0], [\"l1*cos(th1)\", \" \", 0, 1e300]], \"student\": \"s\", "
+          "\"extra\": 1}",
+          &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_near(v.score, 1, 0);
+    assert_string_equal(v.entry[0].mistake, "number");
+    assert_string_equal(v.entry[1].mistake, "blank");
+    assert_string_equal(v.entry[3].mistake, "zero");
+    assert_string_equal(v.entry[5].mistake, "blank");
+    assert_non_null(strstr(v.note, "'extra'"));
+}
+
+static void huge_and_malicious_formulas_are_bounded(void **state) {
+    static char text[HN_GRADE_MAX_BYTES + 10];
+    hn_verdict v;
+    memset(text, ' ', sizeof text - 1);
+    grade(*state, text, &v);
+    assert_non_null(strstr(v.reason, "1048576 bytes"));
+    // deep parentheses, a tower of powers, a long sum
+    char formula[4096] = "";
+    memset(formula, '(', 1500);
+    formula[1500] = '\0';
+    grade_with(*state, 0, formula, &v);
+    assert_string_equal(v.entry[0].mistake, "unreadable");
+    snprintf(formula, sizeof formula, "(th1+1)");
+    for (int i = 0; i < 200; i++) {
+        strcat(formula, "^9");
+    }
+    grade_with(*state, 0, formula, &v);
+    assert_false(v.entry[0].right);
+    formula[0] = '\0';
+    for (int i = 0; i < 90; i++) {
+        strcat(formula, "((");
+    }
+    strcat(formula, "th1+l1");
+    for (int i = 0; i < 90; i++) {
+        strcat(formula, ")^9+th2)");
+    }
+    grade_with(*state, 0, formula, &v);
+    assert_false(v.entry[0].right);
+    memset(formula, '1', sizeof formula);
+    formula[HN_GRADE_MAX_FORMULA + 1] = '\0';
+    grade_with(*state, 0, formula, &v);
+    assert_string_equal(v.entry[0].mistake, "unreadable");
+}
+
+static void the_shipped_answer_has_full_score(void **state) {
+    hn_verdict v;
+    assert_int_equal(hn_grade_file(*state, "lessons/01-closed-loops/answers/p3.json", 0, &v),
+                     HN_OK);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_near(v.score, 8, 0);
+    assert_string_equal(v.note, "");
+}
+
+static void a_file_that_is_missing_is_ungradable(void **state) {
+    hn_verdict v;
+    assert_int_equal(hn_grade_file(*state, "tests/no/such/file.json", 0, &v), HN_OK);
+    assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+    assert_non_null(strstr(v.reason, "tests/no/such/file.json"));
+}
+
+static void every_prefix_of_a_submission_ends_in_a_verdict(void **state) {
+    const char *text = "{\"J\": "
+                       "[[\"-l1*sin(th1)\",\"-l2*sin(th2)\",3,null],[\"l1*cos(th1)\",\"l2*cos(th2)"
+                       "\",\"-l3*cos(th3)\",\"\\u0078\"]]}";
+    for (size_t n = 0; n < strlen(text); n++) {
+        hn_verdict v;
+        char *exact = malloc(n + 1);
+        memcpy(exact, text, n);
+        assert_int_equal(hn_grade_json(*state, exact, n, 0, &v), HN_OK);
+        assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+        free(exact);
+    }
+}
+
+// the outputs -----------------------------------------------------------------------------------------
+
+static cJSON *parse(hn_strbuf *b) {
+    cJSON *root = cJSON_Parse(hn_strbuf_text(b));
+    assert_non_null(root);
+    hn_strbuf_reset(b);
+    return root;
+}
+
+static double number_of(const cJSON *node, const char *key) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
+    assert_true(cJSON_IsNumber(m));
+    return m->valuedouble;
+}
+
+static const char *text_of(const cJSON *node, const char *key) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
+    assert_true(cJSON_IsString(m));
+    return m->valuestring;
+}
+
+static void gradescope_gets_its_fields_and_the_same_score(void **state) {
+    static const char *const top[] = {"score",         "execution_time",     "output",
+                                      "output_format", "test_output_format", "test_name_format",
+                                      "visibility",    "stdout_visibility",  "extra_data",
+                                      "tests",         "leaderboard"};
+    static const char *const inner[] = {"score",       "max_score",  "status",    "name",
+                                        "name_format", "number",     "output",    "output_format",
+                                        "tags",        "visibility", "extra_data"};
+    hn_verdict v;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    grade_with(*state, 2, "-l3*sin(th3)", &v);
+    hn_verdict_gradescope(&b, &v, 0.25);
+    cJSON *root = parse(&b);
+    double sum = 0;
+    for (const cJSON *m = root->child; m; m = m->next) {
+        int known = 0;
+        for (size_t i = 0; i < sizeof top / sizeof top[0]; i++) {
+            known |= strcmp(m->string, top[i]) == 0;
+        }
+        assert_true(known);
+    }
+    const cJSON *tests = cJSON_GetObjectItemCaseSensitive(root, "tests"), *test;
+    cJSON_ArrayForEach(test, tests) {
+        for (const cJSON *m = test->child; m; m = m->next) {
+            int known = 0;
+            for (size_t i = 0; i < sizeof inner / sizeof inner[0]; i++) {
+                known |= strcmp(m->string, inner[i]) == 0;
+            }
+            assert_true(known);
+        }
+        sum += number_of(test, "score");
+        assert_near(number_of(test, "max_score"), 1, 0);
+    }
+    assert_int_equal(cJSON_GetArraySize(tests), 8);
+    assert_near(sum, 7.5, 0);
+    assert_near(number_of(root, "score"), sum, 0);
+    assert_near(number_of(root, "execution_time"), 0.25, 0);
+    const cJSON *third = cJSON_GetArrayItem(tests, 2);
+    assert_string_equal(text_of(third, "status"), "failed");
+    assert_string_equal(text_of(third, "number"), "1.3");
+    assert_string_equal(text_of(third, "name"), "J13 = d phi_1 / d th3");
+    assert_non_null(strstr(text_of(third, "output"), "the sign is wrong"));
+    assert_string_equal(text_of(cJSON_GetArrayItem(tests, 0), "status"), "passed");
+    assert_string_equal(text_of(cJSON_GetObjectItemCaseSensitive(root, "extra_data"), "status"),
+                        "graded");
+    cJSON_Delete(root);
+
+    grade(*state, "{}", &v);
+    hn_verdict_gradescope(&b, &v, -1);
+    root = parse(&b);
+    assert_near(number_of(root, "score"), 0, 0);
+    assert_null(cJSON_GetObjectItemCaseSensitive(root, "execution_time"));
+    assert_non_null(strstr(text_of(root, "output"), "cannot be graded"));
+    assert_string_equal(text_of(cJSON_GetObjectItemCaseSensitive(root, "extra_data"), "status"),
+                        "ungradable");
+    cJSON_Delete(root);
+}
+
+static void json_and_text_tell_the_same_verdict(void **state) {
+    hn_verdict v;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    grade_with(*state, 0, "l1*sin(th1)", &v);
+    hn_verdict_json(&b, &v);
+    cJSON *root = parse(&b);
+    assert_near(number_of(root, "score"), 7.5, 0);
+    assert_string_equal(text_of(root, "status"), "graded");
+    assert_string_equal(text_of(root, "shown_entry"), "J11");
+    assert_string_equal(text_of(root, "shown_scene"), "four-angles-as-printed");
+    const cJSON *at = cJSON_GetObjectItemCaseSensitive(root, "shown_state"),
+                *entry = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(root, "entries"), 0);
+    assert_near(number_of(entry, "expected_value"),
+                -number_of(at, "l1") * sin(number_of(at, "th1")), 1e-15);
+    cJSON_Delete(root);
+    hn_verdict_text(&b, &v);
+    const char *text = hn_strbuf_text(&b);
+    assert_non_null(strstr(text, "score 7.5 of 8"));
+    assert_non_null(strstr(text, "the sign is wrong"));
+    assert_non_null(strstr(text, "at        l1 = "));
+    hn_strbuf_reset(&b);
+}
+
+static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void **state) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_problem_text(&b, *state);
+    assert_non_null(strstr(hn_strbuf_text(&b), "two freedoms"));
+    assert_non_null(
+        strstr(hn_strbuf_text(&b), "{\"J\": [[\"...\", \"...\", \"...\", \"...\"], [\"...\""));
+    hn_strbuf_clear(&b);
+    hn_problem_json(&b, *state);
+    cJSON *root = parse(&b);
+    assert_near(number_of(root, "points"), 8, 0);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(root, "entries")), 8);
+    cJSON_Delete(root);
+}
+
+static void a_faulty_problem_is_told(void **state) {
+    static const char *const bad[] = {"", "[]", "{}", "{\"id\":\"x\",\"phi\":[\"l1*(\"]}"};
+    (void)state;
+    for (size_t i = 0; i < 4; i++) {
+        hn_problem *p;
+        hn_diags diags = {0};
+        assert_int_equal(hn_problem_load_json(bad[i], strlen(bad[i]), &p, &diags), HN_ERR_INPUT);
+        assert_null(p);
+        assert_true(diags.n > 0);
+    }
+}
+
+static void memory_that_runs_out_is_the_graders_failure_and_nothing_leaks(void **state) {
+    cJSON_Hooks hooks = {malloc, free};
+    const char *text = "{\"J\": "
+                       "[[\"-l1*sin(th1)\",\"l2*sin(th2)\",\"x\",0],[\"l1*cos(th1)\",\"\",\"-l3*"
+                       "cos(th3)\",\"th1^2.5\"]]}";
+    hn_problem *p = load_p3();
+    (void)state;
+    cJSON_InitHooks(&hooks);
+    long live = hn_alloc_live(), n = 0;
+    int failed;
+    do {
+        hn_verdict v;
+        hn_alloc_fail_at(++n);
+        hn_status status = hn_grade_json(p, text, strlen(text), 0, &v);
+        failed = hn_alloc_has_failed();
+        hn_alloc_fail_at(0);
+        assert_true(status == HN_ERR_MEMORY || status == HN_OK);
+        assert_true(status == HN_ERR_MEMORY || v.kind == HN_VERDICT_GRADED);
+        assert_int_equal(hn_alloc_live(), live);
+        n += n > 300 ? n / 10 : 0; // the many evaluations are alike
+    } while (failed);
+    cJSON_InitHooks(NULL);
+    hn_problem_free(p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_lessons_jacobian_has_full_score),
+        cmocka_unit_test(a_right_entry_is_right_in_any_spelling),
+        cmocka_unit_test(a_formula_that_uses_the_closed_loop_is_right_and_told),
+        cmocka_unit_test(each_known_mistake_is_named_and_shown_at_a_state),
+        cmocka_unit_test(the_state_shown_closes_the_loop_and_holds_the_expected_value),
+        cmocka_unit_test(right_entries_are_never_accused_whatever_the_seed),
+        cmocka_unit_test(a_transposed_matrix_earns_its_share_and_is_told),
+        cmocka_unit_test(links_on_the_wrong_side_of_the_loop_are_told_by_column),
+        cmocka_unit_test(files_that_cannot_be_graded_say_why),
+        cmocka_unit_test(numbers_and_null_are_entries_that_are_wrong_not_unreadable_files),
+        cmocka_unit_test(huge_and_malicious_formulas_are_bounded),
+        cmocka_unit_test(the_shipped_answer_has_full_score),
+        cmocka_unit_test(a_file_that_is_missing_is_ungradable),
+        cmocka_unit_test(every_prefix_of_a_submission_ends_in_a_verdict),
+        cmocka_unit_test(gradescope_gets_its_fields_and_the_same_score),
+        cmocka_unit_test(json_and_text_tell_the_same_verdict),
+        cmocka_unit_test(the_statement_says_that_the_ground_is_held_and_how_to_hand_in),
+        cmocka_unit_test(a_faulty_problem_is_told),
+        cmocka_unit_test(memory_that_runs_out_is_the_graders_failure_and_nothing_leaks),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
