@@ -338,21 +338,28 @@ static int value(scan *s) {
     return expected(s, c > 0x20 && c < 0x7F ? "texts stand in double quotes" : NULL, "a value");
 }
 
-hn_status hn_json_text_check(const char *text, size_t n, int max_depth, hn_diag *diag) {
+hn_status hn_json_text_locate(const char *text, size_t n, int max_depth, size_t *offset,
+                              hn_diag *diag) {
     HN_ASSERT(text || n == 0);
     scan s = {.text = text, .n = n, .max_depth = max_depth, .diag = diag};
     skip_space(&s);
     if (s.at == s.n) {
+        *offset = n;
         return hn_diag_set(diag, HN_ERR_INPUT, "", NULL,
                            n == 0 ? "the text is empty" : "the text holds nothing but white space");
     }
-    if (!value(&s)) {
-        return s.status;
-    }
-    skip_space(&s);
-    if (s.at < s.n) {
+    if (value(&s)) {
+        skip_space(&s);
+        if (s.at == s.n) {
+            return HN_OK;
+        }
         expected(&s, NULL, "nothing after the value");
-        return s.status;
     }
-    return HN_OK;
+    *offset = s.at;
+    return s.status;
+}
+
+hn_status hn_json_text_check(const char *text, size_t n, int max_depth, hn_diag *diag) {
+    size_t offset;
+    return hn_json_text_locate(text, n, max_depth, &offset, diag);
 }

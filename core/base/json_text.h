@@ -12,5 +12,8 @@
 /// characters). Allocates nothing, time linear in n. Fails: HN_ERR_INPUT; HN_ERR_LIMIT (too deep).
 HN_MUST_CHECK hn_status hn_json_text_check(const char *text, size_t n, int max_depth,
                                            hn_diag *diag);
+/// The same, and in *offset the byte at which the text stops being JSON (untouched when it is).
+HN_MUST_CHECK hn_status hn_json_text_locate(const char *text, size_t n, int max_depth,
+                                            size_t *offset, hn_diag *diag);
 
 #endif

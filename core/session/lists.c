@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_TEXT = 1 << 20, MAX_TITLE = 200 };
+enum { MAX_TEXT = 1 << 20, MAX_TITLE = 256 };
 
 /// The whole file, zero-terminated, owned by the caller; NULL when it cannot be read or is too long.
 static char *read_file(const char *path) {

@@ -102,10 +102,8 @@ void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, con
     reply_document(r, kind, detail, hint, -1, NULL);
 }
 
-void hn_reply_bad_json(hn_request *r, size_t offset, const char *what) {
-    char detail[HN_DIAG_MESSAGE];
-    snprintf(detail, sizeof detail, "at byte %zu: %s", offset, what);
-    reply_document(r, HN_PROBLEM_BAD_JSON, detail, NULL, (long long)offset, NULL);
+void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {
+    reply_document(r, HN_PROBLEM_BAD_JSON, what, hint, (long long)offset, NULL);
 }
 
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags) {

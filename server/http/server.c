@@ -1,6 +1,7 @@
 #include "http/server_internal.h"
 
-#include "http/json_scan.h"
+#include "base/json_text.h"
+
 #include "http/listen.h"
 
 #include <stdio.h>
@@ -8,7 +9,7 @@
 #include <unistd.h>
 
 /// Beyond this much of an unwanted body the connection is closed rather than drained.
-enum { MAX_DRAINED = 8 << 20 };
+enum { MAX_DRAINED = 8 << 20, MAX_JSON_DEPTH = 64 };
 
 hn_http_opts hn_http_opts_default(void) {
     return (hn_http_opts){.host = "127.0.0.1",
@@ -137,9 +138,10 @@ static void take_body(hn_request *r, const char *data, size_t n) {
 
 /// Parses and checks the body; 0 when the reply is a problem.
 static int read_json(hn_request *r) {
-    hn_json_fault fault;
-    if (!hn_json_scan(r->body ? r->body : "", r->n_body, &fault)) {
-        hn_reply_bad_json(r, fault.offset, fault.what);
+    hn_diag fault = {0};
+    size_t offset = 0;
+    if (hn_json_text_locate(r->body, r->n_body, MAX_JSON_DEPTH, &offset, &fault) != HN_OK) {
+        hn_reply_bad_json(r, offset, fault.message, fault.hint);
         return 0;
     }
     r->json = cJSON_ParseWithLength(r->body, r->n_body);

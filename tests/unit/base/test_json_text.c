@@ -105,6 +105,24 @@ static void bytes_behind_the_length_are_not_read(void **state) {
     assert_int_equal(hn_json_text_check("true", 3, 8, NULL), HN_ERR_INPUT);
 }
 
+static void the_byte_of_the_fault_is_told(void **state) {
+    static const struct {
+        const char *text;
+        size_t offset;
+    } rows[] = {{"", 0},     {"  ", 2},           {"{\"a\" 1}", 5}, {"[1,]", 3},
+                {"{} x", 3}, {"{\"a\": nul}", 6}, {"\xc3\xa9", 0},  {"[\"\xc3\xa9\",", 6}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        size_t offset = 999;
+        assert_int_equal(hn_json_text_locate(rows[i].text, strlen(rows[i].text), 8, &offset, NULL),
+                         HN_ERR_INPUT);
+        assert_int_equal(offset, rows[i].offset);
+    }
+    size_t untouched = 999;
+    assert_int_equal(hn_json_text_locate("[1]", 3, 8, &untouched, NULL), HN_OK);
+    assert_int_equal(untouched, 999);
+}
+
 static void depth_is_a_limit_of_its_own(void **state) {
     hn_diag diag;
     (void)state;
@@ -117,6 +135,7 @@ int main(void) {
         cmocka_unit_test(unsound_texts_are_told_with_line_and_column),
         cmocka_unit_test(a_zero_byte_is_no_white_space),
         cmocka_unit_test(bytes_behind_the_length_are_not_read),
+        cmocka_unit_test(the_byte_of_the_fault_is_told),
         cmocka_unit_test(depth_is_a_limit_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
