@@ -265,7 +265,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
                             hn_status *ended, hn_diags *diags) {
     hn_diag diag = {0};
     hn_method_spec spec;
-    schedule times;
+    schedule times = {0};
     table tab = {0};
     hn_run *run = NULL;
     hn_status status = hn_method_parse(request->method, &spec, &diag);
