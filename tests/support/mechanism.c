@@ -72,7 +72,8 @@ static void triad(const double axis[3], const double ref[3], double out[3][3]) {
 
 // motion -----------------------------------------------------------------------------------------------------------
 
-void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3], double v[3], double a[3]) {
+void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3],
+                     double v[3], double a[3]) {
     double r[3], t[3];
     values_of(at, x);
     for (int i = 0; i < 3; i++) {
@@ -101,7 +102,8 @@ static void move_body(const hn_scene *scene, int body, double q, double qd, body
     double s = reversed ? -1 : 1;
     body_motion ground = {.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     body_motion B = base == HN_GROUND ? ground : all[base], out;
-    double here[3][3], there[3][3], back[3][3], turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, axis[3];
+    double here[3][3], there[3][3], back[3][3], turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                axis[3];
     triad(j->parent_axis, j->parent_ref, reversed ? there : here);
     triad(j->child_axis, j->child_ref, reversed ? here : there);
     multiply(B.R, here, here);
@@ -170,8 +172,8 @@ static void world_inertia(const hn_body *body, double R[3][3], double out[3][3])
     multiply(out, back, out);
 }
 
-void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, double *M, double *h, double *kinetic,
-                     double *potential) {
+void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, double *M, double *h,
+                     double *kinetic, double *potential) {
     int n = scene->n_bodies;
     body_motion *now = calloc((size_t)n * (size_t)(n + 1), sizeof *now), *unit = now + n;
     double *e = calloc((size_t)n, sizeof *e);
@@ -274,15 +276,18 @@ static void make_tree_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed
     hn_joint *j = &s->joints[i];
     int base = i == 0 ? HN_GROUND : (int)((random_signed(seed) + 1) * 0.5 * (i + 1)) - 1;
     base = base >= i ? i - 1 : base;
-    int reversed = random_signed(seed) > 0.5, prismatic = (random_signed(seed) + 1) * 0.5 < o->prismatic;
+    int reversed = random_signed(seed) > 0.5,
+        prismatic = (random_signed(seed) + 1) * 0.5 < o->prismatic;
     j->type = prismatic ? HN_JOINT_PRISMATIC : HN_JOINT_REVOLUTE;
     j->parent = reversed ? i : base;
     j->child = reversed ? base : i;
-    double *base_axis = reversed ? j->child_axis : j->parent_axis, *own_axis = reversed ? j->parent_axis : j->child_axis;
+    double *base_axis = reversed ? j->child_axis : j->parent_axis,
+           *own_axis = reversed ? j->parent_axis : j->child_axis;
     random_axis(seed, o, prismatic, base_axis);
     random_axis(seed, o, prismatic, own_axis);
     if ((random_signed(seed) + 1) * 0.5 < o->parallel && base != HN_GROUND && !prismatic) {
-        const hn_joint *below = &s->joints[base]; // the axis by which the base itself hangs, one way or the other
+        const hn_joint *below =
+            &s->joints[base]; // the axis by which the base itself hangs, one way or the other
         const double *axis = below->child == base ? below->child_axis : below->parent_axis;
         double sense = random_signed(seed) > 0 ? 1 : -1;
         for (int k = 0; k < 3; k++) {
@@ -299,10 +304,12 @@ static void make_tree_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed
 }
 
 /// A joint between two bodies that is closed in the pose given: its half on the child is worked out from the parent's.
-static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed, int i, const body_motion *pose) {
+static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed, int i,
+                           const body_motion *pose) {
     hn_joint *j = &s->joints[i];
     int k = i - s->n_bodies;
-    j->type = (random_signed(seed) + 1) * 0.5 < o->prismatic ? HN_JOINT_PRISMATIC : HN_JOINT_REVOLUTE;
+    j->type =
+        (random_signed(seed) + 1) * 0.5 < o->prismatic ? HN_JOINT_PRISMATIC : HN_JOINT_REVOLUTE;
     j->parent = s->n_bodies - 1 - k % s->n_bodies;
     j->child = k % 2 || s->n_bodies < 3 ? HN_GROUND : (j->parent + 1 + k) % s->n_bodies;
     j->cut = 1;
@@ -346,7 +353,8 @@ hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *o) {
     s->bodies = hn_arena_get(arena, (size_t)s->n_bodies * sizeof *s->bodies);
     s->joints = hn_arena_get(arena, (size_t)s->n_joints * sizeof *s->joints);
     s->coordinates = hn_arena_get(arena, (size_t)s->n_joints * sizeof *s->coordinates);
-    double *q = hn_arena_doubles(arena, (size_t)s->n_joints), *rest = hn_arena_doubles(arena, (size_t)s->n_joints);
+    double *q = hn_arena_doubles(arena, (size_t)s->n_joints),
+           *rest = hn_arena_doubles(arena, (size_t)s->n_joints);
     double g[3];
     random_vector(&seed, g);
     for (int i = 0; i < 3; i++) {
@@ -356,7 +364,8 @@ hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *o) {
         s->joints[i].name = name_of(arena, "J", i);
         s->joints[i].pointer = "";
         s->joints[i].coordinate = i;
-        s->coordinates[i] = (hn_coordinate){.name = name_of(arena, "c", i), .rate = name_of(arena, "d_c", i), .joint = i};
+        s->coordinates[i] = (hn_coordinate){
+            .name = name_of(arena, "c", i), .rate = name_of(arena, "d_c", i), .joint = i};
     }
     for (int i = 0; i < s->n_bodies; i++) {
         s->bodies[i].name = name_of(arena, "body", i);

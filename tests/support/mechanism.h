@@ -8,27 +8,28 @@
 
 typedef struct mechanism_opts {
     unsigned seed;
-    int n_bodies, n_cuts;   ///< a cut joint is placed so that it is closed at q0 of the coordinates
-    double parallel;        ///< share of joints whose axis is parallel to the joint below [-]
-    double prismatic;       ///< share of prismatic joints [-]
-    int planar;             ///< all axes along z (prismatic: across), everything in the plane
+    int n_bodies, n_cuts; ///< a cut joint is placed so that it is closed at q0 of the coordinates
+    double parallel;      ///< share of joints whose axis is parallel to the joint below [-]
+    double prismatic;     ///< share of prismatic joints [-]
+    int planar;           ///< all axes along z (prismatic: across), everything in the plane
 } mechanism_opts;
 
 /// Tree joint i carries body i; the cut joints follow. Coordinate i belongs to joint i. Memory from the arena.
 hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *opts);
 
 typedef struct body_motion {
-    double R[3][3], p[3];          ///< body axes to world; origin
-    double w[3], v[3], al[3], a[3];///< at zero second derivatives of the coordinates
+    double R[3][3], p[3];           ///< body axes to world; origin
+    double w[3], v[3], al[3], a[3]; ///< at zero second derivatives of the coordinates
 } body_motion;
 
 /// Motion of all bodies for scene coordinates (one per body).
 void mechanism_move(const hn_scene *scene, const double *q, const double *qd, body_motion *out);
 /// World place, velocity and acceleration of a point in a body's own axes (HN_GROUND: fixed).
-void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3], double v[3], double a[3]);
+void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3],
+                     double v[3], double a[3]);
 /// Mass matrix (n x n) and h (n: Coriolis, centrifugal and gravity) in scene coordinates, and the energies.
-void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, double *M, double *h, double *kinetic,
-                     double *potential);
+void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, double *M, double *h,
+                     double *kinetic, double *potential);
 /// Uniform in -1 .. 1.
 double random_signed(unsigned *seed);
 #endif
