@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define PIVOT_TOL 1e-13 // of the largest pivot: J_d is singular to rounding
 enum { MAX_NEWTON = 25 };
 
 static void init_point(hn_chart_point *p, int nv, int nc, hn_arena *arena, int *ok) {
@@ -116,6 +117,14 @@ static void solve_dependent(hn_chart *chart, const hn_chart_point *p, double *b,
     chart->cost.ops += hn_flops_qr_solve(chart->nc, chart->rank);
 }
 
+static double smallest_pivot(const hn_chart_point *p, int rank) {
+    double smallest = HUGE_VAL;
+    for (int k = 0; k < rank; k++) {
+        smallest = fmin(smallest, fabs(p->jd.a[k * p->jd.m + k]));
+    }
+    return smallest;
+}
+
 // copies phi's neighbourhood from the tape and factors J_d; 0 when det J_d has vanished
 static int factor_dependent(hn_chart *chart, hn_chart_point *p) {
     const int nv = chart->nv, nc = chart->nc, rank = chart->rank;
@@ -126,11 +135,11 @@ static int factor_dependent(hn_chart *chart, hn_chart_point *p) {
             p->jd.a[k * nc + i] = p->J[i * nv + column] * chart->scale[column];
         }
     }
-    hn_qr_factor(&p->jd, nc, rank, HN_CHART_FOLD);
+    hn_qr_factor(&p->jd, nc, rank, PIVOT_TOL);
     chart->cost.factorisations++;
     chart->cost.ops += hn_flops_qr(nc, rank);
     p->sign = nc == rank && p->jd.rank == rank ? sign_of_det(&p->jd, rank) : 0;
-    return p->jd.rank == rank;
+    return p->jd.rank == rank && smallest_pivot(p, rank) > HN_CHART_FOLD * chart->pivot_start;
 }
 
 static void make_basis(hn_chart *chart, hn_chart_point *p) {
@@ -213,6 +222,9 @@ hn_status hn_chart_settle(hn_chart *chart) {
     to->t = from->t;
     to->sign = from->sign;
     to->valid = 1;
+    if (chart->pivot_start == 0) {
+        chart->pivot_start = smallest_pivot(from, chart->rank);
+    }
     return HN_OK;
 }
 

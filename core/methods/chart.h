@@ -45,15 +45,18 @@ typedef struct hn_chart {
     double *c, *Mx, *A, *z, *dq; ///< scratch
     double *basis, *columns;     ///< scratch of the choice
     int *order, *new_dep;
+    double
+        pivot_start; ///< smallest pivot of the scaled J_d where the chart was chosen, 0: not known yet
     double length; ///< characteristic length [m]
     hn_cost cost;
     char why[HN_CHART_TEXT];
 } hn_chart;
 
 #define HN_CHART_TOL 1e-13      ///< ||phi|| / length inside a step
-#define HN_CHART_TOL_FINE 2e-15 ///< at the end of a step: as far as rounding allows
+#define HN_CHART_TOL_FINE 5e-16 ///< at the end of a step: as far as rounding allows
 #define HN_CHART_TAU 0.2 ///< a volume of J_d below this fraction of the best calls for a new choice
-#define HN_CHART_FOLD 1e-7 ///< pivot ratio of the scaled J_d below which the chart has ended
+#define HN_CHART_FOLD \
+    1e-4 ///< the chart has ended where the smallest pivot of J_d is this fraction of the one it began with
 
 /// Refuses (HN_ERR_UNSUPPORTED, diag) systems whose speeds are not the rates of their coordinates.
 HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate,

@@ -11,6 +11,7 @@
 // be compared.
 
 #define RANK_TOL 1e-10
+#define DEAD_POINT 1e-6 // of the best volume: the coordinate asked for cannot serve
 #define INDEPENDENT_TOL \
     1e-3 // residual of a column, relative to its length, that still counts as a new direction
 
@@ -139,7 +140,7 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
     chart->rank = rank;
     chart->r = chart->nv - rank;
     const double preferred = choose_by_order(chart, first, rank);
-    if (first >= 0 && !(preferred > best + log(HN_CHART_FOLD))) {
+    if (first >= 0 && !(preferred > best + log(DEAD_POINT))) {
         chart->ind[0] = first;
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
                              "a dead point: this coordinate cannot be independent here");
@@ -149,6 +150,7 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
     }
     sort_choice(chart);
     chart->here.valid = chart->probe.valid = chart->base.valid = 0;
+    chart->pivot_start = 0;
     return HN_OK;
 }
 

@@ -2,11 +2,14 @@
 #include "methods/accel_ode.h"
 #include "methods/registry.h"
 
+#include <math.h>
 #include <stdio.h>
 
 enum { SET_WEIGHT, SET_WHAT };
 enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
-#define GAP_TOL 1e-13 // of the characteristic length
+// of the characteristic length: rounding level times sqrt(rows), and what is accepted where rounding is coarser
+#define GAP_TOL 2e-15
+#define GAP_TOL_COARSE 1e-12
 
 typedef struct projection {
     hn_accel_ode ode; // first: see accel_ode.h
@@ -50,6 +53,17 @@ static hn_status tell(projection *p, hn_status status, double t, const char *par
     return status;
 }
 
+static hn_status project_position(projection *p, double t, double *q, hn_project_info *info) {
+    const double tol = GAP_TOL * sqrt(p->ode.nc);
+    hn_status status = hn_project_position(p->projector, t, q, tol, info);
+    p->ode.cost.newton += info->iterations;
+    if (status == HN_ERR_NO_CONVERGENCE) {
+        status = hn_project_position(p->projector, t, q, GAP_TOL_COARSE, info);
+        p->ode.cost.newton += info->iterations;
+    }
+    return status;
+}
+
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     projection *p = self;
     hn_project_info info = {0};
@@ -60,8 +74,7 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     *changed = 1;
     p->ode.cost.projections++;
     if (p->what != WHAT_VELOCITY) {
-        const hn_status status = hn_project_position(p->projector, t, y, GAP_TOL, &info);
-        p->ode.cost.newton += info.iterations;
+        const hn_status status = project_position(p, t, y, &info);
         if (status != HN_OK) {
             return tell(p, status, t, "the position");
         }

@@ -9,21 +9,26 @@
 #include "dynamics/system.h"
 #include "integrators/spec.h"
 
-typedef enum hn_run_state { HN_RUN_READY, HN_RUN_RUNNING, HN_RUN_FINISHED, HN_RUN_FAILED } hn_run_state;
+typedef enum hn_run_state {
+    HN_RUN_READY,
+    HN_RUN_RUNNING,
+    HN_RUN_FINISHED,
+    HN_RUN_FAILED
+} hn_run_state;
 
 /// Incident codes: name as in JSON, sentence of the rule behind it.
-#define HN_INCIDENT_LIST(X)                                                                        \
-    X(HN_INCIDENT_NEAR_SINGULAR, "near-singular")                                                  \
-    X(HN_INCIDENT_RANK_LOSS, "rank-loss")                                                          \
-    X(HN_INCIDENT_BRANCH_FLIP, "branch-flip")                                                      \
-    X(HN_INCIDENT_GAP_OPEN, "gap-open")                                                            \
-    X(HN_INCIDENT_ENERGY_JUMP, "energy-jump")                                                      \
-    X(HN_INCIDENT_CHART_CHANGE, "chart-change")                                                    \
-    X(HN_INCIDENT_CHART_LOST, "chart-lost")                                                        \
-    X(HN_INCIDENT_STEP_LIMIT, "step-limit")                                                        \
-    X(HN_INCIDENT_PROJECTION_FAILED, "projection-failed")                                          \
-    X(HN_INCIDENT_DIVERGED, "diverged")                                                            \
-    X(HN_INCIDENT_STEP_UNDERFLOW, "step-underflow")                                                \
+#define HN_INCIDENT_LIST(X)                               \
+    X(HN_INCIDENT_NEAR_SINGULAR, "near-singular")         \
+    X(HN_INCIDENT_RANK_LOSS, "rank-loss")                 \
+    X(HN_INCIDENT_BRANCH_FLIP, "branch-flip")             \
+    X(HN_INCIDENT_GAP_OPEN, "gap-open")                   \
+    X(HN_INCIDENT_ENERGY_JUMP, "energy-jump")             \
+    X(HN_INCIDENT_CHART_CHANGE, "chart-change")           \
+    X(HN_INCIDENT_CHART_LOST, "chart-lost")               \
+    X(HN_INCIDENT_STEP_LIMIT, "step-limit")               \
+    X(HN_INCIDENT_PROJECTION_FAILED, "projection-failed") \
+    X(HN_INCIDENT_DIVERGED, "diverged")                   \
+    X(HN_INCIDENT_STEP_UNDERFLOW, "step-underflow")       \
     X(HN_INCIDENT_BUDGET, "budget")
 
 typedef enum hn_incident_code {
@@ -39,50 +44,62 @@ typedef struct hn_incident {
     double t;
     const char *quantity; ///< "gap", "pivot ratio": static text
     double value, limit;
-    char message[160];    ///< this run, in one clause with numbers and units
-    char remedy[3][96];   ///< up to three things to try; a method spelling or "h=0.005" where it can be clicked; "" ends
+    char message[160]; ///< this run, in one clause with numbers and units
+    char remedy
+        [3]
+        [96]; ///< up to three things to try; a method spelling or "h=0.005" where it can be clicked; "" ends
 } hn_incident;
 enum { HN_RUN_MAX_INCIDENTS = 64 };
+
+#define HN_RUN_WARN_GAP 1e-3   ///< gap / characteristic length that is told
+#define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is told as near-singular
+#define HN_RUN_WARN_ENERGY \
+    1e-2 ///< energy change in one step / (T + range of V), conservative scenes only
+#define HN_RUN_WARN_MODE 0.1 ///< jump of the assembly-mode value over a change of its sign
 
 typedef struct hn_run_opts {
     double t0;
     long long max_steps; ///< HN_ERR_BUDGET beyond; 0: 50,000,000
-    double warn_gap;     ///< times the characteristic length; 0: 1e-3
+    double warn_gap;     ///< times the characteristic length; 0: HN_RUN_WARN_GAP
 } hn_run_opts;
 hn_run_opts hn_run_opts_default(void);
 
 /// State at one time, in USER coordinates; arrays borrowed from the run, valid until its next call.
 typedef struct hn_sample {
     double t;
-    const double *q, *v;   ///< n_user
-    const double *a;       ///< n_user accelerations
-    const double *lambda;  ///< nc, recomputed from the saddle system at this state
-    const double *points;  ///< 3 n_points
-    double gap, velocity_gap; ///< ||phi||, ||J v + phi_t||
+    const double *q, *v; ///< n_user
+    const double *a;     ///< n_user accelerations
+    const double *
+        lambda; ///< nc, recomputed from the saddle system at this state; a and lambda are NaN where it has no solution
+    const double *points;                             ///< 3 n_points
+    double gap, velocity_gap;                         ///< ||phi||, ||J v + phi_t||
     double kinetic, potential, energy, energy_change; ///< change: since the start
-    double pivot_ratio;    ///< see hn_accel_info
+    double pivot_ratio;                               ///< see hn_accel_info
     int rank;
 } hn_sample;
 
 typedef struct hn_run_summary {
     hn_run_state state;
-    hn_status status;      ///< HN_OK while all is well
-    char reason[256];      ///< why it failed, "" otherwise
-    double t;              ///< reached
+    hn_status status; ///< HN_OK while all is well
+    char reason[256]; ///< why it failed, "" otherwise
+    double t;         ///< reached
     long long steps, rejected;
     double h_last;
     hn_cost cost;
-    double cpu_seconds;    ///< thread CPU time spent stepping (sampling and output excluded)
-    double worst_gap, worst_velocity_gap, worst_energy_change; ///< over all accepted steps that were watched
-    int watched_every;     ///< 1: every step
+    double cpu_seconds; ///< thread CPU time spent stepping (sampling and output excluded)
+    double worst_gap, worst_velocity_gap,
+        worst_energy_change; ///< over all accepted steps that were watched
+    int watched_every;       ///< 1: every step
 } hn_run_summary;
 
 typedef struct hn_run hn_run;
 
 /// A run from the assembled state (q, v) in system coordinates. The system must outlive it. Fails: HN_ERR_UNSUPPORTED with the formulation's reason,
-/// HN_ERR_INPUT, HN_ERR_MEMORY. Nothing allocates after this.
-HN_MUST_CHECK hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const double *q,
-                                      const double *v, const hn_run_opts *opts, hn_run **out, hn_diag *diag);
+/// HN_ERR_INPUT, HN_ERR_MEMORY. Nothing allocates after this. A formulation that cannot start at this state (a dead point, a lost
+/// rank) gives a run that has failed already, so that a table can show it with its reason.
+HN_MUST_CHECK hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec,
+                                      const double *q, const double *v, const hn_run_opts *opts,
+                                      hn_run **out, hn_diag *diag);
 void hn_run_free(hn_run *run);
 /// Steps until t >= t_end: a fixed-step run lands on its own grid (t0 + n h); an adaptive run steps past and interpolates. Returns HN_OK or the
 /// failure, which is also kept in the summary. Calling again after a failure returns the same failure.
@@ -99,7 +116,8 @@ int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; bo
 hn_status hn_run_reset(hn_run *run);
 /// A run's watch (gap, energy per step) costs an extra evaluation a step that is not counted as method cost; 0 switches it off, n: every n-th step.
 void hn_run_watch(hn_run *run, int every);
-/// Changes a setting of the formulation ("alpha") while running.
+/// Changes a setting of the formulation ("alpha") while running. HN_ERR_INPUT: unknown key or bad value, HN_ERR_UNSUPPORTED: fixed
+/// once the run is made (an integrator's setting, a basis); told in diag. Kept over a reset.
 hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag);
 const hn_method_spec *hn_run_spec(const hn_run *run);
 #endif

@@ -1,0 +1,82 @@
+#ifndef HN_STUDY_RUN_INTERNAL_H
+#define HN_STUDY_RUN_INTERNAL_H
+// The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time) and run_watch.c (incidents).
+
+#include "dynamics/eval.h"
+#include "integrators/control.h"
+#include "study/run.h"
+
+/// One copy of formulation and stepper. A run has two: `main` makes the steps, `side` looks at times between them, so that a
+/// sample never touches charts, warm starts or kept slopes of the run itself.
+typedef struct hn_run_engine {
+    void *formulation, *stepper;
+    hn_ode ode;
+    double *y, *y_new, *err;
+} hn_run_engine;
+
+typedef struct hn_run_state_at {
+    double t;
+    double *q, *v; ///< system coordinates
+} hn_run_state_at;
+
+/// What the watch knows of the last state it saw.
+typedef struct hn_run_watch_state {
+    int every;
+    long long since; ///< accepted steps since the last look
+    hn_eval *eval;   ///< phi, phi_t, J, energy
+    hn_accel *accel;
+    hn_mode_watch *mode;
+    double *a, *lambda, *speed_gap;
+    double start_energy, last_energy, v_min, v_max;
+    double last_mode;
+    int start_rank;
+    int conservative;
+    int told[HN_INCIDENT_COUNT]; ///< so far, by kind
+    unsigned active; ///< a bit per incident that holds at present: told once, not each step
+} hn_run_watch_state;
+
+struct hn_run {
+    hn_arena *arena;
+    const hn_system *sys;
+    hn_method_spec spec;
+    hn_run_opts opts;
+    hn_system_info info;
+    double length;
+    hn_run_engine main, side;
+    hn_run_state_at start, now, before;
+    int has_step;    ///< `before` is the start of the last step
+    int dense_valid; ///< the stepper's dense output belongs to the chart that is still in use
+    double h, h_next;
+    int trouble; ///< trials that failed lately, see step_adaptive
+    hn_step_control control;
+    hn_run_summary summary;
+    hn_cost cost_mark;
+    double cpu_mark;
+    hn_incident incidents[HN_RUN_MAX_INCIDENTS];
+    int n_incidents;
+    hn_run_watch_state watch;
+    hn_eval *points;
+    // what a sample hands out
+    double *sample_q, *sample_v, *sample_a, *sample_lambda, *sample_points;
+    double *at_q, *at_v, *at_a, *work;
+};
+
+/// Memory and evaluators of the watch.
+HN_MUST_CHECK hn_status hn_run_watch_create(hn_run *run);
+void hn_run_watch_free(hn_run *run);
+/// Forgets the past and looks at the start.
+void hn_run_watch_start(hn_run *run);
+/// Looks at the state the run has reached.
+void hn_run_watch_look(hn_run *run);
+/// Tells a failure as an incident.
+void hn_run_tell_failure(hn_run *run, hn_status status);
+void hn_run_tell_charts(hn_run *run, long long changes);
+/// alpha h against the integrator's limit.
+void hn_run_tell_step_limit(hn_run *run);
+/// ||phi||, ||J v + phi_t||, kinetic and potential energy at a state, with the watch's evaluator.
+void hn_run_measure(hn_run *run, double t, const double *q, const double *v, double *gap,
+                    double *speed_gap, double *kinetic, double *potential);
+hn_status hn_run_accelerations(hn_run *run, double t, const double *q, const double *v, double *a,
+                               double *lambda, hn_accel_info *info);
+
+#endif

@@ -1,0 +1,375 @@
+#include "study/run_internal.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const incident_names[] = {
+#define HN_INCIDENT_NAME(code, name) name,
+    HN_INCIDENT_LIST(HN_INCIDENT_NAME)
+#undef HN_INCIDENT_NAME
+};
+
+const char *hn_incident_name(hn_incident_code code) {
+    return code < HN_INCIDENT_COUNT ? incident_names[code] : "?";
+}
+
+// --- remedies ---------------------------------------------------------------------------------------------
+
+typedef char remedy_text[96];
+
+enum {
+    MAX_TOLD = 5
+}; // of one kind, so that a condition that comes and goes leaves room for others
+
+// another formulation with its defaults, the integrator as it is
+static void with_formulation(const hn_run *run, const char *name, const char *settings,
+                             remedy_text out) {
+    hn_method_spec spec = run->spec;
+    char text[HN_SPEC_MAX];
+    spec.formulation = hn_formulation_find(name);
+    HN_ASSERT(spec.formulation);
+    for (int i = 0; i < spec.formulation->n_settings; i++) {
+        spec.formulation_set[i] = spec.formulation->settings[i].initial;
+    }
+    hn_method_format(&spec, text);
+    const char *at = strchr(text, '@');
+    snprintf(out, sizeof(remedy_text), "%s%s%s", name, settings, at);
+}
+
+// a smaller step or tolerance of the same method, as "h=0.005"
+static void with_finer_steps(const hn_run *run, double factor, remedy_text out) {
+    const char *key = run->spec.stepper->adaptive ? "rtol" : "h";
+    snprintf(out, sizeof(remedy_text), "%s=%.4g", key,
+             hn_method_setting(&run->spec, key, 0) * factor);
+}
+
+static int is_formulation(const hn_run *run, const char *name) {
+    return strcmp(run->spec.formulation->name, name) == 0;
+}
+
+// --- telling ----------------------------------------------------------------------------------------------
+
+static hn_incident *tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
+                         double limit, const char *format, ...) HN_PRINTF(6, 7);
+
+// Told when a condition begins to hold, not at every step while it does. NULL: known already, or no room left.
+static hn_incident *tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
+                         double limit, const char *format, ...) {
+    const unsigned bit = 1u << code;
+    if (run->watch.active & bit || run->watch.told[code] == MAX_TOLD ||
+        run->n_incidents == HN_RUN_MAX_INCIDENTS) {
+        return NULL;
+    }
+    run->watch.active |= bit;
+    run->watch.told[code]++;
+    hn_incident *i = &run->incidents[run->n_incidents++];
+    *i = (hn_incident){
+        .code = code, .t = run->now.t, .quantity = quantity, .value = value, .limit = limit};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(i->message, sizeof i->message, format, args);
+    va_end(args);
+    return i;
+}
+
+static void over(hn_run *run, hn_incident_code code) {
+    run->watch.active &= ~(1u << code);
+}
+
+// --- set-up -----------------------------------------------------------------------------------------------
+
+static int is_conservative(const hn_system *sys) {
+    const hn_scene *scene = hn_system_scene(sys);
+    for (int i = 0; i < scene->n_loads; i++) {
+        const hn_load *load = &scene->loads[i];
+        const int spring = load->kind == HN_LOAD_SPRING || load->kind == HN_LOAD_JOINT_SPRING;
+        if (!spring || load->damping.value != 0 || load->damping.varies) {
+            return 0;
+        }
+    }
+    return !hn_system_get_info(sys).has_time;
+}
+
+hn_status hn_run_watch_create(hn_run *run) {
+    hn_run_watch_state *w = &run->watch;
+    const unsigned terms = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
+    const hn_accel_opts opts = {.want_lambda = 1};
+    w->a = hn_arena_doubles(run->arena, (size_t)run->info.nv);
+    w->lambda = hn_arena_doubles(run->arena, (size_t)run->info.nc);
+    w->speed_gap = hn_arena_doubles(run->arena, (size_t)run->info.nc);
+    w->conservative = is_conservative(run->sys);
+    if (hn_arena_failed(run->arena)) {
+        return HN_ERR_MEMORY;
+    }
+    hn_status status = hn_eval_create(run->sys, terms, run->arena, &w->eval);
+    if (status == HN_OK) {
+        status = hn_accel_create(run->sys, &opts, run->arena, &w->accel);
+    }
+    if (status == HN_OK) {
+        status = hn_mode_watch_create(run->sys, run->arena, &w->mode);
+    }
+    return status;
+}
+
+void hn_run_watch_free(hn_run *run) {
+    hn_eval_free(run->watch.eval);
+    hn_accel_free(run->watch.accel);
+    hn_mode_watch_free(run->watch.mode);
+}
+
+void hn_run_measure(hn_run *run, double t, const double *q, const double *v, double *gap,
+                    double *speed_gap, double *kinetic, double *potential) {
+    hn_eval *e = run->watch.eval;
+    const int nv = run->info.nv, nc = run->info.nc;
+    hn_eval_run(e, t, q, v);
+    *gap = hn_norm2(nc, hn_eval_get(e, HN_TERM_PHI));
+    hn_mat_vec(nc, nv, hn_eval_get(e, HN_TERM_J), v, run->watch.speed_gap);
+    hn_axpy(nc, 1, hn_eval_get(e, HN_TERM_PHI_T), run->watch.speed_gap);
+    *speed_gap = hn_norm2(nc, run->watch.speed_gap);
+    *kinetic = hn_eval_get(e, HN_TERM_ENERGY)[0];
+    *potential = hn_eval_get(e, HN_TERM_ENERGY)[1];
+}
+
+hn_status hn_run_accelerations(hn_run *run, double t, const double *q, const double *v, double *a,
+                               double *lambda, hn_accel_info *info) {
+    return hn_accel_eval(run->watch.accel, t, q, v, 0, 0, a, lambda, info);
+}
+
+// --- the look ---------------------------------------------------------------------------------------------
+
+static void look_at_gap(hn_run *run, double gap) {
+    const double limit = run->opts.warn_gap * run->length;
+    if (!(gap > limit)) {
+        over(run, HN_INCIDENT_GAP_OPEN);
+        return;
+    }
+    hn_incident *i = tell(run, HN_INCIDENT_GAP_OPEN, "gap", gap, limit,
+                          "the loop gap is %.3g m and stands above %.3g m", gap, limit);
+    if (!i) {
+        return;
+    }
+    with_formulation(run, "projection", "", i->remedy[0]);
+    with_finer_steps(run, 0.5, i->remedy[1]);
+    if (is_formulation(run, "index1")) {
+        with_formulation(run, "baumgarte", "", i->remedy[2]);
+    }
+}
+
+static void look_at_energy(hn_run *run, double kinetic, double potential) {
+    hn_run_watch_state *w = &run->watch;
+    const double energy = kinetic + potential, change = energy - w->last_energy;
+    w->v_min = fmin(w->v_min, potential);
+    w->v_max = fmax(w->v_max, potential);
+    w->last_energy = energy;
+    const double limit = HN_RUN_WARN_ENERGY * (kinetic + (w->v_max - w->v_min)) * w->every;
+    if (!w->conservative || !(fabs(change) > limit) || limit == 0) {
+        over(run, HN_INCIDENT_ENERGY_JUMP);
+        return;
+    }
+    hn_incident *i =
+        tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
+             "the energy changed by %.3g J in one step, more than %.3g J", change, limit);
+    if (!i) {
+        return;
+    }
+    with_finer_steps(run, 0.25, i->remedy[0]);
+    if (run->spec.formulation->model_error) {
+        with_formulation(run, "nullspace", "", i->remedy[1]);
+    }
+}
+
+static void look_at_rank(hn_run *run, int at_start) {
+    hn_run_watch_state *w = &run->watch;
+    hn_accel_info info = {0};
+    if (run->info.nc == 0) {
+        return;
+    }
+    const hn_status status =
+        hn_run_accelerations(run, run->now.t, run->now.q, run->now.v, w->a, w->lambda, &info);
+    if (at_start) {
+        w->start_rank = status == HN_OK ? info.rank : run->info.nc;
+    }
+    if (status == HN_OK && info.rank < (at_start ? run->info.nc : w->start_rank)) {
+        hn_incident *i =
+            tell(run, HN_INCIDENT_RANK_LOSS, "rank of J", info.rank, run->info.nc,
+                 at_start ? "%d of %d closure rows depend on the others: the motion is "
+                            "unique, single multipliers are not"
+                          : "%d of %d closure rows depend on the others in this pose: "
+                            "branches may cross here",
+                 run->info.nc - info.rank, run->info.nc);
+        if (i && !at_start) {
+            with_formulation(run, "projection", "", i->remedy[0]);
+        }
+    } else if (!at_start && status == HN_OK) {
+        over(run, HN_INCIDENT_RANK_LOSS);
+    }
+    const int near = status != HN_OK || info.pivot_ratio < HN_RUN_WARN_PIVOT;
+    if (!near || info.rank < run->info.nc) {
+        over(run, HN_INCIDENT_NEAR_SINGULAR);
+        return;
+    }
+    hn_incident *i =
+        tell(run, HN_INCIDENT_NEAR_SINGULAR, "pivot ratio", info.pivot_ratio, HN_RUN_WARN_PIVOT,
+             "the closure rows are nearly dependent: pivot ratio %.2g, told below %.0e",
+             info.pivot_ratio, HN_RUN_WARN_PIVOT);
+    if (i) {
+        with_finer_steps(run, 0.25, i->remedy[0]);
+        with_formulation(run, "projection", "", i->remedy[1]);
+    }
+}
+
+// a change of sign through zero is a dead point; one that jumps over it is the other branch
+static void look_at_mode(hn_run *run) {
+    hn_run_watch_state *w = &run->watch;
+    const double mode = hn_mode_watch_value(w->mode, run->now.t, run->now.q);
+    const double jump = fabs(mode - w->last_mode), limit = HN_RUN_WARN_MODE;
+    const int flipped = mode * w->last_mode < 0 && jump > limit;
+    if (flipped) {
+        hn_incident *i =
+            tell(run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", mode, limit,
+                 "the loop went from one assembly mode to the other in one step (%.2g to %.2g)",
+                 w->last_mode, mode);
+        if (i) {
+            with_finer_steps(run, 0.25, i->remedy[0]);
+            with_formulation(run, "projection", "", i->remedy[1]);
+        }
+    } else {
+        over(run, HN_INCIDENT_BRANCH_FLIP);
+    }
+    w->last_mode = mode;
+}
+
+void hn_run_watch_start(hn_run *run) {
+    hn_run_watch_state *w = &run->watch;
+    double gap = 0, speed_gap = 0, kinetic = 0, potential = 0;
+    w->active = 0;
+    memset(w->told, 0, sizeof w->told);
+    w->since = 0;
+    hn_run_measure(run, run->now.t, run->now.q, run->now.v, &gap, &speed_gap, &kinetic, &potential);
+    w->start_energy = w->last_energy = kinetic + potential;
+    w->v_min = w->v_max = potential;
+    w->last_mode = hn_mode_watch_value(w->mode, run->now.t, run->now.q);
+    run->summary.worst_gap = gap;
+    run->summary.worst_velocity_gap = speed_gap;
+    look_at_rank(run, 1);
+}
+
+void hn_run_watch_look(hn_run *run) {
+    double gap = 0, speed_gap = 0, kinetic = 0, potential = 0;
+    hn_run_summary *s = &run->summary;
+    run->watch.since = 0;
+    hn_run_measure(run, run->now.t, run->now.q, run->now.v, &gap, &speed_gap, &kinetic, &potential);
+    const double change = fabs(kinetic + potential - run->watch.start_energy);
+    s->worst_gap = fmax(s->worst_gap, gap);
+    s->worst_velocity_gap = fmax(s->worst_velocity_gap, speed_gap);
+    s->worst_energy_change = fmax(s->worst_energy_change, change);
+    look_at_gap(run, gap);
+    look_at_energy(run, kinetic, potential);
+    look_at_rank(run, 0);
+    look_at_mode(run);
+}
+
+// --- what the run itself tells ----------------------------------------------------------------------------
+
+void hn_run_tell_charts(hn_run *run, long long changes) {
+    if (changes == 0) {
+        return;
+    }
+    over(run, HN_INCIDENT_CHART_CHANGE);
+    tell(run, HN_INCIDENT_CHART_CHANGE, "chart changes", (double)changes, 0,
+         "other coordinates became the independent ones; the motion goes on unchanged");
+}
+
+void hn_run_tell_step_limit(hn_run *run) {
+    const double h = hn_method_setting(&run->spec, "h", 0);
+    const double alpha = hn_method_setting(&run->spec, "alpha", 0);
+    const double beta = hn_method_setting(&run->spec, "beta", 0);
+    const double limit = run->spec.stepper->real_limit;
+    over(run, HN_INCIDENT_STEP_LIMIT);
+    if (!is_formulation(run, "baumgarte") || h == 0 ||
+        hn_method_setting(&run->spec, "rule", 0) != 0) {
+        return;
+    }
+    // the faster root of s^2 + 2 alpha s + beta^2; its size alone when the pair is complex
+    const double square = alpha * alpha - beta * beta;
+    const double rate = square > 0 ? alpha + sqrt(square) : fabs(beta);
+    if (!(rate * h > limit)) {
+        return;
+    }
+    hn_incident *i =
+        tell(run, HN_INCIDENT_STEP_LIMIT, "alpha h", rate * h, limit,
+             "the stabilisation is too fast for the step: rate x h = %.3g, %s is stable "
+             "up to %.3g",
+             rate * h, run->spec.stepper->name, limit);
+    if (i) {
+        const double safe = 0.1 / h;
+        snprintf(i->remedy[0], sizeof i->remedy[0], "baumgarte:alpha=%.4g,beta=%.4g@%s:h=%.4g",
+                 safe, safe, run->spec.stepper->name, h);
+        snprintf(i->remedy[1], sizeof i->remedy[1], "h=%.3g", 0.1 * limit / rate);
+    }
+}
+
+static hn_incident_code code_of(hn_status status) {
+    switch (status) {
+    case HN_ERR_CHART:
+        return HN_INCIDENT_CHART_LOST;
+    case HN_ERR_NO_CONVERGENCE:
+        return HN_INCIDENT_PROJECTION_FAILED;
+    case HN_ERR_STEP_UNDERFLOW:
+        return HN_INCIDENT_STEP_UNDERFLOW;
+    case HN_ERR_BUDGET:
+        return HN_INCIDENT_BUDGET;
+    case HN_ERR_SINGULAR:
+    case HN_ERR_NOT_SPD:
+    case HN_ERR_INCONSISTENT:
+        return HN_INCIDENT_RANK_LOSS;
+    default:
+        return HN_INCIDENT_DIVERGED;
+    }
+}
+
+static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident *i) {
+    switch (code) {
+    case HN_INCIDENT_CHART_LOST:
+        with_formulation(run, is_formulation(run, "partitioning") ? "projection" : "partitioning",
+                         "", i->remedy[0]);
+        with_finer_steps(run, 0.25, i->remedy[1]);
+        break;
+    case HN_INCIDENT_BUDGET:
+        with_finer_steps(run, 10, i->remedy[0]);
+        break;
+    case HN_INCIDENT_RANK_LOSS:
+        with_formulation(run, is_formulation(run, "projection") ? "index1" : "projection", "",
+                         i->remedy[0]);
+        with_finer_steps(run, 0.5, i->remedy[1]);
+        break;
+    case HN_INCIDENT_STEP_UNDERFLOW:
+        with_formulation(run, "projection", "", i->remedy[0]);
+        with_finer_steps(run, 100, i->remedy[1]);
+        break;
+    default:
+        with_finer_steps(run, 0.25, i->remedy[0]);
+        if (!is_formulation(run, "projection")) {
+            with_formulation(run, "projection", "", i->remedy[1]);
+        }
+        break;
+    }
+}
+
+void hn_run_tell_failure(hn_run *run, hn_status status) {
+    const hn_incident_code code = code_of(status);
+    // the end of a run is always told, even when the list is full
+    if (run->n_incidents == HN_RUN_MAX_INCIDENTS) {
+        run->n_incidents--;
+    }
+    over(run, code);
+    run->watch.told[code] = 0;
+    hn_incident *i = tell(run, code, "t", run->now.t, 0, "%s", run->summary.reason);
+    if (i) {
+        remedies_of_failure(run, code, i);
+    }
+}
