@@ -125,6 +125,18 @@ static double smallest_pivot(const hn_chart_point *p, int rank) {
     return smallest;
 }
 
+static double log_volume(const hn_chart_point *p, int rank) {
+    double sum = 0;
+    for (int k = 0; k < rank; k++) {
+        sum += log(fabs(p->jd.a[k * p->jd.m + k]));
+    }
+    return sum;
+}
+
+double hn_chart_volume(const hn_chart *chart) {
+    return exp(log_volume(&chart->here, chart->rank) - chart->volume_start);
+}
+
 // copies phi's neighbourhood from the tape and factors J_d; 0 when det J_d has vanished
 static int factor_dependent(hn_chart *chart, hn_chart_point *p) {
     const int nv = chart->nv, nc = chart->nc, rank = chart->rank;
@@ -224,6 +236,7 @@ hn_status hn_chart_settle(hn_chart *chart) {
     to->valid = 1;
     if (chart->pivot_start == 0) {
         chart->pivot_start = smallest_pivot(from, chart->rank);
+        chart->volume_start = log_volume(from, chart->rank);
     }
     return HN_OK;
 }

@@ -47,7 +47,8 @@ typedef struct hn_chart {
     int *order, *new_dep;
     double
         pivot_start; ///< smallest pivot of the scaled J_d where the chart was chosen, 0: not known yet
-    double length; ///< characteristic length [m]
+    double volume_start; ///< logarithm of |det J_d| there
+    double length;       ///< characteristic length [m]
     hn_cost cost;
     char why[HN_CHART_TEXT];
 } hn_chart;
@@ -90,6 +91,8 @@ void hn_chart_predict(const hn_chart *chart, double t, const double *q_ind, doub
 /// v = N u + s at the point.
 void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *point, const double *u,
                      double *v);
+/// |det J_d| at `here`, relative to where the chart was chosen.
+double hn_chart_volume(const hn_chart *chart);
 /// u' of equation (3) at `here` with speeds v.
 HN_MUST_CHECK hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot);
 /// x <- A^-1 x with the r x r matrix of (3) left in chart->A (lower triangle, spoiled).

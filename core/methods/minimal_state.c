@@ -7,7 +7,8 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
     const size_t nv = (size_t)hn_system_get_info(sys).nv;
     s->q = hn_arena_doubles(arena, nv);
     s->v = hn_arena_doubles(arena, nv);
-    if (!s->q || !s->v) {
+    s->last_v = hn_arena_doubles(arena, nv);
+    if (!s->q || !s->v || !s->last_v) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     return hn_chart_init(&s->chart, sys, 1, arena, diag);
@@ -79,7 +80,11 @@ hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const doubl
         y[j] = s->q[chart->ind[j]];
         y[chart->r + j] = s->v[chart->ind[j]];
     }
-    return hn_chart_settle(chart);
+    status = hn_chart_settle(chart);
+    hn_chart_speeds(chart, &chart->here, y + chart->r, s->last_v);
+    s->volume = 1;
+    s->has_rate = 0;
+    return status;
 }
 
 hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v) {
@@ -99,9 +104,42 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
     return HN_OK;
 }
 
+// A step that jumps over a dead point finds a closed loop on the near side of it again: the coordinate turns back although
+// the mechanism went on. Then |det J_d|, continued at its rate, would have passed zero, and all speeds have turned round.
+static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
+    const hn_chart *chart = &s->chart;
+    double along = 0;
+    if (!s->has_rate || s->volume + h * s->volume_rate >= 0) {
+        return 0;
+    }
+    for (int i = 0; i < chart->nv; i++) {
+        along += s->v[i] * s->last_v[i] / (chart->scale[i] * chart->scale[i]);
+    }
+    return along < 0;
+}
+
 hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
-    const hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
-    return status == HN_OK ? hn_chart_settle(&s->chart) : status;
+    hn_chart *chart = &s->chart;
+    const double h = t - chart->base.t;
+    hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
+    if (jumped_a_dead_point(s, h)) {
+        chart->here.valid = 0;
+        return hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
+                             "a dead point lies inside this step: the coordinate turns back there");
+    }
+    status = hn_chart_settle(chart);
+    if (status == HN_OK && h != 0) {
+        const double volume = hn_chart_volume(chart);
+        s->volume_rate = (volume - s->volume) / h;
+        s->volume = volume;
+        s->has_rate = 1;
+        memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
+    }
+    return status;
 }
 
 void hn_minimal_add_cost(const void *self, hn_cost *cost) {

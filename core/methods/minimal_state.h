@@ -8,6 +8,10 @@
 typedef struct hn_minimal_state {
     hn_chart chart;
     double *q, *v; ///< nv, scratch
+    // at the last accepted state, for seeing a dead point that lies inside a step
+    double *last_v;             ///< nv
+    double volume, volume_rate; ///< |det J_d|, and its change per second
+    int has_rate;
 } hn_minimal_state;
 
 HN_MUST_CHECK hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,

@@ -10,8 +10,8 @@
 #include <time.h>
 
 #define DEFAULT_MAX_STEPS 50000000ll
-#define LANDING 1e-9          // of a step: a grid point this near to t_end counts as t_end
-#define STATE_BOUND 1e9       // a coordinate or speed beyond this has left every mechanism
+#define LANDING 1e-9    // of a step: a grid point this near to t_end counts as t_end
+#define STATE_BOUND 1e9 // a coordinate or speed beyond this has left every mechanism
 // A trial that failed outright adds FAILED_TRIAL, a good step takes 1 away: steps that keep running into the end of a
 // chart shrink for ever without reaching it, and stop here.
 enum { FAILED_TRIAL = 8, TROUBLE_LIMIT = 200 };
