@@ -208,24 +208,3 @@ void hn_model_assembly_json(hn_strbuf *b, const hn_model *model) {
     hn_json_end_object(b);
     hn_arena_free(arena);
 }
-
-hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *diags) {
-    hn_arena *arena = hn_arena_create(0);
-    double *u = user_start(model, arena);
-    if (!u) {
-        hn_arena_free(arena);
-        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    hn_json_object(b);
-    put_scene_head(b, model);
-    put_sizes(b, model);
-    put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
-    put_rows(b, hn_model_system(model));
-    hn_json_key(b, "assembly");
-    hn_json_object(b);
-    put_assembly_fields(b, hn_model_assembly(model));
-    hn_json_end_object(b);
-    hn_json_end_object(b);
-    hn_arena_free(arena);
-    return b->failed ? HN_ERR_MEMORY : HN_OK;
-}
