@@ -10,9 +10,7 @@ struct hn_accel {
     int nv, nc;
     hn_accel_opts opts;
     int available; ///< a static order exists
-    hn_inputs in;
-    hn_tape *tape;
-    double *work, *out; ///< out: a, lambda if wanted, then pivot and reference of each guard
+    hn_inputs in;  ///< outputs: a, lambda if wanted, then pivot and reference of each guard
     int n_out, n_guards;
     // behind it
     hn_eval *terms;
@@ -67,7 +65,7 @@ static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const
     return outputs;
 }
 
-static hn_status compile_tape(hn_accel *s, hn_system *sys) {
+static hn_status compile_tape(hn_accel *s, hn_system *sys, hn_arena *arena) {
     hn_arena *scratch = hn_arena_create(0);
     if (!scratch) {
         return HN_ERR_MEMORY;
@@ -86,8 +84,7 @@ static hn_status compile_tape(hn_accel *s, hn_system *sys) {
         closure_rhs(sys, s->opts.baumgarte, x + sys->nv);
         status = hn_ldl_solve(sys->g, &ldl, x, x);
         outputs = status == HN_OK ? list_outputs(s, sys, &ldl, x) : NULL;
-        status =
-            outputs ? hn_inputs_compile(sys, &s->in, outputs, s->n_out, &s->tape) : HN_ERR_MEMORY;
+        status = outputs ? hn_inputs_compile(sys, outputs, s->n_out, arena, &s->in) : HN_ERR_MEMORY;
     }
     free(outputs);
     hn_arena_free(scratch);
@@ -109,22 +106,11 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
 }
 
 static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
-    hn_status status = hn_inputs_create(sys, arena, &s->in);
-    if (status == HN_OK) {
-        status = compile_tape(s, sys);
+    hn_status status = compile_tape(s, sys, arena);
+    if (status == HN_OK && !s->available) {
+        status = hn_inputs_create(sys, arena, &s->in);
     }
-    if (status == HN_OK && s->available) {
-        s->work = hn_arena_doubles(arena, hn_tape_work_size(s->tape));
-        s->out = hn_arena_doubles(arena, (size_t)s->n_out + 1);
-        status = s->work && s->out ? HN_OK : HN_ERR_MEMORY;
-    }
-    if (status != HN_OK) {
-        return status;
-    }
-    if (s->available) {
-        hn_tape_prepare(s->tape, s->work);
-    }
-    return prepare_dense(s, sys, arena);
+    return status == HN_OK ? prepare_dense(s, sys, arena) : status;
 }
 
 hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena,
@@ -149,9 +135,8 @@ hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_ar
 
 void hn_accel_free(hn_accel *s) {
     if (s) {
-        hn_tape_free(s->tape);
+        hn_inputs_free(&s->in);
         hn_eval_free(s->terms);
-        s->tape = NULL;
         s->terms = NULL;
     }
 }
@@ -159,15 +144,38 @@ void hn_accel_free(hn_accel *s) {
 // running ----------------------------------------------------------------------------------------------------------
 
 /// Smallest pivot relative to its reference; NaN counts as lost.
-static double worst_pivot(const double *guards, int n) {
+static double worst_pivot(const hn_accel *s) {
+    const double *x = s->in.x;
+    const uint16_t *slots = s->in.slots + s->n_out - 2 * s->n_guards;
     double worst = 1;
-    for (int k = 0; k < n; k++) {
-        double ratio = fabs(guards[2 * k]) / fabs(guards[2 * k + 1]);
+    for (int k = 0; k < s->n_guards; k++) {
+        double ratio = fabs(x[slots[2 * k]]) / fabs(x[slots[2 * k + 1]]);
         if (!(ratio >= worst)) {
             worst = ratio;
         }
     }
     return worst >= 0 ? worst : 0;
+}
+
+/// Takes the tape's answer if all of it is finite.
+static int take_answer(const hn_accel *s, double *a, double *lambda) {
+    const double *x = s->in.x;
+    const uint16_t *slots = s->in.slots;
+    int n = s->n_out - 2 * s->n_guards;
+    double zero = 0;
+    for (int k = 0; k < n; k++) {
+        zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
+    }
+    if (!(zero == 0)) {
+        return 0;
+    }
+    for (int i = 0; i < s->nv; i++) {
+        a[i] = x[slots[i]];
+    }
+    for (int i = 0; lambda && i < s->nc; i++) {
+        lambda[i] = x[slots[s->nv + i]];
+    }
+    return 1;
 }
 
 static int all_finite(const double *x, int n) {
@@ -220,15 +228,10 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     hn_inputs_set(&s->in, t, q, v, alpha, beta);
     *info = (hn_accel_info){.fallback = 1, .rank = s->nc, .pivot_ratio = 0, .residual = 0};
     if (s->available) {
-        int n_answer = s->nv + (s->opts.want_lambda ? s->nc : 0);
-        hn_tape_eval(s->tape, s->in.x, s->out, s->work);
-        info->pivot_ratio = worst_pivot(s->out + n_answer, s->n_guards);
-        if (info->pivot_ratio >= HN_PIVOT_GUARD && all_finite(s->out, n_answer)) {
+        hn_tape_run(s->in.tape, s->in.x);
+        info->pivot_ratio = worst_pivot(s);
+        if (info->pivot_ratio >= HN_PIVOT_GUARD && take_answer(s, a, lambda)) {
             info->fallback = 0;
-            memcpy(a, s->out, (size_t)s->nv * sizeof *a);
-            if (lambda) {
-                memcpy(lambda, s->out + s->nv, (size_t)s->nc * sizeof *lambda);
-            }
             return HN_OK;
         }
     }
@@ -236,7 +239,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
 }
 
 hn_tape_info hn_accel_tape_info(const hn_accel *s) {
-    return s->available ? hn_tape_get_info(s->tape) : hn_eval_info(s->terms);
+    return s->available ? hn_tape_get_info(s->in.tape) : hn_eval_info(s->terms);
 }
 
 long long hn_accel_count(const hn_accel *s) {

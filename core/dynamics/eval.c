@@ -12,11 +12,9 @@ typedef struct term_values {
 
 struct hn_eval {
     hn_inputs in;
-    hn_tape *tape;
-    double *work, *out;
     int n_out;
     double **target; ///< n_scatter places
-    int *source;     ///< tape output of each
+    int *source;     ///< where in the tape's workspace each comes from
     int n_scatter;
     term_values terms[HN_TERM_COUNT];
     long long count;
@@ -138,22 +136,13 @@ static hn_status build(hn_eval *e, hn_system *sys, unsigned terms, hn_arena *are
         }
     }
     if (status == HN_OK) {
-        status = hn_inputs_create(sys, arena, &e->in);
-    }
-    if (status == HN_OK) {
-        status = hn_inputs_compile(sys, &e->in, b.outputs, e->n_out, &e->tape);
+        status = hn_inputs_compile(sys, b.outputs, e->n_out, arena, &e->in);
     }
     free(b.outputs);
-    if (status != HN_OK) {
-        return status;
+    for (int k = 0; status == HN_OK && k < e->n_scatter; k++) {
+        e->source[k] = e->in.slots[e->source[k]];
     }
-    e->work = hn_arena_doubles(arena, hn_tape_work_size(e->tape));
-    e->out = hn_arena_doubles(arena, (size_t)e->n_out + 1);
-    if (!e->work || !e->out) {
-        return HN_ERR_MEMORY;
-    }
-    hn_tape_prepare(e->tape, e->work);
-    return HN_OK;
+    return status;
 }
 
 hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, hn_eval **out) {
@@ -175,16 +164,15 @@ hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, 
 
 void hn_eval_free(hn_eval *e) {
     if (e) {
-        hn_tape_free(e->tape);
-        e->tape = NULL;
+        hn_inputs_free(&e->in);
     }
 }
 
 void hn_eval_run(hn_eval *e, double t, const double *q, const double *v) {
     hn_inputs_set(&e->in, t, q, v, 0, 0);
-    hn_tape_eval(e->tape, e->in.x, e->out, e->work);
+    hn_tape_run(e->in.tape, e->in.x);
     for (int k = 0; k < e->n_scatter; k++) {
-        *e->target[k] = e->out[e->source[k]];
+        *e->target[k] = e->in.x[e->source[k]];
     }
     e->count++;
 }
@@ -213,7 +201,7 @@ int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int 
 }
 
 hn_tape_info hn_eval_info(const hn_eval *e) {
-    return hn_tape_get_info(e->tape);
+    return hn_tape_get_info(e->in.tape);
 }
 
 long long hn_eval_count(const hn_eval *e) {

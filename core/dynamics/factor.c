@@ -8,8 +8,6 @@
 
 struct hn_factor {
     hn_inputs in;
-    hn_tape *tape;
-    double *work, *out;
     hn_ldl ldl;     ///< the pattern; its expressions are not read any more
     double (*L)[2]; ///< values
     double (*Dinv)[3];
@@ -72,22 +70,12 @@ static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn
         return HN_ERR_MEMORY;
     }
     list_values(f, outputs);
-    status = hn_inputs_create(sys, arena, &f->in);
-    if (status == HN_OK) {
-        status = hn_inputs_compile(sys, &f->in, outputs, f->n_out, &f->tape);
-    }
+    status = hn_inputs_compile(sys, outputs, f->n_out, arena, &f->in);
     free(outputs);
-    if (status != HN_OK) {
-        return status;
+    if (status == HN_OK) {
+        f->info.update_ops = hn_tape_get_info(f->in.tape).ops;
     }
-    f->info.update_ops = hn_tape_get_info(f->tape).ops;
-    f->work = hn_arena_doubles(arena, hn_tape_work_size(f->tape));
-    f->out = hn_arena_doubles(arena, (size_t)f->n_out + 1);
-    if (!f->work || !f->out) {
-        return HN_ERR_MEMORY;
-    }
-    hn_tape_prepare(f->tape, f->work);
-    return HN_OK;
+    return status;
 }
 
 hn_status hn_factor_create(const hn_system *sys, hn_factor_weight weight, hn_arena *arena,
@@ -109,8 +97,7 @@ hn_status hn_factor_create(const hn_system *sys, hn_factor_weight weight, hn_are
 
 void hn_factor_free(hn_factor *f) {
     if (f) {
-        hn_tape_free(f->tape);
-        f->tape = NULL;
+        hn_inputs_free(&f->in);
     }
 }
 
@@ -133,14 +120,16 @@ hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivo
             return HN_ERR_DIVERGED;
         }
     }
-    hn_tape_eval(f->tape, f->in.x, f->out, f->work);
+    const double *x = f->in.x;
+    const uint16_t *slots = f->in.slots;
+    hn_tape_run(f->in.tape, f->in.x);
     for (int k = f->n_values; k < f->n_out; k += 2) {
-        double ratio = fabs(f->out[k]) / fabs(f->out[k + 1]);
+        double ratio = fabs(x[slots[k]]) / fabs(x[slots[k + 1]]);
         worst = ratio >= worst ? worst : ratio >= 0 ? ratio : 0;
     }
     for (int k = 0; k < f->n_values; k++) {
-        *f->target[k] = f->out[k];
-        worst = isfinite(f->out[k]) ? worst : 0;
+        *f->target[k] = x[slots[k]];
+        worst = isfinite(x[slots[k]]) ? worst : 0;
     }
     if (pivot_ratio) {
         *pivot_ratio = worst;

@@ -6,22 +6,24 @@ static int count_params(const hn_system *sys) {
     return sys->opts.symbolic_params ? sys->scene->n_params : 0;
 }
 
-hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in) {
-    in->nv = sys->nv;
-    in->n = 2 * sys->nv + 3 + count_params(sys);
-    in->x = hn_arena_doubles(arena, (size_t)in->n);
-    for (int i = 0; in->x && i < count_params(sys); i++) {
-        in->x[2 * sys->nv + 3 + i] = sys->scene->params[i].value;
+static void begin(const hn_system *sys, double *x, hn_inputs *in) {
+    in->x = x;
+    for (int i = 0; x && i < count_params(sys); i++) {
+        x[2 * sys->nv + 3 + i] = sys->scene->params[i].value;
     }
+}
+
+static void set_sizes(const hn_system *sys, hn_inputs *in) {
+    *in = (hn_inputs){.nv = sys->nv, .n = 2 * sys->nv + 3 + count_params(sys)};
+}
+
+hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in) {
+    set_sizes(sys, in);
+    begin(sys, hn_arena_doubles(arena, (size_t)in->n), in);
     return in->x ? HN_OK : HN_ERR_MEMORY;
 }
 
-hn_status hn_inputs_compile(hn_system *sys, const hn_inputs *in, const hn_ex *outputs, int n_out,
-                            hn_tape **tape) {
-    int *symbols = malloc((size_t)in->n * sizeof *symbols);
-    if (!symbols) {
-        return HN_ERR_MEMORY;
-    }
+static void list_symbols(const hn_system *sys, int *symbols) {
     memcpy(symbols, sys->q_symbols, (size_t)sys->nv * sizeof *symbols);
     memcpy(symbols + sys->nv, sys->v_symbols, (size_t)sys->nv * sizeof *symbols);
     int at = 2 * sys->nv;
@@ -31,21 +33,46 @@ hn_status hn_inputs_compile(hn_system *sys, const hn_inputs *in, const hn_ex *ou
     for (int i = 0; i < count_params(sys); i++) {
         symbols[at++] = hn_ex_symbol(sys->g, sys->params[i]);
     }
-    hn_status status = hn_tape_compile(sys->g, outputs, n_out, symbols, in->n, tape);
+}
+
+hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out, hn_arena *arena,
+                            hn_inputs *in) {
+    set_sizes(sys, in);
+    int *symbols = malloc((size_t)in->n * sizeof *symbols);
+    if (!symbols) {
+        return HN_ERR_MEMORY;
+    }
+    list_symbols(sys, symbols);
+    hn_status status = hn_tape_compile(sys->g, outputs, n_out, symbols, in->n, &in->tape);
     free(symbols);
-    return status;
+    if (status != HN_OK) {
+        return status;
+    }
+    double *work = hn_arena_doubles(arena, hn_tape_work_size(in->tape));
+    if (!work) {
+        hn_inputs_free(in);
+        return HN_ERR_MEMORY;
+    }
+    hn_tape_prepare(in->tape, work);
+    in->slots = hn_tape_output_slots(in->tape);
+    begin(sys, work, in);
+    return HN_OK;
+}
+
+void hn_inputs_free(hn_inputs *in) {
+    hn_tape_free(in->tape);
+    in->tape = NULL;
 }
 
 void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
                    double beta) {
-    size_t n = (size_t)in->nv;
-    memcpy(in->x, q, n * sizeof *q);
-    if (v) {
-        memcpy(in->x + n, v, n * sizeof *v);
-    } else {
-        memset(in->x + n, 0, n * sizeof *in->x);
+    double *x = in->x;
+    int n = in->nv;
+    for (int i = 0; i < n; i++) { // for a handful of speeds a loop is quicker than a call
+        x[i] = q[i];
+        x[n + i] = v ? v[i] : 0;
     }
-    in->x[2 * n] = t;
-    in->x[2 * n + 1] = alpha;
-    in->x[2 * n + 2] = beta;
+    x[2 * n] = t;
+    x[2 * n + 1] = alpha;
+    x[2 * n + 2] = beta;
 }

@@ -109,6 +109,14 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
     }
 }
 
+void hn_tape_run(const hn_tape *tape, double *work) {
+    run(tape->code, work);
+}
+
+const uint16_t *hn_tape_output_slots(const hn_tape *tape) {
+    return tape->outputs;
+}
+
 // listing --------------------------------------------------------------------------------------------------
 
 static const char *name_of(const hn_tape_instruction *i) {

@@ -33,6 +33,11 @@ void hn_tape_prepare(const hn_tape *tape, double *work);
 /// in (n_inputs) -> out (n_outputs). in and out must not overlap work.
 void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *work);
 
+/// The same without copying, for callers that keep a workspace: inputs are work[0 .. n_inputs-1] and stay as they are; output k is
+/// work[hn_tape_output_slots()[k]] afterwards (borrowed, n_outputs).
+void hn_tape_run(const hn_tape *tape, double *work);
+const uint16_t *hn_tape_output_slots(const hn_tape *tape);
+
 struct hn_strbuf;
 /// One instruction a line, for tests and the curious.
 void hn_tape_list(const hn_tape *tape, struct hn_strbuf *b);
