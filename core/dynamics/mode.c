@@ -26,19 +26,6 @@ typedef struct loop_parts {
     int independent;   ///< the one taken last
 } loop_parts;
 
-static int find_rows(const hn_system *sys, int nc, loop_parts *parts) {
-    for (int i = 0; i < nc; i++) {
-        if (hn_system_row_loop(sys, i) != 0) {
-            continue;
-        }
-        if (parts->n_rows == MAX_ROWS) {
-            return 0;
-        }
-        parts->rows[parts->n_rows++] = i;
-    }
-    return parts->n_rows > 0;
-}
-
 /// Row `row` of J times the rates `unit` (nv) that a user coordinate's unit rate stands for.
 static hn_ex row_times(const hn_system *sys, int row, const double *unit) {
     hn_system_info info = hn_system_get_info(sys);
@@ -54,13 +41,8 @@ static hn_ex row_times(const hn_system *sys, int row, const double *unit) {
     return sum;
 }
 
-static int loop_moves_with(const hn_system *sys, const loop_parts *parts, const double *unit) {
-    for (int r = 0; r < parts->n_rows; r++) {
-        if (!hn_is_zero(row_times(sys, parts->rows[r], unit))) {
-            return 1;
-        }
-    }
-    return 0;
+static int row_moves_with(const hn_system *sys, int row, const double *unit) {
+    return !hn_is_zero(row_times(sys, row, unit));
 }
 
 /// How willingly a coordinate is taken as independent: a motor first, then what the user holds.
@@ -101,22 +83,69 @@ static void unit_rate(const hn_system *sys, int user, double *user_rates, double
     user_rates[user] = 0;
 }
 
+/// 1 if `row` belongs to the first loop. A scene of formulas does not say which of them make up one loop: there, these are
+/// the rows that depend on the same coordinates as the first (its set is given).
+static int is_in_first_loop(const hn_system *sys, int row, const int *moves, const double *units) {
+    hn_system_info info = hn_system_get_info(sys);
+    if (!hn_system_scene(sys)->is_lagrangian) {
+        return hn_system_row_loop(sys, row) == 0;
+    }
+    for (int k = 0; k < info.n_user; k++) {
+        if (row_moves_with(sys, row, units + (size_t)k * info.nv) != moves[k]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/// Rows of the first loop into parts; moves[k] becomes 1 for each user coordinate that moves one. 0 when it has too many.
+static int find_rows(const hn_system *sys, const double *units, int *moves, loop_parts *parts) {
+    hn_system_info info = hn_system_get_info(sys);
+    for (int k = 0; k < info.n_user && info.nc > 0; k++) {
+        moves[k] = row_moves_with(sys, 0, units + (size_t)k * info.nv);
+    }
+    for (int i = 0; i < info.nc; i++) {
+        if (!is_in_first_loop(sys, i, moves, units)) {
+            continue;
+        }
+        if (parts->n_rows == MAX_ROWS) {
+            return 0;
+        }
+        parts->rows[parts->n_rows++] = i;
+    }
+    for (int r = 0; r < parts->n_rows; r++) {
+        for (int k = 0; k < info.n_user; k++) {
+            moves[k] |= row_moves_with(sys, parts->rows[r], units + (size_t)k * info.nv);
+        }
+    }
+    return parts->n_rows > 0;
+}
+
+/// Row k of `units` (n_user x nv): the system rates that a unit rate of user coordinate k stands for.
+static void fill_units(const hn_system *sys, double *user_rates, double *units) {
+    hn_system_info info = hn_system_get_info(sys);
+    for (int k = 0; k < info.n_user; k++) {
+        unit_rate(sys, k, user_rates, units + (size_t)k * info.nv);
+    }
+}
+
 /// Fills `parts`; n_dependent stays 0 when the loop has fewer coordinates than rows (over-closed) or there is none.
 static hn_status find_parts(const hn_system *sys, hn_arena *arena, loop_parts *parts) {
     hn_system_info info = hn_system_get_info(sys);
     *parts = (loop_parts){0};
-    if (!find_rows(sys, info.nc, parts)) {
-        return HN_OK;
-    }
+    int *moves = hn_arena_ints(arena, (size_t)info.n_user);
     int *coordinates = hn_arena_ints(arena, (size_t)info.n_user);
     double *user_rates = hn_arena_doubles(arena, (size_t)info.n_user);
-    double *unit = hn_arena_doubles(arena, (size_t)info.nv);
-    if (!coordinates || !user_rates || !unit) {
+    double *units = hn_arena_doubles(arena, (size_t)info.n_user * info.nv);
+    if (!moves || !coordinates || !user_rates || !units) {
         return HN_ERR_MEMORY;
     }
+    fill_units(sys, user_rates, units);
+    if (!find_rows(sys, units, moves, parts)) {
+        return HN_OK;
+    }
     for (int k = 0; k < info.n_user; k++) {
-        unit_rate(sys, k, user_rates, unit);
-        if (loop_moves_with(sys, parts, unit)) {
+        if (moves[k]) {
             coordinates[parts->n_coordinates++] = k;
         }
     }
