@@ -11,11 +11,16 @@
 #include <string.h>
 
 enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
-static const double CONTRACTION = 0.1; // a frozen factor that does worse is made again
+// Position: a frozen factor that contracts less than this is made again. Not for speed (0.1 would do) but because the frozen J
+// shifts the landing point along the constraints by about this fraction of the move, a bias that a run adds up.
+static const double FROZEN_CONTRACTION = 1e-4;
+static const double CONTRACTION = 0.1; // velocity: the problem is linear, only convergence counts
 static const double NEAR =
     1e-2; // a factor made this close (in any coordinate) is worth trying for the speeds
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
-static const double VELOCITY_TOL = 4e-15; // of (1 + length) max |v_i| sqrt(nc)
+// of (1 + length) max |v_i| sqrt(nc): how far speeds are closed, and what will do where they close no further
+static const double VELOCITY_TOL = 2e-16;
+static const double VELOCITY_ROUNDING = 4e-15;
 // A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic there, and a step
 // phi / sigma would be larger than the range in which J means something.
 static const double PROJECTOR_RANK_TOL = 1e-7;
@@ -246,49 +251,54 @@ static double eval_phi(hn_projector *p, double t, const double *q) {
     return hn_norm2(p->nc, p->gap);
 }
 
-/// Iterates from q in place. Returns HN_OK when the gap went below tol or what is left belongs to a lost direction.
-static hn_status close_gap(hn_projector *p, double t, double *q, double tol,
+/// One step of the position iteration with the present factor, made at q when there is none.
+static hn_status step_position(hn_projector *p, double t, double *q) {
+    if (!p->have_factor) {
+        hn_status status = make_factor(p, t, q, 0);
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    hn_status status = solve(p);
+    if (status == HN_OK) {
+        hn_axpy(p->nq, 1, p->step, q);
+        p->ops += p->nq;
+    }
+    return status;
+}
+
+/// Iterates from q in place until the gap is at most tol, or below `rounding` and no longer shrinking, or what is left belongs
+/// to a lost direction.
+static hn_status close_gap(hn_projector *p, double t, double *q, double tol, double rounding,
                            hn_project_info *info) {
     double gap = eval_phi(p, t, q);
     *info = (hn_project_info){.iterations = 1, .gap_before = gap, .gap = gap, .rank = p->nc};
     p->have_factor = 0;
-    int fresh = 0; // steps taken with the present factor
-    while (gap > tol) {
+    while (gap > tol && isfinite(gap)) {
         if (info->iterations >= MAX_ITERATIONS) {
-            return HN_ERR_NO_CONVERGENCE;
+            return gap <= rounding ? HN_OK : HN_ERR_NO_CONVERGENCE;
         }
-        if (!p->have_factor) {
-            hn_status status = make_factor(p, t, q, 0);
-            fresh = 0;
-            if (status != HN_OK) {
-                return status;
-            }
-        }
-        hn_status status = solve(p);
+        int fresh = !p->have_factor;
+        hn_status status = step_position(p, t, q);
         if (status != HN_OK) {
             return status;
         }
-        hn_axpy(p->nq, 1, p->step, q);
-        p->ops += p->nq;
         double before = gap;
         gap = eval_phi(p, t, q);
         info->iterations++;
         info->rank = p->rank;
-        info->gap = gap;
-        if (!isfinite(gap)) {
-            return HN_ERR_DIVERGED;
+        if (before <= rounding && !(gap < before)) {
+            hn_axpy(p->nq, -1, p->step, q); // nothing to gain any more
+            return HN_OK;
         }
-
-        if (gap > tol && gap > CONTRACTION * before) {
-            int stuck = fresh == 0 && p->dense && p->rank < p->nc && gap > 0.5 * before;
-            if (stuck) {
-                return gap <= LOST_RANK_GAP * p->length && gap <= info->gap_before
-                           ? HN_OK
-                           : HN_ERR_NO_CONVERGENCE;
-            }
+        info->gap = gap;
+        if (fresh && p->dense && p->rank < p->nc && gap > fmax(rounding, 0.5 * before)) {
+            int small = gap <= LOST_RANK_GAP * p->length && gap <= info->gap_before;
+            return small ? HN_OK : HN_ERR_NO_CONVERGENCE;
+        }
+        if (gap > rounding && gap > FROZEN_CONTRACTION * before) {
             p->have_factor = 0;
         }
-        fresh++;
     }
     return isfinite(gap) ? HN_OK : HN_ERR_DIVERGED;
 }
@@ -304,9 +314,9 @@ hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
     if (p->nc == 0) {
         return HN_OK;
     }
-    double rounding = 4 * DBL_EPSILON * (1 + hn_norm_max(p->nq, q));
+    double rounding = 4 * DBL_EPSILON * (1 + hn_norm_max(p->nq, q)) * p->length;
     memcpy(p->best, q, (size_t)p->nq * sizeof *q);
-    hn_status status = close_gap(p, t, q, fmax(tol, rounding) * p->length, info);
+    hn_status status = close_gap(p, t, q, tol * p->length, rounding, info);
     if (status != HN_OK) {
         memcpy(q, p->best, (size_t)p->nq * sizeof *q);
     }
@@ -349,38 +359,34 @@ static hn_status correct_velocity(hn_projector *p, double *v) {
     return HN_OK;
 }
 
+/// The problem is linear, so a fresh factor closes the gap at once and a near one does in two or three rounds. A factor that
+/// does not contract is made again here, and then by the dense solve.
 static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, double *v,
-                                    double tol, hn_project_info *info) {
+                                    double scale, hn_project_info *info) {
     double gap = info->gap;
-    int made_here = 0, tried_dense = 0;
-    if (!factor_is_near(p, t, q)) {
-        hn_status status = make_factor(p, t, q, 0);
+    int made_here = !factor_is_near(p, t, q);
+    hn_status status = made_here ? make_factor(p, t, q, 0) : HN_OK;
+    while (status == HN_OK && gap > VELOCITY_TOL * scale &&
+           info->iterations < MAX_VELOCITY_ITERATIONS) {
+        status = correct_velocity(p, v);
         if (status != HN_OK) {
-            return status;
-        }
-        made_here = 1;
-    }
-    while (gap > tol && info->iterations < MAX_VELOCITY_ITERATIONS) {
-        hn_status status = correct_velocity(p, v);
-        if (status != HN_OK) {
-            return status;
+            break;
         }
         double before = gap;
         gap = eval_velocity_gap(p, t, q, v);
         info->iterations++;
         info->gap = gap;
-        if (gap <= tol || gap <= CONTRACTION * before) {
+        if (gap <= CONTRACTION * before) {
             continue;
         }
-        if (p->dense && made_here) {
-            break; // linear, and solved as well as it can be: what is left is outside the range of J, or rounding
+        if (gap <= VELOCITY_ROUNDING * scale || (p->dense && made_here)) {
+            break; // rounding, or as good as it can be: what is left is outside the range of J
         }
-        tried_dense = made_here;
-        status = make_factor(p, t, q, tried_dense);
+        status = make_factor(p, t, q, made_here);
         made_here = 1;
-        if (status != HN_OK) {
-            return status;
-        }
+    }
+    if (status != HN_OK) {
+        return status;
     }
     return isfinite(gap) ? HN_OK : HN_ERR_DIVERGED;
 }
@@ -396,7 +402,7 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
     if (p->nc == 0) {
         return HN_OK;
     }
-    double tol = VELOCITY_TOL * (1 + p->length) * hn_norm_max(p->nv, v) * sqrt(p->nc);
+    double scale = (1 + p->length) * hn_norm_max(p->nv, v) * sqrt(p->nc);
     info->iterations = 1;
     info->gap_before = info->gap = eval_velocity_gap(p, t, q, v);
     if (!isfinite(info->gap)) {
@@ -405,17 +411,16 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
     memcpy(p->closed, p->gap, (size_t)p->nc * sizeof *p->closed);
     memset(p->impulse, 0, (size_t)p->nc * sizeof *p->impulse);
     memcpy(p->best, v, (size_t)p->nv * sizeof *v);
-    hn_status status = info->gap > tol ? close_velocity_gap(p, t, q, v, tol, info) : HN_OK;
-    if (status == HN_OK && info->gap > info->gap_before) {
+    hn_status status = HN_OK;
+    if (info->gap > VELOCITY_TOL * scale) {
+        status = close_velocity_gap(p, t, q, v, scale, info);
+    }
+    if (status != HN_OK || info->gap > info->gap_before) {
         // no better than before: rounding if the gap was small already
-        status = info->gap_before <= 100 * tol ? HN_OK : HN_ERR_NO_CONVERGENCE;
+        int rounding = status == HN_OK && info->gap_before <= VELOCITY_ROUNDING * scale;
         info->gap = info->gap_before;
         memcpy(v, p->best, (size_t)p->nv * sizeof *v);
-        return status;
-    }
-    if (status != HN_OK) {
-        memcpy(v, p->best, (size_t)p->nv * sizeof *v);
-        return status;
+        return rounding ? HN_OK : (status != HN_OK ? status : HN_ERR_NO_CONVERGENCE);
     }
     info->rank = p->have_factor ? p->rank : p->nc;
     if (p->weight == HN_WEIGHT_MASS) {

@@ -4,7 +4,7 @@
 // (minimum-norm), never NaN. Source: Eich 1993; Ascher, Chin & Reich 1994; Blajer 2002.
 //
 // Position: q <- q - W^-1 J' S^-1 phi(q), S = J W^-1 J', with W and J frozen where the factor was made; it is made again
-// when the gap shrinks by less than ten per step. Velocity: the same for J v + phi_t, with the factor at hand while it
+// when the gap shrinks by less than 1e4 per step. Velocity: the same for J v + phi_t, with the factor at hand while it
 // contracts. The sparse factor of dynamics/factor.h serves; where its pivots fail, the dense rank-revealing solve does.
 
 #include "base/arena.h"
@@ -28,9 +28,10 @@ HN_MUST_CHECK hn_status hn_projector_create(const hn_system *sys, hn_weight weig
                                             hn_projector **out);
 void hn_projector_free(hn_projector *p); ///< NULL is legal
 
-/// q in place until ||phi|| <= tol * hn_system_length(): 1e-13 is a good tol. A tol finer than the rounding of q itself,
-/// 4 eps (1 + max |q_i|), is taken as that. Where J has lost rank and nothing can shorten what is left, that is accepted below
-/// 1e-6 lengths: HN_OK with rank < nc, and info->gap says how much. `info` may be NULL. Allocates nothing.
+/// q in place until ||phi|| <= tol * hn_system_length(): 1e-13 is a good tol, 1e-15 asks for all that rounding allows. Below the
+/// rounding of q itself, 4 eps (1 + max |q_i|) lengths, a gap that stops shrinking is accepted. Where J has lost rank and
+/// nothing can shorten what is left, that is accepted below 1e-6 lengths: HN_OK with rank < nc, and info->gap says how much.
+/// `info` may be NULL. Allocates nothing.
 /// Fails: HN_ERR_NO_CONVERGENCE after 8 evaluations, HN_ERR_DIVERGED. Then q is untouched.
 HN_MUST_CHECK hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
                                             hn_project_info *info);
