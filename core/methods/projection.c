@@ -8,7 +8,7 @@
 enum { SET_WEIGHT, SET_WHAT };
 enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
 // of the characteristic length: rounding level times sqrt(rows), and what is accepted where rounding is coarser
-#define GAP_TOL 2e-15
+#define GAP_TOL 3e-16
 #define GAP_TOL_COARSE 1e-12
 
 typedef struct projection {

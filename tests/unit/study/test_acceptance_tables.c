@@ -59,18 +59,20 @@ static void the_null_space_form_as_printed_is_wrong_however_small_the_step(void 
     (void)state;
     static const struct {
         const char *method;
-        double energy; // worst change in 1 s [J]
+        double energy, half; // worst change in 1 s and in 0.5 s [J]
     } rows[] = {
-        {"nullspace-as-printed:basis=first-entry-1@rk4:h=1e-2", 72.80},
-        {"nullspace-as-printed:basis=first-entry-1@rk4:h=1e-3", 72.88},
-        {"nullspace-as-printed:basis=unit-length@rk4:h=1e-2", 28.80},
-        {"nullspace-as-printed:basis=unit-length@rk4:h=1e-3", 28.81},
+        {"nullspace-as-printed:basis=first-entry-1@rk4:h=1e-2", 72.80, 0.2451},
+        {"nullspace-as-printed:basis=first-entry-1@rk4:h=1e-3", 72.88, 0.2451},
+        {"nullspace-as-printed:basis=unit-length@rk4:h=1e-2", 28.80, 0.1602},
+        {"nullspace-as-printed:basis=unit-length@rk4:h=1e-3", 28.81, 0.1602},
     };
     hn_model m;
     hn_model_open_closed(&m, "four-bar", NULL);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         hn_run_summary s = hn_motion_summary(&m, rows[i].method, 1);
         assert_near(fabs(s.worst_energy_change), rows[i].energy, 0.02);
+        assert_rel(fabs(hn_motion_summary(&m, rows[i].method, 0.5).worst_energy_change),
+                   rows[i].half, 0.01);
         assert_true(s.worst_gap < 2 * ROUNDING); // closed all the time
     }
     must_be_within_two(fabs(hn_motion_summary(&m, "nullspace@rk4:h=1e-2", 1).worst_energy_change),
@@ -113,7 +115,7 @@ static void ten_seconds_keep_the_energy(void **state) {
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         hn_run_summary s = hn_motion_summary(&m, methods[i], 10);
         assert_true(fabs(s.worst_energy_change) < 1e-7 * 49.3);
-        assert_true(s.worst_gap < 2 * ROUNDING && s.worst_velocity_gap < 20 * ROUNDING);
+        assert_true(s.worst_gap <= 2 * ROUNDING && s.worst_velocity_gap < 20 * ROUNDING);
     }
     hn_model_close(&m);
 }
@@ -122,7 +124,7 @@ static void
 unstabilised_gap_grows_with_the_square_of_time_and_the_fourth_power_of_the_step(void **state) {
     (void)state;
     static const char *const methods[] = {"index1@rk4:h=1e-2", "index1@rk4:h=5e-3"};
-    static const double times[] = {5, 10, 20, 40};
+    static const double times[] = {10, 20, 40, 80}; // before 10 s the first swing still shows
     double gap[2][4], speed[2][4];
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
@@ -141,8 +143,7 @@ unstabilised_gap_grows_with_the_square_of_time_and_the_fourth_power_of_the_step(
     for (int i = 0; i < 4; i++) {
         assert_near(gap[0][i] / gap[1][i], 16, 2);
     }
-    // 2.7e-6 t^2 at h = 0.01
-    must_be_within_two(gap[0][3] / (40 * 40), 2.7e-6, "gap / t^2");
+    must_be_within_two(gap[0][3] / (80 * 80), 2.7e-6, "gap / t^2 at h = 0.01");
     hn_model_close(&m);
 }
 
