@@ -151,7 +151,8 @@ static int factor_dependent(hn_chart *chart, hn_chart_point *p) {
     chart->cost.factorisations++;
     chart->cost.ops += hn_flops_qr(nc, rank);
     p->sign = nc == rank && p->jd.rank == rank ? sign_of_det(&p->jd, rank) : 0;
-    return p->jd.rank == rank && smallest_pivot(p, rank) > HN_CHART_FOLD * chart->pivot_start;
+    return rank == 0 ||
+           (p->jd.rank == rank && smallest_pivot(p, rank) > HN_CHART_FOLD * chart->pivot_start);
 }
 
 static void make_basis(hn_chart *chart, hn_chart_point *p) {

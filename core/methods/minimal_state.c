@@ -2,6 +2,9 @@
 
 #include <string.h>
 
+#define STEPS_AHEAD \
+    2 // |det J_d| is nearly linear in t there; twice the step leaves room for its bend
+
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
     const size_t nv = (size_t)hn_system_get_info(sys).nv;
@@ -105,11 +108,11 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
 }
 
 // A step that jumps over a dead point finds a closed loop on the near side of it again: the coordinate turns back although
-// the mechanism went on. Then |det J_d|, continued at its rate, would have passed zero, and all speeds have turned round.
+// the mechanism went on. Then |det J_d| was on its way to zero and all speeds have turned round.
 static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     const hn_chart *chart = &s->chart;
     double along = 0;
-    if (!s->has_rate || s->volume + h * s->volume_rate >= 0) {
+    if (!s->has_rate || s->volume + STEPS_AHEAD * h * s->volume_rate >= 0) {
         return 0;
     }
     for (int i = 0; i < chart->nv; i++) {

@@ -222,12 +222,24 @@ static void look_at_rank(hn_run *run, int at_start) {
     }
 }
 
-// a change of sign through zero is a dead point; one that jumps over it is the other branch
+// How much of the last step's motion its speeds do not explain: 0 for smooth motion, about 1 or more for a jump.
+static double unexplained_motion(const hn_run *run) {
+    const double half = 0.5 * (run->now.t - run->before.t);
+    double moved = 0, rest = 0;
+    for (int i = 0; i < run->info.nv && run->info.nv == run->info.nq; i++) {
+        const double step = run->now.q[i] - run->before.q[i];
+        moved = fmax(moved, fabs(step));
+        rest = fmax(rest, fabs(step - half * (run->now.v[i] + run->before.v[i])));
+    }
+    return moved > 0 ? rest / moved : 0;
+}
+
+// A change of sign in smooth motion is a dead point that was passed; with a jump it is the other branch.
 static void look_at_mode(hn_run *run) {
     hn_run_watch_state *w = &run->watch;
     const double mode = hn_mode_watch_value(w->mode, run->now.t, run->now.q);
     const double jump = fabs(mode - w->last_mode), limit = HN_RUN_WARN_MODE;
-    const int flipped = mode * w->last_mode < 0 && jump > limit;
+    const int flipped = mode * w->last_mode < 0 && jump > limit && unexplained_motion(run) > 0.5;
     if (flipped) {
         hn_incident *i =
             tell(run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", mode, limit,
