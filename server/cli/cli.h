@@ -36,7 +36,7 @@ typedef struct hn_args {
     hn_numbers at;
     const char *method, *format, *out, *host, *theme;
     double time, every, t, port, width, height, seed, frame_dt;
-    double history, max_comparisons, max_streams, idle_pause, expiry, keep_alive;
+    double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
     int json, open, help;
 } hn_args;
 

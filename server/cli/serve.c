@@ -31,6 +31,7 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     choose_int(&opts->max_events, args->history);
     choose_int(&opts->max_comparisons, args->max_comparisons);
     choose_int(&opts->max_streams, args->max_streams);
+    choose_seconds(&opts->max_run_cpu, args->run_cpu);
     choose_seconds(&opts->idle_pause, args->idle_pause);
     choose_seconds(&opts->expiry, args->expiry);
     choose_seconds(&opts->keep_alive, args->keep_alive);
@@ -43,6 +44,7 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
                   {"--history", opts->max_events, 1, 1e6},
                   {"--max-comparisons", opts->max_comparisons, 1, 1000},
                   {"--max-streams", opts->max_streams, 1, 200},
+                  {"--run-cpu", opts->max_run_cpu, 0.01, 3600},
                   {"--idle-pause", opts->idle_pause, 0.1, 1e6},
                   {"--expiry", opts->expiry, 0.1, 1e6},
                   {"--keep-alive", opts->keep_alive, 0.1, 20},

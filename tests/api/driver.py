@@ -1,0 +1,254 @@
+"""Starts the real server on a free port and speaks HTTP to it; runs unittest cases and prints TAP."""
+
+import http.client
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import unittest
+
+PROGRAM = os.environ.get("HOLONOM", "build/holonom")
+SLOW = 5 if "san" in PROGRAM else 1  # sanitisers cost time, never correctness
+
+
+class Answer:
+    """Status, headers (lower-case names) and bytes of one reply."""
+
+    def __init__(self, response):
+        self.status = response.status
+        self.headers = {k.lower(): v for k, v in response.getheaders()}
+        self.body = response.read()
+
+    @property
+    def type(self):
+        return self.headers.get("content-type", "").split(";")[0]
+
+    def json(self):
+        """Parses strictly: a NaN or an Infinity is an error."""
+
+        def refuse(word):
+            raise ValueError("JSON holds " + word)
+
+        return json.loads(self.body.decode("utf-8"), parse_constant=refuse)
+
+
+class Server:
+    """A server process of its own."""
+
+    def __init__(self, *options, environment=None):
+        env = dict(os.environ, **(environment or {}))
+        self.process = subprocess.Popen(
+            [PROGRAM, "serve", "--port", "0", "--json", *options],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=env)
+        line = self.process.stdout.readline()
+        if not line:
+            raise RuntimeError("the server did not start: " + self.process.stderr.read().decode())
+        self.port = json.loads(line)["port"]
+        self.errors = []
+        self.reader = threading.Thread(target=self._read_errors, daemon=True)
+        self.reader.start()
+
+    def _read_errors(self):
+        for line in self.process.stderr:
+            self.errors.append(line.decode(errors="replace"))
+
+    def connect(self, timeout=60):
+        return http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout * SLOW)
+
+    def ask(self, method, path, body=None, headers=None, timeout=60):
+        """One request on a connection of its own. A dict or list is sent as JSON."""
+        headers = dict(headers or {})
+        if isinstance(body, (dict, list)):
+            body = json.dumps(body)
+            headers.setdefault("Content-Type", "application/json")
+        connection = self.connect(timeout)
+        try:
+            connection.request(method, path, body=body, headers=headers)
+            return Answer(connection.getresponse())
+        finally:
+            connection.close()
+
+    def raw(self, data, timeout=10):
+        """Sends bytes as they are; everything that comes back until the server closes or is silent."""
+        with socket.create_connection(("127.0.0.1", self.port), timeout=timeout * SLOW) as s:
+            s.settimeout(timeout)
+            try:
+                s.sendall(data)
+                s.shutdown(socket.SHUT_WR)
+            except OSError:
+                pass
+            reply = b""
+            try:
+                while piece := s.recv(65536):
+                    reply += piece
+            except OSError:
+                pass
+            return reply
+
+    def compare(self, **fields):
+        """Makes a comparison; its description."""
+        body = {"scene": "four-bar", "methods": ["projection@rk4:h=1e-3"], **fields}
+        answer = self.ask("POST", "/api/v1/comparisons", body)
+        assert answer.status == 201, answer.body
+        return answer.json()
+
+    def stop(self, how=signal.SIGTERM):
+        """Ends it; its exit status. What a sanitiser said is in `errors`."""
+        self.process.send_signal(how)
+        status = self.process.wait(timeout=30 * SLOW)
+        self.reader.join(timeout=5)
+        self.process.stdout.close()
+        self.process.stderr.close()
+        return status
+
+
+class Events:
+    """A reader of a comparison's event stream: yields (event, id or None, data)."""
+
+    def __init__(self, server, comparison, last_id=None, query="", timeout=30, receive_buffer=None):
+        self.connection = server.connect(timeout)
+        if receive_buffer:  # must be set before connecting
+            self.connection.sock = socket.socket()
+            self.connection.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+            self.connection.sock.settimeout(timeout * SLOW)
+            self.connection.sock.connect(("127.0.0.1", server.port))
+        headers = {} if last_id is None else {"Last-Event-ID": str(last_id)}
+        self.connection.request("GET", f"/api/v1/comparisons/{comparison}/events{query}", headers=headers)
+        self.socket = self.connection.sock
+        self.response = self.connection.getresponse()
+        self.status = self.response.status
+        self.comments = 0
+        self.last_id = last_id
+
+    def __iter__(self):
+        event, ident, data = "message", None, []
+        while True:
+            line = self.response.readline()
+            if not line:
+                return
+            line = line.decode("utf-8").rstrip("\n")
+            if line.startswith(":"):
+                self.comments += 1
+                yield ("comment", None, None)
+            elif line.startswith("event: "):
+                event = line[7:]
+            elif line.startswith("id: "):
+                ident = int(line[4:])
+            elif line.startswith("data: "):
+                data.append(line[6:])
+            elif line == "" and data:
+                self.last_id = ident if ident is not None else self.last_id
+                yield (event, ident, json.loads("\n".join(data)))
+                event, ident, data = "message", None, []
+
+    def until(self, wanted):
+        """Everything up to and with the first event of that name."""
+        seen = []
+        for event in self:
+            seen.append(event)
+            if event[0] == wanted:
+                return seen
+        raise AssertionError(f"the stream ended without {wanted!r}: {[e[0] for e in seen]}")
+
+    def take(self, n):
+        """The next n events that carry data."""
+        seen = []
+        for event in self:
+            if event[0] != "comment":
+                seen.append(event)
+            if len(seen) == n:
+                return seen
+        raise AssertionError(f"the stream ended after {len(seen)} of {n} events")
+
+    def frames_up_to(self, number):
+        """The frames that come next, up to and with that one; other events are passed over."""
+        seen = []
+        for name, _, data in self:
+            if name == "frame":
+                seen.append(data)
+                if data["frame"] == number:
+                    return seen
+        raise AssertionError(f"the stream ended before frame {number}")
+
+    def close(self):
+        # cut off, with no goodbye
+        try:
+            self.socket.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass  # the server was quicker
+        self.response.close()
+        self.connection.close()
+
+
+class TapResult(unittest.TestResult):
+    """Prints a TAP line for each test as it ends."""
+
+    def _say(self, test, good, reason=""):
+        self.number = getattr(self, "number", 0) + 1
+        name = test.id().split(".", 1)[1] if test.id().startswith("__main__.") else test.id()
+        print(f"{'ok' if good else 'not ok'} {self.number} - {name.replace('_', ' ')}", flush=True)
+        for line in reason.splitlines():
+            print("# " + line, flush=True)
+
+    def addSuccess(self, test):
+        self._say(test, True)
+
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self._say(test, False, self._exc_info_to_string(err, test))
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self._say(test, False, self._exc_info_to_string(err, test))
+
+    def addSubTest(self, test, subtest, err):
+        super().addSubTest(test, subtest, err)
+        if err is not None:
+            self._say(subtest, False, self._exc_info_to_string(err, test))
+
+    def addSkip(self, test, reason):
+        super().addSkip(test, reason)
+        self._say(test, True, "")
+
+
+class ServerCase(unittest.TestCase):
+    """A case whose tests share one server; a server that does not end cleanly fails the case."""
+
+    options = ()
+    environment = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server(*cls.options, environment=cls.environment)
+
+    @classmethod
+    def tearDownClass(cls):
+        status = cls.server.stop()
+        if status != 0:
+            raise RuntimeError(f"the server ended with {status}: {''.join(cls.server.errors)[-4000:]}")
+
+    def assert_problem(self, answer, status, code=None):
+        """A problem document of that status, its members sound."""
+        self.assertEqual(answer.status, status, answer.body[:500])
+        self.assertEqual(answer.type, "application/problem+json")
+        document = answer.json()
+        self.assertEqual(document["status"], status)
+        for member in ("type", "title", "detail"):
+            self.assertTrue(document[member], member)
+        if code:
+            self.assertEqual(document["type"], "/api/v1/errors/" + code)
+        for error in document.get("errors", []):
+            self.assertTrue(error["detail"])
+            self.assertTrue(error["pointer"] == "" or error["pointer"].startswith("/"), error)
+        return document
+
+
+def main():
+    suite = unittest.defaultTestLoader.loadTestsFromModule(sys.modules["__main__"])
+    result = TapResult()
+    print(f"1..{suite.countTestCases()}", flush=True)
+    suite.run(result)
+    sys.exit(0 if result.wasSuccessful() else 1)

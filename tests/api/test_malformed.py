@@ -1,0 +1,274 @@
+"""Requests at fault: each gets a problem document that says where and what, and the server goes on."""
+
+import json
+import signal
+import unittest
+
+import driver
+
+RUN = {"scene": "four-bar", "method": "index1@rk4:h=1e-3", "time": 0.1}
+COMPARISON = {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"]}
+
+
+def but(body, **changes):
+    """The body with members changed; None takes one out."""
+    changed = {**body, **changes}
+    return {k: v for k, v in changed.items() if v is not None}
+
+
+# bytes sent to POST /api/v1/runs, the byte at which they stop being JSON
+NOT_JSON = [
+    (b"", 0),
+    (b"   ", 3),
+    (b"{", 1),
+    (b'{"scene"', 8),
+    (b'{"scene" "four-bar"}', 9),
+    (b'{"scene": four-bar}', 10),
+    (b"{'scene': 1}", 1),
+    (b'{"time": 01}', None),
+    (b'{"time": +1}', 9),
+    (b'{"time": .5}', 9),
+    (b'{"time": 1.}', None),
+    (b'{"time": NaN}', 9),
+    (b'{"time": Infinity}', 9),
+    (b'{"time": -Infinity}', None),
+    (b'{"time": 1e400}', None),
+    (b'{"time": 0x10}', None),
+    (b'{"time": 1,}', None),
+    (b'{"time": 1} {}', 12),
+    (b'{"scene": "four\nbar"}', None),
+    (b'{"scene": "\\x41"}', None),
+    (b'{"scene": "\\u00"}', None),
+    (b'{"scene": "\xff\xfe"}', None),
+    (b'{"scene": "\xed\xa0\x80"}', None),
+    (b'\xef\xbb\xbf{}', 0),
+    (b'{"scene": "four-bar', None),
+    (b'{"time": 1}\x00', 11),
+    (b"[" * 100 + b"]" * 100, 64),
+    (b"[" * 100000, 64),
+]
+
+# path, body, pointer of a fault, a word of its detail or hint
+AT_FAULT = [
+    ("runs", [], "", "object"),
+    ("runs", {}, "/scene", "missing"),
+    ("runs", but(RUN, scene=None), "/scene", "missing"),
+    ("runs", but(RUN, method=None), "/method", "missing"),
+    ("runs", but(RUN, scene=7), "/scene", "scene"),
+    ("runs", but(RUN, scene=["four-bar"]), "/scene", "scene"),
+    ("runs", but(RUN, scene="for-bar"), "/scene", "four-bar"),
+    ("runs", but(RUN, scene=""), "/scene", ""),
+    ("runs", but(RUN, scene="../../etc/passwd"), "/scene", ""),
+    ("runs", but(RUN, scene={}), "/scene", ""),
+    ("runs", but(RUN, method=1), "/method", "string"),
+    ("runs", but(RUN, method="index1"), "/method", "@"),
+    ("runs", but(RUN, method="indx1@rk4:h=1e-3"), "/method", "index1"),
+    ("runs", but(RUN, method="index1@rk5:h=1e-3"), "/method", "rk4"),
+    ("runs", but(RUN, method="index1@rk4:hh=1e-3"), "/method", "h"),
+    ("runs", but(RUN, method="index1@rk4:h=0"), "/method", ""),
+    ("runs", but(RUN, method="index1@rk4:h=-1"), "/method", ""),
+    ("runs", but(RUN, method="index1@rk4:h=abc"), "/method", ""),
+    ("runs", but(RUN, method="index1@rk4:h=1e-3,h=1e-4"), "/method", ""),
+    ("runs", but(RUN, method="@"), "/method", ""),
+    ("runs", but(RUN, method="x" * 5000), "/method", ""),
+    ("runs", but(RUN, time="1"), "/time", "number"),
+    ("runs", but(RUN, time=0), "/time", ""),
+    ("runs", but(RUN, time=-1), "/time", ""),
+    ("runs", but(RUN, time=1e300), "/time", ""),
+    ("runs", but(RUN, tiem=1), "/tiem", "time"),
+    ("runs", but(RUN, every=-0.1), "/every", ""),
+    ("runs", but(RUN, every=1e-9), "/every", ""),
+    ("runs", but(RUN, at=[]), "/at", ""),
+    ("runs", but(RUN, at=[1, "2"]), "/at", "numbers"),
+    ("runs", but(RUN, at=[0.05, 0.01]), "/at", "ascending"),
+    ("runs", but(RUN, at=[0.05, 5]), "/at", ""),
+    ("runs", but(RUN, settings={"l1": "long"}), "/settings", "numbers"),
+    ("runs", but(RUN, settings=[1]), "/settings", ""),
+    ("runs", but(RUN, settings={"nonsense": 1}), None, "nonsense"),
+    ("runs", but(RUN, settings={"a/b~c": 1}), None, ""),
+    ("terms", {"scene": "four-bar", "state": {"nonsense": 1}}, "/state/nonsense", ""),
+    ("terms", {"scene": "four-bar", "t": "now"}, "/t", "number"),
+    ("equations", {"scene": "four-bar", "format": "latx"}, "/format", "latex"),
+    ("comparisons", but(COMPARISON, methods=[]), "/methods", ""),
+    ("comparisons", but(COMPARISON, methods=["index1@rk4:h=1e-3"] * 9), "/methods", ""),
+    ("comparisons", but(COMPARISON, methods=["index1@rk4:h=1e-3", "nonsense"]), "/methods/1", ""),
+    ("comparisons", but(COMPARISON, methods="index1@rk4"), "/methods", "array"),
+    ("comparisons", but(COMPARISON, speed=0), "/speed", ""),
+    ("comparisons", but(COMPARISON, speed=1000), "/speed", ""),
+    ("comparisons", but(COMPARISON, duration=5000), "/duration", ""),
+    ("comparisons", but(COMPARISON, frame_dt=0), "/frame_dt", ""),
+    ("comparisons", but(COMPARISON, paused="yes"), "/paused", "true"),
+    ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "width": 5}, "/width", ""),
+    ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "width": 1e9}, "/width", ""),
+    ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "theme": "drak"}, "/theme", "dark"),
+    ("grade", {"problem": "p33", "submission": {}}, "/problem", "p3"),
+    ("grade", {"problem": "p3"}, "/submission", "missing"),
+]
+
+# method, path, headers, body, status, code
+WRONG_REQUESTS = [
+    ("GET", "/api/v1/scnes", {}, None, 404, "not-found"),
+    ("GET", "/api/v2/scenes", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/scenes/for-bar", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/scenes/", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/scenes/four-bar/x", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/errors/nothing", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/problems/p9", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/comparisons/0123456789abcdef", {}, None, 404, "not-found"),
+    ("GET", "/api/v1/comparisons/0123456789abcdef/events", {}, None, 404, "not-found"),
+    ("DELETE", "/api/v1/comparisons/0123456789abcdef", {}, None, 404, "not-found"),
+    ("PATCH", "/api/v1/comparisons/0123456789abcdef", {"Content-Type": "application/json"}, "{}", 404, "not-found"),
+    ("POST", "/", {}, "x", 404, "not-found"),
+    ("POST", "/api/v1/scenes", {}, "x", 405, "method-not-allowed"),
+    ("PUT", "/api/v1/comparisons", {}, "x", 405, "method-not-allowed"),
+    ("GET", "/api/v1/runs", {}, None, 405, "method-not-allowed"),
+    ("BREW", "/api/v1/", {}, None, 405, "method-not-allowed"),
+    ("GET", "/api/v1/scenes", {"Accept": "text/html"}, None, 406, "not-acceptable"),
+    ("GET", "/api/v1/scenes", {"Accept": "application/json;q=0"}, None, 406, "not-acceptable"),
+    ("POST", "/api/v1/snapshots", {"Accept": "application/json", "Content-Type": "application/json"}, "{}", 406, "not-acceptable"),
+    ("POST", "/api/v1/runs", {}, "{}", 415, "media-type"),
+    ("POST", "/api/v1/runs", {"Content-Type": "text/plain"}, "{}", 415, "media-type"),
+    ("POST", "/api/v1/runs", {"Content-Type": "application/jsonx"}, "{}", 415, "media-type"),
+    ("POST", "/api/v1/runs", {"Content-Type": "application/json"}, " " * 1100000, 413, "too-large"),
+    ("GET", "/api/v1/", {"Host": "evil.example"}, None, 421, "unknown-host"),
+    ("GET", "/", {"Host": "evil.example:80"}, None, 421, "unknown-host"),
+    ("GET", "/", {"Host": "127.0.0.1.evil.example"}, None, 421, "unknown-host"),
+    ("GET", "/", {"Host": "127.0.0.1:80:80"}, None, 421, "unknown-host"),
+    ("GET", "/", {"Host": "[::1"}, None, 421, "unknown-host"),
+    ("POST", "/api/v1/runs", {"Origin": "http://evil.example", "Content-Type": "application/json"}, "{}", 403, "foreign-origin"),
+    ("GET", "/api/v1/", {"Origin": "null"}, None, 403, "foreign-origin"),
+    ("GET", "/api/v1/scenes/four-bar?set=l1", {}, None, 422, "invalid-input"),
+    ("GET", "/api/v1/scenes/four-bar?set=l1:x", {}, None, 422, "invalid-input"),
+    ("GET", "/api/v1/scenes/four-bar?set=:1", {}, None, 422, "invalid-input"),
+    ("GET", "/api/v1/scenes/four-bar?set=l1:nan", {}, None, 422, "invalid-input"),
+    ("GET", "/api/v1/scenes/four-bar?set=nonsense:1", {}, None, 422, "invalid-input"),
+]
+
+# what no HTTP client would send; the server may answer as it likes, but must go on
+RAW = [
+    b"\r\n\r\n",
+    b"GET\r\n\r\n",
+    b"GET / HTTP/9.9\r\nHost: localhost\r\n\r\n",
+    b"GET / HTTP/1.1\r\n\r\n",
+    b"\x00\x01\x02\x03\r\n\r\n",
+    b"GET /%00 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"GET /%zz HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"GET /\xff\xfe HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"GET /" + b"a" * 100000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"GET / HTTP/1.1\r\nHost: localhost\r\n" + b"X: y\r\n" * 20000 + b"\r\n",
+    b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: -5\r\n\r\n{}",
+    b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 99999999999999999999\r\n\r\n{}",
+    b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 100\r\n\r\n{}",
+    b"POST /api/v1/runs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n",
+    b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n",
+]
+
+
+class Malformed(driver.ServerCase):
+    def tearDown(self):
+        self.assertEqual(self.server.ask("GET", "/healthz").status, 200)
+
+    def test_bytes_that_are_not_json_get_400_with_their_byte(self):
+        for body, offset in NOT_JSON:
+            with self.subTest(body=body[:40]):
+                answer = self.server.ask("POST", "/api/v1/runs", body, {"Content-Type": "application/json"})
+                document = self.assert_problem(answer, 400, "bad-json")
+                self.assertLessEqual(document["offset"], len(body))
+                if offset is not None:
+                    self.assertEqual(document["offset"], offset)
+
+    def test_fields_at_fault_get_422_with_their_pointer(self):
+        for path, body, pointer, word in AT_FAULT:
+            with self.subTest(path=path, body=json.dumps(body)[:200]):
+                document = self.assert_problem(self.server.ask("POST", "/api/v1/" + path, body), 422, "invalid-input")
+                errors = document["errors"]
+                if pointer is not None:
+                    self.assertTrue(any(e["pointer"].startswith(pointer) for e in errors), errors)
+                self.assertIn(word, json.dumps(errors))
+
+    def test_a_member_written_twice_is_at_fault(self):
+        body = b'{"scene": "four-bar", "method": "index1@rk4:h=1e-3", "time": 1, "time": 2}'
+        answer = self.server.ask("POST", "/api/v1/runs", body, {"Content-Type": "application/json"})
+        self.assertIn("twice", self.assert_problem(answer, 422)["errors"][0]["detail"])
+
+    def test_every_fault_of_a_body_is_told_at_once(self):
+        document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", {"scen": 1, "time": "x", "every": -1}), 422)
+        self.assertEqual({"/scen", "/time", "/every", "/scene", "/method"}, {e["pointer"] for e in document["errors"]})
+
+    def test_faults_inside_a_scene_are_told_by_their_place_in_the_body(self):
+        scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
+        scene["bodies"][0]["mass"] = "heavy +"
+        document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", but(RUN, scene=scene)), 422)
+        self.assertTrue(document["errors"][0]["pointer"].startswith("/scene/bodies/0/mass"), document["errors"])
+
+    def test_wrong_requests_get_their_status(self):
+        for method, path, headers, body, status, code in WRONG_REQUESTS:
+            with self.subTest(method=method, path=path, headers=headers):
+                answer = self.server.ask(method, path, body, headers)
+                self.assert_problem(answer, status, code)
+                if status == 405:
+                    self.assertIn("OPTIONS", answer.headers["allow"])
+
+    def test_an_oversized_body_without_a_length_is_refused(self):
+        connection = self.server.connect()
+        connection.request("POST", "/api/v1/runs", body=(b" " * 65536 for _ in range(20)),
+                           headers={"Content-Type": "application/json"}, encode_chunked=True)
+        self.assert_problem(driver.Answer(connection.getresponse()), 413, "too-large")
+        connection.close()
+
+    def test_options_lists_the_verbs_and_allows_no_other_origin(self):
+        answer = self.server.ask("OPTIONS", "/api/v1/comparisons")
+        self.assertEqual((answer.status, answer.headers["allow"]), (204, "GET, HEAD, POST, OPTIONS"))
+        self.assertFalse([h for h in answer.headers if h.startswith("access-control")])
+
+    def test_loopback_names_and_our_own_origin_are_served(self):
+        port = self.server.port
+        for host in ("localhost", f"localhost:{port}", "127.0.0.1", "[::1]", f"[::1]:{port}", "LOCALHOST"):
+            self.assertEqual(self.server.ask("GET", "/healthz", headers={"Host": host}).status, 200, host)
+        origin = {"Origin": f"http://127.0.0.1:{port}"}
+        self.assertEqual(self.server.ask("GET", "/healthz", headers=origin).status, 200)
+
+    def test_accept_headers_of_browsers_and_tools_are_served(self):
+        for accept in ("*/*", "application/json", "application/*", "text/html, application/json;q=0.9, */*;q=0.8",
+                       "text/html;q=1, */*;q=0.1"):
+            self.assertEqual(self.server.ask("GET", "/api/v1/", headers={"Accept": accept}).status, 200, accept)
+
+    def test_bytes_that_are_not_http_never_stop_the_server(self):
+        for data in RAW:
+            with self.subTest(data=data[:60]):
+                self.server.raw(data, timeout=2)
+                self.assertEqual(self.server.ask("GET", "/healthz").status, 200)
+
+    def test_random_changes_of_a_sound_body_never_stop_the_server(self):
+        import random
+
+        random.seed(20240214)
+        scene = json.load(open("lessons/01-closed-loops/scenes/four-bar.json"))
+        text = json.dumps(but(RUN, scene=scene)).encode()
+        for _ in range(150):
+            body = bytearray(text)
+            for _ in range(random.randint(1, 4)):
+                body[random.randrange(len(body))] = random.randrange(256)
+            answer = self.server.ask("POST", "/api/v1/runs", bytes(body), {"Content-Type": "application/json"})
+            self.assertIn(answer.status, (200, 400, 422), body)
+            answer.json()
+
+
+class Doors(unittest.TestCase):
+    """Options of the server itself."""
+
+    def test_a_name_that_was_allowed_is_served(self):
+        server = driver.Server("--allow-host", "bench.example")
+        self.assertEqual(server.ask("GET", "/healthz", headers={"Host": "bench.example:1"}).status, 200)
+        self.assertEqual(server.ask("GET", "/healthz", headers={"Host": "other.example"}).status, 421)
+        self.assertEqual(server.stop(), 0)
+
+    def test_either_signal_ends_it_cleanly(self):
+        for how in (signal.SIGINT, signal.SIGTERM):
+            server = driver.Server()
+            server.compare(paused=False)
+            self.assertEqual(server.stop(how), 0, "".join(server.errors))
+
+
+if __name__ == "__main__":
+    driver.main()

@@ -1,0 +1,262 @@
+"""Every route answers, in the shape that the OpenAPI document promises."""
+
+import json
+import re
+import unittest
+
+import jsonschema
+
+import driver
+
+METHODS = ["index1@rk4:h=1e-3", "projection@rk4:h=1e-3"]
+
+
+class Catalogue(driver.ServerCase):
+    def get(self, path):
+        answer = self.server.ask("GET", path)
+        self.assertEqual(answer.status, 200, answer.body[:300])
+        self.assertEqual(answer.type, "application/json")
+        return answer.json()
+
+    def test_health_says_ok(self):
+        self.assertEqual(self.get("/healthz")["status"], "ok")
+        self.assertEqual(self.get("/api/v1/healthz")["status"], "ok")
+
+    def test_index_lists_links_limits_and_routes(self):
+        index = self.get("/api/v1/")
+        for link in index["links"].values():
+            self.assertEqual(self.server.ask("GET", link).status, 200, link)
+        self.assertGreater(index["limits"]["body_bytes"], 0)
+        self.assertGreaterEqual(len(index["routes"]), 20)
+
+    def test_front_doors_lead_to_the_index(self):
+        for path in ("/api", "/api/", "/api/v1"):
+            answer = self.server.ask("GET", path)
+            self.assertEqual((answer.status, answer.headers["location"]), (308, "/api/v1/"))
+
+    def test_each_scene_of_the_list_can_be_had(self):
+        scenes = self.get("/api/v1/scenes")["scenes"]
+        self.assertIn("four-bar", [s["id"] for s in scenes])
+        for scene in scenes:
+            with self.subTest(scene=scene["id"]):
+                self.assertNotIn("errors", scene)
+                document = self.get("/api/v1/scenes/" + scene["id"])
+                self.assertEqual(document["id"], scene["id"])
+                self.assertTrue(document["assembly"]["ok"])
+                self.assertEqual(len(document["points"]), 3 * document["drawing"]["points"])
+
+    def test_four_bar_has_one_freedom_and_closes(self):
+        scene = self.get("/api/v1/scenes/four-bar")
+        self.assertEqual(scene["freedoms"], 1)
+        self.assertLess(scene["assembly"]["gap"], 1e-12)
+
+    def test_a_setting_in_the_query_moves_the_scene(self):
+        scene = self.get("/api/v1/scenes/four-bar")
+        name, value = scene["parameters"][0]["name"], scene["parameters"][0]["value"] * 1.05
+        moved = self.get(f"/api/v1/scenes/four-bar?set={name}:{value!r}")
+        self.assertEqual(moved["parameters"][0]["value"], value)
+        self.assertNotEqual(moved["points"], scene["points"])
+
+    def test_methods_have_cards_with_settings(self):
+        methods = self.get("/api/v1/methods")
+        self.assertIn("baumgarte", [f["name"] for f in methods["formulations"]])
+        self.assertIn("rk4", [i["name"] for i in methods["integrators"]])
+
+    def test_look_lessons_and_problems_are_there(self):
+        self.assertTrue(self.get("/api/v1/look"))
+        lessons = self.get("/api/v1/lessons")["lessons"]
+        self.assertTrue(any("four-bar" in lesson["scenes"] for lesson in lessons))
+        problems = self.get("/api/v1/problems")["problems"]
+        self.assertIn("p3", [p["id"] for p in problems])
+        self.assertEqual(self.get("/api/v1/problems/p3")["id"], "p3")
+
+    def test_every_kind_of_error_has_a_page(self):
+        for error in self.get("/api/v1/errors")["errors"]:
+            self.assertEqual(self.get("/api/v1/errors/" + error["code"])["status"], error["status"])
+
+
+class Stateless(driver.ServerCase):
+    def post(self, path, body, status=200):
+        answer = self.server.ask("POST", "/api/v1/" + path, body)
+        self.assertEqual(answer.status, status, answer.body[:500])
+        return answer
+
+    def test_terms_solve_the_equations_they_show(self):
+        t = self.post("terms", {"scene": "four-bar"}).json()
+        for i in range(len(t["coordinates"])):
+            left = sum(t["M"][i][j] * t["a"][j] for j in range(len(t["a"])))
+            right = t["f"][i] + sum(t["J"][k][i] * t["lambda"][k] for k in range(len(t["lambda"])))
+            self.assertAlmostEqual(left, right, delta=1e-9 * (1 + abs(right)))
+        for k in range(len(t["rows"])):
+            self.assertAlmostEqual(sum(t["J"][k][j] * t["a"][j] for j in range(len(t["a"]))), -t["gamma"][k], delta=1e-9)
+
+    def test_terms_take_a_state(self):
+        start = self.post("terms", {"scene": "pendulum"}).json()
+        name = start["coordinates"][0]
+        moved = self.post("terms", {"scene": "pendulum", "state": {name: 0.25}, "t": 1.5}).json()
+        self.assertEqual((moved["q"][0], moved["t"]), (0.25, 1.5))
+
+    def test_assembly_closes_the_loop(self):
+        self.assertLess(self.post("assemble", {"scene": "four-bar"}).json()["gap"], 1e-12)
+
+    def test_inspect_counts_operations(self):
+        self.assertTrue(self.post("inspect", {"scene": "four-bar"}).json())
+
+    def test_equations_come_in_three_forms(self):
+        for form in ("text", "latex"):
+            answer = self.post("equations", {"scene": "four-bar", "format": form}).json()
+            self.assertEqual(answer["format"], form)
+            self.assertGreater(len(answer["text"]), 100)
+        self.assertTrue(self.post("equations", {"scene": "four-bar", "format": "json"}).json())
+
+    def test_a_run_has_its_samples_in_columns(self):
+        run = self.post("runs", {"scene": "four-bar", "method": METHODS[1], "time": 1, "every": 0.25}).json()
+        self.assertEqual(run["status"], "HN_OK")
+        self.assertEqual(run["samples"]["t"], [0, 0.25, 0.5, 0.75, 1])
+        self.assertEqual(len(run["samples"]["q"]), 5)
+        self.assertLess(max(run["samples"]["gap"]), 1e-10)
+
+    def test_a_run_gives_the_same_bits_twice(self):
+        body = {"scene": "four-bar", "method": METHODS[0], "time": 0.5, "at": [0.1, 0.5]}
+        self.assertEqual(self.post("runs", body).json()["samples"], self.post("runs", body).json()["samples"])
+
+    def test_a_run_that_ends_early_says_why_and_is_still_an_answer(self):
+        run = self.post("runs", {"scene": "four-bar", "method": "index1@euler:h=0.5", "time": 500}).json()
+        self.assertNotEqual(run["status"], "HN_OK")
+        self.assertTrue(run["reason"])
+        self.assertLess(run["t_reached"], 500)
+
+    def test_a_scene_may_be_given_whole(self):
+        text = open("lessons/01-closed-loops/scenes/pendulum.json").read()
+        run = self.post("runs", {"scene": json.loads(text), "method": "index1@rk4:h=1e-3", "time": 0.1}).json()
+        shipped = self.post("runs", {"scene": "pendulum", "method": "index1@rk4:h=1e-3", "time": 0.1}).json()
+        self.assertEqual(run["samples"]["q"], shipped["samples"]["q"])
+
+    def test_a_snapshot_is_a_png_of_the_size_asked(self):
+        answer = self.post("snapshots", {"scene": "four-bar", "methods": METHODS, "time": 0.2, "width": 640, "height": 480})
+        self.assertEqual(answer.type, "image/png")
+        self.assertEqual(answer.body[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((int.from_bytes(answer.body[16:20], "big"), int.from_bytes(answer.body[20:24], "big")), (640, 480))
+
+    def test_grading_tells_right_from_wrong(self):
+        right = {"J": [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"],
+                       ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]}
+        wrong = json.loads(json.dumps(right))
+        wrong["J"][0][0] = "l1*sin(th1)"
+        best = self.post("grade", {"problem": "p3", "submission": right}).json()
+        less = self.post("grade", {"problem": "p3", "submission": wrong}).json()
+        self.assertEqual(best["score"], best["max_score"])
+        self.assertLess(less["score"], best["score"])
+
+
+class Document(driver.ServerCase):
+    """The OpenAPI document, and answers against its schemas."""
+
+    def setUp(self):
+        self.document = self.server.ask("GET", "/api/v1/openapi.json").json()
+
+    def test_it_is_openapi_3_1_with_sound_references(self):
+        self.assertTrue(self.document["openapi"].startswith("3.1."))
+        text = json.dumps(self.document)
+        for place in re.findall(r'"\$ref": "#/([^"]+)"', text):
+            node = self.document
+            for step in place.split("/"):
+                self.assertIn(step, node, place)
+                node = node[step]
+        self.assertNotIn("nullable", text)
+
+    def test_operations_have_ids_of_their_own_and_declare_their_parameters(self):
+        ids = []
+        for path, item in self.document["paths"].items():
+            for verb, operation in item.items():
+                self.assertIn(verb, ("get", "post", "patch", "delete"))
+                ids.append(operation["operationId"])
+                declared = [p["name"] for p in operation["parameters"] if p["in"] == "path"]
+                self.assertEqual(re.findall(r"\{(\w+)\}", path), declared)
+                self.assertTrue(any(code[0] == "2" for code in operation["responses"]))
+                for name in ("description",):
+                    for response in operation["responses"].values():
+                        self.assertTrue(name in response or "$ref" in response)
+        self.assertEqual(len(ids), len(set(ids)))
+
+    def test_it_names_every_route_of_the_index(self):
+        for route in self.server.ask("GET", "/api/v1/").json()["routes"]:
+            self.assertIn(route["method"].lower(), self.document["paths"][route["path"]])
+
+    def test_schemas_are_json_schema_2020_12(self):
+        for schema in self.document["components"]["schemas"].values():
+            jsonschema.Draft202012Validator.check_schema(schema)
+        for item in self.document["paths"].values():
+            for operation in item.values():
+                for content in operation.get("requestBody", {}).get("content", {}).values():
+                    jsonschema.Draft202012Validator.check_schema(content["schema"])
+
+    def validate(self, value, schema):
+        root = {"$ref": "#/components/schemas/" + schema, "components": self.document["components"]}
+        jsonschema.Draft202012Validator(root).validate(value)
+
+    def test_answers_are_what_their_schemas_say(self):
+        comparison = self.server.compare(methods=METHODS)
+        self.validate(comparison, "Comparison")
+        self.validate(comparison["latest"], "Frame")
+        self.validate(self.server.ask("GET", "/api/v1/").json(), "Index")
+        self.validate(self.server.ask("GET", "/api/v1/scenes").json(), "Scenes")
+        self.validate(self.server.ask("GET", "/api/v1/scenes/four-bar").json(), "Scene")
+        self.validate(self.server.ask("GET", "/api/v1/methods").json(), "Methods")
+        self.validate(self.server.ask("GET", "/api/v1/nothing").json(), "Problem")
+        run = {"scene": "four-bar", "method": METHODS[0], "time": 0.1}
+        self.validate(self.server.ask("POST", "/api/v1/runs", run).json(), "Run")
+        self.validate(self.server.ask("POST", "/api/v1/runs", {}).json(), "Problem")
+
+    def test_the_request_schemas_accept_what_the_server_accepts(self):
+        schema = self.document["paths"]["/api/v1/comparisons"]["post"]["requestBody"]["content"]["application/json"]["schema"]
+        validator = jsonschema.Draft202012Validator(schema)
+        validator.validate({"scene": "four-bar", "methods": METHODS, "speed": 2, "paused": False})
+        self.assertFalse(validator.is_valid({"scene": "four-bar"}))
+        self.assertFalse(validator.is_valid({"scene": "four-bar", "methods": METHODS, "sped": 2}))
+
+
+class Page(driver.ServerCase):
+    """Files of the page."""
+
+    def test_the_front_page_comes_with_its_guards(self):
+        answer = self.server.ask("GET", "/")
+        self.assertEqual((answer.status, answer.type), (200, "text/html"))
+        policy = answer.headers["content-security-policy"]
+        self.assertIn("default-src 'self'", policy)
+        script = re.search(r"script-src ([^;]*)", policy).group(1)
+        self.assertNotIn("unsafe", script)
+        self.assertEqual(answer.headers["x-content-type-options"], "nosniff")
+        self.assertNotIn("access-control-allow-origin", answer.headers)
+
+    def test_a_known_tag_is_not_sent_again(self):
+        first = self.server.ask("GET", "/index.html")
+        again = self.server.ask("GET", "/index.html", headers={"If-None-Match": first.headers["etag"]})
+        self.assertEqual((again.status, again.body), (304, b""))
+        other = self.server.ask("GET", "/index.html", headers={"If-None-Match": '"other"'})
+        self.assertEqual((other.status, other.body), (200, first.body))
+
+    def test_scripts_have_the_type_a_browser_wants(self):
+        page = self.server.ask("GET", "/").body.decode()
+        scripts = re.findall(r'<script[^>]+src="([^"]+)"', page)
+        self.assertTrue(scripts)
+        for script in scripts:
+            answer = self.server.ask("GET", "/" + script.lstrip("./"))
+            self.assertEqual((answer.status, answer.type), (200, "text/javascript"), script)
+
+    def test_an_address_is_never_a_path(self):
+        for path in ("/../Makefile", "/%2e%2e/Makefile", "/..%2fMakefile", "/vendor/../../Makefile", "//etc/passwd",
+                     "/package.json", "/node_modules/x", "/.git/config", "/index.html/", "/INDEX.HTML"):
+            with self.subTest(path=path):
+                self.assert_problem(self.server.ask("GET", path), 404, "not-found")
+
+    def test_head_is_get_without_a_body(self):
+        for path in ("/", "/api/v1/", "/api/v1/scenes/four-bar"):
+            get, head = self.server.ask("GET", path), self.server.ask("HEAD", path)
+            self.assertEqual((head.status, head.body), (200, b""))
+            self.assertEqual(head.headers["content-type"], get.headers["content-type"])
+            self.assertEqual(head.headers["content-length"], str(len(get.body)))
+
+
+if __name__ == "__main__":
+    driver.main()

@@ -1,0 +1,264 @@
+"""The command line as a person and a script use it: exit statuses, outputs that parse, faults that are told."""
+
+import csv
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+DONE, INPUT, PROGRAM, ENDED = 0, 2, 3, 4
+RK4 = "index1@rk4:h=1e-3"
+SUBMISSION = {"J": [["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"],
+                    ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]}
+
+
+def call(*words, stdin="", environment=None):
+    env = dict(os.environ, **(environment or {}))
+    return subprocess.run([driver.PROGRAM, *words], input=stdin.encode(), capture_output=True, env=env, timeout=120 * driver.SLOW)
+
+
+def strict(text):
+    def refuse(word):
+        raise ValueError("JSON holds " + word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+class CommandLine(unittest.TestCase):
+    def assert_exit(self, done, status):
+        self.assertEqual(done.returncode, status, (done.stdout[-300:], done.stderr[-600:]))
+        return done.stdout.decode()
+
+    def test_help_names_every_command_and_every_command_has_help(self):
+        text = self.assert_exit(call("help"), DONE)
+        commands = re.findall(r"^  holonom (\w+)", text, re.M)
+        self.assertTrue({"serve", "list", "inspect", "terms", "equations", "run", "compare", "snapshot", "grade"} <= set(commands))
+        for command in commands:
+            self.assertIn(command, self.assert_exit(call("help", command), DONE))
+            self.assertIn(command, self.assert_exit(call(command, "--help"), DONE))
+
+    def test_version_is_told(self):
+        self.assertRegex(self.assert_exit(call("--version"), DONE), r"^holonom \d+\.\d+")
+        self.assertIn("version", strict(self.assert_exit(call("version", "--json"), DONE)))
+
+    def test_no_command_is_at_fault(self):
+        done = call()
+        self.assertEqual((done.returncode, done.stdout), (INPUT, b""))
+        self.assertIn(b"holonom run", done.stderr)
+
+    def test_lists_come_as_tables_and_as_json(self):
+        for what, key, known in (("scenes", "scenes", "four-bar"), ("methods", "formulations", "baumgarte"),
+                                 ("lessons", "lessons", "01-closed-loops"), ("problems", "problems", "p3")):
+            self.assertIn(known, self.assert_exit(call("list", what), DONE))
+            self.assertTrue(strict(self.assert_exit(call("list", what, "--json"), DONE))[key])
+
+    def test_inspect_equations_and_terms_speak_of_the_scene(self):
+        self.assertTrue(self.assert_exit(call("inspect", "four-bar"), DONE))
+        self.assertTrue(strict(self.assert_exit(call("inspect", "four-bar", "--json"), DONE)))
+        self.assertTrue(self.assert_exit(call("equations", "four-bar"), DONE))
+        self.assertIn("\\", self.assert_exit(call("equations", "four-bar", "--format", "latex"), DONE))
+        self.assertTrue(strict(self.assert_exit(call("equations", "four-bar", "--json"), DONE)))
+        self.assertIn("mass matrix", self.assert_exit(call("terms", "four-bar"), DONE))
+        terms = strict(self.assert_exit(call("terms", "pendulum", "--json"), DONE))
+        name = terms["coordinates"][0]
+        moved = strict(self.assert_exit(call("terms", "pendulum", "--json", "--q", name + "=0.5", "--t", "2"), DONE))
+        self.assertEqual((moved["q"][0], moved["t"]), (0.5, 2))
+
+    def test_a_run_is_csv_by_default_and_the_same_numbers_in_every_form(self):
+        words = ("run", "four-bar", "--method", RK4, "--time", "1", "--every", "0.1")
+        rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))
+        self.assertEqual(rows[0][0], "t")
+        self.assertEqual(rows[0][-3:], ["gap", "velocity_gap", "energy"])
+        self.assertEqual(len(rows), 12)
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
+        lines = [strict(line) for line in self.assert_exit(call(*words, "--format", "ndjson"), DONE).splitlines()]
+        self.assertEqual(lines[0]["columns"], rows[0])
+        self.assertEqual(lines[-1]["status"], "HN_OK")
+        self.assertEqual(lines[1:-1], [[float(x) for x in row] for row in rows[1:]])
+        run = strict(self.assert_exit(call(*words, "--json"), DONE))
+        self.assertEqual(run["samples"]["t"], [row[0] for row in lines[1:-1]])
+        self.assertEqual(run["samples"]["q"][5], lines[6][1:1 + len(run["coordinates"])])
+
+    def test_output_times_can_be_chosen(self):
+        run = strict(self.assert_exit(call("run", "four-bar", "--method", RK4, "--time", "1", "--at", "0,0.25,0.7", "--json"), DONE))
+        self.assertEqual(run["samples"]["t"], [0, 0.25, 0.7])
+
+    def test_a_scene_may_be_a_name_a_file_or_standard_input(self):
+        path = "lessons/01-closed-loops/scenes/pendulum.json"
+        words = ("--method", RK4, "--time", "0.5", "--json")
+        runs = [strict(self.assert_exit(done, DONE))["samples"] for done in
+                (call("run", "pendulum", *words), call("run", path, *words), call("run", "-", *words, stdin=open(path).read()))]
+        self.assertEqual(runs[0], runs[1])
+        self.assertEqual(runs[0], runs[2])
+
+    def test_a_setting_changes_the_scene(self):
+        before = strict(self.assert_exit(call("list", "scenes", "--json"), DONE))
+        parameter = next(s for s in before["scenes"] if s["id"] == "four-bar")["parameters"][0]
+        changed = f"{parameter['name']}={parameter['value'] * 1.02!r}"
+        plain, moved = (strict(self.assert_exit(call("terms", "four-bar", "--json", *more), DONE)) for more in ((), ("--set", changed)))
+        self.assertNotEqual(plain["M"], moved["M"])
+
+    def test_a_run_that_ends_early_is_4_with_its_reason_and_its_samples(self):
+        done = call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500")
+        text = self.assert_exit(done, ENDED)
+        self.assertGreater(len(text.splitlines()), 1)
+        self.assertIn(b"ended early", done.stderr)
+        run = strict(self.assert_exit(call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500", "--json"), ENDED))
+        self.assertTrue(run["reason"])
+
+    def test_compare_prints_a_row_for_each_method(self):
+        text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
+        self.assertRegex(text, r"worst gap +velocity gap +energy change +steps +evals +ops +CPU/step")
+        self.assertRegex(text, r"(?m)^index1@rk4\S* +ok +1.00 s")
+        self.assertRegex(text, r"(?m)^projection@rk4\S* +ok +1.00 s")
+        summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", RK4, "--time", "0.5", "--json"), DONE))
+        self.assertEqual([m["state"] for m in summary["methods"]], ["finished"])
+
+    def test_compare_keeps_a_method_that_failed_and_says_which(self):
+        done = call("compare", "four-bar", "--methods", "index1@euler:h=0.05", "projection@rk4:h=1e-3", "--time", "60")
+        text = self.assert_exit(done, ENDED)
+        self.assertRegex(text, r"(?m)^index1@euler\S* +ENDED EARLY")
+        self.assertRegex(text, r"(?m)^projection@rk4\S* +ok")
+        self.assertIn(b"index1@euler", done.stderr)
+
+    def test_a_snapshot_is_a_png_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.png")
+            done = call("snapshot", "four-bar", "--method", RK4, "--time", "0.3", "-o", path, "--width", "400", "--height", "300", "--json")
+            self.assertTrue(strict(self.assert_exit(done, DONE)))
+            data = open(path, "rb").read()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")), (400, 300))
+
+    def test_grading_a_wrong_answer_is_done_and_an_unreadable_one_is_not(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def write(name, text):
+                path = os.path.join(folder, name)
+                with open(path, "w") as f:
+                    f.write(text)
+                return path
+
+            wrong = json.loads(json.dumps(SUBMISSION))
+            wrong["J"][1][2] = "l3*cos(th3)"
+            right, wrong = write("right.json", json.dumps(SUBMISSION)), write("wrong.json", json.dumps(wrong))
+            best = strict(self.assert_exit(call("grade", "p3", right, "--json"), DONE))
+            less = strict(self.assert_exit(call("grade", "p3", wrong, "--json"), DONE))
+            self.assertEqual(best["score"], best["max_score"])
+            self.assertLess(less["score"], less["max_score"])
+            for name, text in (("empty.json", ""), ("nan.json", '{"J": NaN}'), ("odd.json", "[]"), ("zero.json", "{}")):
+                done = call("grade", "p3", write(name, text))
+                self.assertTrue(self.assert_exit(done, INPUT).strip() or done.stderr)
+            self.assert_exit(call("grade", "p3", os.path.join(folder, "missing.json")), INPUT)
+            out = os.path.join(folder, "deep", "results")
+            self.assert_exit(call("grade", "p3", wrong, "--format", "gradescope", "--out", out), DONE)
+            results = strict(open(os.path.join(out, "results.json")).read())
+            self.assertTrue(results["tests"])
+            self.assertEqual(open(os.path.join(out, "results.png"), "rb").read(4), b"\x89PNG")
+            many = call("grade", "p3", right, os.path.join(folder, "empty.json"), wrong, "--format", "json", "--out", out)
+            self.assert_exit(many, INPUT)
+            self.assertTrue({"right.json", "empty.json", "wrong.json"} <= set(os.listdir(out)))
+
+    def test_input_at_fault_is_2_and_says_what_to_do(self):
+        rows = [
+            (("rnu",), "run"),
+            (("list",), "needs"),
+            (("list", "scene"), "scenes"),
+            (("inspect",), "needs"),
+            (("inspect", "for-bar"), "four-bar"),
+            (("inspect", "no/such/file.json"), "file.json"),
+            (("inspect", "."), ""),
+            (("run", "four-bar", "--method", "indx1@rk4:h=1e-3"), "index1"),
+            (("run", "four-bar", "--method", "index1@rk4:h=0"), "h"),
+            (("run", "four-bar", "--method", "index1"), "@"),
+            (("run", "four-bar", "--metod", RK4), "--method"),
+            (("run", "four-bar", "--time", "-1"), "time"),
+            (("run", "four-bar", "--time", "0"), "time"),
+            (("run", "four-bar", "--time", "nan"), "finite"),
+            (("run", "four-bar", "--every", "0"), "interval"),
+            (("run", "four-bar", "--at", "2,1"), "ascending"),
+            (("run", "four-bar", "--format", "xml"), "ndjson"),
+            (("run", "four-bar", "--set", "l1"), "NAME=VALUE"),
+            (("run", "four-bar", "--set", "l1=long"), "NAME=VALUE"),
+            (("run", "four-bar", "--set", "nonsense=1"), "nonsense"),
+            (("run", "-"), "empty"),
+            (("compare", "four-bar", "--methods", RK4, "nonsense"), ""),
+            (("compare", "four-bar", "--methods"), "needs"),
+            (("compare", "four-bar", "--time", "-3"), "time"),
+            (("terms", "four-bar", "--q", "nonsense=1"), "nonsense"),
+            (("terms", "four-bar", "--q", "0.5"), "NAME=VALUE"),
+            (("equations", "four-bar", "--format", "latx"), "latex"),
+            (("snapshot", "four-bar"), "-o"),
+            (("snapshot", "four-bar", "-o", "/no/such/folder/a.png"), "a.png"),
+            (("snapshot", "four-bar", "-o", "-", "--theme", "drak"), "dark"),
+            (("snapshot", "four-bar", "-o", "-", "--width", "3"), "16"),
+            (("grade", "p33", "x.json"), "p3"),
+            (("grade", "p3"), "needs"),
+            (("grade", "p3", "x.json", "--format", "gradscope"), "gradescope"),
+            (("serve", "--port", "99999"), "65535"),
+            (("serve", "--port", "http"), "whole number"),
+            (("serve", "--host", "no.such.host.invalid"), "no.such.host.invalid"),
+            (("serve", "--host", "203.0.113.7"), "not an address of this machine"),
+            (("help", "rnu"), "run"),
+        ]
+        for words, word in rows:
+            with self.subTest(words=words):
+                done = call(*words)
+                self.assert_exit(done, INPUT)
+                text = done.stderr.decode()
+                self.assertTrue(text.startswith("holonom: "), text)
+                self.assertIn(word, text)
+
+    def test_faults_come_as_json_where_json_was_asked(self):
+        done = call("run", "for-bar", "--json")
+        document = strict(self.assert_exit(done, INPUT))
+        self.assertEqual(document["status"], "HN_ERR_INPUT")
+        self.assertIn("four-bar", document["errors"][0]["hint"])
+        self.assertEqual(done.stderr, b"")
+
+    def test_malformed_scenes_never_crash_it(self):
+        for text in ("{", "[]", "null", '{"a": 1}', "\x00", "[" * 10000, '{"bodies": 1}', "é", '{"title": "\\ud800"}'):
+            with self.subTest(text=text[:20]):
+                self.assert_exit(call("inspect", "-", stdin=text), INPUT)
+
+    def test_nothing_is_coloured_when_nobody_looks(self):
+        for command in (("list", "scenes"), ("compare", "four-bar", "--methods", RK4, "--time", "0.1")):
+            done = call(*command)
+            self.assertNotIn(b"\x1b", done.stdout + done.stderr)
+
+    def test_without_its_scenes_the_program_says_where_it_looked(self):
+        done = call("list", "scenes", environment={"HOLONOM_HOME": "/nowhere"})
+        self.assertEqual(done.returncode, PROGRAM)
+        self.assertIn(b"/nowhere", done.stderr)
+
+    def test_a_port_that_is_taken_is_told_and_the_next_one_is_used(self):
+        first = driver.Server()
+        second = subprocess.Popen([driver.PROGRAM, "serve", "--port", str(first.port), "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            port = json.loads(second.stdout.readline())["port"]
+            self.assertNotEqual(port, first.port)
+            self.assertIn(f"port {first.port} is taken", second.stderr.readline().decode())
+        finally:
+            second.terminate()
+            second.communicate(timeout=30 * driver.SLOW)
+            first.stop()
+
+    def test_serve_tells_its_address_and_its_keys(self):
+        server = subprocess.Popen([driver.PROGRAM, "serve", "--port", "0"], stdout=subprocess.PIPE)
+        try:
+            self.assertRegex(server.stdout.readline().decode(), r"http://127\.0\.0\.1:\d+/")
+            self.assertIn("Space", server.stdout.readline().decode())
+        finally:
+            server.terminate()
+            server.communicate(timeout=30 * driver.SLOW)
+        self.assertEqual(server.returncode, DONE)
+
+
+if __name__ == "__main__":
+    driver.main()
