@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double LONGEST_FRAME = 0.1; // [s]
+
 static hn_status create(const hn_args *args, const hn_model *model, hn_comparison **out,
                         hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(model);
@@ -17,8 +19,10 @@ static hn_status create(const hn_args *args, const hn_model *model, hn_compariso
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
                             "the end time is %g s; it must be above 0", args->time);
     }
-    opts.duration = isnan(args->time) ? 0 : args->time;
-    opts.frame_dt = isnan(args->frame_dt) ? 0 : args->frame_dt;
+    opts.duration = isnan(args->time) ? scene->duration : args->time;
+    // whole frames up to the end, so that the clock stops exactly there
+    opts.frame_dt = isnan(args->frame_dt) ? opts.duration / ceil(opts.duration / LONGEST_FRAME)
+                                          : args->frame_dt;
     return hn_comparison_create(model, methods, n, &opts, out, diags);
 }
 
