@@ -260,8 +260,12 @@ static void format_value(const hn_setting_info *info, double value, char *out, s
     for (int digits = 1; digits <= 17; digits++) {
         snprintf(out, n, "%.*g", digits, value);
         if (strtod(out, NULL) == value) {
-            return;
+            break;
         }
+    }
+    // 20 reads better than 2e+01
+    if (value == floor(value) && fabs(value) < 1e6) {
+        snprintf(out, n, "%.0f", value);
     }
 }
 

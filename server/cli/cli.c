@@ -94,7 +94,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&b);
     if (args->words.n == 0) {
         describe_all(&b);
-        return hn_print(&b);
+        return hn_cli_print(&b);
     }
     const hn_command *command = find_command(args->words.word[0]);
     if (!command) {
@@ -102,7 +102,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         return hn_report_diag(args, &diag);
     }
     describe_one(&b, command);
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }
 
 static hn_exit print_version(const hn_library *lib, const hn_args *args) {
@@ -118,7 +118,7 @@ static hn_exit print_version(const hn_library *lib, const hn_args *args) {
     } else {
         hn_strbuf_printf(&b, "holonom %s\n", HN_BUILD);
     }
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }
 
 /// Help and version speak without a library of scenes.
@@ -133,7 +133,7 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
         hn_strbuf b;
         hn_strbuf_init(&b);
         describe_one(&b, command);
-        return hn_print(&b);
+        return hn_cli_print(&b);
     }
     if (needs_library(command) && hn_library_open(NULL, &lib, &diag) != HN_OK) {
         hn_report_diag(args, &diag);

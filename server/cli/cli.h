@@ -67,9 +67,9 @@ int hn_number_parse(const char *text, double *out);
 hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *diags);
 hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag);
 /// Prints and frees the buffer's text with a newline at its end; HN_EXIT_PROGRAM when memory or the output failed.
-hn_exit hn_print(hn_strbuf *text);
+hn_exit hn_cli_print(hn_strbuf *text);
 /// The same into a file; "-" or NULL is standard output.
-hn_exit hn_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
+hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 
 /// A line on standard error for what takes longer than a second, only if that is a terminal. Zeroed to begin with.
 typedef struct hn_progress {

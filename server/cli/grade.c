@@ -26,7 +26,7 @@ hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
         hn_problem_text(&b, problem);
     }
     hn_problem_free(problem);
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }
 
 /// The forms a verdict can be written in.
@@ -99,7 +99,7 @@ static hn_exit write_picture(const hn_library *lib, const hn_args *args, verdict
     if (status == HN_OK) {
         char path[2048];
         name_file(path, sizeof path, args, form, submission, "png");
-        return hn_write_file(args, path, &png);
+        return hn_cli_write_file(args, path, &png);
     }
     hn_strbuf_reset(&png);
     if (status == HN_ERR_UNSUPPORTED && diags.n == 0) {
@@ -139,13 +139,13 @@ static hn_exit grade_one(const hn_library *lib, const hn_args *args, const hn_pr
     if (args->out) {
         char path[2048];
         name_file(path, sizeof path, args, form, submission, form == FORM_TEXT ? "txt" : "json");
-        result = hn_write_file(args, path, &b);
+        result = hn_cli_write_file(args, path, &b);
         if (result == HN_EXIT_DONE) {
             result = write_picture(lib, args, form, submission, v);
         }
         printf("%s: %s\n", submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
     } else {
-        result = hn_print(&b);
+        result = hn_cli_print(&b);
     }
     int ungradable = v->kind == HN_VERDICT_UNGRADABLE;
     free(v);

@@ -97,7 +97,7 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&text);
     LISTS[which].write(&text, lib);
     if (args->json) {
-        return hn_print(&text);
+        return hn_cli_print(&text);
     }
     cJSON *document = hn_document_parse(&text);
     for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
@@ -108,5 +108,5 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     }
     text.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_print(&text);
+    return hn_cli_print(&text);
 }

@@ -40,7 +40,7 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
         hn_json_key(&b, "errors");
         hn_json_diags(&b, diags);
         hn_json_end_object(&b);
-        hn_print(&b);
+        hn_cli_print(&b);
         return exit_of(status);
     }
     for (int i = 0; i < diags->n; i++) {
@@ -60,7 +60,7 @@ hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag) {
     return hn_report_diags(args, diag->status, &diags);
 }
 
-hn_exit hn_print(hn_strbuf *text) {
+hn_exit hn_cli_print(hn_strbuf *text) {
     int ok = !text->failed;
     if (ok) {
         ok = fwrite(hn_strbuf_text(text), 1, text->n, stdout) == text->n;
@@ -77,9 +77,9 @@ hn_exit hn_print(hn_strbuf *text) {
     return ok ? HN_EXIT_DONE : HN_EXIT_PROGRAM;
 }
 
-hn_exit hn_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
+hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
     if (!path || strcmp(path, "-") == 0) {
-        return hn_print(bytes);
+        return hn_cli_print(bytes);
     }
     hn_diag diag;
     FILE *f = bytes->failed ? NULL : fopen(path, "wb");

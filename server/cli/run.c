@@ -204,7 +204,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         put_samples(&b, run, strcmp(format, "ndjson") == 0);
         cJSON_Delete(run);
     }
-    hn_exit result = hn_print(&b);
+    hn_exit result = hn_cli_print(&b);
     if (ended != HN_OK && reason[0]) {
         fprintf(stderr, "holonom: the run ended early, %s\n", reason);
     }

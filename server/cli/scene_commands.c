@@ -21,13 +21,13 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
         return hn_report_diags(args, status, &diags);
     }
     if (args->json) {
-        return hn_print(&b);
+        return hn_cli_print(&b);
     }
     cJSON *document = hn_document_parse(&b);
     hn_document_outline(&b, document, 0);
     b.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }
 
 static hn_status choose_form(const hn_args *args, hn_equation_form *form, hn_diags *diags) {
@@ -66,7 +66,7 @@ hn_exit hn_command_equations(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }
 
 enum { MAX_ENTRIES = 400 };
@@ -152,11 +152,11 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
         return hn_report_diags(args, status, &diags);
     }
     if (args->json) {
-        return hn_print(&b);
+        return hn_cli_print(&b);
     }
     cJSON *document = hn_document_parse(&b);
     put_terms(&b, document);
     b.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_print(&b);
+    return hn_cli_print(&b);
 }

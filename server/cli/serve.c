@@ -71,7 +71,7 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
         hn_json_put_int(&b, "port", port);
         hn_json_put_int(&b, "process", getpid());
         hn_json_end_object(&b);
-        hn_print(&b);
+        hn_cli_print(&b);
         return;
     }
     printf("holonom is at %s/\n", hn_server_address(server));

@@ -61,9 +61,9 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&description);
         return hn_report_diags(args, status, &diags);
     }
-    hn_exit result = hn_write_file(args, args->out, &png);
+    hn_exit result = hn_cli_write_file(args, args->out, &png);
     if (result == HN_EXIT_DONE && args->json && strcmp(args->out, "-") != 0) {
-        result = hn_print(&description);
+        result = hn_cli_print(&description);
     }
     hn_strbuf_reset(&description);
     if (result == HN_EXIT_DONE && ended != HN_OK) {
