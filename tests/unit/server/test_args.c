@@ -3,6 +3,7 @@
 #include "support/near.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const hn_command *find(const char *name) {

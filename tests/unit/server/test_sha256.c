@@ -27,7 +27,7 @@ static void a_million_letters_are_met(void **state) {
     char *text = malloc(MILLION);
     assert_non_null(text);
     memset(text, 'a', MILLION);
-    assert_hash(text, MILLION, "zcduXJkU+5KBocfihNc+Z/GAmkik0+nlsvkxB51FItA=");
+    assert_hash(text, MILLION, "zcduXJkU+5KBocfihNc+Z/GAmkiklyAOBG05zMcRLNA=");
     free(text);
 }
 
