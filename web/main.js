@@ -1,5 +1,6 @@
 // @ts-check
 // Puts the page together: one store, one session, the views, the keys, one drawing per animation frame.
+import { sentenceOf } from "./api/client.js";
 import { createSession } from "./state/session.js";
 import { createStore } from "./state/store.js";
 import { findKey } from "./state/keys.js";
@@ -61,7 +62,8 @@ function takesKey(event) {
 }
 
 addEventListener("keydown", (event) => {
-  const key = event.defaultPrevented || takesKey(event) ? undefined : findKey(event, store.data.view.letters);
+  const key =
+    event.defaultPrevented || takesKey(event) ? undefined : findKey(event, store.data.view.letters);
   if (key) {
     event.preventDefault();
     if (key.action === "help") {
@@ -83,7 +85,7 @@ try {
   at("play").focus({ preventScroll: true });
 } catch (error) {
   at("main").setAttribute("aria-busy", "false");
-  document.body.prepend(theme.failure(error.sentence ?? error.message));
+  document.body.prepend(theme.failure(sentenceOf(error)));
 }
 
 /** For whoever drives the page: the data it shows. */

@@ -36,13 +36,20 @@ function freePort() {
 
 export async function startServer() {
   assert.ok(existsSync(PROGRAM), `${PROGRAM} is built`);
-  const child = spawn(PROGRAM, ["serve", "--port", String(await freePort())], { cwd: ROOT, stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn(PROGRAM, ["serve", "--port", String(await freePort())], {
+    cwd: ROOT,
+    stdio: ["ignore", "pipe", "pipe"],
+  });
   let text = "";
   const url = await new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`no address within ${START_LIMIT} ms: ${text}`)), START_LIMIT);
+    const timer = setTimeout(
+      () => reject(new Error(`no address within ${START_LIMIT} ms: ${text}`)),
+      START_LIMIT,
+    );
     const read = (chunk) => {
       text += chunk;
-      const address = /http:\/\/127\.0\.0\.1:\d+\//.exec(text) ?? /http:\/\/localhost:\d+\//.exec(text);
+      const address =
+        /http:\/\/127\.0\.0\.1:\d+\//.exec(text) ?? /http:\/\/localhost:\d+\//.exec(text);
       if (address) {
         clearTimeout(timer);
         resolve(address[0]);
@@ -76,7 +83,11 @@ export async function startBrowser() {
  */
 export async function openPage(browser, url, options = {}) {
   const { hash = "", wait = true, init, ...context } = options;
-  const home = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "no-preference", ...context });
+  const home = await browser.newContext({
+    viewport: { width: 1280, height: 900 },
+    reducedMotion: "no-preference",
+    ...context,
+  });
   const page = await home.newPage();
   const faults = [];
   const host = new URL(url).host;
@@ -103,7 +114,9 @@ export async function openPage(browser, url, options = {}) {
   }
   await page.goto(`${url}${hash}`);
   if (wait) {
-    await page.waitForFunction(() => document.querySelector("main")?.getAttribute("aria-busy") === "false");
+    await page.waitForFunction(
+      () => document.querySelector("main")?.getAttribute("aria-busy") === "false",
+    );
     await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
   }
   return { page, faults, close: () => home.close() };
@@ -118,7 +131,10 @@ export function read(page, pick) {
 export async function until(page, condition, timeout = 20000) {
   const end = Date.now() + timeout;
   while (!(await read(page, condition))) {
-    assert.ok(Date.now() < end, `within ${timeout} ms: ${condition}; notice: ${await read(page, (data) => data.notice)}`);
+    assert.ok(
+      Date.now() < end,
+      `within ${timeout} ms: ${condition}; notice: ${await read(page, (data) => data.notice)}`,
+    );
     await new Promise((resolve) => setTimeout(resolve, 25));
   }
 }

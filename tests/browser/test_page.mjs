@@ -40,7 +40,10 @@ for (const theme of THEMES) {
           globalThis.shifts = [];
           new PerformanceObserver((list) => {
             for (const entry of list.getEntries()) {
-              const nodes = entry.sources.map(({ node, previousRect: a, currentRect: b }) => `${node?.getAttribute?.("class") || node?.nodeName} from ${[a.x, a.y, a.width, a.height]} to ${[b.x, b.y, b.width, b.height]}`);
+              const nodes = entry.sources.map(
+                ({ node, previousRect: a, currentRect: b }) =>
+                  `${node?.getAttribute?.("class") || node?.nodeName} from ${[a.x, a.y, a.width, a.height]} to ${[b.x, b.y, b.width, b.height]}`,
+              );
               globalThis.shifts.push(`${entry.value.toFixed(5)} ${nodes.join("; ")}`);
             }
           }).observe({ type: "layout-shift", buffered: true });
@@ -69,9 +72,21 @@ for (const width of [360, 320]) {
       await page.waitForTimeout(300);
       assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
       const tops = await page.evaluate(() =>
-        ["mechanism", "transport", "methods", "controls", "happening", "plots", "equations", "status"].map((id) => document.getElementById(id).getBoundingClientRect().top),
+        [
+          "mechanism",
+          "transport",
+          "methods",
+          "controls",
+          "happening",
+          "plots",
+          "equations",
+          "status",
+        ].map((id) => document.getElementById(id).getBoundingClientRect().top),
       );
-      assert.deepEqual(tops, [...tops].sort((a, b) => a - b));
+      assert.deepEqual(
+        tops,
+        [...tops].sort((a, b) => a - b),
+      );
       await screenshot(page, `page-${width}`);
     }));
 }
@@ -86,7 +101,9 @@ for (const theme of THEMES) {
       const poor = await page.evaluate((least) => {
         const parse = (colour) => colour.match(/[\d.]+/g).map(Number);
         const luminance = ([r, g, b]) => {
-          const [x, y, z] = [r, g, b].map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+          const [x, y, z] = [r, g, b].map((c) =>
+            c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4,
+          );
           return 0.2126 * x + 0.7152 * y + 0.0722 * z;
         };
         const background = (node) => {
@@ -100,15 +117,26 @@ for (const theme of THEMES) {
         };
         const out = [];
         for (const node of document.querySelectorAll("body *")) {
-          const own = [...node.childNodes].some((child) => child.nodeType === 3 && child.textContent.trim());
+          const own = [...node.childNodes].some(
+            (child) => child.nodeType === 3 && child.textContent.trim(),
+          );
           const style = getComputedStyle(node);
-          if (!own || !node.checkVisibility() || node.closest("svg, .hidden, .skip, :disabled, .katex, option") || style.clipPath !== "none") {
+          if (
+            !own ||
+            !node.checkVisibility() ||
+            node.closest("svg, .hidden, .skip, :disabled, .katex, option") ||
+            style.clipPath !== "none"
+          ) {
             continue;
           }
-          const [a, b] = [luminance(parse(style.color)), luminance(background(node))].sort((x, y) => y - x);
+          const [a, b] = [luminance(parse(style.color)), luminance(background(node))].sort(
+            (x, y) => y - x,
+          );
           const ratio = (a + 0.05) / (b + 0.05);
           if (ratio < least) {
-            out.push(`${node.className || node.tagName} "${node.textContent.trim().slice(0, 20)}" ${ratio.toFixed(2)}`);
+            out.push(
+              `${node.className || node.tagName} "${node.textContent.trim().slice(0, 20)}" ${ratio.toFixed(2)}`,
+            );
           }
         }
         return out;
@@ -124,7 +152,15 @@ test("the page's surfaces are those of the look table", () =>
         document.documentElement.dataset.theme = name;
         const style = getComputedStyle(document.documentElement);
         const surface = globalThis.holonom.data.look.surfaces[name];
-        return [Object.fromEntries(Object.keys(surface).map((key) => [key, style.getPropertyValue(`--${key}`).trim().toUpperCase()])), surface];
+        return [
+          Object.fromEntries(
+            Object.keys(surface).map((key) => [
+              key,
+              style.getPropertyValue(`--${key}`).trim().toUpperCase(),
+            ]),
+          ),
+          surface,
+        ];
       }, theme);
       assert.deepEqual(css, look);
     }
@@ -135,17 +171,30 @@ test("every control has a name and room, every reference a target, every id one 
     await page.click(".scene-parameters summary");
     const report = await page.evaluate((least) => {
       const name = (node) =>
-        node.getAttribute("aria-label") || [...(node.labels ?? [])].map((label) => label.textContent).join(" ") || node.textContent.trim() || node.title;
-      const shown = [...document.querySelectorAll("button, select, input, summary, a")].filter((node) => node.checkVisibility() && !node.closest(".skip"));
+        node.getAttribute("aria-label") ||
+        [...(node.labels ?? [])].map((label) => label.textContent).join(" ") ||
+        node.textContent.trim() ||
+        node.title;
+      const shown = [...document.querySelectorAll("button, select, input, summary, a")].filter(
+        (node) => node.checkVisibility() && !node.closest(".skip"),
+      );
       const ids = [...document.querySelectorAll("[id]")].map((node) => node.id);
-      const references = [...document.querySelectorAll("[aria-labelledby], [aria-describedby], label[for]")].flatMap((node) =>
-        ["aria-labelledby", "aria-describedby", "for"].flatMap((attribute) => (node.getAttribute(attribute) ?? "").split(" ").filter(Boolean)),
+      const references = [
+        ...document.querySelectorAll("[aria-labelledby], [aria-describedby], label[for]"),
+      ].flatMap((node) =>
+        ["aria-labelledby", "aria-describedby", "for"].flatMap((attribute) =>
+          (node.getAttribute(attribute) ?? "").split(" ").filter(Boolean),
+        ),
       );
       return {
         nameless: shown.filter((node) => !name(node)).map((node) => node.outerHTML.slice(0, 80)),
         small: shown
           .map((node) => ({ node, box: node.getBoundingClientRect() }))
-          .filter(({ node, box }) => (box.width < least || box.height < least) && !(node.type === "checkbox" && box.width + 6 >= least))
+          .filter(
+            ({ node, box }) =>
+              (box.width < least || box.height < least) &&
+              !(node.type === "checkbox" && box.width + 6 >= least),
+          )
           .map(({ node, box }) => `${node.outerHTML.slice(0, 60)} ${box.width}x${box.height}`),
         twice: ids.filter((id, i) => ids.indexOf(id) !== i),
         dangling: references.filter((id) => !document.getElementById(id)),
@@ -153,7 +202,14 @@ test("every control has a name and room, every reference a target, every id one 
         language: document.documentElement.lang,
       };
     }, SMALLEST_TARGET);
-    assert.deepEqual(report, { nameless: [], small: [], twice: [], dangling: [], headings: "H1", language: "en" });
+    assert.deepEqual(report, {
+      nameless: [],
+      small: [],
+      twice: [],
+      dangling: [],
+      headings: "H1",
+      language: "en",
+    });
   }));
 
 test("a slider tells its value with the unit; Home is the least, End the most", () =>
@@ -179,7 +235,11 @@ test("everything is reached by Tab, and the first stop leads to Play", () =>
     const stops = [];
     for (let k = 0; k < 18; k++) {
       await page.keyboard.press("Tab");
-      stops.push(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent.trim()));
+      stops.push(
+        await page.evaluate(
+          () => document.activeElement.id || document.activeElement.textContent.trim(),
+        ),
+      );
     }
     assert.deepEqual(stops.slice(0, 2), ["Skip to play and pause", "Skip to the methods"]);
     assert.ok(stops.includes("play") && stops.includes("scrub"), stops.join(" | "));
@@ -259,7 +319,10 @@ test("a click on a curve shows that time, and the table, the drawing and the clo
 test("the drawing is described in one sentence on demand", () =>
   onPage({}, async (page) => {
     await page.getByRole("button", { name: "describe" }).click();
-    assert.match(await page.textContent(".spoken"), /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/);
+    assert.match(
+      await page.textContent(".spoken"),
+      /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/,
+    );
   }));
 
 test("the equations of the scene are set as mathematics", () =>
@@ -284,7 +347,11 @@ test("every shipped scene opens, moves and draws no NaN", () =>
       await page.keyboard.press("Space");
       await until(page, (data) => data.state !== "running");
       assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/, id);
-      assert.doesNotMatch(await page.evaluate(() => document.querySelector(".picture").outerHTML), /NaN|Infinity/, id);
+      assert.doesNotMatch(
+        await page.evaluate(() => document.querySelector(".picture").outerHTML),
+        /NaN|Infinity/,
+        id,
+      );
       await screenshot(page, `scene-${id}`);
     }
   }));
@@ -302,7 +369,10 @@ test("who wants less motion gets steps until he asks for more", () =>
 test("the theme can be chosen and is remembered", () =>
   onPage({ colorScheme: "light" }, async (page) => {
     await page.getByRole("button", { name: "dark theme" }).click();
-    assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), "rgb(20, 23, 27)");
+    assert.equal(
+      await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
+      "rgb(20, 23, 27)",
+    );
     await page.reload();
     await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
   }));

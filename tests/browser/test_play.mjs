@@ -1,7 +1,15 @@
 // The main journey on the real server: play, pause, step, change the step size, read the gap, lose the line and find it again.
 import assert from "node:assert/strict";
 import { after, afterEach, before, test } from "node:test";
-import { openPage, read, screenshot, startBrowser, startLine, startServer, until } from "./support.mjs";
+import {
+  openPage,
+  read,
+  screenshot,
+  startBrowser,
+  startLine,
+  startServer,
+  until,
+} from "./support.mjs";
 
 const ROUNDING = 1e-12; // [m] a loop that a method keeps closed
 const METHODS = ["index1", "baumgarte", "projection", "nullspace", "reduced"];
@@ -47,7 +55,10 @@ test("opens paused on five methods of the four-bar, with Play focused", async ()
   assert.equal(await read(page, (data) => data.latest.t), 0);
   assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 freedom/);
   assert.equal(await page.locator(".ghost").count(), METHODS.length);
-  assert.match(await page.textContent("#status"), /paused · 5 methods.*1 freedom \(3 − 2\).*stream live/s);
+  assert.match(
+    await page.textContent("#status"),
+    /paused · 5 methods.*1 freedom \(3 − 2\).*stream live/s,
+  );
 });
 
 test("Space plays and pauses; the unstabilised gap grows and the others stay closed", async () => {
@@ -62,13 +73,17 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   const t = await time(page);
   await page.waitForTimeout(300);
   assert.equal(await time(page), t);
-  const worst = await read(page, (data) => data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)));
+  const worst = await read(page, (data) =>
+    data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)),
+  );
   assert.ok(worst[0] > 1e-9 && worst[0] < 1e-5, `index 1: ${worst[0]} m`);
   assert.ok(worst[1] < worst[0], `Baumgarte: ${worst[1]} m`);
   for (const gap of worst.slice(2)) {
     assert.ok(gap < ROUNDING, `${gap} m`);
   }
-  await page.waitForFunction(() => /gap .* and growing/.test(document.querySelector(".live").textContent));
+  await page.waitForFunction(() =>
+    /gap .* and growing/.test(document.querySelector(".live").textContent),
+  );
   assert.match(await page.textContent("tr:nth-child(1) .trend"), /growing/);
   assert.match(await page.textContent("tr:nth-child(3) .trend"), /closed/);
 });
@@ -82,7 +97,10 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
   }
   assert.ok(Math.abs((await time(page)) - 3 * dt) < 1e-12);
   await page.keyboard.press("ArrowLeft");
-  await page.waitForFunction((t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s`, 2 * dt);
+  await page.waitForFunction(
+    (t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s`,
+    2 * dt,
+  );
   assert.equal(await read(page, (data) => data.latest.frame), 3);
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
@@ -95,7 +113,10 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
 test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async () => {
   const page = await open();
   await type(page, "#set-h", "0,02");
-  await until(page, (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)) && data.latest?.frame === 0);
+  await until(
+    page,
+    (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)) && data.latest?.frame === 0,
+  );
   assert.equal(await page.inputValue("#set-h"), "0.02");
   await page.focus("#play");
   await page.keyboard.press("=");
@@ -103,11 +124,15 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest.t >= 4.5);
   const passed = await read(page, (data) =>
-    [1e-2, 1e-1].map((limit) => data.history.t[data.history.columns[0].gap.findIndex((gap) => gap > limit)]),
+    [1e-2, 1e-1].map(
+      (limit) => data.history.t[data.history.columns[0].gap.findIndex((gap) => gap > limit)],
+    ),
   );
   assert.ok(passed[0] > 0.9 && passed[0] < 2, `1 cm at ${passed[0]} s`);
   assert.ok(passed[1] > 2.8 && passed[1] < 4.4, `10 cm at ${passed[1]} s`);
-  const projection = await read(page, (data) => data.history.worst(2, "gap", 0, data.history.count - 1));
+  const projection = await read(page, (data) =>
+    data.history.worst(2, "gap", 0, data.history.count - 1),
+  );
   assert.ok(projection < ROUNDING, `${projection} m`);
   assert.match(await page.textContent(".tear-inset"), /×[\d.]+.*gap \d+ .?m/s);
   await page.keyboard.press("Space");
@@ -121,7 +146,9 @@ test("the same step is reached by the slider and by 2e-2 s", async () => {
   for (let k = 0; k < 9; k++) {
     await page.keyboard.press("ArrowUp");
   }
-  await until(page, (data) => data.methods.every((m) => Math.abs(Number(m.spelling.split("h=")[1]) - 0.015) < 1e-12));
+  await until(page, (data) =>
+    data.methods.every((m) => Math.abs(Number(m.spelling.split("h=")[1]) - 0.015) < 1e-12),
+  );
   await page.keyboard.press("ArrowUp");
   await until(page, (data) => data.methods.every((m) => /h=0\.02$/.test(m.spelling)));
   assert.equal(await page.getAttribute("#set-h-slider", "aria-valuetext"), "0.02 s");
@@ -149,7 +176,9 @@ test("a spelling that the server refuses is told in the dialog and changes nothi
   await page.getByRole("button", { name: "add a method" }).click();
   await page.fill("#pick-spelling", "projektion@rk4:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
-  await page.waitForFunction(() => /projection/.test(document.querySelector("#pick-error").textContent));
+  await page.waitForFunction(() =>
+    /projection/.test(document.querySelector("#pick-error").textContent),
+  );
   assert.equal(await read(page, (data) => data.methods.length), 5);
   await page.fill("#pick-spelling", "index1@euler:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
@@ -164,12 +193,17 @@ test("a length that cannot close the loop is refused at its field with the reaso
   await page.click(".scene-parameters summary");
   const before = await read(page, (data) => data.generation);
   await type(page, "#parameter-l2", "0.1");
-  await page.waitForFunction(() => document.querySelector("#parameter-l2").getAttribute("aria-invalid") === "true");
+  await page.waitForFunction(
+    () => document.querySelector("#parameter-l2").getAttribute("aria-invalid") === "true",
+  );
   assert.ok((await page.textContent("#parameter-l2-hint")).length > 10);
   assert.equal(await read(page, (data) => data.generation), before);
   await type(page, "#parameter-l2", "1.3");
   await until(page, (data) => data.settings.l2 === 1.3 && data.latest?.frame === 0);
-  assert.equal(await read(page, (data) => data.scene.parameters.find((p) => p.name === "l2").value), 1.3);
+  assert.equal(
+    await read(page, (data) => data.scene.parameters.find((p) => p.name === "l2").value),
+    1.3,
+  );
 });
 
 test("a negative Baumgarte constant is allowed with a warning", async () => {
@@ -196,10 +230,15 @@ test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/
   assert.ok((await page.textContent(".card .rule")).length > 40);
   const old = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
   await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
-  await until(page, (data) => /alpha=20,beta=20/.test(data.methods[1].spelling) && data.latest?.t > 5);
+  await until(
+    page,
+    (data) => /alpha=20,beta=20/.test(data.methods[1].spelling) && data.latest?.t > 5,
+  );
   const now = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
   assert.ok(now < old, `${now} m after ${old} m`);
-  await page.waitForFunction(() => /Baumgarte: worst gap .* before, .* now/.test(document.querySelector(".live").textContent));
+  await page.waitForFunction(() =>
+    /Baumgarte: worst gap .* before, .* now/.test(document.querySelector(".live").textContent),
+  );
 });
 
 test("the printed null-space form keeps the loop closed while its energy climbs, and wears its badge", async () => {
@@ -214,7 +253,10 @@ test("the printed null-space form keeps the loop closed while its energy climbs,
   await until(page, (data) => data.latest.t > 1.02);
   const second = await read(page, (data) => {
     const i = data.history.indexAt(1);
-    return { gap: data.history.worst(5, "gap", 0, i), energy: data.history.worst(5, "energy_change", 0, i) };
+    return {
+      gap: data.history.worst(5, "gap", 0, i),
+      energy: data.history.worst(5, "energy_change", 0, i),
+    };
   });
   assert.ok(second.gap < ROUNDING, `${second.gap} m`);
   assert.ok(second.energy > 20 && second.energy < 100, `${second.energy} J`);
@@ -228,7 +270,9 @@ test("a line that drops is told, and mended it resumes without a missing or repe
     await page.keyboard.press("Space");
     await until(page, (data) => data.latest.t > 0.5);
     line.cut();
-    await page.waitForFunction(() => /reconnecting/.test(document.querySelector(".stream").textContent));
+    await page.waitForFunction(() =>
+      /reconnecting/.test(document.querySelector(".stream").textContent),
+    );
     const seen = await read(page, (data) => data.latest.frame);
     await page.waitForTimeout(1200);
     line.mend();
@@ -236,10 +280,16 @@ test("a line that drops is told, and mended it resumes without a missing or repe
     const { stride, steps, dt } = await read(page, (data) => ({
       stride: data.history.stride,
       dt: data.frameDt,
-      steps: Array.from(data.history.t.subarray(1, data.history.count), (t, i) => t - data.history.t[i]),
+      steps: Array.from(
+        data.history.t.subarray(1, data.history.count),
+        (t, i) => t - data.history.t[i],
+      ),
     }));
     assert.equal(stride, 1);
-    assert.ok(steps.every((step) => Math.abs(step - dt) < 1e-9), "every frame follows the one before it");
+    assert.ok(
+      steps.every((step) => Math.abs(step - dt) < 1e-9),
+      "every frame follows the one before it",
+    );
   } finally {
     await opened.close();
     await line.close();

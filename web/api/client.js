@@ -25,6 +25,11 @@ export class Problem extends Error {
   }
 }
 
+/** What to tell of whatever was thrown. @param {unknown} error */
+export function sentenceOf(error) {
+  return error instanceof Problem ? error.sentence : String(error instanceof Error ? error.message : error);
+}
+
 /**
  * @param {string} method
  * @param {string} path
@@ -52,7 +57,9 @@ async function request(method, path, body) {
   try {
     json = JSON.parse(text);
   } catch {
-    throw new Problem(response.status, { detail: `the server's answer is not JSON (${response.status})` });
+    throw new Problem(response.status, {
+      detail: `the server's answer is not JSON (${response.status})`,
+    });
   }
   if (!response.ok) {
     throw new Problem(response.status, json);
@@ -69,7 +76,8 @@ export const api = {
   /** @param {string} id */
   scene: (id) => request("GET", `${BASE}/scenes/${id}`),
   /** @param {string} scene @param {Record<string, number>} settings */
-  equations: (scene, settings) => request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),
+  equations: (scene, settings) =>
+    request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),
   /** @param {object} body */
   createComparison: (body) => request("POST", `${BASE}/comparisons`, body),
   /** @param {string} id */
@@ -79,7 +87,8 @@ export const api = {
   /** @param {string} id */
   deleteComparison: (id) => request("DELETE", `${BASE}/comparisons/${id}`),
   /** The page is going away: no answer is waited for. @param {string} id */
-  abandonComparison: (id) => fetch(`${BASE}/comparisons/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
+  abandonComparison: (id) =>
+    fetch(`${BASE}/comparisons/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
   /** @param {string} id @param {string} lastId */
   eventsAddress: (id, lastId) =>
     `${BASE}/comparisons/${id}/events${lastId ? `?last_event_id=${encodeURIComponent(lastId)}` : ""}`,

@@ -10,7 +10,7 @@ const RETRY_MOST = 8000;
 /**
  * @typedef {"connecting" | "live" | "reconnecting" | "hidden" | "ended"} StreamState
  * @param {string} id of the comparison
- * @param {(name: string, data: any) => void} onEvent
+ * @param {(name: string, data: any, lastId: string) => void} onEvent
  * @param {(state: StreamState, lastId: string) => void} onState
  */
 export function createStream(id, onEvent, onState) {
@@ -50,7 +50,7 @@ export function createStream(id, onEvent, onState) {
     if (event.lastEventId) {
       lastId = event.lastEventId;
     }
-    onEvent(name, JSON.parse(event.data));
+    onEvent(name, JSON.parse(event.data), lastId);
     if (name === "end") {
       drop();
       tell("ended");

@@ -1,7 +1,7 @@
 // @ts-check
 // Numbers as people read and type them.
 
-const PREFIXES = { f: -15, p: -12, n: -9, "µ": -6, u: -6, m: -3, "": 0, k: 3, M: 6, G: 9 };
+const PREFIXES = { f: -15, p: -12, n: -9, µ: -6, u: -6, m: -3, "": 0, k: 3, M: 6, G: 9 };
 const SHOWN = [
   [-15, "f"],
   [-12, "p"],
@@ -63,7 +63,9 @@ export function quantity(value, unit, digits = 2) {
 /** A plain number as a person would type it back: 0.02, 5, 1e-6. @param {number} value */
 export function plain(value) {
   const text = String(Number(value.toPrecision(12)));
-  return Math.abs(value) < 1e-4 && value !== 0 ? Number(value.toPrecision(12)).toExponential() : text;
+  return Math.abs(value) < 1e-4 && value !== 0
+    ? Number(value.toPrecision(12)).toExponential()
+    : text;
 }
 
 /** @param {number} t [s] */

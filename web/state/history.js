@@ -7,7 +7,15 @@ const MOST_FRAMES = 8192;
 const FEWEST_FRAMES = 256;
 
 /** Quantities kept per method, by their names in a frame. */
-export const COLUMNS = /** @type {const} */ (["gap", "velocity_gap", "energy_change", "ops", "evals", "cpu", "steps"]);
+export const COLUMNS = /** @type {const} */ ([
+  "gap",
+  "velocity_gap",
+  "energy_change",
+  "ops",
+  "evals",
+  "cpu",
+  "steps",
+]);
 
 /** @typedef {ReturnType<typeof createHistory>} History */
 
@@ -17,7 +25,10 @@ export const COLUMNS = /** @type {const} */ (["gap", "velocity_gap", "energy_cha
  */
 export function createHistory(nMethods, nPoints) {
   const perFrame = 8 * nMethods * (3 * nPoints + COLUMNS.length);
-  const capacity = Math.max(FEWEST_FRAMES, Math.min(MOST_FRAMES, 2 * Math.floor(BYTES / perFrame / 2)));
+  const capacity = Math.max(
+    FEWEST_FRAMES,
+    Math.min(MOST_FRAMES, 2 * Math.floor(BYTES / perFrame / 2)),
+  );
   const t = new Float64Array(capacity);
   const columns = Array.from({ length: nMethods }, () =>
     Object.fromEntries(COLUMNS.map((name) => [name, new Float64Array(capacity)])),
@@ -156,7 +167,10 @@ function extremes(y, start, end) {
 export function thin(t, ys, count, buckets, map) {
   const size = Math.ceil(count / buckets);
   if (size <= 2) {
-    return [Array.from(t).slice(0, count), ...ys.map((y) => Array.from(y).slice(0, count).map(map))];
+    return [
+      Array.from(t).slice(0, count),
+      ...ys.map((y) => Array.from(y).slice(0, count).map(map)),
+    ];
   }
   /** @type {(number | null)[][]} */
   const out = [[], ...ys.map(() => [])];

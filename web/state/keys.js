@@ -7,10 +7,40 @@
  */
 export const KEYS = [
   { key: " ", context: "page", action: "toggle", means: "play or pause", shown: "Space" },
-  { key: "ArrowRight", context: "page", action: "step", argument: 1, means: "one frame on", shown: "→" },
-  { key: "ArrowLeft", context: "page", action: "step", argument: -1, means: "one frame back", shown: "←" },
-  { key: "ArrowRight", shift: true, context: "page", action: "step", argument: 10, means: "ten frames on", shown: "Shift →" },
-  { key: "ArrowLeft", shift: true, context: "page", action: "step", argument: -10, means: "ten frames back", shown: "Shift ←" },
+  {
+    key: "ArrowRight",
+    context: "page",
+    action: "step",
+    argument: 1,
+    means: "one frame on",
+    shown: "→",
+  },
+  {
+    key: "ArrowLeft",
+    context: "page",
+    action: "step",
+    argument: -1,
+    means: "one frame back",
+    shown: "←",
+  },
+  {
+    key: "ArrowRight",
+    shift: true,
+    context: "page",
+    action: "step",
+    argument: 10,
+    means: "ten frames on",
+    shown: "Shift →",
+  },
+  {
+    key: "ArrowLeft",
+    shift: true,
+    context: "page",
+    action: "step",
+    argument: -10,
+    means: "ten frames back",
+    shown: "Shift ←",
+  },
   { key: "Backspace", context: "page", action: "reset", means: "back to the start" },
   { key: "-", context: "page", action: "slower", means: "slower" },
   { key: "=", context: "page", action: "faster", means: "faster" },
@@ -50,6 +80,8 @@ export function findKey(event, letters) {
   }
   // on many keyboards a digit or a sign needs Shift itself
   return KEYS.find((key) =>
-    isCharacter(key) ? letters && key.key === event.key : key.key === event.key && Boolean(key.shift) === event.shiftKey,
+    isCharacter(key)
+      ? letters && key.key === event.key
+      : key.key === event.key && Boolean(key.shift) === event.shiftKey,
   );
 }

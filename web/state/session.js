@@ -1,7 +1,7 @@
 // @ts-check
 // What the page can do: actions that ask the server and put its answers into the store. A change that the server refuses
 // changes nothing here either, and is handed back as a Problem for the field that asked.
-import { Problem, api } from "../api/client.js";
+import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
@@ -56,7 +56,10 @@ export function createSession(store) {
   /** @param {any} description */
   function startHistory(description) {
     const sameScene = data.scene?.id === description.scene.id;
-    data.before = sameScene && data.history && data.history.count > 1 ? { methods: data.methods, history: data.history } : null;
+    data.before =
+      sameScene && data.history && data.history.count > 1
+        ? { methods: data.methods, history: data.history }
+        : null;
     data.methods = description.comparison.methods.map(readMethod);
     const labels = labelsOf(data.methods);
     data.methods.forEach((method, m) => (method.label = labels[m]));
@@ -90,7 +93,11 @@ export function createSession(store) {
       store.emit("methods");
     }
     applyState(description);
-    if (description.latest && description.latest.frame > (data.history?.lastFrame ?? -1) && (restarted || !stream)) {
+    if (
+      description.latest &&
+      description.latest.frame > (data.history?.lastFrame ?? -1) &&
+      (restarted || !stream)
+    ) {
       applyFrame({ ...description.latest, generation: description.generation });
     }
   }
@@ -128,7 +135,8 @@ export function createSession(store) {
     incident: applyIncident,
     reset: (detail) => applyReset(detail),
     state: applyState,
-    gap: ({ from, to }) => notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
+    gap: ({ from, to }) =>
+      notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
     end: () => applyState({ state: "finished", speed: data.speed }),
   };
 
@@ -151,7 +159,10 @@ export function createSession(store) {
     applyDescription(description, true);
     stream = createStream(
       description.id,
-      (name, detail) => onEvent[name](detail),
+      (name, detail, lastId) => {
+        data.stream.id = lastId;
+        onEvent[name](detail);
+      },
       (state, id) => {
         data.stream = { state, id };
         store.emit("stream");
@@ -165,7 +176,9 @@ export function createSession(store) {
     const description = await api.createComparison({ paused: true, speed: data.speed, ...body });
     adopt(description);
     if (old) {
-      api.deleteComparison(old).catch(() => notice("the comparison before this one could not be ended"));
+      api
+        .deleteComparison(old)
+        .catch(() => notice("the comparison before this one could not be ended"));
     }
   }
 
@@ -178,7 +191,11 @@ export function createSession(store) {
         throw error;
       }
       data.id = "";
-      await create({ scene: data.scene.id, settings: data.settings, methods: data.methods.map((m) => m.spelling) });
+      await create({
+        scene: data.scene.id,
+        settings: data.settings,
+        methods: data.methods.map((m) => m.spelling),
+      });
       notice("the server had closed this comparison; it was started again");
       return api.changeComparison(data.id, change);
     }
@@ -197,13 +214,16 @@ export function createSession(store) {
 
   /** An action whose failure has no field of its own. @param {object} wanted */
   function changeOrTell(wanted) {
-    return change(wanted).catch((error) => notice(error.sentence ?? error.message));
+    return change(wanted).catch((error) => notice(sentenceOf(error)));
   }
 
   function chooseMethods(scene) {
     const known = FIRST_METHODS.filter((spelling) => {
       const parsed = parseSpelling(spelling);
-      return cardOf(data.catalogue, "formulation", parsed.formulation.name) && cardOf(data.catalogue, "integrator", parsed.integrator.name);
+      return (
+        cardOf(data.catalogue, "formulation", parsed.formulation.name) &&
+        cardOf(data.catalogue, "integrator", parsed.integrator.name)
+      );
     });
     return scene?.methods?.length ? scene.methods : known;
   }
@@ -211,14 +231,21 @@ export function createSession(store) {
   const actions = {
     /** Everything the page needs before it can draw. @param {string} wanted id of a scene, or "" */
     async start(wanted) {
-      const [index, look, catalogue, list] = await Promise.all([api.index(), api.look(), api.methods(), api.scenes()]);
+      const [index, look, catalogue, list] = await Promise.all([
+        api.index(),
+        api.look(),
+        api.methods(),
+        api.scenes(),
+      ]);
       data.build = index.version ?? index.build ?? "";
       data.look = look;
       data.catalogue = catalogue;
       data.scenes = list.scenes.filter((scene) => !scene.errors);
       store.emit("ready");
       const ids = data.scenes.map(({ id }) => id);
-      await actions.loadScene([wanted, FIRST_SCENE, ids[0]].find((id) => ids.includes(id)) ?? FIRST_SCENE);
+      await actions.loadScene(
+        [wanted, FIRST_SCENE, ids[0]].find((id) => ids.includes(id)) ?? FIRST_SCENE,
+      );
     },
     /** @param {string} id */
     async loadScene(id) {
@@ -232,7 +259,9 @@ export function createSession(store) {
       if (data.view.stepped && data.state !== "finished") {
         return actions.step(Math.max(1, Math.round(STEPPED_SECONDS / data.frameDt)));
       }
-      return changeOrTell(data.state === "finished" ? { reset: true, state: "running" } : { state: "running" });
+      return changeOrTell(
+        data.state === "finished" ? { reset: true, state: "running" } : { state: "running" },
+      );
     },
     pause: () => changeOrTell({ state: "paused" }),
     toggle: () => (data.state === "running" ? actions.pause() : actions.play()),
@@ -265,8 +294,10 @@ export function createSession(store) {
       }
     },
     reset: () => changeOrTell({ reset: true, state: "paused" }),
-    slower: () => actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < wantedSpeed()) ?? SPEEDS[0]),
-    faster: () => actions.setSpeed(SPEEDS.find((speed) => speed > wantedSpeed()) ?? SPEEDS[SPEEDS.length - 1]),
+    slower: () =>
+      actions.setSpeed([...SPEEDS].reverse().find((speed) => speed < wantedSpeed()) ?? SPEEDS[0]),
+    faster: () =>
+      actions.setSpeed(SPEEDS.find((speed) => speed > wantedSpeed()) ?? SPEEDS[SPEEDS.length - 1]),
     /** @param {number} speed */
     async setSpeed(speed) {
       asked = speed;
@@ -278,7 +309,8 @@ export function createSession(store) {
     /** One setting of every method that has it. @param {string} key @param {number} value @param {string} [and] another key */
     setSetting(key, value, and) {
       const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
-      const changeBoth = (spelling) => (and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling));
+      const changeBoth = (spelling) =>
+        and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling);
       return actions.setMethods(data.methods.map(({ spelling }) => changeBoth(spelling)));
     },
     /** @param {string} name @param {number} value */
@@ -287,7 +319,9 @@ export function createSession(store) {
     /** A thing to try from a card. @param {import("./words.js").Try} item */
     async attempt(item) {
       if (item.key) {
-        await actions.setSetting(item.key, Number(item.value), item.and).catch((error) => notice(error.sentence));
+        await actions
+          .setSetting(item.key, Number(item.value), item.and)
+          .catch((error) => notice(sentenceOf(error)));
         return;
       }
       if (item.method) {
@@ -296,7 +330,7 @@ export function createSession(store) {
         const same = data.methods.findIndex(({ formulation }) => formulation === wanted);
         const place = same >= 0 ? same : Math.min(spellings.length, MOST_METHODS - 1);
         spellings[place] = item.method;
-        await actions.setMethods(spellings).catch((error) => notice(error.sentence));
+        await actions.setMethods(spellings).catch((error) => notice(sentenceOf(error)));
         actions.select(place);
       }
     },

@@ -15,7 +15,13 @@ function parsePart(text) {
   const settings = rest
     .split(",")
     .filter((item) => item !== "")
-    .map((item) => /** @type {[string, string]} */ ([item.split("=")[0].trim(), item.split("=").slice(1).join("=").trim()]));
+    .map(
+      (item) =>
+        /** @type {[string, string]} */ ([
+          item.split("=")[0].trim(),
+          item.split("=").slice(1).join("=").trim(),
+        ]),
+    );
   return { name: name.trim(), settings };
 }
 
@@ -41,17 +47,20 @@ export function formatSpelling(spelling) {
 
 /** @param {{formulations: any[], integrators: any[]}} catalogue @param {"formulation" | "integrator"} kind @param {string} name */
 export function cardOf(catalogue, kind, name) {
-  return (kind === "formulation" ? catalogue.formulations : catalogue.integrators).find((card) => card.name === name);
+  return (kind === "formulation" ? catalogue.formulations : catalogue.integrators).find(
+    (card) => card.name === name,
+  );
 }
 
 /** What the catalogue says of a setting that this method has; undefined when it has none of that key. */
 export function settingOf(catalogue, spelling, key) {
   const parsed = parseSpelling(spelling);
   for (const kind of /** @type {const} */ (["formulation", "integrator"])) {
-    const info = cardOf(catalogue, kind, parsed[kind].name)?.settings.find((setting) => setting.key === key);
+    const card = cardOf(catalogue, kind, parsed[kind].name);
+    const info = card?.settings.find((setting) => setting.key === key);
     if (info) {
       const written = parsed[kind].settings.find(([name]) => name === key);
-      return { kind, info, value: written ? Number(written[1]) : info.initial };
+      return { kind, info, value: written ? Number(written[1]) : info.default };
     }
   }
   return undefined;
@@ -85,7 +94,9 @@ export function labelsOf(methods) {
       return method.short;
     }
     const words = wordsOf(method.spelling);
-    const own = words.filter((word) => twins.some((twin) => !wordsOf(twin.spelling).includes(word)));
+    const own = words.filter((word) =>
+      twins.some((twin) => !wordsOf(twin.spelling).includes(word)),
+    );
     return own.length ? `${method.short} ${own.join(" ")}` : method.short;
   });
 }
@@ -93,5 +104,8 @@ export function labelsOf(methods) {
 /** @param {string} spelling */
 function wordsOf(spelling) {
   const { formulation, integrator } = parseSpelling(spelling);
-  return [integrator.name, ...formulation.settings.concat(integrator.settings).map(([key, value]) => `${key}=${value}`)];
+  return [
+    integrator.name,
+    ...formulation.settings.concat(integrator.settings).map(([key, value]) => `${key}=${value}`),
+  ];
 }

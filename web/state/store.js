@@ -35,11 +35,15 @@ function initialData() {
   return {
     build: "",
     /** @type {any} */ look: null,
-    /** @type {{formulations: any[], integrators: any[]}} */ catalogue: { formulations: [], integrators: [] },
+    /** @type {{formulations: any[], integrators: any[]}} */ catalogue: {
+      formulations: [],
+      integrators: [],
+    },
     /** @type {{id: string, title: string}[]} */ scenes: [],
     id: "",
     generation: -1,
-    /** @type {Scene | null} */ scene: null,
+    /** null until the first comparison is there */
+    scene: /** @type {Scene} */ (/** @type {any} */ (null)),
     /** @type {Method[]} */ methods: [],
     /** @type {Record<string, number>} */ settings: {},
     frameDt: 0,
@@ -47,7 +51,7 @@ function initialData() {
     state: "paused",
     speed: 1,
     /** @type {Frame | null} */ latest: null,
-    /** @type {import("./history.js").History | null} */ history: null,
+    history: /** @type {import("./history.js").History} */ (/** @type {any} */ (null)), // likewise
     /** The run before the last change, for "before and after". @type {{methods: Method[], history: import("./history.js").History} | null} */
     before: null,
     /** @type {Incident[]} */ incidents: [],

@@ -48,17 +48,28 @@ export function sentences(data, shown) {
   }
   const loops = (data.scene?.m ?? 0) > 0;
   const rows = methods
-    .map((method, m) => ({ method, m, trend: trendOf(history, m, shown), gap: history.columns[m].gap[shown] }))
+    .map((method, m) => ({
+      method,
+      m,
+      trend: trendOf(history, m, shown),
+      gap: history.columns[m].gap[shown],
+    }))
     .filter(({ m }) => !view.hidden.has(m));
-  const out = rows.filter(({ trend }) => trend.tone === "bad").map(({ method, trend }) => `${method.label}: ${trend.word}`);
+  const out = rows
+    .filter(({ trend }) => trend.tone === "bad")
+    .map(({ method, trend }) => `${method.label}: ${trend.word}`);
   if (!loops) {
     return out.concat("this mechanism has no loop to close; watch the energy").slice(0, 3);
   }
   rows
     .filter(({ trend }) => trend.tone !== "bad" && trend.word !== "closed")
     .sort((a, b) => b.gap - a.gap)
-    .forEach(({ method, trend, gap }) => out.push(`${method.label}: gap ${quantity(gap, "m")} and ${trend.word}`));
-  const closed = rows.filter(({ trend }) => trend.word === "closed").map(({ method }) => method.label);
+    .forEach(({ method, trend, gap }) =>
+      out.push(`${method.label}: gap ${quantity(gap, "m")} and ${trend.word}`),
+    );
+  const closed = rows
+    .filter(({ trend }) => trend.word === "closed")
+    .map(({ method }) => method.label);
   if (closed.length) {
     out.splice(2, Infinity, `closed to rounding: ${closed.join(", ")}`);
   }
@@ -85,11 +96,16 @@ export function beforeAndAfter(data, shown) {
     if (old < 0 || before.methods[old].spelling === method.spelling) {
       return [];
     }
-    const pair = (name) => [before.history.worst(old, name, 0, then), history.worst(m, name, 0, shown)];
+    const pair = (name) => [
+      before.history.worst(old, name, 0, then),
+      history.worst(m, name, 0, shown),
+    ];
     const [gap0, gap1] = pair("gap");
     const [energy0, energy1] = pair("energy_change");
     return gap1 < ROUNDING && gap0 < ROUNDING
-      ? [`${method.label}: worst energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`]
+      ? [
+          `${method.label}: worst energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`,
+        ]
       : [
           `${method.label}: worst gap ${quantity(gap0, "m")} before, ${quantity(gap1, "m")} now; ` +
             `energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`,
@@ -132,11 +148,15 @@ function triesOf(data, m) {
     if (item.method) {
       const wanted = item.method.replace("{integrator}", integrator);
       const known = cardOf(data.catalogue, "formulation", parseSpelling(wanted).formulation.name);
-      return known && !data.methods.some((method) => method.spelling === wanted) ? [{ label: item.say, method: wanted }] : [];
+      return known && !data.methods.some((method) => method.spelling === wanted)
+        ? [{ label: item.say, method: wanted }]
+        : [];
     }
     const now = settingOf(data.catalogue, spelling, item.key);
     const value = item.to ?? (now && Number((now.value * item.times).toPrecision(6)));
-    return now && value !== now.value ? [{ label: item.say, key: item.key, and: item.and, value }] : [];
+    return now && value !== now.value
+      ? [{ label: item.say, key: item.key, and: item.and, value }]
+      : [];
   });
 }
 
@@ -146,7 +166,9 @@ export function tryOfRemedy(text) {
   if (setting) {
     return { label: `${setting[1]} = ${setting[2]}`, key: setting[1], value: Number(setting[2]) };
   }
-  return /^[\w-]+(:[^@\s]*)?@\S+$/.test(text.trim()) ? { label: text.trim(), method: text.trim() } : { label: text.trim() };
+  return /^[\w-]+(:[^@\s]*)?@\S+$/.test(text.trim())
+    ? { label: text.trim(), method: text.trim() }
+    : { label: text.trim() };
 }
 
 /**
@@ -185,10 +207,14 @@ export function describeDrawing(data, shown) {
   const drawn = methods.filter((_, m) => !view.hidden.has(m)).map(({ label }) => label);
   const points = history.pointsAt(view.selected, shown);
   const places = scene.drawing.labels
-    .map((label, i) => (label ? `${label} at (${points[3 * i].toFixed(2)}, ${points[3 * i + 1].toFixed(2)}) m` : ""))
+    .map((label, i) =>
+      label ? `${label} at (${points[3 * i].toFixed(2)}, ${points[3 * i + 1].toFixed(2)}) m` : "",
+    )
     .filter(Boolean)
     .slice(0, 8);
-  const gap = scene.drawing.tears.length ? `, loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}` : "";
+  const gap = scene.drawing.tears.length
+    ? `, loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}`
+    : "";
   return (
     `${scene.title} at ${seconds(history.t[shown])}, drawn by ${drawn.join(", ") || "no method"}; ` +
     `${method.label}${places.length ? `: ${places.join(", ")}` : ""}${gap}.`

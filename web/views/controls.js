@@ -1,5 +1,6 @@
 // @ts-check
 // Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some method has; and the scene's parameters.
+import { sentenceOf } from "../api/client.js";
 import { parseQuantity, plain } from "../state/format.js";
 import { settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
@@ -11,10 +12,48 @@ const warnBelowZero = (value) => (value < 0 ? { warning: "pushes the loop apart"
 
 /** Settings with a control of their own; any other is changed in the method's dialog. */
 const CONTROLS = [
-  { key: "h", label: "Step size dt", unit: "s", scale: "log", min: 1e-4, max: 0.1, hint: "of every method with a fixed step", check: positive("dt") },
-  { key: "rtol", label: "Tolerance", unit: "", scale: "log", min: 1e-12, max: 1e-2, hint: "relative, of every method that chooses its step", check: positive("the tolerance") },
-  { key: "alpha", label: "Baumgarte α", unit: "1/s", scale: "linear", min: -10, max: 120, step: 1, hint: "pulls the velocity error back", check: warnBelowZero },
-  { key: "beta", label: "Baumgarte β", unit: "1/s", scale: "linear", min: -10, max: 120, step: 1, hint: "pulls the gap back", check: warnBelowZero },
+  {
+    key: "h",
+    label: "Step size dt",
+    unit: "s",
+    scale: "log",
+    min: 1e-4,
+    max: 0.1,
+    hint: "of every method with a fixed step",
+    check: positive("dt"),
+  },
+  {
+    key: "rtol",
+    label: "Tolerance",
+    unit: "",
+    scale: "log",
+    min: 1e-12,
+    max: 1e-2,
+    hint: "relative, of every method that chooses its step",
+    check: positive("the tolerance"),
+  },
+  {
+    key: "alpha",
+    label: "Baumgarte α",
+    unit: "1/s",
+    scale: "linear",
+    min: -10,
+    max: 120,
+    step: 1,
+    hint: "pulls the velocity error back",
+    check: warnBelowZero,
+  },
+  {
+    key: "beta",
+    label: "Baumgarte β",
+    unit: "1/s",
+    scale: "linear",
+    min: -10,
+    max: 120,
+    step: 1,
+    hint: "pulls the gap back",
+    check: warnBelowZero,
+  },
 ];
 
 const WIDE = 1000; // a range over so many times its least value is better told in decades
@@ -28,7 +67,15 @@ export function createControls(el, store, actions) {
   const data = store.data;
   const settings = h("div", { class: "settings" });
   const list = h("div", { class: "parameters" });
-  const reset = h("button", { type: "button", class: "quiet", onclick: () => actions.resetParameters().catch((e) => actions.notice(e.sentence)) }, "all as the scene has them");
+  const reset = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      onclick: () => actions.resetParameters().catch((e) => actions.notice(sentenceOf(e))),
+    },
+    "all as the scene has them",
+  );
   const summary = h("summary", {}, "Lengths, masses, gravity and start");
   const details = h("details", { class: "scene-parameters" }, summary, list, h("p", {}, reset));
   el.replaceChildren(settings, details);
@@ -41,7 +88,9 @@ export function createControls(el, store, actions) {
 
   /** The value that the methods share; the first one when they differ. @param {string} key */
   function heldBy(key) {
-    const all = data.methods.map(({ spelling }) => settingOf(data.catalogue, spelling, key)).filter(Boolean);
+    const all = data.methods
+      .map(({ spelling }) => settingOf(data.catalogue, spelling, key))
+      .filter(Boolean);
     return all.length ? Number(all[0].value) : null;
   }
 
@@ -71,7 +120,10 @@ export function createControls(el, store, actions) {
       field.update(held);
     }
     const wanted = CONTROLS.map(({ key }) => fields.get(key)?.el).filter(Boolean);
-    if (wanted.some((node, i) => settings.children[i] !== node) || wanted.length !== settings.children.length) {
+    if (
+      wanted.some((node, i) => settings.children[i] !== node) ||
+      wanted.length !== settings.children.length
+    ) {
       settings.replaceChildren(...wanted);
     }
   }
@@ -81,7 +133,9 @@ export function createControls(el, store, actions) {
     const { min, max } = parameter;
     const span = Number.isFinite(min) && Number.isFinite(max) && min < max;
     const around = Math.max(1, 2 * Math.abs(parameter.initial));
-    const range = span ? [min, max] : [Math.max(min ?? -around, -around), Math.min(max ?? around, around)];
+    const range = span
+      ? [min, max]
+      : [Math.max(min ?? -around, -around), Math.min(max ?? around, around)];
     const words = `${plain(range[0])} to ${plain(range[1])} ${parameter.unit}`.trim();
     return createSliderField({
       id: `parameter-${parameter.name}`,
@@ -94,7 +148,11 @@ export function createControls(el, store, actions) {
       step: parameter.integer ? 1 : undefined,
       read: (text) => parseQuantity(text, parameter.unit),
       check: (value) =>
-        value < min || value > max ? { error: `${parameter.name} must be within ${words}` } : parameter.integer && !Number.isInteger(value) ? { error: `${parameter.name} must be a whole number` } : {},
+        value < min || value > max
+          ? { error: `${parameter.name} must be within ${words}` }
+          : parameter.integer && !Number.isInteger(value)
+            ? { error: `${parameter.name} must be a whole number` }
+            : {},
       commit: (value) => actions.setParameter(parameter.name, value),
     });
   }
@@ -113,7 +171,9 @@ export function createControls(el, store, actions) {
       list.replaceChildren(...[...parameters.values()].map((field) => field.el));
       details.hidden = scene.parameters.length === 0;
     }
-    scene.parameters.forEach((parameter) => parameters.get(parameter.name)?.update(parameter.value));
+    scene.parameters.forEach((parameter) =>
+      parameters.get(parameter.name)?.update(parameter.value),
+    );
   }
 
   const stop = listen(store, { methods: showSettings, scene: showParameters });

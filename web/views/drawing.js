@@ -9,8 +9,7 @@ import * as shapes from "../widgets/shapes.js";
 
 const TRACE_POINTS = 600;
 const OUTLINES = ["bar", "slider", "polygon"]; // filled; the other kinds are lines
-const LINES = ["spring", "damper", "arrow"];
-const FIXED = ["ground", "guide"];
+const LINES = ["spring", "damper", "arrow", "guide"];
 
 /**
  * @param {HTMLElement} el
@@ -19,17 +18,35 @@ const FIXED = ["ground", "guide"];
  */
 export function createDrawing(el, store, actions) {
   const data = store.data;
-  const layers = Object.fromEntries(["fixed", "traces", "ghosts", "tears", "labels", "scale"].map((name) => [name, s("g", { class: name })]));
-  const svg = s("svg", { role: "img", "aria-labelledby": "drawing-title", tabindex: "-1", class: "picture" }, ...Object.values(layers));
+  const layers = Object.fromEntries(
+    ["fixed", "traces", "ghosts", "tears", "labels", "scale"].map((name) => [
+      name,
+      s("g", { class: name }),
+    ]),
+  );
+  const svg = s(
+    "svg",
+    { role: "img", "aria-labelledby": "drawing-title", tabindex: "-1", class: "picture" },
+    ...Object.values(layers),
+  );
   const title = h("p", { id: "drawing-title", class: "hidden" });
   const spoken = h("p", { class: "spoken", role: "status" });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
   const caption = h("p", { class: "caption" });
   const labels = toggle("labels", "labels", true);
   const traces = toggle("traces", "paths", false);
-  const describe = h("button", { type: "button", class: "quiet", onclick: tellDrawing }, "describe");
+  const describe = h(
+    "button",
+    { type: "button", class: "quiet", onclick: tellDrawing },
+    "describe",
+  );
   const stage = h("div", { class: "stage" }, svg, banner);
-  el.replaceChildren(stage, title, h("div", { class: "under" }, caption, h("div", { class: "choices" }, labels, traces, describe)), spoken);
+  el.replaceChildren(
+    stage,
+    title,
+    h("div", { class: "under" }, caption, h("div", { class: "choices" }, labels, traces, describe)),
+    spoken,
+  );
 
   /** @type {{group: any, fill: any, pins: any, lines: any}[]} */
   let ghosts = [];
@@ -66,34 +83,50 @@ export function createDrawing(el, store, actions) {
 
   // ---- once per scene and size -----------------------------------------------------------------------------------
 
-  const radius = (shape) => Math.min(11, Math.max(4.5, (shape.width > 0 ? shape.width : 0.045 * (data.scene?.length ?? 1)) * camera.scale * 0.5));
+  const radius = (shape) =>
+    Math.min(
+      11,
+      Math.max(
+        4.5,
+        (shape.width > 0 ? shape.width : 0.045 * (data.scene?.length ?? 1)) * camera.scale * 0.5,
+      ),
+    );
 
-  /** The guide reaches across the envelope. */
+  /** Drawn once: what stands on the ground. @param {import("../state/store.js").Shape} shape */
+  const isFixed = ({ kind, body }) => kind === "ground" || (kind === "guide" && body < 0);
+
+  /** The guide reaches across the view. @returns {[[number, number], [number, number]]} */
   function guideEnds(p, q) {
     const dx = q[0] - p[0];
     const dy = q[1] - p[1];
     const length = Math.hypot(dx, dy) || 1;
     const reach = (component, low, high, from) =>
-      Math.abs(component) < 1e-9 ? [-Infinity, Infinity] : [(low - from) / component, (high - from) / component].sort((a, b) => a - b);
+      Math.abs(component) < 1e-9
+        ? [-Infinity, Infinity]
+        : [(low - from) / component, (high - from) / component].sort((a, b) => a - b);
     const [ax, bx] = reach(dx / length, 12, size.width - 12, p[0]);
     const [ay, by] = reach(dy / length, 12, size.height - 12, p[1]);
     const [a, b] = [Math.max(ax, ay), Math.min(bx, by)];
-    return [a, b].map((along) => /** @type {[number, number]} */ ([p[0] + (along * dx) / length, p[1] + (along * dy) / length]));
+    return [a, b].map(
+      (along) =>
+        /** @type {[number, number]} */ ([
+          p[0] + (along * dx) / length,
+          p[1] + (along * dy) / length,
+        ]),
+    );
   }
 
   function drawFixed(points) {
     const place = (i) => camera.point(points, i);
     layers.fixed.replaceChildren(
-      ...data.scene.drawing.shapes
-        .filter(({ kind }) => FIXED.includes(kind))
-        .map((shape) => {
-          const p = place(shape.p);
-          if (shape.kind === "ground") {
-            return s("path", { d: shapes.ground(p, 11), class: "ground" });
-          }
-          const [from, to] = guideEnds(p, place(shape.q));
-          return s("path", { d: shapes.guide(from, to, radius(shape) + 5), class: "guide" });
-        }),
+      ...data.scene.drawing.shapes.filter(isFixed).map((shape) => {
+        const p = place(shape.p);
+        if (shape.kind === "ground") {
+          return s("path", { d: shapes.ground(p, 11), class: "ground" });
+        }
+        const [from, to] = guideEnds(p, place(shape.q));
+        return s("path", { d: shapes.guide(from, to, radius(shape) + 5), class: "guide" });
+      }),
     );
   }
 
@@ -113,7 +146,11 @@ export function createDrawing(el, store, actions) {
     if (!data.scene) {
       return;
     }
-    camera = createCamera(boxAround(data.scene.envelope, data.scene.points), size.width, size.height);
+    camera = createCamera(
+      boxAround(data.scene.envelope, data.scene.points),
+      size.width,
+      size.height,
+    );
     drawFixed(data.scene.points);
     drawScale();
     update();
@@ -136,7 +173,9 @@ export function createDrawing(el, store, actions) {
   }
 
   function arrange() {
-    const order = data.methods.map((_, m) => m).filter((m) => m !== data.view.selected && !data.view.hidden.has(m));
+    const order = data.methods
+      .map((_, m) => m)
+      .filter((m) => m !== data.view.selected && !data.view.hidden.has(m));
     if (!data.view.hidden.has(data.view.selected)) {
       order.push(data.view.selected);
     }
@@ -152,7 +191,11 @@ export function createDrawing(el, store, actions) {
     const place = (i) => camera.point(points, i);
     let d = "";
     for (const shape of data.scene.drawing.shapes) {
-      if (!kinds.includes(shape.kind) || Number.isNaN(points[3 * shape.p])) {
+      if (
+        !kinds.includes(shape.kind) ||
+        (shape.kind === "guide" && isFixed(shape)) ||
+        Number.isNaN(points[3 * shape.p])
+      ) {
         continue;
       }
       d += outlineOf(shape, place);
@@ -170,15 +213,21 @@ export function createDrawing(el, store, actions) {
       case "slider":
         return shapes.slider(p, q, r + 4);
       case "polygon":
-        return shapes.polyline(Array.from({ length: shape.n }, (_, i) => place(shape.p + i)), true);
+        return shapes.polyline(
+          Array.from({ length: shape.n }, (_, i) => place(shape.p + i)),
+          true,
+        );
       case "pivot":
+      case "ground":
         return shapes.circle(p, Math.max(2.5, 0.55 * r));
       case "spring":
         return shapes.spring(p, q, r + 2);
+      case "guide":
+        return shapes.guide(...guideEnds(p, q), r + 5);
       case "damper":
         return shapes.damper(p, q, r + 1);
       case "arrow":
-        return shape.q >= 0 && shape.q !== shape.p ? shapes.arrow(q, p) : shapes.turn(p, 2.4 * r);
+        return shapes.load(p, 1.5 * r);
       default:
         return "";
     }
@@ -195,7 +244,10 @@ export function createDrawing(el, store, actions) {
       .filter(([[x]]) => Number.isFinite(x))
       .map(([a, b]) => shapes.circle([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], 14))
       .join("");
-    layers.tears.replaceChildren(s("path", { d, class: "tear" }), s("path", { d: rings, class: "cut" }));
+    layers.tears.replaceChildren(
+      s("path", { d, class: "tear" }),
+      s("path", { d: rings, class: "cut" }),
+    );
   }
 
   function drawLabels(points) {
@@ -219,7 +271,9 @@ export function createDrawing(el, store, actions) {
     }
     const m = data.view.selected;
     const step = Math.max(1, Math.ceil(now / TRACE_POINTS));
-    const traced = data.scene.drawing.shapes.filter(({ kind }) => kind === "trace").map(({ p }) => p);
+    const traced = data.scene.drawing.shapes
+      .filter(({ kind }) => kind === "trace")
+      .map(({ p }) => p);
     const which = traced.length ? traced : data.scene.drawing.tears.map(({ p }) => p);
     layers.traces.replaceChildren(
       ...which.map((p) => {
@@ -227,7 +281,13 @@ export function createDrawing(el, store, actions) {
         for (let i = 0; i <= now; i += step) {
           points.push(camera.point(data.history.pointsAt(m, i), p));
         }
-        return s("path", { d: shapes.polyline(points.filter(([x]) => Number.isFinite(x)), false), class: `trace slot-${data.methods[m].slot}` });
+        return s("path", {
+          d: shapes.polyline(
+            points.filter(([x]) => Number.isFinite(x)),
+            false,
+          ),
+          class: `trace slot-${data.methods[m].slot}`,
+        });
       }),
     );
   }
@@ -236,7 +296,9 @@ export function createDrawing(el, store, actions) {
     const lines = data.methods.flatMap((method, m) => {
       const end = data.history.ended[m];
       const reason = data.latest?.methods[m]?.reason;
-      return end <= data.history.t[now] ? [`${method.label} stopped at ${end.toFixed(3)} s${reason ? `: ${reason}` : ""}`] : [];
+      return end <= data.history.t[now]
+        ? [`${method.label} stopped at ${end.toFixed(3)} s${reason ? `: ${reason}` : ""}`]
+        : [];
     });
     banner.hidden = lines.length === 0;
     if (lines.join("\n") !== banner.dataset.text) {
@@ -257,7 +319,7 @@ export function createDrawing(el, store, actions) {
       const points = data.history.pointsAt(m, now);
       set(fill, { d: pathOf(points, OUTLINES) });
       set(lines, { d: pathOf(points, LINES) });
-      set(pins, { d: pathOf(points, ["pivot"]) });
+      set(pins, { d: pathOf(points, ["pivot", "ground"]) });
       group.classList.toggle("ended", data.history.ended[m] <= data.history.t[now]);
     });
     const points = data.history.pointsAt(data.view.selected, now);

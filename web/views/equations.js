@@ -1,5 +1,6 @@
 // @ts-check
 // The equations that this scene runs, as the engine prints them. Fetched when the panel is opened.
+import { sentenceOf } from "../api/client.js";
 import katex from "katex";
 import { listen } from "../state/store.js";
 import { h } from "../widgets/dom.js";
@@ -20,7 +21,12 @@ const PRINTED = {
  */
 export function createEquations(el, store, actions) {
   const data = store.data;
-  const body = h("div", { class: "equation-body", tabindex: "0", role: "region", "aria-label": "Equations of this scene" });
+  const body = h("div", {
+    class: "equation-body",
+    tabindex: "0",
+    role: "region",
+    "aria-label": "Equations of this scene",
+  });
   const summary = h("summary", {}, h("h2", { id: "equations-title" }, "Equations"));
   const details = h("details", { class: "equation-panel" }, summary, body);
   el.replaceChildren(details);
@@ -29,13 +35,20 @@ export function createEquations(el, store, actions) {
   /** @param {string} latex @param {boolean} display */
   function formula(latex, display) {
     const node = h("div", { class: display ? "display" : "line" });
-    katex.render(latex, node, { displayMode: display, throwOnError: false, output: "htmlAndMathml", strict: false });
+    katex.render(latex, node, {
+      displayMode: display,
+      throwOnError: false,
+      output: "htmlAndMathml",
+      strict: false,
+    });
     return node;
   }
 
   function special() {
     const method = data.methods[data.view.selected];
-    return method && PRINTED[method.formulation] ? [h("p", { class: "term" }, method.title), formula(PRINTED[method.formulation], true)] : [];
+    return method && PRINTED[method.formulation]
+      ? [h("p", { class: "term" }, method.title), formula(PRINTED[method.formulation], true)]
+      : [];
   }
 
   async function show() {
@@ -49,18 +62,25 @@ export function createEquations(el, store, actions) {
       answer = await actions.equations();
     } catch (error) {
       shownFor = "";
-      body.replaceChildren(h("p", { class: "hint" }, error.sentence ?? error.message));
+      body.replaceChildren(h("p", { class: "hint" }, sentenceOf(error)));
       return;
     }
     if (key !== shownFor) {
       return;
     }
     const constrained = data.scene.m > 0;
-    const terms = answer.terms.map((term) => ({ ...term, entries: answer.entries.filter((entry) => entry.term === term.name) }));
+    const terms = answer.terms.map((term) => ({
+      ...term,
+      entries: answer.entries.filter((entry) => entry.term === term.name),
+    }));
     body.replaceChildren(
       formula(constrained ? SYSTEM : FREE, true),
       ...special(),
-      h("p", { class: "about" }, `Speeds, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries not listed are zero.`),
+      h(
+        "p",
+        { class: "about" },
+        `Speeds, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries not listed are zero.`,
+      ),
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
     );
   }

@@ -22,15 +22,24 @@ const NAMES = {
   budget: "took too long",
 };
 const RULES = {
-  "near-singular": "Near a pose where constraint rows become dependent the multipliers grow without bound and small errors with them.",
-  "rank-loss": "Where rows of J depend on each other only their sum of forces is determined; the least one is taken and the motion is the same.",
-  "branch-flip": "The same lengths close in more than one way. A step that is too large can land on another one.",
-  "gap-open": "A constraint kept only as an acceleration leaves the errors of two integrations unopposed: the gap grows with time squared.",
-  "energy-jump": "A closed mechanism without loads keeps its energy. A jump means the step misses the motion, closed or not.",
-  "chart-change": "Minimal coordinates serve one part of the motion. At a turning point of the chosen one another must take over.",
-  "chart-lost": "Minimal coordinates serve one part of the motion. At a turning point of the chosen one the rest cannot be found from it.",
-  "step-limit": "A step times the fastest rate must stay within the stability region of the integrator.",
-  "projection-failed": "Projection looks for the nearest closed pose; from too far away, or where none exists, it does not arrive.",
+  "near-singular":
+    "Near a pose where constraint rows become dependent the multipliers grow without bound and small errors with them.",
+  "rank-loss":
+    "Where rows of J depend on each other only their sum of forces is determined; the least one is taken and the motion is the same.",
+  "branch-flip":
+    "The same lengths close in more than one way. A step that is too large can land on another one.",
+  "gap-open":
+    "A constraint kept only as an acceleration leaves the errors of two integrations unopposed: the gap grows with time squared.",
+  "energy-jump":
+    "A closed mechanism without loads keeps its energy. A jump means the step misses the motion, closed or not.",
+  "chart-change":
+    "Minimal coordinates serve one part of the motion. At a turning point of the chosen one another must take over.",
+  "chart-lost":
+    "Minimal coordinates serve one part of the motion. At a turning point of the chosen one the rest cannot be found from it.",
+  "step-limit":
+    "A step times the fastest rate must stay within the stability region of the integrator.",
+  "projection-failed":
+    "Projection looks for the nearest closed pose; from too far away, or where none exists, it does not arrive.",
   diverged: "An explicit step beyond its stability limit multiplies errors at every step.",
   "step-underflow": "The tolerance cannot be met at any step the arithmetic can still tell apart.",
   budget: "One frame may take a bounded time, so that the other methods are not held up.",
@@ -47,8 +56,18 @@ export function createHappening(el, store, actions) {
   const why = h("div", { class: "why-card" });
   const list = h("ol", { class: "incidents", "aria-label": "Incidents" });
   const about = h("div", { class: "scene-notes" });
-  const scroll = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "happening-title" }, live, why, list, about);
-  el.replaceChildren(h("div", { class: "title" }, h("h2", { id: "happening-title" }, "What is happening")), scroll);
+  const scroll = h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "happening-title" },
+    live,
+    why,
+    list,
+    about,
+  );
+  el.replaceChildren(
+    h("div", { class: "title" }, h("h2", { id: "happening-title" }, "What is happening")),
+    scroll,
+  );
   let saidAt = -PAUSE;
   let timer = 0;
   let cardOf = -1;
@@ -65,21 +84,33 @@ export function createHappening(el, store, actions) {
     if (now < 0) {
       return;
     }
-    const lines = now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
+    const lines =
+      now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
     const changes = beforeAndAfter(data, now);
     const text = [...changes, ...lines];
     if (live.dataset.text !== text.join("\n")) {
       live.dataset.text = text.join("\n");
-      live.replaceChildren(...changes.map((line) => h("p", { class: "change" }, line)), ...lines.map((line) => h("p", {}, line)));
+      live.replaceChildren(
+        ...changes.map((line) => h("p", { class: "change" }, line)),
+        ...lines.map((line) => h("p", {}, line)),
+      );
     }
   }
 
   /** @param {import("../state/words.js").Try[]} tries */
   function tryButtons(tries) {
     const nodes = tries.map((item) =>
-      item.key || item.method ? h("button", { type: "button", class: "try", onclick: () => actions.attempt(item) }, item.label) : h("span", { class: "remedy" }, item.label),
+      item.key || item.method
+        ? h(
+            "button",
+            { type: "button", class: "try", onclick: () => actions.attempt(item) },
+            item.label,
+          )
+        : h("span", { class: "remedy" }, item.label),
     );
-    return nodes.length ? h("p", { class: "tries" }, h("span", { class: "word" }, "Try"), ...nodes) : h("span", { class: "none" });
+    return nodes.length
+      ? h("p", { class: "tries" }, h("span", { class: "word" }, "Try"), ...nodes)
+      : h("span", { class: "none" });
   }
 
   function showCard() {
@@ -97,15 +128,35 @@ export function createHappening(el, store, actions) {
     why.replaceChildren(
       h(
         "section",
-        { class: `card slot-${data.methods[m].slot}`, tabindex: "-1", "aria-label": `Why: ${card.title}` },
-        h("div", { class: "card-head" }, h("h3", {}, card.title), h("button", { type: "button", class: "quiet", onclick: () => actions.setView({ why: -1 }) }, "close")),
+        {
+          class: `card slot-${data.methods[m].slot}`,
+          tabindex: "-1",
+          "aria-label": `Why: ${card.title}`,
+        },
+        h(
+          "div",
+          { class: "card-head" },
+          h("h3", {}, card.title),
+          h(
+            "button",
+            { type: "button", class: "quiet", onclick: () => actions.setView({ why: -1 }) },
+            "close",
+          ),
+        ),
         h("p", {}, card.happened),
-        h("p", { class: "rule" }, card.rule, card.drift && !card.rule.includes(card.drift) ? ` ${sentenceOf(card.drift)}` : ""),
+        h(
+          "p",
+          { class: "rule" },
+          card.rule,
+          card.drift && !card.rule.includes(card.drift) ? ` ${sentenceOf(card.drift)}` : "",
+        ),
         tryButtons(card.tries),
       ),
     );
     scroll.scrollTop = 0;
-    /** @type {HTMLElement} */ (why.firstElementChild).focus({ preventScroll: window.innerWidth >= 1024 });
+    /** @type {HTMLElement} */ (why.firstElementChild).focus({
+      preventScroll: window.innerWidth >= 1024,
+    });
   }
 
   /** The engine's words as a sentence. @param {string} text */
@@ -127,7 +178,11 @@ export function createHappening(el, store, actions) {
           "summary",
           {},
           h("span", { class: "number when" }, seconds(incident.t)),
-          h("span", { class: "what" }, `${method ? `${method.label}: ` : ""}${NAMES[incident.code] ?? incident.code}`),
+          h(
+            "span",
+            { class: "what" },
+            `${method ? `${method.label}: ` : ""}${NAMES[incident.code] ?? incident.code}`,
+          ),
           h("span", { class: "why-word" }, "Why?"),
         ),
         h("p", {}, sentenceOf(incident.message)),
@@ -155,7 +210,11 @@ export function createHappening(el, store, actions) {
       ["The scene", data.scene?.about],
       ["What to look for", data.scene?.look_for],
     ];
-    about.replaceChildren(...notes.filter(([, text]) => text).flatMap(([title, text]) => [h("h3", {}, String(title)), h("p", {}, String(text))]));
+    about.replaceChildren(
+      ...notes
+        .filter(([, text]) => text)
+        .flatMap(([title, text]) => [h("h3", {}, String(title)), h("p", {}, String(text))]),
+    );
   }
 
   function update() {

@@ -1,5 +1,6 @@
 // @ts-check
 // The name, the scene menu, the switch of the theme, and the keys.
+import { sentenceOf } from "../api/client.js";
 import { listen } from "../state/store.js";
 import { h } from "../widgets/dom.js";
 
@@ -11,11 +12,19 @@ import { h } from "../widgets/dom.js";
  */
 export function createHeader(el, store, actions, open) {
   const data = store.data;
-  const menu = h("select", { id: "scene", onchange: load, disabled: true }, h("option", {}, "four-bar"));
+  const menu = h(
+    "select",
+    { id: "scene", onchange: load, disabled: true },
+    h("option", {}, "four-bar"),
+  );
   const theme = h("button", { type: "button", class: "quiet", onclick: open.toggleTheme }, "dark");
   const keys = h("button", { type: "button", class: "quiet", onclick: open.openKeys }, "keys");
   const about = h("p", { class: "about scene-about" });
-  el.append(h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu), about, h("div", { class: "choices" }, theme, keys));
+  el.append(
+    h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu),
+    about,
+    h("div", { class: "choices" }, theme, keys),
+  );
 
   async function load() {
     const wanted = menu.value;
@@ -24,7 +33,7 @@ export function createHeader(el, store, actions, open) {
       history.replaceState(null, "", `#${wanted}`);
     } catch (error) {
       menu.value = data.scene?.id ?? menu.value;
-      actions.notice(error.sentence ?? error.message);
+      actions.notice(sentenceOf(error));
     }
   }
 

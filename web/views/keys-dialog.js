@@ -9,9 +9,18 @@ import { h } from "../widgets/dom.js";
  * @param {import("../state/session.js").Session} actions
  */
 export function createKeysDialog(el, store, actions) {
-  const letters = h("input", { type: "checkbox", id: "letters", onchange: () => actions.setView({ letters: letters.checked }) });
+  const letters = h("input", {
+    type: "checkbox",
+    id: "letters",
+    onchange: () => actions.setView({ letters: letters.checked }),
+  });
   const rows = KEYS.map((key) =>
-    h("tr", { class: isCharacter(key) ? "character" : "" }, h("th", { scope: "row" }, h("kbd", {}, keyName(key))), h("td", {}, key.means)),
+    h(
+      "tr",
+      { class: isCharacter(key) ? "character" : "" },
+      h("th", { scope: "row" }, h("kbd", {}, keyName(key))),
+      h("td", {}, key.means),
+    ),
   );
   const dialog = h(
     "dialog",

@@ -1,5 +1,6 @@
 // @ts-check
 // Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the server checks.
+import { sentenceOf } from "../api/client.js";
 import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
@@ -16,7 +17,14 @@ export function createMethodDialog(el, store, actions) {
   const integrator = h("select", { id: "pick-integrator", onchange: compose });
   const about = h("p", { class: "about" });
   const settings = h("div", { class: "dialog-settings" });
-  const spelling = h("input", { id: "pick-spelling", type: "text", autocomplete: "off", spellcheck: "false", "aria-describedby": "pick-error", oninput: onTyped });
+  const spelling = h("input", {
+    id: "pick-spelling",
+    type: "text",
+    autocomplete: "off",
+    spellcheck: "false",
+    "aria-describedby": "pick-error",
+    oninput: onTyped,
+  });
   const error = h("p", { id: "pick-error", class: "hint", role: "alert" });
   const remove = h("button", { type: "button", class: "plain", onclick: onRemove }, "Remove");
   const save = h("button", { type: "submit", class: "primary" });
@@ -33,7 +41,14 @@ export function createMethodDialog(el, store, actions) {
     h("label", { for: "pick-spelling" }, "Spelling"),
     spelling,
     error,
-    h("div", { class: "actions" }, remove, h("span", { class: "spring" }), h("button", { type: "button", class: "plain", onclick: () => dialog.close() }, "Cancel"), save),
+    h(
+      "div",
+      { class: "actions" },
+      remove,
+      h("span", { class: "spring" }),
+      h("button", { type: "button", class: "plain", onclick: () => dialog.close() }, "Cancel"),
+      save,
+    ),
   );
   const dialog = h("dialog", { "aria-labelledby": "dialog-title", class: "dialog" }, form);
   el.append(dialog);
@@ -52,11 +67,20 @@ export function createMethodDialog(el, store, actions) {
     const part = (kind, name) => {
       const card = cardOf(data.catalogue, kind, name);
       const list = (card?.settings ?? [])
-        .filter((setting) => kept.has(setting.key) || setting.initial === null)
-        .map((setting) => /** @type {[string, string]} */ ([setting.key, kept.get(setting.key) ?? defaultOf(setting)]));
+        .filter((setting) => kept.has(setting.key) || setting.default === null)
+        .map(
+          (setting) =>
+            /** @type {[string, string]} */ ([
+              setting.key,
+              kept.get(setting.key) ?? defaultOf(setting),
+            ]),
+        );
       return { name, settings: list };
     };
-    spelling.value = formatSpelling({ formulation: part("formulation", formulation.value), integrator: part("integrator", integrator.value) });
+    spelling.value = formatSpelling({
+      formulation: part("formulation", formulation.value),
+      integrator: part("integrator", integrator.value),
+    });
     showParts();
   }
 
@@ -81,7 +105,9 @@ export function createMethodDialog(el, store, actions) {
     const card = cardOf(data.catalogue, "formulation", formulation.value);
     say(about, card ? card.rule : "");
     const parsed = parseSpelling(spelling.value);
-    settings.replaceChildren(...["formulation", "integrator"].flatMap((kind) => settingFields(kind, parsed[kind])));
+    settings.replaceChildren(
+      ...["formulation", "integrator"].flatMap((kind) => settingFields(kind, parsed[kind])),
+    );
   }
 
   function settingFields(kind, part) {
@@ -91,11 +117,27 @@ export function createMethodDialog(el, store, actions) {
       const written = part.settings.find(([key]) => key === setting.key);
       const value = written ? written[1] : "";
       const input = setting.choices?.length
-        ? h("select", { id }, ...setting.choices.map((choice) => h("option", { value: choice }, choice)))
-        : h("input", { id, type: "text", inputmode: "decimal", autocomplete: "off", placeholder: setting.initial === null ? "" : String(setting.initial) });
-      input.value = value || (setting.choices?.length ? setting.choices[setting.initial ?? 0] : "");
+        ? h(
+            "select",
+            { id },
+            ...setting.choices.map((choice) => h("option", { value: choice }, choice)),
+          )
+        : h("input", {
+            id,
+            type: "text",
+            inputmode: "decimal",
+            autocomplete: "off",
+            placeholder: setting.default === null ? "" : String(setting.default),
+          });
+      input.value = value || (setting.choices?.length ? setting.default : "");
       input.addEventListener("change", () => writeSetting(kind, setting.key, input.value.trim()));
-      return h("p", { class: "dialog-setting", title: setting.about }, h("label", { for: id }, setting.key), input, h("span", { class: "unit" }, setting.unit ?? ""));
+      return h(
+        "p",
+        { class: "dialog-setting", title: setting.about },
+        h("label", { for: id }, setting.key),
+        input,
+        h("span", { class: "unit" }, setting.unit ?? ""),
+      );
     });
   }
 
@@ -123,7 +165,7 @@ export function createMethodDialog(el, store, actions) {
       dialog.close();
       return true;
     } catch (problem) {
-      tell(problem.sentence ?? problem.message);
+      tell(sentenceOf(problem));
       spelling.focus();
       return false;
     }

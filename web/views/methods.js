@@ -19,7 +19,12 @@ const REDRAW = 120; // [ms] numbers that change faster cannot be read
 export function createMethods(el, store, actions, openDialog) {
   const data = store.data;
   const body = h("tbody", { role: "rowgroup" });
-  const add = h("button", { type: "button", class: "quiet", onclick: () => openDialog(-1) }, icon("plus"), "add a method");
+  const add = h(
+    "button",
+    { type: "button", class: "quiet", onclick: () => openDialog(-1) },
+    icon("plus"),
+    "add a method",
+  );
   const head = (text, title) => h("th", { scope: "col", role: "columnheader", title }, text);
   const table = h(
     "table",
@@ -33,14 +38,20 @@ export function createMethods(el, store, actions, openDialog) {
         h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "Shown")),
         head("Method", "formulation, integrator and step; click to draw it opaque"),
         head("Loop gap", "‖φ‖: how far the cut joint has come apart"),
-        head("Energy change", "since the start; in this motion energy should stay unless a load or damper works"),
+        head(
+          "Energy change",
+          "since the start; in this motion energy should stay unless a load or damper works",
+        ),
         head("Cost per step", "processor time and arithmetic operations"),
         h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "More")),
       ),
     ),
     body,
   );
-  el.replaceChildren(h("div", { class: "title" }, h("h2", { id: "methods-title" }, "Methods"), add), table);
+  el.replaceChildren(
+    h("div", { class: "title" }, h("h2", { id: "methods-title" }, "Methods"), add),
+    table,
+  );
 
   /** @type {{row: HTMLElement, parts: Record<string, HTMLElement>}[]} */
   let rows = [];
@@ -59,8 +70,11 @@ export function createMethods(el, store, actions, openDialog) {
   /** "α = 5, β = 5, rk4, h = 1 ms": no line breaks within a setting. */
   function settingWords(method) {
     const { formulation, integrator } = parseSpelling(method.spelling);
-    const words = (list) => list.map(([key, value]) => `${GREEK[key] ?? key} = ${key === "h" ? `${value} s` : value}`);
-    return [...words(formulation.settings), integrator.name, ...words(integrator.settings)].map((word) => word.replaceAll(" ", "\u00a0")).join(", ");
+    const words = (list) =>
+      list.map(([key, value]) => `${GREEK[key] ?? key} = ${key === "h" ? `${value} s` : value}`);
+    return [...words(formulation.settings), integrator.name, ...words(integrator.settings)]
+      .map((word) => word.replaceAll(" ", "\u00a0"))
+      .join(", ");
   }
 
   function makeRow(method, m) {
@@ -72,7 +86,12 @@ export function createMethods(el, store, actions, openDialog) {
       }),
       select: h(
         "button",
-        { type: "button", class: "select", onclick: () => actions.select(m), title: `${method.title}: ${method.rule}` },
+        {
+          type: "button",
+          class: "select",
+          onclick: () => actions.select(m),
+          title: `${method.title}: ${method.rule}`,
+        },
         swatch(method),
         h("span", { class: "name" }, method.label),
       ),
@@ -81,10 +100,34 @@ export function createMethods(el, store, actions, openDialog) {
       energy: h("span", { class: "number" }),
       cost: h("span", { class: "number" }),
       ops: h("span", { class: "sub number" }),
-      why: h("button", { type: "button", class: "quiet why", onclick: () => actions.setView({ why: m }), "aria-label": `Why? ${method.label}` }, "Why?"),
-      edit: h("button", { type: "button", class: "tool small", onclick: () => openDialog(m), "aria-label": `Change or remove ${method.label}`, title: "change or remove" }, icon("edit")),
+      why: h(
+        "button",
+        {
+          type: "button",
+          class: "quiet why",
+          onclick: () => actions.setView({ why: m }),
+          "aria-label": `Why? ${method.label}`,
+        },
+        "Why?",
+      ),
+      edit: h(
+        "button",
+        {
+          type: "button",
+          class: "tool small",
+          onclick: () => openDialog(m),
+          "aria-label": `Change or remove ${method.label}`,
+          title: "change or remove",
+        },
+        icon("edit"),
+      ),
     };
-    const name = h("td", { role: "cell", class: "who" }, parts.select, h("span", { class: "sub" }, settingWords(method)));
+    const name = h(
+      "td",
+      { role: "cell", class: "who" },
+      parts.select,
+      h("span", { class: "sub" }, settingWords(method)),
+    );
     if (method.model_error) {
       name.append(h("span", { class: "badge" }, "model error: halving h does not help"));
     }

@@ -10,8 +10,20 @@ const REDRAW = 66; // [ms]
 const BUCKETS = 240;
 const TABLE_ROWS = 9;
 const COSTS = [
-  { column: "ops", word: "ops", about: "arithmetic operations so far", title: "Cost, ops", unit: "" },
-  { column: "evals", word: "evals", about: "evaluations of the dynamics so far", title: "Cost, evals", unit: "" },
+  {
+    column: "ops",
+    word: "ops",
+    about: "arithmetic operations so far",
+    title: "Cost, ops",
+    unit: "",
+  },
+  {
+    column: "evals",
+    word: "evals",
+    about: "evaluations of the dynamics so far",
+    title: "Cost, evals",
+    unit: "",
+  },
   { column: "cpu", word: "time", about: "processor time so far", title: "Cost, s", unit: "s" },
 ];
 const PLOTS = [
@@ -37,13 +49,42 @@ export function createPlots(el, store, actions) {
   function makeFigure(spec) {
     const kind = { ...spec };
     const canvas = h("div", { class: "curve" });
-    const empty = h("p", { class: "no-curve", hidden: true }, "this mechanism has no loop that could open");
+    const empty = h(
+      "p",
+      { class: "no-curve", hidden: true },
+      "this mechanism has no loop that could open",
+    );
     canvas.append(empty);
     const table = h("div", { class: "twin", tabindex: "0", hidden: true });
     const title = h("span", { class: "axis-title" }, kind.title);
-    const twin = h("button", { type: "button", class: "quiet", "aria-pressed": "false", onclick: () => toggleTwin() }, icon("table"), "table");
-    const choices = kind.costs ? COSTS.map((cost) => h("button", { type: "button", class: "quiet", "aria-pressed": String(cost.column === kind.column), title: cost.about, onclick: () => chooseCost(cost) }, cost.word)) : [];
-    const figure = h("figure", { class: "plot" }, h("figcaption", {}, title, h("span", { class: "choices" }, ...choices, twin)), canvas, table);
+    const twin = h(
+      "button",
+      { type: "button", class: "quiet", "aria-pressed": "false", onclick: () => toggleTwin() },
+      icon("table"),
+      "table",
+    );
+    const choices = kind.costs
+      ? COSTS.map((cost) =>
+          h(
+            "button",
+            {
+              type: "button",
+              class: "quiet",
+              "aria-pressed": String(cost.column === kind.column),
+              title: cost.about,
+              onclick: () => chooseCost(cost),
+            },
+            cost.word,
+          ),
+        )
+      : [];
+    const figure = h(
+      "figure",
+      { class: "plot" },
+      h("figcaption", {}, title, h("span", { class: "choices" }, ...choices, twin)),
+      canvas,
+      table,
+    );
     const options = { log: kind.log, unit: kind.unit, onPick: (t) => actions.showTime(t) };
     const plot = createPlot(canvas, options);
 
@@ -68,7 +109,12 @@ export function createPlots(el, store, actions) {
 
   function inks() {
     const surface = data.look.surfaces[data.theme];
-    return { text: surface.ink, muted: surface.muted, hairline: surface.hairline, paper: surface.paper };
+    return {
+      text: surface.ink,
+      muted: surface.muted,
+      hairline: surface.hairline,
+      paper: surface.paper,
+    };
   }
 
   /** @param {boolean} anew */
@@ -78,9 +124,21 @@ export function createPlots(el, store, actions) {
     }
     const series = data.methods.map((method, m) => {
       const look = data.look.slots[method.slot];
-      return { label: method.label, colour: look[data.theme], dash: look.dash, width: m === data.view.selected ? 2.5 : 1.5, ended: data.history.ended[m] };
+      return {
+        label: method.label,
+        colour: look[data.theme],
+        dash: look.dash,
+        width: m === data.view.selected ? 2.5 : 1.5,
+        ended: data.history.ended[m],
+      };
     });
-    figures.forEach(({ plot }) => plot.setSeries(series.map((one) => ({ ...one })), inks(), anew));
+    figures.forEach(({ plot }) =>
+      plot.setSeries(
+        series.map((one) => ({ ...one })),
+        inks(),
+        anew,
+      ),
+    );
     figures.forEach(({ kind, empty }) => (empty.hidden = !(kind.loop && data.scene?.m === 0)));
     painted = 0;
     update();
@@ -104,9 +162,13 @@ export function createPlots(el, store, actions) {
         fillTable(table, kind);
         continue;
       }
-      const map = kind.log ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor)) : (v) => (Number.isNaN(v) ? null : v);
+      const map = kind.log
+        ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
+        : (v) => (Number.isNaN(v) ? null : v);
       const empty = new Float64Array(history.count).fill(NaN);
-      const columns = history.columns.map((column, m) => (data.view.hidden.has(m) ? empty : column[kind.column]));
+      const columns = history.columns.map((column, m) =>
+        data.view.hidden.has(m) ? empty : column[kind.column],
+      );
       plot.setEnded([...history.ended]);
       plot.draw(thin(history.t, columns, history.count, BUCKETS, map), last, now);
     }
@@ -122,19 +184,37 @@ export function createPlots(el, store, actions) {
         rows.push(i);
       }
     }
-    const visible = data.methods.map((method, m) => ({ method, m })).filter(({ m }) => !data.view.hidden.has(m));
+    const visible = data.methods
+      .map((method, m) => ({ method, m }))
+      .filter(({ m }) => !data.view.hidden.has(m));
     table.setAttribute("aria-label", kind.title);
     table.replaceChildren(
       h(
         "table",
         { class: "numbers" },
         h("caption", { class: "hidden" }, `${kind.title} over time`),
-        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "t, s"), ...visible.map(({ method }) => h("th", { scope: "col" }, method.label)))),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("th", { scope: "col" }, "t, s"),
+            ...visible.map(({ method }) => h("th", { scope: "col" }, method.label)),
+          ),
+        ),
         h(
           "tbody",
           {},
           ...rows.map((i) =>
-            h("tr", {}, h("th", { scope: "row" }, history.t[i].toFixed(2)), ...visible.map(({ m }) => h("td", {}, quantity(history.columns[m][kind.column][i], kind.unit)))),
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, history.t[i].toFixed(2)),
+              ...visible.map(({ m }) =>
+                h("td", {}, quantity(history.columns[m][kind.column][i], kind.unit)),
+              ),
+            ),
           ),
         ),
       ),

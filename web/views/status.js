@@ -17,9 +17,10 @@ export function createStatus(el, store) {
   const run = h("span", {});
   const scene = h("span", {});
   const stream = h("span", { class: "stream", role: "status" });
+  const id = h("span", { class: "event-id number" }); // apart from the status, or it would be read out
   const notice = h("span", { class: "notice", role: "status" });
   const build = h("span", { class: "build" });
-  el.replaceChildren(run, scene, stream, notice, build);
+  el.replaceChildren(run, scene, h("span", {}, stream, " ", id), notice, build);
 
   function showRun() {
     const n = data.methods.length;
@@ -35,14 +36,18 @@ export function createStatus(el, store) {
   }
 
   function showStream() {
-    const { state, id } = data.stream;
-    say(stream, `${STREAM[state]}${state === "live" && id ? ` (id ${id})` : ""}`);
+    const { state, id: last } = data.stream;
+    say(stream, STREAM[state]);
+    say(id, last ? `event ${last}` : "");
     stream.dataset.state = state;
   }
 
   const stop = listen(store, {
     ready: () => say(build, data.build ? `build ${data.build}` : ""),
-    state: showRun,
+    state: () => {
+      showRun();
+      showStream();
+    },
     methods: showRun,
     scene: showScene,
     stream: showStream,

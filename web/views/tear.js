@@ -26,7 +26,12 @@ export function createTear(el, store) {
   const power = h("span", { class: "power" });
   const size = h("span", { class: "number" });
   const whose = h("span", { class: "whose" });
-  const figure = h("figure", { class: "tear-inset" }, glass, h("figcaption", {}, power, size, whose));
+  const figure = h(
+    "figure",
+    { class: "tear-inset" },
+    glass,
+    h("figcaption", {}, power, size, whose),
+  );
   el.append(figure);
   let glassPower = STRONGEST;
 

@@ -12,7 +12,10 @@ const SCALE_BAR = 150; // [px] at most
 export function createCamera(box, width, height) {
   const w = Math.max(box[2] - box[0], 1e-9);
   const h = Math.max(box[3] - box[1], 1e-9);
-  const room = { w: Math.max(40, width - MARGIN.left - MARGIN.right), h: Math.max(40, height - MARGIN.top - MARGIN.bottom) };
+  const room = {
+    w: Math.max(40, width - MARGIN.left - MARGIN.right),
+    h: Math.max(40, height - MARGIN.top - MARGIN.bottom),
+  };
   const scale = Math.min(room.w / w, room.h / h);
   const cx = MARGIN.left + room.w / 2;
   const cy = MARGIN.top + room.h / 2;
@@ -23,7 +26,10 @@ export function createCamera(box, width, height) {
     scale,
     scaleBar: { metres: length, pixels: length * scale },
     /** @param {ArrayLike<number>} points flat x, y, z @param {number} i @returns {[number, number]} */
-    point: (points, i) => [cx + (points[3 * i] - mx) * scale, cy - (points[3 * i + 1] - my) * scale],
+    point: (points, i) => [
+      cx + (points[3 * i] - mx) * scale,
+      cy - (points[3 * i + 1] - my) * scale,
+    ],
   };
 }
 

@@ -64,5 +64,9 @@ const ICONS = {
 
 /** @param {keyof typeof ICONS} name */
 export function icon(name) {
-  return s("svg", { viewBox: "0 0 24 24", "aria-hidden": "true", class: "icon" }, s("path", { d: ICONS[name], "fill-rule": "evenodd" }));
+  return s(
+    "svg",
+    { viewBox: "0 0 24 24", "aria-hidden": "true", class: "icon" },
+    s("path", { d: ICONS[name], "fill-rule": "evenodd" }),
+  );
 }

@@ -59,12 +59,20 @@ export function createPlot(el, options) {
       return 80;
     }
     context.font = font();
-    return Math.min(120, Math.max(14, ...series.map((one) => context.measureText(one.label).width + SWATCH + 14)));
+    return Math.min(
+      120,
+      Math.max(14, ...series.map((one) => context.measureText(one.label).width + SWATCH + 14)),
+    );
   }
 
   function makeOptions() {
     /** @type {uPlot.Axis} */
-    const shared = { stroke: () => ink.muted, font: font(), grid: { stroke: () => ink.hairline, width: 1 }, ticks: { show: false } };
+    const shared = {
+      stroke: () => ink.muted,
+      font: font(),
+      grid: { stroke: () => ink.hairline, width: 1 },
+      ticks: { show: false },
+    };
     return /** @type {uPlot.Options} */ ({
       width: Math.max(120, el.clientWidth),
       height: Math.max(100, el.clientHeight),
@@ -73,21 +81,46 @@ export function createPlot(el, options) {
       cursor: { show: false },
       scales: {
         x: { time: false, range: () => [0, span.x] },
-        y: options.log ? { distr: 3, log: 10, range: () => [span.low, span.high] } : { range: () => [0, span.high] },
+        y: options.log
+          ? { distr: 3, log: 10, range: () => [span.low, span.high] }
+          : { range: () => [0, span.high] },
       },
       axes: [
-        { ...shared, size: 22, gap: 2, label: "time, s", labelSize: 16, labelGap: 0, labelFont: font(), space: 44, splits: () => linearTicks(span.x), values: (_, ticks) => ticks.map((v) => String(Number(v.toPrecision(4)))) },
+        {
+          ...shared,
+          size: 22,
+          gap: 2,
+          label: "time, s",
+          labelSize: 16,
+          labelGap: 0,
+          labelFont: font(),
+          space: 44,
+          splits: () => linearTicks(span.x),
+          values: (_, ticks) => ticks.map((v) => String(Number(v.toPrecision(4)))),
+        },
         {
           ...shared,
           size: options.log ? 44 : 62,
           gap: 4,
           space: 10,
           splits: () => (options.log ? decadeTicks(span.low, span.high) : linearTicks(span.high)),
-          values: (_, ticks) => ticks.map((v) => (options.log ? powerOfTen(Math.round(Math.log10(v))) : quantity(v, options.unit))),
+          values: (_, ticks) =>
+            ticks.map((v) =>
+              options.log ? powerOfTen(Math.round(Math.log10(v))) : quantity(v, options.unit),
+            ),
           filter: (_, ticks) => ticks,
         },
       ],
-      series: [{}, ...series.map((one) => ({ stroke: one.colour, width: one.width, dash: one.dash, points: { show: false }, spanGaps: true }))],
+      series: [
+        {},
+        ...series.map((one) => ({
+          stroke: one.colour,
+          width: one.width,
+          dash: one.dash,
+          points: { show: false },
+          spanGaps: true,
+        })),
+      ],
       hooks: { draw: [drawOver] },
     });
   }
@@ -100,11 +133,27 @@ export function createPlot(el, options) {
       for (let i = ys.length - 1; i >= 0; i--) {
         const y = ys[i];
         if (y !== null && y !== undefined) {
-          return [{ one, x: u.valToPos(u.data[0][i], "x", true), at: u.valToPos(y, "y", true), y: u.valToPos(y, "y", true) }];
+          return [
+            {
+              one,
+              x: u.valToPos(u.data[0][i], "x", true),
+              at: u.valToPos(y, "y", true),
+              y: u.valToPos(y, "y", true),
+            },
+          ];
         }
       }
       const zero = options.log && ys.length > 1 ? u.bbox.top + u.bbox.height : NaN;
-      return Number.isNaN(zero) ? [] : [{ one: { ...one, label: `${one.label}: 0` }, x: u.valToPos(now, "x", true), at: zero, y: zero }];
+      return Number.isNaN(zero)
+        ? []
+        : [
+            {
+              one: { ...one, label: `${one.label}: 0` },
+              x: u.valToPos(now, "x", true),
+              at: zero,
+              y: zero,
+            },
+          ];
     });
     list.sort((a, b) => a.y - b.y);
     const low = u.bbox.top + 7 * ratio;
@@ -145,7 +194,12 @@ export function createPlot(el, options) {
       const name = left + (SWATCH + 3) * ratio;
       ctx.fillStyle = ink.paper;
       ctx.globalAlpha = 0.82;
-      ctx.fillRect(left - 2 * ratio, y - 6.5 * ratio, name - left + width + 4 * ratio, LABEL_ROOM * ratio);
+      ctx.fillRect(
+        left - 2 * ratio,
+        y - 6.5 * ratio,
+        name - left + width + 4 * ratio,
+        LABEL_ROOM * ratio,
+      );
       ctx.globalAlpha = 1;
       sample(ctx, left, y, one);
       ctx.fillStyle = ink.text;
@@ -215,7 +269,11 @@ export function createPlot(el, options) {
   }
 
   const observer = new ResizeObserver(() => {
-    if (plot && el.clientWidth > 0 && (plot.width !== el.clientWidth || plot.height !== el.clientHeight)) {
+    if (
+      plot &&
+      el.clientWidth > 0 &&
+      (plot.width !== el.clientWidth || plot.height !== el.clientHeight)
+    ) {
       plot.setSize({ width: el.clientWidth, height: el.clientHeight });
     }
   });

@@ -92,15 +92,9 @@ export function damper(p, q, r) {
   );
 }
 
-/** @param {Point} p tail @param {Point} q head */
-export function arrow(p, q) {
-  const { d, n } = frame(p, q);
-  return `M${at(p)}L${at(q)}M${at(offset(q, d, -9, n, 4))}L${at(q)}L${at(offset(q, d, -9, n, -4))}`;
-}
-
-/** An open arc with a head: a load on a joint. @param {Point} p @param {number} r */
-export function turn([x, y], r) {
-  return `M${f(x + r)} ${f(y)}A${f(r)} ${f(r)} 0 1 0 ${f(x)} ${f(y + r)}M${f(x + r - 4)} ${f(y - 6)}L${f(x + r)} ${f(y + 1)}L${f(x + r + 5)} ${f(y - 5)}`;
+/** Where a load acts; its direction is not part of a drawing. @param {Point} p @param {number} r */
+export function load([x, y], r) {
+  return `M${f(x)} ${f(y - r)}L${f(x + r)} ${f(y)}L${f(x)} ${f(y + r)}L${f(x - r)} ${f(y)}Z`;
 }
 
 /** @param {Point[]} points @param {boolean} closed */

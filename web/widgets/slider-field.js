@@ -1,5 +1,6 @@
 // @ts-check
 // A slider with a number field beside it: the field takes what people type ("0,02", "2e-2 s"), the slider keeps to round values.
+import { sentenceOf } from "../api/client.js";
 import { plain } from "../state/format.js";
 import { h, say, set } from "./dom.js";
 
@@ -19,7 +20,12 @@ function logScale(min, max) {
   }
   return {
     attributes: { min: 0, max: values.length - 1, step: 1 },
-    to: (value) => values.reduce((best, v, i) => (Math.abs(Math.log(v / value)) < Math.abs(Math.log(values[best] / value)) ? i : best), 0),
+    to: (value) =>
+      values.reduce(
+        (best, v, i) =>
+          Math.abs(Math.log(v / value)) < Math.abs(Math.log(values[best] / value)) ? i : best,
+        0,
+      ),
     from: (position) => values[Math.round(position)],
   };
 }
@@ -40,9 +46,18 @@ function linearScale(min, max, step) {
  *   commit: (value: number) => Promise<void>}} options `read` gives NaN for what is no number
  */
 export function createSliderField(options) {
-  const scale = options.scale === "log" ? logScale(options.min, options.max) : linearScale(options.min, options.max, options.step);
+  const scale =
+    options.scale === "log"
+      ? logScale(options.min, options.max)
+      : linearScale(options.min, options.max, options.step);
   const hintId = `${options.id}-hint`;
-  const range = h("input", { type: "range", id: `${options.id}-slider`, "aria-label": options.label, "aria-describedby": hintId, ...scale.attributes });
+  const range = h("input", {
+    type: "range",
+    id: `${options.id}-slider`,
+    "aria-label": options.label,
+    "aria-describedby": hintId,
+    ...scale.attributes,
+  });
   const field = h("input", {
     type: "text",
     id: options.id,
@@ -57,7 +72,12 @@ export function createSliderField(options) {
     { class: "setting" },
     h("label", { for: options.id }, options.label),
     range,
-    h("span", { class: "entry" }, field, h("span", { class: "unit", "aria-hidden": "true" }, options.unit)),
+    h(
+      "span",
+      { class: "entry" },
+      field,
+      h("span", { class: "unit", "aria-hidden": "true" }, options.unit),
+    ),
     hint,
   );
   let value = NaN;
@@ -84,7 +104,11 @@ export function createSliderField(options) {
 
   /** @param {number} wanted */
   async function commit(wanted) {
-    const verdict = Number.isNaN(wanted) ? { error: `type a number${options.unit ? ` in ${options.unit}` : ""}, such as ${plain(value)}` } : options.check(wanted);
+    const verdict = Number.isNaN(wanted)
+      ? {
+          error: `type a number${options.unit ? ` in ${options.unit}` : ""}, such as ${plain(value)}`,
+        }
+      : options.check(wanted);
     if (verdict.error) {
       tell("error", verdict.error);
       return;
@@ -102,7 +126,7 @@ export function createSliderField(options) {
       await options.commit(wanted);
     } catch (error) {
       value = before;
-      tell("error", error.sentence ?? error.message);
+      tell("error", sentenceOf(error));
       range.value = String(scale.to(value));
     }
     pending = false;

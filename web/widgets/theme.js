@@ -10,12 +10,15 @@ export function createTheme(store) {
   let chosen = localStorage.getItem(KEY);
 
   function apply() {
-    const theme = chosen === "light" || chosen === "dark" ? chosen : system.matches ? "dark" : "light";
+    const theme =
+      chosen === "light" || chosen === "dark" ? chosen : system.matches ? "dark" : "light";
     store.data.theme = theme;
     document.documentElement.dataset.theme = theme;
     const look = store.data.look;
     if (look) {
-      look.slots.forEach((slot, i) => document.documentElement.style.setProperty(`--slot-${i}`, slot[theme]));
+      look.slots.forEach((slot, i) =>
+        document.documentElement.style.setProperty(`--slot-${i}`, slot[theme]),
+      );
     }
     store.emit("theme");
   }
@@ -30,6 +33,12 @@ export function createTheme(store) {
       apply();
     },
     /** The page cannot start: said in place of it. @param {string} sentence */
-    failure: (sentence) => h("div", { class: "failure", role: "alert" }, h("p", {}, sentence), h("p", {}, h("a", { href: location.href }, "Try again"))),
+    failure: (sentence) =>
+      h(
+        "div",
+        { class: "failure", role: "alert" },
+        h("p", {}, sentence),
+        h("p", {}, h("a", { href: location.href }, "Try again")),
+      ),
   };
 }
