@@ -88,10 +88,13 @@ export function createControls(el, store, actions) {
 
   /** The value that the methods share; the first one when they differ. @param {string} key */
   function heldBy(key) {
-    const all = data.methods
-      .map(({ spelling }) => settingOf(data.catalogue, spelling, key))
-      .filter(Boolean);
-    return all.length ? Number(all[0].value) : null;
+    for (const { spelling } of data.methods) {
+      const found = settingOf(data.catalogue, spelling, key);
+      if (found) {
+        return Number(found.value);
+      }
+    }
+    return null;
   }
 
   function makeField(control) {
@@ -119,7 +122,7 @@ export function createControls(el, store, actions) {
       }
       field.update(held);
     }
-    const wanted = CONTROLS.map(({ key }) => fields.get(key)?.el).filter(Boolean);
+    const wanted = CONTROLS.flatMap(({ key }) => fields.get(key)?.el ?? []);
     if (
       wanted.some((node, i) => settings.children[i] !== node) ||
       wanted.length !== settings.children.length
