@@ -66,7 +66,7 @@ static void reply_off_routes(hn_request *r, const char *method, const hn_route_m
         hn_reply_header_add(r, "Allow", "%s", match->allow);
         return;
     }
-    if (strncmp(r->path, "/api/", 5) != 0 && (strcmp(method, "GET") == 0 || r->is_head) &&
+    if ((strcmp(method, "GET") == 0 || r->is_head) &&
         hn_static_files_reply(r->server->files, r, r->path)) {
         return;
     }
