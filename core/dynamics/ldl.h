@@ -39,7 +39,9 @@ typedef struct hn_ldl_input {
 HN_MUST_CHECK hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena,
                                      hn_ldl *out);
 
-/// Whether the solves of eval.h and factor.h pair multipliers; see ldl.c for the figures behind it.
+/// Whether the solves of eval.h and factor.h pair multipliers. Measured on one machine (gcc 12, -O2), singles against pairs:
+/// FB0 124 operations and 71 instructions against 128 and 74, 3 % less time; the ladder of 200 loops 179.7 operations a
+/// loop against 175.7, 4 % more time, within what runs scatter. The small mechanism decides.
 enum { HN_ACCEL_PAIRS = 0 };
 
 /// x with K x = rhs, as expressions (n each, in unknown order; may be the same array).
