@@ -71,8 +71,8 @@ void hn_model_envelope(const hn_model *model, double box[4]) {
     double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
     memset(box, 0, 4 * sizeof *box);
     if (n > 0 && points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
-        box[0] = box[1] = INFINITY;
-        box[2] = box[3] = -INFINITY;
+        box[0] = box[1] = HUGE_VAL;
+        box[2] = box[3] = -HUGE_VAL;
         grow_box(box, points, n);
         grow_box_by_motion(box, model);
         for (int k = 0; k < 4; k++) {

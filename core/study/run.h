@@ -55,7 +55,8 @@ enum { HN_RUN_MAX_INCIDENTS = 64 };
 #define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is told as near-singular
 #define HN_RUN_WARN_ENERGY \
     1e-2 ///< energy change in one step / (T + range of V), conservative scenes only
-#define HN_RUN_WARN_MODE 0.1 ///< change of the assembly-mode value that a jump to the other branch makes at least
+#define HN_RUN_WARN_MODE \
+    0.1 ///< change of the assembly-mode value that a jump to the other branch makes at least
 
 typedef struct hn_run_opts {
     double t0;

@@ -215,7 +215,7 @@ static void a_state_that_is_not_finite_is_refused_and_leaves_the_outputs(void **
     (void)state;
     fourbar s = open_fourbar(BODIES);
     hn_accel *accel = open_accel(&s, 0);
-    double q[3] = {1, NAN, 1}, v[3] = {0, 0, 0}, a[3], lambda[2];
+    double q[3] = {1, (double)NAN, 1}, v[3] = {0, 0, 0}, a[3], lambda[2];
     hn_poison_fill(a, 3);
     hn_poison_fill(lambda, 2);
     hn_accel_info info;

@@ -272,7 +272,7 @@ static void bad_requests_name_their_field(void **state) {
         const char *pointer;
     } cases[] = {
         {{.method = "index1@rk4:h=0.01", .time = 0}, "/time"},
-        {{.method = "index1@rk4:h=0.01", .time = NAN}, "/time"},
+        {{.method = "index1@rk4:h=0.01", .time = (double)NAN}, "/time"},
         {{.method = "index1@rk4:h=0.01", .time = 1, .every = -1}, "/every"},
         {{.method = "index1@rk4:h=0.01", .time = 1, .every = 1e-12}, "/every"},
         {{.method = "index1@rk4:h=0.01", .time = 1, .at = back, .n_at = 2}, "/at"},
