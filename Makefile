@@ -190,7 +190,7 @@ help:
 	@echo 'make run          install what is missing, build, start the page (PORT=8080)'
 	@echo 'make test         install what is missing, build, run the whole suite'
 	@echo 'make test-quick   the unit tests alone, under 10 seconds once built'
-	@echo 'make asan         all unit tests under the address and undefined-behaviour sanitisers'
+	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
@@ -208,7 +208,7 @@ test-quick: build/.packages-test
 	@$(MAKE) $(JOBS) --no-print-directory run-unit
 
 asan: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit run-server
 
 tsan: build/.packages-test
 	@$(MAKE) $(JOBS) --no-print-directory VARIANT=tsan run-server
@@ -226,7 +226,8 @@ run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
 
 run-server: $(PROGRAM)
 	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
-	    tests/run-tests.sh $(filter tests/api/%,$(SCRIPTS))
+	    LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
+	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
 
 run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
