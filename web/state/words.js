@@ -77,20 +77,18 @@ export function sentences(data, shown) {
 }
 
 /**
- * "raw: worst gap 0.42 m before, 0.66 mm now; energy change 1 J before, 0.7 J now", at the same time of the motion.
+ * "until 5 s Baumgarte: worst gap 0.42 m before, 0.66 mm now; energy change 1 J before, 0.7 J now", over the time both runs cover.
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
  */
 export function beforeAndAfter(data, shown) {
   const { before, history, methods } = data;
-  if (!before || !history || before.history.count < 2 || history.count < 2) {
+  if (!before || before.history.count < 2 || shown < 1) {
     return [];
   }
-  const t = history.t[shown];
-  const then = before.history.indexAt(Math.min(t, before.history.t[before.history.count - 1]));
-  if (Math.abs(before.history.t[then] - t) > 0.05 + 0.02 * t) {
-    return [];
-  }
+  const t = Math.min(history.t[shown], before.history.t[before.history.count - 1]);
+  const then = before.history.indexAt(t);
+  const now = history.indexAt(t);
   return methods.flatMap((method, m) => {
     const old = before.methods.findIndex((other) => other.formulation === method.formulation);
     if (old < 0 || before.methods[old].spelling === method.spelling) {
@@ -98,18 +96,16 @@ export function beforeAndAfter(data, shown) {
     }
     const pair = (name) => [
       before.history.worst(old, name, 0, then),
-      history.worst(m, name, 0, shown),
+      history.worst(m, name, 0, now),
     ];
     const [gap0, gap1] = pair("gap");
     const [energy0, energy1] = pair("energy_change");
-    return gap1 < ROUNDING && gap0 < ROUNDING
-      ? [
-          `${method.label}: worst energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`,
-        ]
-      : [
-          `${method.label}: worst gap ${quantity(gap0, "m")} before, ${quantity(gap1, "m")} now; ` +
-            `energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`,
-        ];
+    const energy = `energy change ${quantity(energy0, "J")} before, ${quantity(energy1, "J")} now`;
+    const gap = `worst gap ${quantity(gap0, "m")} before, ${quantity(gap1, "m")} now`;
+    const closed = gap1 < ROUNDING && gap0 < ROUNDING;
+    return [
+      `${method.label} until ${seconds(t)}: ${closed ? `worst ${energy}` : `${gap}; ${energy}`}`,
+    ];
   });
 }
 

@@ -38,7 +38,7 @@ export function createStatus(el, store) {
   function showStream() {
     const { state, id: last } = data.stream;
     say(stream, STREAM[state]);
-    say(id, last ? `event ${last}` : "");
+    say(id, last && data.state !== "running" ? `at event ${last}` : "");
     stream.dataset.state = state;
   }
 
