@@ -393,22 +393,28 @@ static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
     return HN_OK;
 }
 
-static const char *name_mode(const hn_system *sys, int mode) {
-    if (mode == 0) {
-        return "none";
+static hn_status report_mode(hn_assembler *s, hn_assembly *report) {
+    hn_mode_watch *watch = NULL;
+    int four_bar = 0;
+    hn_status status = hn_mode_watch_create(s->sys, s->arena, &watch);
+    if (status != HN_OK) {
+        return status;
     }
-    if (hn_mode_is_four_bar(sys)) {
-        return mode > 0 ? "open" : "crossed";
+    report->mode = hn_mode_sign(hn_mode_watch_value(watch, s->t, s->q));
+    hn_mode_watch_free(watch);
+    status = hn_mode_is_four_bar(s->sys, s->arena, &four_bar);
+    if (report->mode != 0) {
+        const char *positive = four_bar ? "open" : "+", *negative = four_bar ? "crossed" : "-";
+        report->mode_name = report->mode > 0 ? positive : negative;
     }
-    return mode > 0 ? "+" : "-";
+    return status;
 }
 
 static hn_status fill_report(hn_assembler *s, hn_assembly *report) {
     const double *energy = hn_eval_get(s->eval, HN_TERM_ENERGY);
     report->energy = energy[0] + energy[1];
-    report->mode = hn_assembly_mode(s->sys, s->t, s->q);
-    report->mode_name = name_mode(s->sys, report->mode);
-    return report_rank(s, report);
+    hn_status status = report_mode(s, report);
+    return status == HN_OK ? report_rank(s, report) : status;
 }
 
 static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda,

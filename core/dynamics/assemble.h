@@ -39,7 +39,7 @@ HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, d
 
 /// Watches the assembly mode of the first loop: the sign of -det J_d, with J_d the loop's rows and the coordinates that depend on
 /// the others. Independent are the loop's actuated coordinates, then its pinned ones, then the first ones, as many as it
-/// has freedoms. For a four-bar driven by th1 that is the sign of sin(th3 - th2): open +, crossed -. It passes through 0
+/// has freedoms; the dependent ones are taken in the order of the ring. For a four-bar driven by th1 that is the sign of sin(th3 - th2): open +, crossed -. It passes through 0
 /// where the independent coordinates stop serving (dead point); a change of sign without that is a branch jump.
 typedef struct hn_mode_watch hn_mode_watch;
 /// Memory from `arena`, the tape owned by the watch. A system without a first loop of that kind gives a watch that says 0.

@@ -46,8 +46,9 @@ double hn_assemble_gap(const hn_assembler *s, int loop);
 /// Says why loop `loop` stays open at s->x.
 void hn_assemble_explain(hn_assembler *s, int loop);
 
+/// *out = 1: the first loop is a planar four-bar (two rows, three angles, every axis of the ring in the same sense), so
+/// that "open" and "crossed" mean something. Scratch from `arena`. Fails: HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out);
 int hn_mode_sign(double value); ///< +1, -1, or 0 within rounding
-int hn_mode_is_four_bar(
-    const hn_system *sys); ///< 1: the first loop is a planar four-bar, "open" and "crossed" apply
 
 #endif

@@ -77,6 +77,41 @@ static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts 
     }
 }
 
+/// Where the joint of a coordinate stands on the way round the first loop: out along the bodies that carry the cut joint's parent
+/// (from the ground on), then along those that carry its child. The order of scene formulas is kept.
+static int place_in_ring(const hn_system *sys, int user) {
+    const hn_scene *scene = hn_system_scene(sys);
+    int coordinate = hn_system_user_coordinate(sys, user);
+    int cut = scene->is_lagrangian ? -1 : hn_system_loop_joint(sys, 0);
+    if (cut < 0) {
+        return user;
+    }
+    const int ends[2] = {scene->joints[cut].parent, scene->joints[cut].child};
+    for (int side = 0; side < 2; side++) {
+        int above = -1; // bodies between the cut joint and the one that this coordinate moves
+        for (int body = ends[side], n = 0; body != HN_GROUND; n++) {
+            const hn_joint *joint = &scene->joints[hn_system_tree_joint(sys, body)];
+            above = joint->coordinate == coordinate ? n : above;
+            body = joint->child == body ? joint->parent : joint->child;
+        }
+        if (above >= 0) {
+            return 2 * scene->n_bodies * side + scene->n_bodies - above;
+        }
+    }
+    return user;
+}
+
+/// Dependent coordinates in the order of the ring, which gives det J_d its sign whatever order the scene lists them in.
+static void sort_dependent(const hn_system *sys, loop_parts *parts) {
+    for (int i = 1; i < parts->n_dependent; i++) {
+        int keep = parts->dependent[i], place = place_in_ring(sys, keep), j = i;
+        for (; j > 0 && place_in_ring(sys, parts->dependent[j - 1]) > place; j--) {
+            parts->dependent[j] = parts->dependent[j - 1];
+        }
+        parts->dependent[j] = keep;
+    }
+}
+
 static void unit_rate(const hn_system *sys, int user, double *user_rates, double *unit) {
     user_rates[user] = 1;
     hn_system_rates_from_user(sys, user_rates, unit);
@@ -151,6 +186,7 @@ static hn_status find_parts(const hn_system *sys, hn_arena *arena, loop_parts *p
     }
     if (parts->n_coordinates >= parts->n_rows) {
         choose_dependent(sys, coordinates, parts);
+        sort_dependent(sys, parts);
     }
     return HN_OK;
 }
@@ -286,16 +322,13 @@ int hn_assembly_mode(const hn_system *sys, double t, const double *q) {
     return mode;
 }
 
-/// A planar four-bar: two rows, three angles, every axis of the ring in the same sense.
-int hn_mode_is_four_bar(const hn_system *sys) {
+hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out) {
     const hn_scene *scene = hn_system_scene(sys);
-    hn_arena *arena = hn_arena_create(0);
-    loop_parts parts = {0};
-    int yes = arena && find_parts(sys, arena, &parts) == HN_OK && parts.n_rows == 2 &&
-              parts.n_coordinates == 3;
-    hn_arena_free(arena);
-    if (!yes) {
-        return 0;
+    loop_parts parts;
+    *out = 0;
+    hn_status status = find_parts(sys, arena, &parts);
+    if (status != HN_OK || parts.n_rows != 2 || parts.n_coordinates != 3) {
+        return status;
     }
     const int users[3] = {parts.independent, parts.dependent[0], parts.dependent[1]};
     const hn_joint *first = NULL;
@@ -303,12 +336,13 @@ int hn_mode_is_four_bar(const hn_system *sys) {
         const hn_coordinate *k = &scene->coordinates[hn_system_user_coordinate(sys, users[c])];
         const hn_joint *joint = k->joint >= 0 ? &scene->joints[k->joint] : NULL;
         if (k->kind != HN_ANGLE) {
-            return 0;
+            return HN_OK;
         }
         if (first && joint && hn_dot(3, first->parent_axis, joint->parent_axis) <= 0) {
-            return 0;
+            return HN_OK;
         }
         first = joint ? joint : first;
     }
-    return 1;
+    *out = 1;
+    return HN_OK;
 }

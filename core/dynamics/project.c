@@ -17,6 +17,8 @@ static const double FROZEN_CONTRACTION = 1e-4;
 static const double CONTRACTION = 0.1; // velocity: the problem is linear, only convergence counts
 static const double NEAR =
     1e-2; // a factor made this close (in any coordinate) is worth trying for the speeds
+// a step this small that gains nothing meets the rounding of phi itself, which grows with the extent of the mechanism
+static const double STEP_ROUNDING = 1e-12;
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
 // of (1 + length) max |v_i| sqrt(nc): how far speeds are closed, and what will do where they close no further
 static const double VELOCITY_TOL = 2e-16;
@@ -287,8 +289,13 @@ static hn_status close_gap(hn_projector *p, double t, double *q, double tol, dou
         gap = eval_phi(p, t, q);
         info->iterations++;
         info->rank = p->rank;
-        if (before <= rounding && !(gap < before)) {
-            hn_axpy(p->nq, -1, p->step, q); // nothing to gain any more
+        int nothing_moves =
+            hn_norm_max(p->nq, p->step) <= STEP_ROUNDING * (1 + hn_norm_max(p->nq, q));
+        if ((before <= rounding || nothing_moves) && gap > 0.5 * before) {
+            if (gap > before) {
+                hn_axpy(p->nq, -1, p->step, q);
+            }
+            info->gap = fmin(gap, before);
             return HN_OK;
         }
         info->gap = gap;

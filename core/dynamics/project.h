@@ -28,10 +28,11 @@ HN_MUST_CHECK hn_status hn_projector_create(const hn_system *sys, hn_weight weig
                                             hn_projector **out);
 void hn_projector_free(hn_projector *p); ///< NULL is legal
 
-/// q in place until ||phi|| <= tol * hn_system_length(): 1e-13 is a good tol, 1e-15 asks for all that rounding allows. Below the
-/// rounding of q itself, 4 eps (1 + max |q_i|) lengths, a gap that stops shrinking is accepted. Where J has lost rank and
-/// nothing can shorten what is left, that is accepted below 1e-6 lengths: HN_OK with rank < nc, and info->gap says how much.
-/// `info` may be NULL. Allocates nothing.
+/// q in place until ||phi|| <= tol * hn_system_length(): 1e-13 is a good tol, 1e-15 asks for all that rounding allows. A gap
+/// that stops shrinking is accepted below the rounding of q, 4 eps (1 + max |q_i|) lengths, and where the step that should
+/// close it is itself rounding (a long chain far from its origin). Where J has lost rank and nothing can shorten what is
+/// left, that is accepted below 1e-6 lengths: HN_OK with rank < nc. info->gap says how much is left; `info` may be NULL.
+/// Allocates nothing.
 /// Fails: HN_ERR_NO_CONVERGENCE after 8 evaluations, HN_ERR_DIVERGED. Then q is untouched.
 HN_MUST_CHECK hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
                                             hn_project_info *info);

@@ -2,6 +2,7 @@
 
 #include "dynamics/eval.h"
 #include "linalg/dense.h"
+#include "support/alloc.h"
 #include "support/model.h"
 #include "support/near.h"
 
@@ -323,6 +324,74 @@ static void the_mode_watch_sees_a_dead_point_pass(void **state) {
     hn_model_close(&m);
 }
 
+static void a_tilted_mechanism_out_of_reach_is_explained_in_its_own_plane(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open(&m, "fb0-tilted", "d=4.9 l3=1.7");
+    assert_int_equal(m.status, HN_ERR_UNREACHABLE);
+    double span = hypot(4.9 - cos(1), sin(1));
+    char expected[64];
+    (void)snprintf(expected, sizeof expected, "spans %.6g m", span);
+    diag_must_hold(&m, expected);
+    (void)snprintf(expected, sizeof expected, "rocker %.6g m", span - 2);
+    diag_must_hold(&m, expected);
+    assert_near(m.assembly.gap, span - 3.7, 1e-6);
+    hn_model_close(&m);
+}
+
+static void a_moving_constraint_sets_the_speed_and_the_acceleration(void **state) {
+    (void)state;
+    // x = 0.1 + sin(2 t) - 0.3 y drives a point mass: phi_t and phi_tt must both enter
+    static const char driven[] =
+        "{\"holonom\": 1, \"name\": \"driven\", \"title\": \"driven\", \"lagrangian\": "
+        "{\"coordinates\": ["
+        "{\"name\": \"x\", \"rate\": \"u\", \"unit\": \"m\"}, {\"name\": \"y\", \"rate\": \"w\", "
+        "\"unit\": \"m\"}],"
+        "\"kinetic\": \"u^2/2 + w^2/2\", \"potential\": \"0\","
+        "\"constraints\": [{\"name\": \"drive\", \"formula\": \"x - 0.1 - sin(2*t) + 0.3*y\"}]},"
+        "\"start\": {\"positions\": {\"y\": 1}, \"rates\": {\"y\": 2}}}";
+    hn_model m;
+    hn_model_open_text(&m, driven, NULL);
+    assert_int_equal(m.status, HN_OK);
+    assert_near(m.q[0], 0.1 - 0.3, 1e-15);
+    assert_near(m.v[0], 2 - 0.3 * 2, 1e-15);
+    const double t = 0.7;
+    double q[2], v[2], a[2], lambda[1];
+    assert_int_equal(hn_assemble(m.sys, t, q, v, a, lambda, NULL, NULL), HN_OK);
+    assert_near(q[0], 0.1 + sin(2 * t) - 0.3, 1e-14);
+    assert_near(v[0], 2 * cos(2 * t) - 0.6, 1e-14);
+    // a = J' lambda with J = (1, 0.3), and J a = -4 sin(2 t)
+    assert_near(lambda[0], -4 * sin(2 * t) / 1.09, 1e-13);
+    assert_near(a[0], lambda[0], 1e-13);
+    assert_near(a[1], 0.3 * lambda[0], 1e-13);
+    hn_model_close(&m);
+}
+
+/// Assembles with the n-th allocation failing. 0 when there was no n-th one any more.
+static int assemble_with_failure(long n) {
+    hn_model m;
+    open_bar(&m, "\"th1\": 1, \"a2\": {\"guess\": 2}, \"th3\": {\"guess\": 1}", "\"th1\": 1", NULL);
+    assert_int_equal(m.status, HN_OK);
+    double q[3], v[3], a[3], lambda[2];
+    hn_alloc_fail_at(n);
+    hn_status status = hn_assemble(m.sys, 0, q, v, a, lambda, NULL, NULL);
+    int failed = hn_alloc_has_failed();
+    hn_alloc_fail_at(0);
+    assert_int_equal(status, failed ? HN_ERR_MEMORY : HN_OK);
+    hn_model_close(&m);
+    return failed;
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    long live = hn_alloc_live(), n = 1;
+    while (assemble_with_failure(n)) {
+        assert_int_equal(hn_alloc_live(), live);
+        n++;
+    }
+    assert_true(n > 4);
+}
+
 static void a_ladder_of_two_hundred_loops_assembles(void **state) {
     (void)state;
     hn_model m;
@@ -330,6 +399,7 @@ static void a_ladder_of_two_hundred_loops_assembles(void **state) {
     assert_int_equal(m.info.nv, 401);
     assert_int_equal(m.assembly.freedoms, 1);
     assert_true(m.assembly.gap < 1e-13);
+    assert_string_equal(m.assembly.mode_name, "open"); // th1 - th of the coupler is pi / 2
     for (int i = 0; i < m.info.nv; i++) {
         // all verticals turn alike, all couplers keep level: b = -th
         assert_near(fabs(m.user_v[i]), 1, 1e-10);
@@ -354,6 +424,9 @@ int main(void) {
         cmocka_unit_test(a_scene_without_loops_needs_no_closing),
         cmocka_unit_test(every_shipped_scene_assembles),
         cmocka_unit_test(the_mode_watch_sees_a_dead_point_pass),
+        cmocka_unit_test(a_tilted_mechanism_out_of_reach_is_explained_in_its_own_plane),
+        cmocka_unit_test(a_moving_constraint_sets_the_speed_and_the_acceleration),
+        cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(a_ladder_of_two_hundred_loops_assembles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
