@@ -20,7 +20,9 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
             tears[i][half] =
                 scene->is_lagrangian ? scene->tears[i][half] : scene->n_points + 2 * i + half;
         }
-        names[i] = i < sys->n_loops ? sys->loops[i].name : "tear";
+        names[i] = scene->is_lagrangian
+                       ? "loop"
+                       : sys->loops[i].name; // formulas do not say which tear is theirs
     }
     sys->drawing = (hn_drawing){.n_points = sys->info.n_points,
                                 .labels = labels,
