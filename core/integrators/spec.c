@@ -251,13 +251,13 @@ double hn_method_setting(const hn_method_spec *spec, const char *key, double oth
 
 // --- writing ----------------------------------------------------------------------------------------------
 
-// the shortest text that reads back to the same double
+// a short text that reads back to the same double; six digits write 20 as 20, not as 2e+01
 static void format_value(const hn_setting_info *info, double value, char *out, size_t n) {
     if (info->choices) {
         snprintf(out, n, "%s", info->choices[(int)value]);
         return;
     }
-    for (int digits = 1; digits <= 17; digits++) {
+    for (int digits = 6; digits <= 17; digits++) {
         snprintf(out, n, "%.*g", digits, value);
         if (strtod(out, NULL) == value) {
             break;

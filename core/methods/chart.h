@@ -64,10 +64,15 @@ HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int
                                       hn_arena *arena, hn_diag *diag);
 void hn_chart_destroy(hn_chart *chart);
 
-/// Chooses dependent and independent columns at (t, q): the actuated coordinates and then the first ones stay independent
-/// as long as their volume |det J_d| is at least tau times the best found by pivoting; otherwise the pivots decide. `first`
-/// >= 0: that column has to be independent. Fails with HN_ERR_CHART when it cannot be, or when the rank differs from the
-/// one of an earlier choice.
+/// Which column has to be independent: the number of one, or
+enum {
+    HN_CHART_PREFERRED =
+        -1, ///< the actuated coordinates and then the first ones, as long as |det J_d| is at least
+            ///< HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide
+    HN_CHART_BEST = -2 ///< the pivots decide: when an earlier choice has become poor
+};
+/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first` cannot be independent, or when
+/// the rank differs from the one of an earlier choice.
 HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
 /// 1 when J_d at `here` has fallen below tau times the best choice and a better one exists (more than twice as good).
 int hn_chart_is_poor(hn_chart *chart, double tau);

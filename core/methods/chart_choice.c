@@ -145,7 +145,8 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
                              "a dead point: this coordinate cannot be independent here");
     }
-    if (first < 0 && preferred < best + log(HN_CHART_TAU)) {
+    if (first == HN_CHART_BEST ||
+        (first == HN_CHART_PREFERRED && preferred < best + log(HN_CHART_TAU))) {
         memcpy(chart->dep, chart->new_dep, (size_t)rank * sizeof(int));
     }
     sort_choice(chart);

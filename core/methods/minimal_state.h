@@ -18,7 +18,7 @@ HN_MUST_CHECK hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sy
                                         hn_diag *diag);
 void hn_minimal_destroy(void *self);
 void hn_minimal_ode(void *self, hn_ode *out);
-/// Chooses a chart with column `first` independent (-1: any), closes the loops at the independent entries of q.
+/// Chooses a chart (`first` as for hn_chart_choose), closes the loops at the independent entries of q.
 HN_MUST_CHECK hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
                                          const double *v, double *y);
 hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v);

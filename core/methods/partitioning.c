@@ -21,7 +21,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
 
 static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
     partitioning *p = self;
-    return hn_minimal_start(&p->state, -1, t, q, v, y);
+    return hn_minimal_start(&p->state, HN_CHART_PREFERRED, t, q, v, y);
 }
 
 static hn_status after_step(void *self, double t, double *y, int *changed) {
@@ -37,7 +37,7 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     hn_chart_speeds(chart, &chart->base, y + chart->r, s->v);
     *changed = 1;
     chart->cost.chart_changes++;
-    return hn_minimal_start(s, -1, t, chart->base.q, s->v, y);
+    return hn_minimal_start(s, HN_CHART_BEST, t, chart->base.q, s->v, y);
 }
 
 const hn_formulation hn_formulation_partitioning = {

@@ -22,6 +22,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = red;
+    // 0 is "the best choice": HN_CHART_PREFERRED
     red->first = (int)settings[SET_COORDINATE] - 1;
     const int nv = hn_system_get_info(sys).nv;
     if (red->first >= nv) {

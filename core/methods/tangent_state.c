@@ -112,12 +112,12 @@ static void speeds_to_basis(const hn_tangent_state *s, const double *v, double *
     }
 }
 
-hn_status hn_tangent_set_state(void *self, double t, const double *q, const double *v, double *y) {
-    hn_tangent_state *s = self;
+static hn_status start(hn_tangent_state *s, int choice, double t, const double *q, const double *v,
+                       double *y) {
     const int nv = s->chart.nv;
     memmove(s->v, v, (size_t)nv * sizeof *v);
     memmove(y, q, (size_t)nv * sizeof *q);
-    hn_status status = hn_chart_choose(&s->chart, t, y, -1);
+    hn_status status = hn_chart_choose(&s->chart, t, y, choice);
     if (status == HN_OK) {
         status = close_here(s, t, y);
     }
@@ -126,6 +126,10 @@ hn_status hn_tangent_set_state(void *self, double t, const double *q, const doub
     }
     speeds_to_basis(s, s->v, y + nv);
     return hn_chart_settle(&s->chart);
+}
+
+hn_status hn_tangent_set_state(void *self, double t, const double *q, const double *v, double *y) {
+    return start(self, HN_CHART_PREFERRED, t, q, v, y);
 }
 
 hn_status hn_tangent_get_state(void *self, double t, const double *y, double *q, double *v) {
@@ -157,7 +161,7 @@ hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
     }
     chart->cost.chart_changes++;
     hn_chart_speeds(chart, &chart->here, y + chart->nv, s->v);
-    return hn_tangent_set_state(self, t, y, s->v, y);
+    return start(s, HN_CHART_BEST, t, y, s->v, y);
 }
 
 void hn_tangent_add_cost(const void *self, hn_cost *cost) {

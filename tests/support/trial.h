@@ -1,0 +1,26 @@
+#ifndef HN_SUPPORT_TRIAL_H
+#define HN_SUPPORT_TRIAL_H
+// A scene file loaded, compiled and assembled, and runs on it, for tests of methods and runs. A failure on the way stops the
+// test with its message.
+
+#include "study/run.h"
+
+typedef struct hn_trial {
+    hn_scene *scene;
+    hn_system *sys;
+    hn_system_info info;
+    double q[64], v[64]; ///< assembled, system coordinates
+} hn_trial;
+
+#define HN_TRIAL_LESSON "lessons/01-closed-loops/scenes/"
+
+void hn_trial_open(hn_trial *trial, const char *path);
+/// The same with changed parameters.
+void hn_trial_open_with(hn_trial *trial, const char *path, const hn_setting *settings, int n);
+void hn_trial_close(hn_trial *trial);
+/// The spec of a spelling that has to be right.
+hn_method_spec hn_trial_spec(const char *spelling);
+/// A fresh run from the assembled state.
+hn_run *hn_trial_run(const hn_trial *trial, const char *spelling);
+
+#endif
