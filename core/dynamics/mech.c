@@ -89,7 +89,7 @@ hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm) {
 
 // geometry -------------------------------------------------------------------------------------------------
 
-/// Tells the work frame of the parent of arm and slide.
+/// From the parent's joint point to the link's, and which way a prismatic joint moves it.
 static hn_status trace_arm(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     hn_link_trace *at = &m->at[link];

@@ -214,6 +214,13 @@ static double characteristic_length(const hn_scene *scene) {
     return length > 0 ? length : 1;
 }
 
+static void forget_faults(hn_diags *diags, int told) {
+    if (diags) {
+        diags->found = told;
+        diags->n = told < diags->n ? told : diags->n;
+    }
+}
+
 hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, hn_system **out,
                             hn_diags *diags) {
     HN_ASSERT(scene && out);
@@ -226,6 +233,7 @@ hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, h
     sys->scene = scene;
     sys->opts = opts ? *opts : hn_system_opts_default();
     sys->diags = diags;
+    int told = diags ? diags->found : 0;
     sys->arena = hn_arena_create(0);
     sys->g = hn_graph_create();
     if (sys->arena && sys->g) {
@@ -235,6 +243,13 @@ hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, h
     }
     if (status == HN_OK) {
         status = finish(sys);
+    }
+    if (status != HN_OK && sys->arena && sys->g &&
+        (hn_graph_failed(sys->g) || hn_arena_failed(sys->arena))) {
+        forget_faults(
+            diags,
+            told); // a graph without memory gives zeros, which the checks took for the scene's fault
+        status = HN_ERR_MEMORY;
     }
     sys->diags = NULL;
     if (status != HN_OK) {

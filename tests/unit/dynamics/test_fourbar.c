@@ -4,6 +4,7 @@
 
 #include "dynamics/eval.h"
 #include "dynamics/factor.h"
+#include "support/alloc.h"
 #include "support/mechanism.h"
 
 #include <math.h>
@@ -284,6 +285,86 @@ static void the_factor_solves_as_the_tape_does(void **state) {
     close_fourbar(&s);
 }
 
+// memory ---------------------------------------------------------------------------------------------------------------
+
+static void an_evaluation_allocates_nothing_even_when_the_dense_solve_answers(void **state) {
+    (void)state;
+    fourbar s = open_fourbar(REDUNDANT), one = open_fourbar(BODIES);
+    hn_accel *dense = open_accel(&s, 1), *tape = open_accel(&one, 1);
+    hn_eval *e;
+    hn_factor *factor;
+    assert_int_equal(hn_eval_create(s.sys, (1u << HN_TERM_COUNT) - 1, s.arena, &e), HN_OK);
+    assert_int_equal(hn_factor_create(one.sys, HN_FACTOR_MASS, one.arena, &factor), HN_OK);
+    double q[3], v[3], a[3], lambda[4];
+    start_state(q, v);
+    long before = hn_alloc_count();
+    for (int k = 0; k < 10; k++) {
+        assert_int_equal(hn_accel_eval(dense, 0, q, v, 1, 1, a, lambda, NULL), HN_OK);
+        assert_int_equal(hn_accel_eval(tape, 0, q, v, 1, 1, a, lambda, NULL), HN_OK);
+        hn_eval_run(e, 0, q, v);
+        assert_int_equal(hn_factor_update(factor, 0, q, NULL), HN_OK);
+        hn_factor_solve(factor, NULL, lambda, a, lambda);
+    }
+    assert_int_equal(hn_alloc_count(), before);
+    hn_eval_free(e);
+    hn_factor_free(factor);
+    hn_accel_free(dense);
+    hn_accel_free(tape);
+    close_fourbar(&s);
+    close_fourbar(&one);
+}
+
+/// Compiles and makes evaluators; the status of the first that fails.
+static hn_status make_all(const hn_scene *scene) {
+    hn_system *sys = NULL;
+    hn_eval *e = NULL;
+    hn_accel *accel = NULL;
+    hn_factor *factor = NULL;
+    const hn_accel_opts opts = {.baumgarte = 1, .want_lambda = 1};
+    hn_arena *arena = hn_arena_create(0);
+    hn_status status = arena ? hn_system_compile(scene, NULL, &sys, NULL) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_eval_create(sys, (1u << HN_TERM_COUNT) - 1, arena, &e);
+    }
+    if (status == HN_OK) {
+        status = hn_accel_create(sys, &opts, arena, &accel);
+    }
+    if (status == HN_OK) {
+        status = hn_factor_create(sys, HN_FACTOR_IDENTITY, arena, &factor);
+    }
+    hn_factor_free(factor);
+    hn_accel_free(accel);
+    hn_eval_free(e);
+    hn_system_free(sys);
+    hn_arena_free(arena);
+    return status;
+}
+
+static void memory_that_runs_out_anywhere_is_told_and_leaves_nothing_behind(void **state) {
+    (void)state;
+    const char *const paths[2] = {BODIES, FORMULAS};
+    for (int k = 0; k < 2; k++) {
+        fourbar s = open_fourbar(paths[k]);
+        long live = hn_alloc_live();
+        int failures = 0;
+        for (long n = 1;; n++) {
+            hn_alloc_fail_at(n);
+            hn_status status = make_all(s.scene);
+            int failed = hn_alloc_has_failed();
+            hn_alloc_fail_at(0);
+            assert_int_equal(hn_alloc_live(), live);
+            if (!failed) {
+                assert_int_equal(status, HN_OK);
+                break;
+            }
+            assert_int_equal(status, HN_ERR_MEMORY);
+            failures++;
+        }
+        assert_true(failures > 20);
+        close_fourbar(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(terms_are_the_formulas_whatever_the_kind_of_scene_and_the_plane),
@@ -294,6 +375,8 @@ int main(void) {
         cmocka_unit_test(a_state_that_is_not_finite_is_refused_and_leaves_the_outputs),
         cmocka_unit_test(the_whole_evaluation_stays_within_140_operations),
         cmocka_unit_test(the_factor_solves_as_the_tape_does),
+        cmocka_unit_test(an_evaluation_allocates_nothing_even_when_the_dense_solve_answers),
+        cmocka_unit_test(memory_that_runs_out_anywhere_is_told_and_leaves_nothing_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
