@@ -17,6 +17,8 @@ typedef struct hn_trial {
 void hn_trial_open(hn_trial *trial, const char *path);
 /// The same with changed parameters.
 void hn_trial_open_with(hn_trial *trial, const char *path, const hn_setting *settings, int n);
+/// From JSON text.
+void hn_trial_open_text(hn_trial *trial, const char *json);
 void hn_trial_close(hn_trial *trial);
 /// The spec of a spelling that has to be right.
 hn_method_spec hn_trial_spec(const char *spelling);

@@ -41,6 +41,53 @@ static void an_open_gap_decays_under_baumgarte_as_the_closed_formula_says(void *
     hn_trial_close(&trial);
 }
 
+// a cart moved by hand, x = 0.3 sin(2 t), with a pendulum of mass 1 and length 1 below it
+static const char driven_cart[] =
+    "{\"holonom\": 1, \"name\": \"driven-cart\", \"lagrangian\": {\"coordinates\": ["
+    "{\"name\": \"x\", \"rate\": \"vx\", \"unit\": \"m\"}, {\"name\": \"th\", \"rate\": \"w\", "
+    "\"unit\": \"rad\"}],"
+    "\"kinetic\": \"2*vx^2/2 + (vx^2 + w^2 + 2*vx*w*cos(th))/2\", \"potential\": \"-9.81*cos(th)\","
+    "\"constraints\": [{\"name\": \"hand\", \"formula\": \"x - 0.3*sin(2*t)\"}]},"
+    "\"start\": {\"positions\": {\"x\": {\"guess\": 0}, \"th\": 0.5}, \"rates\": {\"th\": 0.2}}}";
+
+// th'' = -9.81 sin th - x'' cos th with x'' = -1.2 sin(2 t), by small steps of the midpoint rule
+static double pendulum_on_a_cart(double T) {
+    const int n = 200000;
+    const double h = T / n;
+    double th = 0.5, w = 0.2;
+    for (int i = 0; i < n; i++) {
+        const double t = i * h, push = 1.2 * sin(2 * t), half_push = 1.2 * sin(2 * t + h);
+        const double th_mid = th + h / 2 * w;
+        const double w_mid = w + h / 2 * (-9.81 * sin(th) + push * cos(th));
+        th += h * w_mid;
+        w += h * (-9.81 * sin(th_mid) + half_push * cos(th_mid));
+    }
+    return th;
+}
+
+static void a_constraint_that_moves_in_time_drives_every_formulation_alike(void **state) {
+    (void)state;
+    hn_trial trial;
+    hn_trial_open_text(&trial, driven_cart);
+    const double exact = pendulum_on_a_cart(2);
+    for (int i = 0; i < hn_formulation_count(); i++) {
+        char text[HN_SPEC_MAX];
+        hn_sample s;
+        if (hn_formulation_at(i)->model_error) {
+            continue;
+        }
+        snprintf(text, sizeof text, "%s@rk4:h=2e-3", hn_formulation_at(i)->name);
+        hn_run *run = hn_trial_run(&trial, text);
+        assert_int_equal(hn_run_advance(run, 2), HN_OK);
+        assert_int_equal(hn_run_sample(run, 2, &s), HN_OK);
+        assert_near(s.q[0], 0.3 * sin(4), 1e-9);
+        assert_near(s.v[0], 0.6 * cos(4), 1e-9);
+        assert_near(s.q[1], exact, 1e-7);
+        hn_run_free(run);
+    }
+    hn_trial_close(&trial);
+}
+
 static void projection_takes_kinetic_energy_and_counts_it(void **state) {
     (void)state;
     hn_trial trial;
@@ -176,6 +223,7 @@ static void operations_are_counted_and_follow_the_evaluations(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_open_gap_decays_under_baumgarte_as_the_closed_formula_says),
+        cmocka_unit_test(a_constraint_that_moves_in_time_drives_every_formulation_alike),
         cmocka_unit_test(projection_takes_kinetic_energy_and_counts_it),
         cmocka_unit_test(weight_and_part_of_a_projection_can_be_chosen),
         cmocka_unit_test(reduced_coordinates_stop_at_the_dead_point_at_every_step_size),
