@@ -1,6 +1,22 @@
 #include "dynamics/drawing.h"
 #include "dynamics/system_impl.h"
 
+/// The scene's own point at a half-joint, so that the bars that end there are known to; else the point added for it.
+static int half_joint_point(const hn_system *sys, int loop, int half) {
+    const hn_scene *scene = sys->scene;
+    const hn_joint *joint = &scene->joints[sys->tree.cut[loop]];
+    const int body = half ? joint->child : joint->parent;
+    const hn_quantity *at = half ? joint->child_at : joint->parent_at;
+    for (int i = 0; i < scene->n_points; i++) {
+        const hn_point *p = &scene->points[i];
+        if (p->body == body && p->at[0].value == at[0].value && p->at[1].value == at[1].value &&
+            p->at[2].value == at[2].value) {
+            return i;
+        }
+    }
+    return scene->n_points + 2 * loop + half;
+}
+
 /// Bodies and joints: points of the scene, then the two half-joints of every cut joint. Lagrangian: the scene's own tears.
 hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     const hn_scene *scene = sys->scene;
@@ -18,7 +34,7 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     for (int i = 0; i < n_tears; i++) {
         for (int half = 0; half < 2; half++) {
             tears[i][half] =
-                scene->is_lagrangian ? scene->tears[i][half] : scene->n_points + 2 * i + half;
+                scene->is_lagrangian ? scene->tears[i][half] : half_joint_point(sys, i, half);
         }
         names[i] = scene->is_lagrangian
                        ? "loop"

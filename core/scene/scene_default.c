@@ -1,7 +1,7 @@
 // The drawing of a scene of bodies and joints that says nothing about it. Each part is made where it was left out:
 // * a body that draws nothing itself gets bars through its joints (to its centre of mass if it has one joint only),
 //   unless the scene's "draw" has bars or polygons;
-// * joints get their symbols unless "draw" has any of pivots, ground, sliders, guides;
+// * joints get their symbols and show their names unless "draw" has any of pivots, ground, sliders, guides;
 // * springs, dampers and forces get theirs unless "draw" has any of springs, dampers, arrows.
 
 #include "scene/reader.h"
@@ -79,10 +79,17 @@ static int along(hn_reader *r, int body, const hn_quantity at[3], const double a
     return hn_rd_place(r, body, q);
 }
 
+/// More names than this would hide the mechanism.
+enum { MAX_NAMED_JOINTS = 12 };
+
 static void draw_joint(hn_reader *r, const hn_joint *j) {
     int parent = hn_rd_place(r, j->parent, j->parent_at);
     if (parent < 0) {
         return;
+    }
+    hn_point *place = &r->scene->points[parent];
+    if (!place->name && r->scene->n_joints <= MAX_NAMED_JOINTS) {
+        place->name = j->name;
     }
     if (j->type == HN_JOINT_REVOLUTE) {
         int grounded = j->parent == HN_GROUND || j->child == HN_GROUND;
