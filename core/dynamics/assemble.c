@@ -419,6 +419,8 @@ static hn_status fill_report(hn_assembler *s, hn_assembly *report) {
 
 static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda,
                             hn_assembly *report) {
+    memset(q, 0, (size_t)s->n * sizeof *q);
+    memset(v, 0, (size_t)s->n * sizeof *v);
     hn_status status = check_pins(s);
     if (status == HN_OK) {
         status = start(s);
@@ -430,8 +432,6 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
     memcpy(q, s->q, (size_t)s->n * sizeof *q);
     if (status == HN_OK) {
         status = find_rates(s, v, report);
-    } else {
-        memset(v, 0, (size_t)s->n * sizeof *v);
     }
     if (status == HN_OK && (a || lambda)) {
         status = find_accelerations(s, v, a, lambda);

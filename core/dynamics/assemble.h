@@ -33,7 +33,7 @@ typedef struct hn_assembly {
 /// are active, and the missing length where the free part of the loop is a chain of parallel revolute joints.
 /// HN_ERR_INCONSISTENT: pinned rates contradict each other. HN_ERR_UNSUPPORTED: a pin on a joint that closes a loop.
 /// HN_ERR_SINGULAR and the like: accelerations are not determined. HN_ERR_DIVERGED: not finite at the start. HN_ERR_MEMORY.
-/// q and v hold what was reached in every case; a and lambda are untouched on failure.
+/// On failure q and v hold what was reached, 0 where nothing was; a and lambda are untouched.
 HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
                                     double *lambda, hn_assembly *report, hn_diags *diags);
 

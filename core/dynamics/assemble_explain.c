@@ -373,9 +373,18 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
     const char *other =
         pins[0] ? "release a pin" : (used ? "" : "start from another guess, or change a length");
     (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
-    const char *unit = loop_has_lengths(s, loop) ? " m" : "";
-    hn_diags_add(s->diags, HN_ERR_UNREACHABLE, first_pin_pointer(s), hint,
+    const char *with = pins[0] ? " with " : "", *held = pins[0] ? " held" : "",
+               *pointer = first_pin_pointer(s);
+    double gap = hn_assemble_gap(s, loop);
+    if (s->scene->is_lagrangian) {
+        hn_diags_add(
+            s->diags, HN_ERR_UNREACHABLE, pointer, hint,
+            "the constraints cannot all be met: '%s' is off by %.6g, all of them by %.6g%s%s%s",
+            hn_system_loop_name(s->sys, loop), gap, hn_assemble_gap(s, -1), with, pins, held);
+        return;
+    }
+    hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,
                  "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s%s",
-                 hn_system_loop_name(s->sys, loop), hn_assemble_gap(s, loop), unit,
-                 pins[0] ? " with " : "", pins, pins[0] ? " held" : "", reason);
+                 hn_system_loop_name(s->sys, loop), gap, loop_has_lengths(s, loop) ? " m" : "",
+                 with, pins, held, reason);
 }

@@ -204,6 +204,34 @@ static void a_ring_that_never_closes_says_so_without_pins(void **state) {
     hn_model_close(&m);
 }
 
+static void formulas_that_cannot_be_met_are_named(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open(&m, "fb0-lagrangian", "d=4.9 l3=1.7");
+    assert_int_equal(m.status, HN_ERR_UNREACHABLE);
+    assert_near(m.assembly.gap, hypot(4.9 - cos(1), sin(1)) - 3.7, 1e-6);
+    diag_must_hold(&m, "'loop x' is off by 0.72");
+    diag_must_hold(&m, "th1 = 1");
+    hn_model_close(&m);
+}
+
+static void a_dyad_that_just_reaches_assembles_at_its_dead_point(void **state) {
+    (void)state;
+    // the crank tip is 3.8 m from O3 and coupler and rocker together are 3.8 m long: stretched, J_d singular
+    char settings[64];
+    (void)snprintf(settings, sizeof settings, "d=%.17g",
+                   cos(1) + sqrt(3.8 * 3.8 - sin(1) * sin(1)));
+    hn_model m;
+    open_bar(&m, "\"th1\": 1, \"a2\": {\"guess\": -1}, \"th3\": {\"guess\": 2.5}", "\"th1\": 0",
+             settings);
+    assert_int_equal(m.status, HN_OK);
+    assert_true(m.assembly.gap < 1e-11);
+    double th2 = 1 + user_value(&m, "a2"), th3 = user_value(&m, "th3");
+    assert_near(sin(th3 - th2), 0,
+                1e-5); // tangent: the angle is only as good as the root of the gap
+    hn_model_close(&m);
+}
+
 static void two_pins_on_one_freedom_are_told(void **state) {
     (void)state;
     hn_model m;
@@ -221,6 +249,17 @@ static void contradictory_rates_are_told(void **state) {
     assert_int_equal(m.status, HN_ERR_INCONSISTENT);
     diag_must_hold(&m, "w1 = 2, w3 = 5");
     assert_true(m.assembly.velocity_gap > 0.1);
+    hn_model_close(&m);
+}
+
+static void a_pin_on_the_joint_that_closes_the_loop_is_refused(void **state) {
+    (void)state;
+    hn_model m;
+    open_bar(&m, "\"th1\": 1, \"a2\": {\"guess\": -0.5}, \"th3\": {\"guess\": 1.5}, \"b3\": 0.5",
+             "\"th1\": 2", NULL);
+    assert_int_equal(m.status, HN_ERR_UNSUPPORTED);
+    diag_must_hold(&m, "b3 cannot be pinned");
+    assert_string_equal(m.diags.item[0].pointer, "/start/positions/b3");
     hn_model_close(&m);
 }
 
@@ -417,8 +456,11 @@ int main(void) {
         cmocka_unit_test(a_dyad_out_of_reach_says_what_is_missing),
         cmocka_unit_test(a_dyad_too_near_for_its_long_side_says_so),
         cmocka_unit_test(a_ring_that_never_closes_says_so_without_pins),
+        cmocka_unit_test(formulas_that_cannot_be_met_are_named),
+        cmocka_unit_test(a_dyad_that_just_reaches_assembles_at_its_dead_point),
         cmocka_unit_test(two_pins_on_one_freedom_are_told),
         cmocka_unit_test(contradictory_rates_are_told),
+        cmocka_unit_test(a_pin_on_the_joint_that_closes_the_loop_is_refused),
         cmocka_unit_test(free_rates_change_least_by_mass),
         cmocka_unit_test(redundant_loop_rows_are_counted_and_harmless),
         cmocka_unit_test(a_scene_without_loops_needs_no_closing),
