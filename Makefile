@@ -208,7 +208,8 @@ test-quick: build/.packages-test
 	@$(MAKE) $(JOBS) --no-print-directory run-unit
 
 asan: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit run-server
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit
+	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-server
 
 tsan: build/.packages-test
 	@$(MAKE) $(JOBS) --no-print-directory VARIANT=tsan run-server

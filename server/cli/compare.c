@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { MAX_INCIDENTS = 3 };
 static const double LONGEST_FRAME = 0.1; // [s]
 
 static hn_status create(const hn_args *args, const hn_model *model, hn_comparison **out,
@@ -55,7 +56,7 @@ static int has_failed(const cJSON *method) {
 static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     double steps = hn_document_number(m, "steps");
     char rate[8];
-    snprintf(rate, sizeof rate, "%s%s", unit, unit[0] ? "/s" : "1/s");
+    snprintf(rate, sizeof rate, "%s%s", unit, unit[0] ? "/s" : "");
     hn_table_cell(t, "%s", hn_document_text(m, "method"));
     hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : "ok");
     hn_table_quantity(t, hn_document_number(m, "t_reached"), "s");
@@ -64,16 +65,28 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_quantity(t, hn_document_number(m, "worst_energy_change"), "J");
     hn_table_cell(t, "%.0f", steps);
     hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
-    hn_table_cell(t, "%.3g", hn_document_number(m, "ops"));
+    hn_table_quantity(t, hn_document_number(m, "ops"), "op");
     hn_table_quantity(t, steps > 0 ? hn_document_number(m, "cpu") / steps : (double)NAN, "s");
 }
 
+/// The first few incidents of each method; all of them are in the JSON.
 static void put_incidents(hn_strbuf *b, const cJSON *summary) {
-    const cJSON *incident, *methods = hn_document_get(summary, "methods");
-    cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
-        const cJSON *m = cJSON_GetArrayItem(methods, (int)hn_document_number(incident, "method"));
-        hn_strbuf_printf(b, "! t = %.4g s  %s: %s\n", hn_document_number(incident, "t"),
-                         hn_document_text(m, "short"), hn_document_text(incident, "message"));
+    const cJSON *incident, *m;
+    int i = 0;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        int n = 0;
+        cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
+            if ((int)hn_document_number(incident, "method") == i && n++ < MAX_INCIDENTS) {
+                hn_strbuf_printf(b, "! %s at t = %.4g s: %s\n", hn_document_text(m, "method"),
+                                 hn_document_number(incident, "t"),
+                                 hn_document_text(incident, "message"));
+            }
+        }
+        if (n > MAX_INCIDENTS) {
+            hn_strbuf_printf(b, "! %s: %d incidents more (--json lists them all)\n",
+                             hn_document_text(m, "method"), n - MAX_INCIDENTS);
+        }
+        i++;
     }
 }
 

@@ -141,8 +141,7 @@ static void write_policy(hn_static_files *s) {
             read_import_maps(p, s->files[i].path);
         }
     }
-    // typeset mathematics and plots place their parts by style attributes
-    hn_strbuf_add(p, "; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+    hn_strbuf_add(p, "; style-src 'self'; img-src 'self' data: blob:; "
                      "connect-src 'self'; object-src 'none'; base-uri 'none'; "
                      "form-action 'none'; frame-ancestors 'self'");
 }
