@@ -59,8 +59,10 @@ typedef struct hn_formulation {
     hn_status (*create)(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
                         hn_diag *diag);
     void (*destroy)(void *self);
+    /// Sizes and functions; known once set_state has succeeded, because they may depend on the rank of J.
     void (*ode)(void *self, hn_ode *out);
-    /// (q, v) -> y, and back; q (nq), v (nv) in system coordinates. set_state may choose a chart.
+    /// (q, v) -> y, and back; q (nq), v (nv) in system coordinates, y with room for nq + nv. set_state may choose a chart and
+    /// forgets everything met before; get_state changes nothing that a later right-hand side could see.
     hn_status (*set_state)(void *self, double t, const double *q, const double *v, double *y);
     hn_status (*get_state)(void *self, double t, const double *y, double *q, double *v);
     /// Mends y in place at the end of an accepted step. *changed = 1 if y moved or its meaning changed (FSAL, history and

@@ -347,6 +347,32 @@ static void an_adaptive_run_holds_its_tolerance_and_counts_rejections(void **sta
     hn_trial_close(&fast);
 }
 
+static void memory_that_runs_out_while_a_run_is_made_is_told_and_given_back(void **state) {
+    (void)state;
+    static const char *const spellings[] = {"partitioning@dopri5", "projection@rk4"};
+    const hn_method_spec specs[] = {hn_trial_spec(spellings[0]), hn_trial_spec(spellings[1])};
+    for (int k = 0; k < 2; k++) {
+        const long live = hn_alloc_live();
+        long n = 1;
+        for (int made = 0; !made; n++) {
+            hn_trial fresh; // a graph that ran out of memory stays marked as failed
+            hn_run *run = NULL;
+            hn_diag diag = {0};
+            hn_trial_open(&fresh, FB0);
+            hn_alloc_fail_at(n);
+            const hn_status status =
+                hn_run_create(fresh.sys, &specs[k], fresh.q, fresh.v, NULL, &run, &diag);
+            made = !hn_alloc_has_failed();
+            hn_alloc_fail_at(0);
+            assert_int_equal(status, made ? HN_OK : HN_ERR_MEMORY);
+            hn_run_free(run);
+            hn_trial_close(&fresh);
+            assert_int_equal(hn_alloc_live(), live);
+        }
+        assert_true(n > 20);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(grid_times_are_exact_multiples_of_the_step, open_fb0,
@@ -377,6 +403,7 @@ int main(void) {
                                         close_trial),
         cmocka_unit_test_setup_teardown(settings_of_baumgarte_change_while_it_runs, open_fb0,
                                         close_trial),
+        cmocka_unit_test(memory_that_runs_out_while_a_run_is_made_is_told_and_given_back),
         cmocka_unit_test_setup_teardown(an_adaptive_run_holds_its_tolerance_and_counts_rejections,
                                         open_fb0, close_trial),
     };
