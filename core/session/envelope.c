@@ -11,12 +11,27 @@ enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 12
 static const double ENVELOPE_SECONDS = 10;
 static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
-/// Box around every point that moves or stands, from points (3 n).
-static void grow_box(double box[4], const double *points, int n) {
+/// 1 for a point that only tells the direction of a slider or a guide: nothing is drawn there.
+static char is_direction_only(const hn_drawing *d, int point) {
+    char directs = 0;
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *s = &d->shapes[i];
+        const int directed = s->kind == HN_SHAPE_SLIDER || s->kind == HN_SHAPE_GUIDE;
+        const int last = s->kind == HN_SHAPE_POLYGON ? s->p + s->n - 1 : s->p;
+        if ((point >= s->p && point <= last) || (!directed && point == s->q)) {
+            return 0;
+        }
+        directs |= directed && point == s->q;
+    }
+    return directs && !d->labels[point];
+}
+
+/// Box around every point that is drawn, from points (3 n).
+static void grow_box(double box[4], const double *points, const char *skipped, int n) {
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < 2; k++) {
             double x = points[3 * i + k];
-            if (isfinite(x)) {
+            if (!skipped[i] && isfinite(x)) {
                 box[k] = fmin(box[k], x);
                 box[2 + k] = fmax(box[2 + k], x);
             }
@@ -25,7 +40,7 @@ static void grow_box(double box[4], const double *points, int n) {
 }
 
 /// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
-static void grow_box_by_motion(double box[4], const hn_model *model) {
+static void grow_box_by_motion(double box[4], const char *skipped, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
     hn_run *run = NULL;
@@ -45,7 +60,7 @@ static void grow_box_by_motion(double box[4], const hn_model *model) {
         if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
             break;
         }
-        grow_box(box, sample.points, info.n_points);
+        grow_box(box, sample.points, skipped, info.n_points);
     }
     hn_run_free(run);
 }
@@ -69,12 +84,17 @@ void hn_model_envelope(const hn_model *model, double box[4]) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
+    char *skipped = arena ? hn_arena_get(arena, (size_t)n + 1) : NULL;
     memset(box, 0, 4 * sizeof *box);
-    if (n > 0 && points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
+    if (n > 0 && points && skipped && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
         box[0] = box[1] = HUGE_VAL;
         box[2] = box[3] = -HUGE_VAL;
-        grow_box(box, points, n);
-        grow_box_by_motion(box, model);
+        const hn_drawing drawing = hn_system_drawing(hn_model_system(model));
+        for (int i = 0; i < n; i++) {
+            skipped[i] = is_direction_only(&drawing, i);
+        }
+        grow_box(box, points, skipped, n);
+        grow_box_by_motion(box, skipped, model);
         for (int k = 0; k < 4; k++) {
             box[k] = isfinite(box[k]) ? box[k] : 0;
         }

@@ -107,7 +107,11 @@ export function createDrawing(el, store, actions) {
     const [ax, bx] = reach(dx / length, 12, size.width - 12, p[0]);
     const [ay, by] = reach(dy / length, 12, size.height - 12, p[1]);
     const [a, b] = [Math.max(ax, ay), Math.min(bx, by)];
-    const place = (along) => /** @type {[number, number]} */ ([p[0] + (along * dx) / length, p[1] + (along * dy) / length]);
+    const place = (along) =>
+      /** @type {[number, number]} */ ([
+        p[0] + (along * dx) / length,
+        p[1] + (along * dy) / length,
+      ]);
     return [place(a), place(b)];
   }
 

@@ -6,6 +6,7 @@ import { beforeAndAfter, cardOfMethod, sentences, tryOfRemedy } from "../state/w
 import { h, say } from "../widgets/dom.js";
 
 const PAUSE = 2000; // [ms] between two things said
+const PAUSE_ENDS = 1400; // [ms] sooner when someone pauses or plays
 const MOST_SHOWN = 40;
 const NAMES = {
   "near-singular": "close to a singular pose",
@@ -229,12 +230,19 @@ export function createHappening(el, store, actions) {
       showIncidents();
       showCard();
       showNotes();
+      clearTimeout(timer);
+      timer = 0;
       saidAt = -PAUSE;
       update();
     },
     incident: addIncident,
     view: showCard,
-    state: update,
+    state: () => {
+      clearTimeout(timer);
+      timer = 0;
+      saidAt -= PAUSE_ENDS;
+      update();
+    },
   });
   return {
     update,

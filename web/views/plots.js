@@ -130,6 +130,7 @@ export function createPlots(el, store, actions) {
         dash: look.dash,
         width: m === data.view.selected ? 2.5 : 1.5,
         ended: data.history.ended[m],
+        present: true,
       };
     });
     figures.forEach(({ plot }) =>
@@ -169,7 +170,10 @@ export function createPlots(el, store, actions) {
       const columns = history.columns.map((column, m) =>
         data.view.hidden.has(m) ? empty : column[kind.column],
       );
-      plot.setEnded([...history.ended]);
+      plot.setEnded(
+        [...history.ended],
+        data.methods.map((_, m) => !data.view.hidden.has(m) && !(kind.loop && data.scene.m === 0)),
+      );
       plot.draw(thin(history.t, columns, history.count, BUCKETS, map), last, now);
     }
   }

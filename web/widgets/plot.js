@@ -44,7 +44,7 @@ function linearTicks(max) {
 export function createPlot(el, options) {
   /** @type {uPlot | null} */
   let plot = null;
-  /** @type {{label: string, colour: string, dash: number[], width: number, ended: number}[]} */
+  /** @type {{label: string, colour: string, dash: number[], width: number, ended: number, present: boolean}[]} */
   let series = [];
   let ink = { text: "#000", muted: "#888", hairline: "#ddd", paper: "#fff" };
   let now = 0;
@@ -83,7 +83,7 @@ export function createPlot(el, options) {
         x: { time: false, range: () => [0, span.x] },
         y: options.log
           ? { distr: 3, log: 10, range: () => [span.low, span.high] }
-          : { range: () => [0, span.high] },
+          : { range: () => [0, span.high || 1] },
       },
       axes: [
         {
@@ -103,7 +103,8 @@ export function createPlot(el, options) {
           size: options.log ? 44 : 62,
           gap: 4,
           space: 10,
-          splits: () => (options.log ? decadeTicks(span.low, span.high) : linearTicks(span.high)),
+          splits: () =>
+            options.log ? decadeTicks(span.low, span.high) : linearTicks(span.high || 1),
           values: (_, ticks) =>
             ticks.map((v) =>
               options.log ? powerOfTen(Math.round(Math.log10(v))) : quantity(v, options.unit),
@@ -143,7 +144,7 @@ export function createPlot(el, options) {
           ];
         }
       }
-      const zero = options.log && ys.length > 1 ? u.bbox.top + u.bbox.height : NaN;
+      const zero = options.log && one.present && ys.length > 1 ? u.bbox.top + u.bbox.height : NaN;
       return Number.isNaN(zero)
         ? []
         : [
@@ -264,7 +265,7 @@ export function createPlot(el, options) {
       span.low = a;
       span.high = b;
     } else {
-      span.high = Math.max(span.high, niceAbove(Math.max(high, 1e-300)));
+      span.high = high > 0 ? Math.max(span.high, niceAbove(high)) : span.high;
     }
   }
 
@@ -287,13 +288,16 @@ export function createPlot(el, options) {
       series = wanted;
       ink = inks;
       if (anew) {
-        span = { x: 1, low: 1e-10, high: options.log ? 1e-6 : 1e-300 };
+        span = { x: 1, low: 1e-10, high: options.log ? 1e-6 : 0 };
       }
       build();
     },
-    /** @param {number[]} ended per method, NaN while it runs */
-    setEnded(ended) {
-      series.forEach((one, k) => (one.ended = ended[k]));
+    /** @param {number[]} ended per method, NaN while it runs @param {boolean[]} present has a curve here */
+    setEnded(ended, present) {
+      series.forEach((one, k) => {
+        one.ended = ended[k];
+        one.present = present[k];
+      });
     },
     /** @param {(number | null)[][]} columns @param {number} last time received @param {number} t time shown */
     draw(columns, last, t) {
