@@ -149,7 +149,7 @@ static void put_sizes(hn_strbuf *b, const hn_system *sys) {
 
 typedef struct counts {
     int M, f, phi, J, gamma, together;
-    hn_tape_info solve, baumgarte;
+    hn_tape_info solve, baumgarte, motion; ///< motion: accelerations alone
     hn_factor_info factor;
     int M_entries; ///< of the whole matrix
 } counts;
@@ -164,9 +164,8 @@ static hn_status count_terms(const hn_system *sys, unsigned terms, hn_arena *are
     return status;
 }
 
-static hn_status count_solve(const hn_system *sys, int baumgarte, hn_arena *arena,
+static hn_status count_solve(const hn_system *sys, hn_accel_opts opts, hn_arena *arena,
                              hn_tape_info *info) {
-    const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 1};
     hn_accel *accel;
     hn_status status = hn_accel_create(sys, &opts, arena, &accel);
     if (status == HN_OK) {
@@ -193,10 +192,14 @@ static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
         status = count_terms(sys, list[k].terms, arena, list[k].ops);
     }
     if (status == HN_OK) {
-        status = count_solve(sys, 0, arena, &c->solve);
+        status = count_solve(sys, (hn_accel_opts){.want_lambda = 1}, arena, &c->solve);
     }
     if (status == HN_OK) {
-        status = count_solve(sys, 1, arena, &c->baumgarte);
+        status = count_solve(sys, (hn_accel_opts){.baumgarte = 1, .want_lambda = 1}, arena,
+                             &c->baumgarte);
+    }
+    if (status == HN_OK) {
+        status = count_solve(sys, (hn_accel_opts){0}, arena, &c->motion);
     }
     hn_factor *factor = NULL;
     if (status == HN_OK) {
@@ -308,6 +311,8 @@ static void put_left_out(hn_strbuf *b, const hn_system *sys, const counts *c) {
     if (sys->nc && c->factor.available) {
         put_absence(b, "the gap phi and its rate, where a method does not ask for them", -1,
                     c->baumgarte.ops - c->solve.ops);
+        put_absence(b, "multipliers, where a method does not ask for them", -1,
+                    c->solve.ops - c->motion.ops);
     }
     hn_json_end_array(b);
 }

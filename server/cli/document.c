@@ -49,6 +49,25 @@ static void format_scalar(const cJSON *item, char out[HN_TABLE_CELL]) {
     }
 }
 
+/// A scalar, or the scalars of an array with commas between.
+static void format_cell(const cJSON *item, char out[HN_TABLE_CELL]) {
+    if (!cJSON_IsArray(item)) {
+        format_scalar(item, out);
+        return;
+    }
+    size_t used = 0;
+    const cJSON *part;
+    out[0] = 0;
+    cJSON_ArrayForEach(part, item) {
+        char text[HN_TABLE_CELL];
+        format_scalar(part, text);
+        if (used + strlen(text) + 3 < HN_TABLE_CELL) {
+            used +=
+                (size_t)snprintf(out + used, HN_TABLE_CELL - used, "%s%s", used ? ", " : "", text);
+        }
+    }
+}
+
 void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *columns, int n) {
     hn_table t;
     hn_table_init(&t);
@@ -64,7 +83,7 @@ void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *co
                 hn_table_quantity(&t, item->valuedouble, columns[c].unit);
                 continue;
             }
-            format_scalar(item, text);
+            format_cell(item, text);
             hn_table_cell(&t, "%s", item ? text : "");
         }
     }
@@ -80,16 +99,48 @@ static int holds_objects(const cJSON *array) {
     return cJSON_IsObject(array->child);
 }
 
-/// A table of objects, its columns the scalar members of the first one.
+static int find_column(const hn_list_column *columns, int n, const char *key) {
+    for (int c = 0; c < n; c++) {
+        if (strcmp(columns[c].key, key) == 0) {
+            return c;
+        }
+    }
+    return -1;
+}
+
+/// A table of objects, its columns the members that any of them has; members with parts of their own are left out.
 static void put_objects(hn_strbuf *b, const cJSON *array) {
     hn_list_column columns[HN_TABLE_COLUMNS];
     int n = 0;
-    for (const cJSON *m = array->child->child; m && n < HN_TABLE_COLUMNS; m = m->next) {
-        if (is_scalar(m)) {
-            columns[n++] = (hn_list_column){m->string, m->string, cJSON_IsNumber(m) ? "" : NULL};
+    for (const cJSON *row = array->child; row; row = row->next) {
+        for (const cJSON *m = row->child; m && n < HN_TABLE_COLUMNS; m = m->next) {
+            const int flat =
+                is_scalar(m) || (cJSON_IsArray(m) && (!m->child || is_scalar(m->child)));
+            if (flat && find_column(columns, n, m->string) < 0) {
+                columns[n++] =
+                    (hn_list_column){m->string, m->string, cJSON_IsNumber(m) ? "" : NULL};
+            }
         }
     }
     hn_document_list(b, array, columns, n);
+}
+
+/// Text that is laid out by its own indentation stands line by line.
+static int holds_lines(const cJSON *array) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, array) {
+        if (cJSON_IsString(item) && item->valuestring[0] == ' ') {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void put_lines(hn_strbuf *b, const cJSON *array, int indent) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, array) {
+        hn_strbuf_printf(b, "%*s%s\n", indent, "", item->valuestring);
+    }
 }
 
 static void put_line(hn_strbuf *b, const cJSON *array) {
@@ -126,6 +177,9 @@ void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
         } else if (item->child && holds_objects(item)) {
             hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
             put_objects(b, item);
+        } else if (holds_lines(item)) {
+            hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
+            put_lines(b, item, indent + 2);
         } else {
             hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
             put_line(b, item);
