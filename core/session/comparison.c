@@ -15,7 +15,8 @@ typedef struct entry {
     double h; ///< fixed step [s], 0 for an adaptive method
     int slot; ///< colour and dash, see render/look.h
     int incidents_told;
-    int over_budget; ///< stopped by the comparison because one frame cost too much
+    char warning[HN_DIAG_MESSAGE]; ///< what its spelling deserves to be told, "" if nothing
+    int over_budget;               ///< stopped by the comparison because one frame cost too much
 } entry;
 
 struct hn_comparison {
@@ -66,6 +67,8 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     hn_method_spec spec;
     hn_status status = hn_method_parse(text, &spec, &diag);
     if (status == HN_OK) {
+        // a spelling may be right and still deserve a word: a negative alpha, for one
+        snprintf(c->entries[c->n].warning, sizeof c->entries[c->n].warning, "%s", diag.message);
         hn_run_opts run_opts = hn_run_opts_default();
         if (opts->max_steps > 0) {
             run_opts.max_steps = opts->max_steps;
@@ -291,6 +294,12 @@ static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
     }
 }
 
+static void put_warning(hn_strbuf *b, const entry *e) {
+    if (e->warning[0]) {
+        hn_json_put_string(b, "warning", e->warning);
+    }
+}
+
 static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_put_int(b, "steps", s->steps);
     hn_json_put_int(b, "rejected", s->rejected);
@@ -399,6 +408,7 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_bool(b, "model_error", spec->formulation->model_error);
         hn_json_put_bool(b, "keeps_gap", spec->formulation->keeps_gap);
         hn_json_put_int(b, "order", spec->stepper->order);
+        put_warning(b, &c->entries[i]);
         hn_json_key(b, "method");
         hn_method_json(b, spec);
         hn_json_end_object(b);
@@ -422,6 +432,7 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_string(b, "short", hn_run_spec(c->entries[i].run)->formulation->short_name);
         hn_json_put_int(b, "slot", c->entries[i].slot);
         hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
+        put_warning(b, &c->entries[i]);
         put_reason(b, c, &c->entries[i], &s);
         hn_json_put_number(b, "t_reached", s.t);
         put_cost(b, &s);

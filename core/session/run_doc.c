@@ -239,14 +239,17 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
     hn_json_end_array(b);
 }
 
-static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, hn_status ended,
-                    const char *stop_reason, const table *tab) {
+static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, const char *warning,
+                    hn_status ended, const char *stop_reason, const table *tab) {
     hn_run_summary s = hn_run_get_summary(run);
     char spelling[HN_SPEC_MAX];
     hn_method_format(hn_run_spec(run), spelling);
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "method", spelling);
+    if (warning[0]) {
+        hn_json_put_string(b, "warning", warning);
+    }
     hn_json_put_string(b, "status", hn_status_name(ended));
     hn_json_put_string(b, "reason",
                        ended == HN_ERR_BUDGET && s.status == HN_OK ? stop_reason : s.reason);
@@ -272,6 +275,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
     }
+    char warning[HN_DIAG_MESSAGE];
+    snprintf(warning, sizeof warning, "%s", diag.message);
     status = make_schedule(request, &times, diags);
     if (status == HN_OK) {
         hn_run_opts opts = hn_run_opts_default();

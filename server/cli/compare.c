@@ -69,12 +69,16 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_quantity(t, steps > 0 ? hn_document_number(m, "cpu") / steps : (double)NAN, "s");
 }
 
-/// The first few incidents of each method; all of them are in the JSON.
+/// What a spelling deserves to be told, and the first few incidents of each method; all of them are in the JSON.
 static void put_incidents(hn_strbuf *b, const cJSON *summary) {
     const cJSON *incident, *m;
     int i = 0;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
         int n = 0;
+        if (hn_document_text(m, "warning")[0]) {
+            hn_strbuf_printf(b, "! %s: %s\n", hn_document_text(m, "method"),
+                             hn_document_text(m, "warning"));
+        }
         cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
             if ((int)hn_document_number(incident, "method") == i && n++ < MAX_INCIDENTS) {
                 hn_strbuf_printf(b, "! %s at t = %.4g s: %s\n", hn_document_text(m, "method"),

@@ -202,6 +202,9 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         snprintf(reason, sizeof reason, "%s at t = %.6g s: %.200s", hn_document_text(run, "status"),
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         put_samples(&b, run, strcmp(format, "ndjson") == 0);
+        if (hn_document_text(run, "warning")[0]) {
+            fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));
+        }
         cJSON_Delete(run);
     }
     hn_exit result = hn_cli_print(&b);

@@ -158,6 +158,29 @@ static void bad_methods_are_named_by_their_place(void **state) {
     hn_library_free(lib);
 }
 
+// negative damping opens the loop on purpose: allowed, and said
+static void a_spelling_that_deserves_a_word_gets_one(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    const char *const methods[] = {"baumgarte:alpha=-5@rk4:h=0.01", "baumgarte@rk4:h=0.01"};
+    hn_comparison *c = compare(model, methods, 2, NULL);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_comparison_summary_json(&b, c);
+    cJSON *doc = cJSON_Parse(hn_strbuf_text(&b));
+    const cJSON *list = cJSON_GetObjectItem(doc, "methods");
+    const cJSON *warning = cJSON_GetObjectItem(cJSON_GetArrayItem(list, 0), "warning");
+    assert_true(cJSON_IsString(warning));
+    assert_non_null(strstr(warning->valuestring, "alpha"));
+    assert_null(cJSON_GetObjectItem(cJSON_GetArrayItem(list, 1), "warning"));
+    cJSON_Delete(doc);
+    hn_strbuf_reset(&b);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
 static void two_methods_of_one_formulation_get_two_colours(void **state) {
     (void)state;
     hn_library *lib = open_library();
@@ -301,6 +324,7 @@ int main(void) {
         cmocka_unit_test(a_second_comparison_and_a_reset_give_the_same_bits),
         cmocka_unit_test(a_failed_method_stays_with_its_last_state_and_its_reason),
         cmocka_unit_test(bad_methods_are_named_by_their_place),
+        cmocka_unit_test(a_spelling_that_deserves_a_word_gets_one),
         cmocka_unit_test(two_methods_of_one_formulation_get_two_colours),
         cmocka_unit_test(the_columns_of_a_run_have_one_length),
         cmocka_unit_test(looking_between_steps_does_not_change_a_run),
