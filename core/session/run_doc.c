@@ -294,7 +294,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
-        put_run(b, model, run, *ended,
+        put_run(b, model, run, warning, *ended,
                 request->stop_reason ? request->stop_reason : "stopped on request", &tab);
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }
