@@ -76,6 +76,7 @@ test("a number is read as people type it, and only in its unit", () => {
     ["−3", "1/s", -3],
     [".5", "", 0.5],
     ["0", "s", 0],
+    ["9.8 m/s^2", "m/s²", 9.8],
     ["20 m", "s", NaN],
     ["two", "s", NaN],
     ["", "s", NaN],
@@ -191,12 +192,18 @@ test("a full history keeps the whole span at half the resolution", () => {
   }
 });
 
-test("a failed method has no curve any more and keeps its last good points", () => {
+test("a failed method ends with its last good values, has no curve after it, and keeps its points", () => {
+  const failed = (k) => ({
+    ...frame(k, 1),
+    methods: [{ state: "failed", t: 0.01, gap: 9, steps: 1 }],
+  });
   const history = createHistory(1, 1);
   history.push(frame(0, 1));
-  history.push({ ...frame(1, 1), methods: [{ state: "failed", t: 0.01, gap: 9, steps: 1 }] });
-  assert.ok(Number.isNaN(history.columns[0].gap[1]));
-  assert.deepEqual([...history.pointsAt(0, 1)], [0, 0, 0]);
+  history.push(failed(1));
+  history.push(failed(2));
+  assert.equal(history.columns[0].gap[1], 9);
+  assert.ok(Number.isNaN(history.columns[0].gap[2]));
+  assert.deepEqual([...history.pointsAt(0, 2)], [0, 0, 0]);
   assert.equal(history.ended[0], 0.01);
 });
 

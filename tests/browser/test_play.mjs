@@ -318,7 +318,7 @@ test("a hidden page closes its stream and catches up when it is shown", async ()
   assert.ok(whole, "no frame is missing");
 });
 
-test("a finished run stops the clock, and Backspace starts it anew", async () => {
+test("a finished run stops the clock; another step runs it again, Backspace sets it back", async () => {
   const page = await open({ hash: "#pendulum" });
   for (let k = 0; k < 3; k++) {
     await page.keyboard.press("=");
@@ -327,6 +327,10 @@ test("a finished run stops the clock, and Backspace starts it anew", async () =>
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "finished", 60000);
   assert.match(await page.textContent("#play"), /Again/);
+  const generation = await read(page, (data) => data.generation);
+  await type(page, "#set-h", "0.002");
+  await until(page, `(data) => data.generation > ${generation} && data.latest?.t > 0.2`); // runs on by itself
+  await page.focus("#play");
   await page.keyboard.press("Backspace");
   await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
   await page.keyboard.press("Space");
@@ -353,4 +357,17 @@ test("a method that fails keeps its last pose, under a banner with its name, the
   );
   assert.doesNotMatch(await page.getAttribute(".ghost.selected .outline", "d"), /NaN/);
   assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/);
+});
+
+test("a comparison that the server has forgotten is made again, and said so", async () => {
+  const page = await open();
+  const id = await read(page, (data) => data.id);
+  const answer = await fetch(`${server.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  assert.equal(answer.status, 204);
+  await until(page, (data) => data.stream.state === "ended");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
+  assert.notEqual(await read(page, (data) => data.id), id);
+  assert.match(await page.textContent(".notice"), /started again/);
+  assert.deepEqual(opened.faults.splice(0), [`not found: ${server.url}api/v1/comparisons/${id}`]);
 });

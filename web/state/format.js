@@ -73,6 +73,11 @@ export function seconds(t) {
   return `${t.toFixed(2)} s`;
 }
 
+/** m/s^2 as it is written by hand: m/s². @param {string} unit */
+export function prettyUnit(unit) {
+  return unit.replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("*", "·");
+}
+
 /**
  * Reads "0.02", "0,02", "2e-2 s", "20 ms". The unit may be left out; another unit is refused.
  * @param {string} text
@@ -85,7 +90,7 @@ export function parseQuantity(text, unit) {
     return NaN;
   }
   const value = Number(match[1].replace(",", ".").replaceAll("−", "-"));
-  const tail = match[2];
+  const tail = prettyUnit(match[2]);
   if (tail === "" || tail === unit) {
     return value;
   }

@@ -1,6 +1,7 @@
 // @ts-check
 // What was received, in columns, bounded. When the columns are full every second frame is dropped: the whole span stays,
-// at half the resolution. A failed method has NaN in its curves from then on and keeps its last good points.
+// at half the resolution. A failed method has its last good values at its end,
+// NaN in its curves from then on, and keeps its last good points.
 
 const BYTES = 32e6;
 const MOST_FRAMES = 8192;
@@ -58,12 +59,13 @@ export function createHistory(nMethods, nPoints) {
   /** @param {number} m @param {import("./store.js").MethodFrame} method @param {number} now */
   function put(m, method, now) {
     const failed = method.state === "failed";
-    if (failed && Number.isNaN(ended[m])) {
+    const gone = failed && !Number.isNaN(ended[m]); // its last good values stand at its end once
+    if (failed && !gone) {
       ended[m] = Number.isFinite(method.t) ? method.t : now;
     }
     for (const name of COLUMNS) {
       const value = method[name];
-      columns[m][name][count] = failed || value === undefined || value === null ? NaN : value;
+      columns[m][name][count] = gone || value === undefined || value === null ? NaN : value;
     }
     const from = count * 3 * nPoints;
     if (method.points && method.points.length === 3 * nPoints) {

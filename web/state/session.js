@@ -212,6 +212,12 @@ export function createSession(store) {
     return done;
   }
 
+  /** A change that starts the runs anew; after the end of a run the new one moves as the old one did. @param {object} wanted */
+  function restart(wanted) {
+    const moves = data.state === "finished" && !data.view.stepped;
+    return change(moves ? { ...wanted, state: "running" } : wanted);
+  }
+
   /** An action whose failure has no field of its own. @param {object} wanted */
   function changeOrTell(wanted) {
     return change(wanted).catch((error) => notice(sentenceOf(error)));
@@ -305,7 +311,7 @@ export function createSession(store) {
       asked = asked === speed ? 0 : asked;
     },
     /** @param {string[]} spellings */
-    setMethods: (spellings) => change({ methods: spellings }),
+    setMethods: (spellings) => restart({ methods: spellings }),
     /** One setting of every method that has it. @param {string} key @param {number} value @param {string} [and] another key */
     setSetting(key, value, and) {
       const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
@@ -314,8 +320,8 @@ export function createSession(store) {
       return actions.setMethods(data.methods.map(({ spelling }) => changeBoth(spelling)));
     },
     /** @param {string} name @param {number} value */
-    setParameter: (name, value) => change({ settings: { ...data.settings, [name]: value } }),
-    resetParameters: () => change({ settings: {} }),
+    setParameter: (name, value) => restart({ settings: { ...data.settings, [name]: value } }),
+    resetParameters: () => restart({ settings: {} }),
     /** A thing to try from a card. @param {import("./words.js").Try} item */
     async attempt(item) {
       if (item.key) {

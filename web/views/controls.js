@@ -1,7 +1,7 @@
 // @ts-check
 // Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some method has; and the scene's parameters.
 import { sentenceOf } from "../api/client.js";
-import { parseQuantity, plain } from "../state/format.js";
+import { parseQuantity, plain, prettyUnit } from "../state/format.js";
 import { settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { createSliderField } from "../widgets/slider-field.js";
@@ -134,22 +134,23 @@ export function createControls(el, store, actions) {
   /** @param {import("../state/store.js").Parameter} parameter */
   function makeParameter(parameter) {
     const { min, max } = parameter;
+    const unit = prettyUnit(parameter.unit);
     const span = Number.isFinite(min) && Number.isFinite(max) && min < max;
     const around = Math.max(1, 2 * Math.abs(parameter.initial));
     const range = span
       ? [min, max]
       : [Math.max(min ?? -around, -around), Math.min(max ?? around, around)];
-    const words = `${plain(range[0])} to ${plain(range[1])} ${parameter.unit}`.trim();
+    const words = `${plain(range[0])} to ${plain(range[1])} ${unit}`.trim();
     return createSliderField({
       id: `parameter-${parameter.name}`,
       label: parameter.about ? `${parameter.name}, ${parameter.about}` : parameter.name,
-      unit: parameter.unit,
+      unit,
       hint: words,
       scale: span && min > 0 && max / min >= WIDE && !parameter.integer ? "log" : "linear",
       min: range[0],
       max: range[1],
       step: parameter.integer ? 1 : undefined,
-      read: (text) => parseQuantity(text, parameter.unit),
+      read: (text) => parseQuantity(text, unit),
       check: (value) =>
         value < min || value > max
           ? { error: `${parameter.name} must be within ${words}` }

@@ -8,6 +8,7 @@ import { h, s, say, set } from "../widgets/dom.js";
 import * as shapes from "../widgets/shapes.js";
 
 const TRACE_POINTS = 600;
+const CROWDED = 60; // shapes
 const OUTLINES = ["bar", "slider", "polygon"]; // filled; the other kinds are lines
 const LINES = ["spring", "damper", "arrow", "guide"];
 
@@ -83,14 +84,13 @@ export function createDrawing(el, store, actions) {
 
   // ---- once per scene and size -----------------------------------------------------------------------------------
 
-  const radius = (shape) =>
-    Math.min(
-      11,
-      Math.max(
-        4.5,
-        (shape.width > 0 ? shape.width : 0.045 * (data.scene?.length ?? 1)) * camera.scale * 0.5,
-      ),
-    );
+  /** A long chain is drawn with thinner bars and without rings at its cuts. */
+  const crowded = () => data.scene.drawing.shapes.length > CROWDED;
+
+  function radius(shape) {
+    const width = shape.width > 0 ? shape.width : 0.045 * data.scene.length;
+    return Math.min(11, Math.max(crowded() ? 1.5 : 4.5, 0.5 * width * camera.scale));
+  }
 
   /** Drawn once: what stands on the ground. @param {import("../state/store.js").Shape} shape */
   const isFixed = ({ kind, body }) => kind === "ground" || (kind === "guide" && body < 0);
@@ -121,7 +121,7 @@ export function createDrawing(el, store, actions) {
       ...data.scene.drawing.shapes.filter(isFixed).map((shape) => {
         const p = place(shape.p);
         if (shape.kind === "ground") {
-          return s("path", { d: shapes.ground(p, 11), class: "ground" });
+          return s("path", { d: shapes.ground(p, crowded() ? 4 : 11), class: "ground" });
         }
         const [from, to] = guideEnds(p, place(shape.q));
         return s("path", { d: shapes.guide(from, to, radius(shape) + 5), class: "guide" });
@@ -218,7 +218,7 @@ export function createDrawing(el, store, actions) {
         );
       case "pivot":
       case "ground":
-        return shapes.circle(p, Math.max(2.5, 0.55 * r));
+        return shapes.circle(p, Math.max(crowded() ? 1 : 2.5, 0.55 * r));
       case "spring":
         return shapes.spring(p, q, r + 2);
       case "guide":
@@ -238,7 +238,7 @@ export function createDrawing(el, store, actions) {
       .filter(([[x]]) => Number.isFinite(x))
       .map(([a, b]) => `${shapes.polyline([a, b], false)}`)
       .join("");
-    const rings = data.scene.drawing.tears
+    const rings = (crowded() ? [] : data.scene.drawing.tears)
       .map(({ p, q }) => [camera.point(points, p), camera.point(points, q)])
       .filter(([[x]]) => Number.isFinite(x))
       .map(([a, b]) => shapes.circle([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], 14))
