@@ -122,6 +122,8 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     }
     int which;
     sigwait(&stop, &which);
+    // asked a second time, it ends at once
+    pthread_sigmask(SIG_UNBLOCK, &stop, NULL);
     hn_server_stop(server);
     return HN_EXIT_DONE;
 }

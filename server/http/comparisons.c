@@ -8,6 +8,8 @@
 #include <string.h>
 #include <time.h>
 
+enum { MAX_LINGERING = 8 };
+
 struct hn_comparisons {
     pthread_mutex_t lock;
     pthread_cond_t changed; ///< the keeper should end, or a comparison's thread has ended
@@ -139,10 +141,13 @@ static hn_live *find_live(hn_request *r) {
     return found;
 }
 
-/// A place for one more; 0 with a problem as reply.
+/// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its last frame: only so many
+/// may linger.
 static int reserve(hn_comparisons *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
-    int stopping = all->stopping, full = all->n + all->n_reserved >= all->opts->max_comparisons;
+    int stopping = all->stopping;
+    int full = all->n + all->n_reserved >= all->opts->max_comparisons ||
+               all->n_threads >= all->opts->max_comparisons + MAX_LINGERING;
     if (!stopping && !full) {
         all->n_reserved++;
         all->n_threads++; // the thread it will have

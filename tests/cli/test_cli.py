@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import pty
 import re
 import subprocess
 import sys
@@ -231,6 +232,25 @@ class CommandLine(unittest.TestCase):
         for command in (("list", "scenes"), ("compare", "four-bar", "--methods", RK4, "--time", "0.1")):
             done = call(*command)
             self.assertNotIn(b"\x1b", done.stdout + done.stderr)
+
+    def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):
+        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=2e-5", "--time", "60", "--at", "60"]
+        piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)
+        self.assertEqual((piped.returncode, piped.stderr), (DONE, b""))
+        terminal, end = pty.openpty()
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=end)
+        os.close(end)
+        seen = b""
+        try:
+            while piece := os.read(terminal, 4096):
+                seen += piece
+        except OSError:  # the other end is closed
+            pass
+        self.assertEqual(process.stdout.read(), piped.stdout)
+        self.assertEqual(process.wait(), DONE)
+        process.stdout.close()
+        os.close(terminal)
+        self.assertRegex(seen.decode(), r"running +\d+ %")
 
     def test_without_its_scenes_the_program_says_where_it_looked(self):
         done = call("list", "scenes", environment={"HOLONOM_HOME": "/nowhere"})
