@@ -11,7 +11,7 @@ const SYSTEM = String.raw`\begin{bmatrix} M & J^{\mathsf T} \\ J & 0 \end{bmatri
 const FREE = String.raw`M\,a = f`;
 const PRINTED = {
   nullspace: String.raw`N^{\mathsf T} M N\,\dot u = N^{\mathsf T}\bigl(f - M \dot N u\bigr), \qquad v = N u`,
-  "nullspace-as-printed": String.raw`N^{\mathsf T} M N\,\dot u = N^{\mathsf T} f \qquad \text{missing: } {\color{#c0392b} N^{\mathsf T} M \dot N u}`,
+  "nullspace-as-printed": String.raw`N^{\mathsf T} M N\,\dot u = N^{\mathsf T} f \qquad \text{missing: } {\color{#cf4436} N^{\mathsf T} M \dot N u}`,
 };
 
 /**
