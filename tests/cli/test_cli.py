@@ -234,7 +234,7 @@ class CommandLine(unittest.TestCase):
             self.assertNotIn(b"\x1b", done.stdout + done.stderr)
 
     def test_progress_is_shown_to_a_terminal_and_to_nobody_else(self):
-        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=2e-5", "--time", "60", "--at", "60"]
+        words = [driver.PROGRAM, "run", "four-bar", "--method", "index1@rk4:h=4e-5", "--time", "60", "--at", "60"]
         piped = subprocess.run(words, capture_output=True, timeout=300 * driver.SLOW)
         self.assertEqual((piped.returncode, piped.stderr), (DONE, b""))
         terminal, end = pty.openpty()
