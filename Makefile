@@ -193,13 +193,14 @@ help:
 	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make bench        time the engine: CSV on standard output'
+	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) $(JOBS) --no-print-directory run-suite
@@ -216,6 +217,12 @@ tsan: build/.packages-test
 
 bench: all
 	@$(MAKE) $(JOBS) --no-print-directory run-bench
+
+# kept only when every run was good
+reference: build/.packages-test
+	@$(MAKE) $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/reference/table.py $(PROGRAM) >build/reference.txt
+	@cp build/reference.txt tests/reference/results.txt && cat tests/reference/results.txt
 
 # HOLONOM tells the scripts which program to drive
 run-suite: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW)

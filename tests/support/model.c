@@ -52,12 +52,13 @@ static void compile_and_assemble(hn_model *m) {
 }
 
 void hn_model_open(hn_model *m, const char *name, const char *settings) {
-    static const char *const folders[] = {"lessons/01-closed-loops/scenes", "tests/scenes"};
+    static const char *const folders[] = {"lessons/01-closed-loops/scenes", "tests/scenes",
+                                          "tests/reference"};
     char path[256], names[256];
     hn_setting set[MAX_SETTINGS];
     memset(m, 0, sizeof *m);
     int n = parse_settings(settings, names, sizeof names, set);
-    for (int i = 0; i < 2; i++) {
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         (void)snprintf(path, sizeof path, "%s/%s.json", folders[i], name);
         FILE *file = fopen(path, "r");
         if (file) {
