@@ -18,7 +18,12 @@ typedef struct work {
     int *live;     ///< scratch: live neighbours of a block
     char *marked;
     int cap_rows;
+    long long updates; ///< entries changed by the eliminations so far
 } work;
+
+/// Beyond this the matrix is dense rather than sparse (a full one of 66 unknowns): unrolled it would take longer to compile
+/// than to solve, without bound, so it is left to the dense solve.
+enum { MAX_UPDATES = 50000 };
 
 // setting up -------------------------------------------------------------------------------------------------------
 
@@ -223,6 +228,11 @@ static hn_status eliminate(work *w, int i) {
         return HN_ERR_MEMORY;
     }
     if (!invert(w, pair, inverse)) {
+        out->available = 0;
+        return HN_OK;
+    }
+    w->updates += (long long)n * (n + 1) / 2;
+    if (w->updates > MAX_UPDATES) {
         out->available = 0;
         return HN_OK;
     }

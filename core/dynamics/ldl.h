@@ -14,7 +14,7 @@
 #include "dynamics/entries.h"
 
 typedef struct hn_ldl {
-    int available; ///< 0: no static order without a zero pivot
+    int available; ///< 0: no static order without a zero pivot, or too dense to be unrolled
     int n, nv, nc;
     int n_blocks;
     int *unknown;     ///< n: unknowns in order of elimination

@@ -51,7 +51,7 @@ struct hn_run {
     hn_step_control control;
     hn_run_summary summary;
     hn_cost cost_mark;
-    double cpu_mark;
+    double cpu_mark, clock_cost; ///< [s]
     hn_incident incidents[HN_RUN_MAX_INCIDENTS];
     int n_incidents;
     hn_run_watch_state watch;

@@ -483,6 +483,59 @@ static void symbolic_parameters_change_nothing_in_the_numbers(void **state) {
     hn_scene_free(scene);
 }
 
+/// An open chain of n links along x, hanging from the ground.
+static void write_chain(hn_strbuf *b, int n) {
+    hn_strbuf_printf(
+        b,
+        "{\"holonom\":1,\"name\":\"chain\",\"title\":\"open chain\",\"about\":\"links in a row\","
+        "\"gravity\":[0,-9.81,0],\"bodies\":[{\"for\":{\"i\":[0,%d]},\"name\":\"b{i}\",\"mass\":1,"
+        "\"com\":[0.5,0,0],\"inertia\":{\"zz\":0.0833}}],\"joints\":[{\"name\":\"j0\",\"type\":"
+        "\"revolute\",\"parent\":{\"body\":\"ground\",\"at\":[0,0,0]},\"child\":{\"body\":\"b0\","
+        "\"at\":[0,0,0]},\"axis\":[0,0,1],\"coordinate\":\"q0\"},{\"for\":{\"i\":[1,%d]},\"name\":"
+        "\"j{i}\",\"type\":\"revolute\",\"parent\":{\"body\":\"b{i-1}\",\"at\":[1,0,0]},\"child\":"
+        "{\"body\":\"b{i}\",\"at\":[0,0,0]},\"axis\":[0,0,1],\"coordinate\":\"q{i}\"}],"
+        "\"duration\":1,\"step\":0.001,\"methods\":[\"index1@rk4:h=1e-3\"]}",
+        n - 1, n - 1);
+}
+
+// its mass matrix is full: unrolled, the solve would grow with the cube of the links, so the dense solve answers
+static void a_matrix_that_is_not_sparse_is_not_unrolled(void **state) {
+    (void)state;
+    enum { LINKS = 80 };
+    for (int unrolled = 0; unrolled < 2; unrolled++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        write_chain(&b, unrolled ? LINKS / 4 : LINKS);
+        model m = open_text(hn_strbuf_text(&b));
+        hn_accel *accel = NULL;
+        assert_int_equal(hn_accel_create(m.sys, &(hn_accel_opts){0}, m.arena, &accel), HN_OK);
+        double q[LINKS], v[LINKS], a[LINKS];
+        for (int i = 0; i < m.n; i++) {
+            q[i] = 0.2 * i;
+            v[i] = 1 - 0.1 * (i % 7);
+        }
+        hn_accel_info info;
+        assert_int_equal(hn_accel_eval(accel, 0, q, v, 0, 0, a, NULL, &info), HN_OK);
+        assert_int_equal(info.fallback, !unrolled);
+        const double *M = term(&m, HN_TERM_M, 0, q, v), *f = term(&m, HN_TERM_F, 0, q, v);
+        double scale = 0;
+        for (int i = 0; i < m.n; i++) {
+            scale = fmax(scale, fabs(f[i]));
+        }
+        for (int i = 0; i < m.n; i++) {
+            double rest = -f[i];
+            for (int k = 0; k < m.n; k++) {
+                rest += M[i * m.n + k] * a[k];
+            }
+            assert_near(rest, 0,
+                        1e-9 * scale); // the condition of a long chain's mass matrix is some 1e4
+        }
+        hn_accel_free(accel);
+        close_model(&m);
+        hn_strbuf_reset(&b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_loop_that_can_never_close_is_told_with_its_offset),
@@ -500,6 +553,7 @@ int main(void) {
         cmocka_unit_test(
             a_ladder_of_200_loops_compiles_in_a_second_and_costs_as_much_a_loop_as_one_of_10),
         cmocka_unit_test(symbolic_parameters_change_nothing_in_the_numbers),
+        cmocka_unit_test(a_matrix_that_is_not_sparse_is_not_unrolled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
