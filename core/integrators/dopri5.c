@@ -18,14 +18,7 @@ const hn_stepper hn_stepper_dopri5 = {
     .real_limit = 3.306567892634947,
     .imag_limit = 0.9970302265836285,
     .n_settings = 4,
-    .settings =
-        {
-            {"rtol", 1e-6, 1e-14, 0.1, "", "relative error allowed in a step", NULL, 0, 0},
-            {"atol", 0, 0, 1, "", "absolute error allowed in a step; 0: the same number as rtol",
-             NULL, 0, 0},
-            {"h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0},
-            {"hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0},
-        },
+    .settings = {HN_SETTINGS_ADAPTIVE},
     .create = create,
     .step = hn_explicit_rk_step,
     .accepted = hn_explicit_rk_accepted,

@@ -5,7 +5,7 @@
 //
 // A rejected step is taken again from the same (t, y): the first stage is kept. After an accepted step the last
 // stage of a FSAL method becomes the first of the next one, unless the state was changed in between.
-// Dense output: Hairer, Norsett & Wanner 1993, section II.6 (order 4 for dopri5).
+// Dense output: Hairer, Norsett & Wanner 1993, section II.6 (order 4 for dopri5, 7 for dop853).
 
 #include "base/arena.h"
 #include "base/status.h"
@@ -16,6 +16,7 @@
 void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena);
 hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h, const double *y,
                               double *y_new, double *err);
+hn_status hn_explicit_rk_finish(void *self, const hn_ode *ode); ///< tableau with extra stages only
 void hn_explicit_rk_accepted(void *self, int changed);
 void hn_explicit_rk_dense(void *self, double theta, double *y); ///< tableau with d only
 

@@ -3,11 +3,20 @@
 // The steppers that exist; each is defined in its own file.
 #include "integrators/stepper.h"
 
-extern const hn_stepper hn_stepper_euler, hn_stepper_symplectic_euler, hn_stepper_heun,
-    hn_stepper_rk4, hn_stepper_dopri5;
+extern const hn_stepper hn_stepper_euler, hn_stepper_symplectic_euler, hn_stepper_verlet,
+    hn_stepper_heun, hn_stepper_rk4, hn_stepper_dopri5, hn_stepper_dop853;
 
 /// The one setting of every fixed-step integrator.
 #define HN_SETTING_STEP \
     { "h", 1e-3, 1e-12, 100, "s", "step size", NULL, 0, 0 }
+
+/// The settings of every adaptive one.
+#define HN_SETTINGS_ADAPTIVE                                                                  \
+    {"rtol", 1e-6, 1e-14, 0.1, "", "relative error allowed in a step", NULL, 0, 0},           \
+        {"atol", 0, 0, 1, "", "absolute error allowed in a step; 0: the same number as rtol", \
+         NULL,   0, 0},                                                                       \
+        {"h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0}, {         \
+        "hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0                       \
+    }
 
 #endif

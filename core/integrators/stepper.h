@@ -22,6 +22,9 @@ typedef struct hn_stepper {
     /// change y. Fails with the right-hand side's status.
     hn_status (*step)(void *self, const hn_ode *ode, double t, double h, const double *y,
                       double *y_new, double *err);
+    /// Right-hand sides that only dense output needs, at the step just tried; called once its error is accepted, before the
+    /// state is mended. Fails with the right-hand side's status. NULL: dense output needs none.
+    hn_status (*finish)(void *self, const hn_ode *ode);
     /// Called when y_new was accepted as it is (FSAL may be kept) or was changed afterwards (it may not).
     void (*accepted)(void *self, int changed);
     /// Dense output in the step just accepted: y at t + theta h, theta in [0, 1]. NULL: none.

@@ -1,19 +1,35 @@
 #include "integrators/tableau.h"
 
-#include <stddef.h>
-
 static const double euler_c[1] = {0}, euler_A[1] = {0}, euler_b[1] = {1};
-const hn_tableau hn_tableau_euler = {1, 1, 0, 0, euler_c, euler_A, euler_b, NULL, NULL};
+const hn_tableau hn_tableau_euler = {
+    .stages = 1,
+    .order = 1,
+    .c = euler_c,
+    .A = euler_A,
+    .b = euler_b,
+};
 
 static const double heun_c[2] = {0, 1};
 static const double heun_A[4] = {0, 0, 1, 0};
 static const double heun_b[2] = {0.5, 0.5};
-const hn_tableau hn_tableau_heun = {2, 2, 0, 0, heun_c, heun_A, heun_b, NULL, NULL};
+const hn_tableau hn_tableau_heun = {
+    .stages = 2,
+    .order = 2,
+    .c = heun_c,
+    .A = heun_A,
+    .b = heun_b,
+};
 
 static const double rk4_c[4] = {0, 0.5, 0.5, 1};
 static const double rk4_A[16] = {0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0};
 static const double rk4_b[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-const hn_tableau hn_tableau_rk4 = {4, 4, 0, 0, rk4_c, rk4_A, rk4_b, NULL, NULL};
+const hn_tableau hn_tableau_rk4 = {
+    .stages = 4,
+    .order = 4,
+    .c = rk4_c,
+    .A = rk4_A,
+    .b = rk4_b,
+};
 
 // Hairer, Norsett & Wanner 1993, table II.5.2; d from equation (6.13) of section II.6
 static const double dopri5_c[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
@@ -81,5 +97,14 @@ static const double dopri5_d[7] = {
     69997945.0 / 29380423.0,
 };
 const hn_tableau hn_tableau_dopri5 = {
-    7, 5, 4, 1, dopri5_c, dopri5_A, dopri5_b, dopri5_e, dopri5_d,
+    .stages = 7,
+    .order = 5,
+    .embedded_order = 4,
+    .fsal = 1,
+    .c = dopri5_c,
+    .A = dopri5_A,
+    .b = dopri5_b,
+    .e = dopri5_e,
+    .d = dopri5_d,
+    .dense_rows = 1,
 };

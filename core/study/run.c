@@ -167,6 +167,12 @@ static double try_adaptive(hn_run *run, double h, double rtol, double atol, int 
     }
     const int n = e->ode.n_pos + e->ode.n_vel;
     const double err = hn_error_norm(n, e->err, e->y, e->y_new, rtol, atol);
+    if (err <= 1 && run->spec.stepper->finish) {
+        *status = run->spec.stepper->finish(e->stepper, &e->ode);
+        if (*status != HN_OK) {
+            return HUGE_VAL;
+        }
+    }
     if (err <= 1 && f->after_step) {
         *status = f->after_step(e->formulation, run->now.t + h, e->y_new, changed);
         return *status == HN_OK ? err : HUGE_VAL;

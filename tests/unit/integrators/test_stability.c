@@ -39,11 +39,9 @@ static const struct {
     const char *name;
     double real_limit, imag_limit;
 } table[] = {
-    {"euler", 2.000, 0},
-    {"heun", 2.000, 0},
-    {"rk4", 2.785, 2.828},
-    {"dopri5", 3.307, 0.997},
-    {"symplectic-euler", 0.828, 2.0},
+    {"euler", 2.000, 0},      {"heun", 2.000, 0},       {"rk4", 2.785, 2.828},
+    {"dopri5", 3.307, 0.997}, {"dop853", 6.394, 5.960}, {"symplectic-euler", 0.828, 2.0},
+    {"verlet", 1.0, 2.0},
 };
 enum { N_TABLE = sizeof table / sizeof table[0] };
 

@@ -6,18 +6,18 @@
 
 // The order conditions of Butcher, one per rooted tree: Hairer, Norsett & Wanner 1993, table II.2.1.
 
-enum { MAX_STAGES = 8, N_CONDITIONS = 17 };
+enum { MAX_STAGES = 12, N_CONDITIONS = 17 };
 #define ROUNDING 2e-14 // sums of seven terms of size up to 12
 
 static const hn_tableau *const tableaux[] = {&hn_tableau_euler, &hn_tableau_heun, &hn_tableau_rk4,
-                                             &hn_tableau_dopri5};
+                                             &hn_tableau_dopri5, &hn_tableau_dop853};
 enum { N_TABLEAUX = sizeof tableaux / sizeof tableaux[0] };
 
 static void times_A(const hn_tableau *t, const double *x, double *out) {
     for (int i = 0; i < t->stages; i++) {
         out[i] = 0;
         for (int j = 0; j < t->stages; j++) {
-            out[i] += t->A[i * t->stages + j] * x[j];
+            out[i] += t->A[i * (t->stages + t->extra) + j] * x[j];
         }
     }
 }
@@ -104,11 +104,12 @@ static void rows_of_A_sum_to_c_and_A_is_strictly_lower(void **state) {
     (void)state;
     for (int k = 0; k < N_TABLEAUX; k++) {
         const hn_tableau *t = tableaux[k];
-        for (int i = 0; i < t->stages; i++) {
+        const int all = t->stages + t->extra;
+        for (int i = 0; i < all; i++) {
             double sum = 0;
-            for (int j = 0; j < t->stages; j++) {
-                sum += t->A[i * t->stages + j];
-                assert_true(j < i || t->A[i * t->stages + j] == 0);
+            for (int j = 0; j < all; j++) {
+                sum += t->A[i * all + j];
+                assert_true(j < i || t->A[i * all + j] == 0);
             }
             assert_near(sum, t->c[i], ROUNDING);
         }
@@ -128,17 +129,117 @@ static void each_tableau_has_the_stated_order_and_not_one_more(void **state) {
     }
 }
 
-static void embedded_solution_has_the_stated_order_and_not_one_more(void **state) {
-    (void)state;
-    const hn_tableau *t = &hn_tableau_dopri5;
+static void embedded_solution_must_have_order(const hn_tableau *t, const double *e, int stated) {
     double b_hat[MAX_STAGES];
     for (int i = 0; i < t->stages; i++) {
-        b_hat[i] = t->b[i] - t->e[i];
+        b_hat[i] = t->b[i] - e[i];
     }
-    for (int order = 1; order <= t->embedded_order; order++) {
+    for (int order = 1; order <= stated; order++) {
         assert_near(worst_defect(t, b_hat, order), 0, ROUNDING);
     }
-    assert_true(worst_defect(t, b_hat, t->embedded_order + 1) > 1e-5);
+    if (stated < 5) {
+        assert_true(worst_defect(t, b_hat, stated + 1) > 1e-5);
+    }
+}
+
+static void embedded_solutions_have_the_stated_order_and_not_one_more(void **state) {
+    (void)state;
+    int found = 0;
+    for (int k = 0; k < N_TABLEAUX; k++) {
+        const hn_tableau *t = tableaux[k];
+        if (t->e) {
+            embedded_solution_must_have_order(t, t->e, t->embedded_order);
+            found++;
+        }
+        if (t->e2) {
+            embedded_solution_must_have_order(t, t->e2, t->embedded_order2);
+            found++;
+        }
+    }
+    assert_int_equal(found, 3);
+}
+
+// A rooted tree as the levels of its nodes in depth-first order, root at level 0. Its elementary weights are those of its
+// branches, each taken through A, multiplied; its density is its size times the densities of its branches.
+enum { MAX_ORDER = 9 };
+typedef struct weighed {
+    double x[MAX_STAGES], density;
+} weighed;
+
+static weighed weigh(const hn_tableau *t, int size, const int *level) {
+    weighed out = {.density = size};
+    for (int i = 0; i < t->stages; i++) {
+        out.x[i] = 1;
+    }
+    for (int start = 1, end; start < size; start = end) {
+        for (end = start + 1; end < size && level[end] > level[start];) {
+            end++;
+        }
+        const weighed branch = weigh(t, end - start, level + start);
+        double through[MAX_STAGES];
+        times_A(t, branch.x, through);
+        product(t->stages, out.x, through, out.x);
+        out.density *= branch.density;
+    }
+    return out;
+}
+
+// the next tree of this size; 0 after the last. Source: Beyer & Hedetniemi 1980, Constant time generation of rooted trees
+static int next_tree(int size, int *level) {
+    int p = size - 1;
+    while (p > 0 && level[p] == 1) {
+        p--;
+    }
+    if (p <= 0) {
+        return 0;
+    }
+    int q = p - 1;
+    while (level[q] != level[p] - 1) {
+        q--;
+    }
+    for (int i = p; i < size; i++) {
+        level[i] = level[i - (p - q)];
+    }
+    return 1;
+}
+
+// largest |density b . x - 1| over all trees of this size, and how many there are
+static double worst_tree(const hn_tableau *t, int size, int *n_trees) {
+    int level[MAX_ORDER];
+    double worst = 0;
+    for (int i = 0; i < size; i++) {
+        level[i] = i;
+    }
+    *n_trees = 0;
+    do {
+        const weighed tree = weigh(t, size, level);
+        double sum = 0;
+        for (int i = 0; i < t->stages; i++) {
+            sum += t->b[i] * tree.x[i];
+        }
+        worst = fmax(worst, fabs(tree.density * sum - 1));
+        ++*n_trees;
+    } while (next_tree(size, level));
+    return worst;
+}
+
+static void every_rooted_tree_up_to_the_order_is_met_and_some_beyond_is_not(void **state) {
+    (void)state;
+    // Hairer, Norsett & Wanner 1993, table II.2.2
+    static const int known[MAX_ORDER] = {1, 1, 2, 4, 9, 20, 48, 115, 286};
+    for (int k = 0; k < N_TABLEAUX; k++) {
+        const hn_tableau *t = tableaux[k];
+        for (int order = 1; order <= t->order + 1; order++) {
+            int n = 0;
+            const double worst = worst_tree(t, order, &n);
+            assert_int_equal(n, known[order - 1]);
+            if (order <= t->order) {
+                assert_near(worst, 0, 5e-11); // densities go up to 8!
+            } else {
+                assert_true(worst > 1e-2);
+            }
+        }
+    }
 }
 
 static void last_stage_of_a_fsal_tableau_is_the_new_point(void **state) {
@@ -155,7 +256,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_of_A_sum_to_c_and_A_is_strictly_lower),
         cmocka_unit_test(each_tableau_has_the_stated_order_and_not_one_more),
-        cmocka_unit_test(embedded_solution_has_the_stated_order_and_not_one_more),
+        cmocka_unit_test(embedded_solutions_have_the_stated_order_and_not_one_more),
+        cmocka_unit_test(every_rooted_tree_up_to_the_order_is_met_and_some_beyond_is_not),
         cmocka_unit_test(last_stage_of_a_fsal_tableau_is_the_new_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

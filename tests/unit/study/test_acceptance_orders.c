@@ -17,8 +17,11 @@ static void every_pair_converges_with_the_order_of_its_integrator(void **state) 
     static const struct {
         const char *name;
         double order, first; // largest step, where the error has settled into its power of h
-    } integrators[] = {
-        {"euler", 1, 1e-3}, {"symplectic-euler", 1, 1e-3}, {"heun", 2, 4e-3}, {"rk4", 4, 1e-2}};
+    } integrators[] = {{"euler", 1, 1e-3},
+                       {"symplectic-euler", 1, 1e-3},
+                       {"heun", 2, 4e-3},
+                       {"verlet", 2, 2e-3},
+                       {"rk4", 4, 1e-2}};
     hn_model m;
     hn_model_open_closed(&m, "fb0", NULL);
     const double th1 = 2.72677524435372249, th2 = 0.434120794394454479, th3 = 2.37837623328492433;

@@ -97,6 +97,8 @@ static void reduced_coordinates_meet_the_reference_to_twelve_digits(void **state
 static void every_sound_formulation_meets_the_reference_to_ten_digits(void **state) {
     (void)state;
     static const char *const methods[] = {
+        "projection@dop853:rtol=1e-13",
+        "reduced@dop853:rtol=1e-13",
         "index1@rk4:h=5e-4",
         "baumgarte:alpha=5,beta=5@rk4:h=5e-4",
         "projection:weight=euclidean@rk4:h=5e-4",

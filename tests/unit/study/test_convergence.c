@@ -47,6 +47,7 @@ static void every_sound_method_has_the_order_of_its_integrator_on_a_closed_loop(
     } rows[] = {{"euler:h=1e-3", 4, 1},
                 {"symplectic-euler:h=1e-3", 4, 1},
                 {"heun:h=4e-3", 4, 2},
+                {"verlet:h=4e-3", 4, 2},
                 {"rk4:h=1.25e-2", 5, 4}};
     for (int i = 0; i < hn_formulation_count(); i++) {
         const hn_formulation *f = hn_formulation_at(i);
