@@ -192,8 +192,39 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
     return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
+/// Entries that M and J may have: beyond that the equations outgrow any tape, and writing them down would take minutes.
+enum { MAX_MASS_ENTRIES = 60000, MAX_CLOSURE_ENTRIES = 300000, ROWS_PER_JOINT = 5 };
+
+/// The mass matrix couples each body to all that carry it; a closure row touches every body on its two paths.
+static hn_status check_size(const hn_mech *m) {
+    const hn_tree *tree = m->tree;
+    const hn_scene *scene = m->sys->scene;
+    long long mass = 0, closure = 0;
+    for (int l = 0; l < tree->ground; l++) {
+        mass += tree->links[l].depth;
+    }
+    for (int k = 0; k < tree->n_cut; k++) {
+        const hn_joint *joint = &scene->joints[tree->cut[k]];
+        const int a = hn_tree_link(tree, joint->parent), b = hn_tree_link(tree, joint->child);
+        const int common = hn_tree_common(tree, a, b);
+        closure += ROWS_PER_JOINT * ((long long)tree->links[a].depth + tree->links[b].depth -
+                                     2LL * tree->links[common].depth);
+    }
+    if (mass > MAX_MASS_ENTRIES || closure > MAX_CLOSURE_ENTRIES) {
+        return hn_diags_add(m->sys->diags, HN_ERR_LIMIT, "/bodies",
+                            "long chains grow with the square of their length: shorten them",
+                            "the equations would have %lld mass entries and %lld closure entries; "
+                            "%d and %d are compiled at most",
+                            mass, closure, MAX_MASS_ENTRIES, MAX_CLOSURE_ENTRIES);
+    }
+    return HN_OK;
+}
+
 static hn_status trace_terms(hn_mech *m) {
-    hn_status status = hn_mech_trace_geometry(m);
+    hn_status status = check_size(m);
+    if (status == HN_OK) {
+        status = hn_mech_trace_geometry(m);
+    }
     if (status == HN_OK) {
         status = hn_mech_cut_coordinates(m);
     }
@@ -211,8 +242,6 @@ static hn_status trace_terms(hn_mech *m) {
     }
     return status == HN_OK ? trace_points(m) : status;
 }
-
-enum { ROWS_PER_JOINT = 5 };
 
 hn_status hn_bodies_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;

@@ -70,6 +70,10 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     if (status == HN_OK) {
         status = assemble(model, source->allow_open, diags);
     }
+    if (status == HN_ERR_LIMIT && diags && diags->n == 0) {
+        hn_diags_add(diags, status, "/scene", "take fewer bodies, or shorter chains",
+                     "the scene's equations hold more values at once than a tape can (65,000)");
+    }
     if (status != HN_OK) {
         hn_model_free(model);
         return status;

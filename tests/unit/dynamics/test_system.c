@@ -536,6 +536,19 @@ static void a_matrix_that_is_not_sparse_is_not_unrolled(void **state) {
     }
 }
 
+static void equations_that_would_grow_without_bound_are_refused(void **state) {
+    (void)state;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    write_chain(&b, 1900);
+    model m;
+    hn_diags diags;
+    assert_int_equal(compile_text(hn_strbuf_text(&b), &m, &diags), HN_ERR_LIMIT);
+    assert_string_equal(diags.item[0].pointer, "/bodies");
+    assert_non_null(strstr(diags.item[0].message, "mass entries"));
+    hn_strbuf_reset(&b);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_loop_that_can_never_close_is_told_with_its_offset),
@@ -554,6 +567,7 @@ int main(void) {
             a_ladder_of_200_loops_compiles_in_a_second_and_costs_as_much_a_loop_as_one_of_10),
         cmocka_unit_test(symbolic_parameters_change_nothing_in_the_numbers),
         cmocka_unit_test(a_matrix_that_is_not_sparse_is_not_unrolled),
+        cmocka_unit_test(equations_that_would_grow_without_bound_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
