@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEFAULT_DEPTH = 200, DEFAULT_CHARS = 20000, MAX_NAME = 80, MAX_POWER = 1000 };
+enum { DEFAULT_DEPTH = 200, DEFAULT_CHARS = 20000, MAX_NAME = 80, MAX_POWER = 1000, CHUNK = 32 };
 
 /// Precedence climbing over the text. After a fault everything returns zero at once.
 typedef struct parser {
@@ -369,22 +369,57 @@ static hn_ex parse_product(parser *p) {
     return e;
 }
 
+/// The terms of one chain of + and -, so that it becomes one flat sum. Few fit without asking for memory.
+typedef struct chain {
+    hn_ex *term;
+    int n, cap;
+    hn_ex few[CHUNK];
+} chain;
+
+static int chain_add(parser *p, chain *s, hn_ex term) {
+    if (s->n == s->cap) {
+        hn_ex *term_list = malloc(2 * (size_t)s->cap * sizeof *term_list);
+        if (!term_list) {
+            p->status = hn_diag_set(p->diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+            return 0;
+        }
+        memcpy(term_list, s->term, (size_t)s->n * sizeof *term_list);
+        if (s->term != s->few) {
+            free(s->term);
+        }
+        s->term = term_list;
+        s->cap *= 2;
+    }
+    s->term[s->n++] = term;
+    return 1;
+}
+
 static hn_ex parse_sum(parser *p) {
     if (!enter(p)) {
         return hn_num(0);
     }
-    hn_ex e = parse_product(p);
-    while (p->status == HN_OK) {
-        const char c = peek(p);
-        if (c != '+' && c != '-') {
+    size_t at = p->at;
+    chain s = {.n = 0, .cap = CHUNK};
+    s.term = s.few;
+    char sign = '+';
+    int more = 0;
+    do {
+        const hn_ex term = parse_product(p);
+        if (p->status != HN_OK || !chain_add(p, &s, sign == '-' ? hn_neg(term) : term)) {
             break;
         }
-        const size_t at = p->at++;
-        const hn_ex b = parse_product(p);
-        e = c == '+' ? hn_add(p->g, e, b) : hn_sub(p->g, e, b);
-        if (!isfinite(e.c)) {
-            return fail(p, at, NULL, "the sum of the numbers here is too large for a double");
+        sign = peek(p);
+        more = sign == '+' || sign == '-';
+        if (more) {
+            at = p->at++;
         }
+    } while (more);
+    hn_ex e = p->status != HN_OK ? hn_num(0) : s.n == 1 ? s.term[0] : hn_sum(p->g, s.term, s.n);
+    if (!isfinite(e.c)) {
+        e = fail(p, at, NULL, "the sum of the numbers here is too large for a double");
+    }
+    if (s.term != s.few) {
+        free(s.term);
     }
     p->depth--;
     return e;

@@ -316,14 +316,26 @@ static void put_product(printer *p, int32_t n, double c) {
 
 // sums ------------------------------------------------------------------------------------------------------------
 
-/// A factor before a sum is given to its terms: 3*x + 1 reads better than the graph's own 3*(x + 1/3).
+/// A factor before a sum is given to its terms: 3*x + 1 reads better than the graph's own 3*(x + 1/3). Text must
+/// give the same node when read, so there only where division by the factor brings every coefficient back.
+static int can_distribute(const printer *p, const hn_node *node, double factor) {
+    for (int i = 0; i < node->n_args && p->form == HN_PRINT_TEXT && p->digits == 0; i++) {
+        const double c = node->args[i].c;
+        if (factor * c / factor != c || !isnormal(factor * c)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static void put_sum(printer *p, const hn_node *node, double factor) {
     for (int i = 0; i < node->n_args; i++) {
         hn_ex term = hn_scale(factor, node->args[i]);
         const int minus = term.c < 0;
         put(p, minus ? (i ? " - " : "-") : (i ? " + " : ""));
         term.c = fabs(term.c);
-        print_ex(p, term, minus || i ? LEVEL_PRODUCT : LEVEL_SUM);
+        // a sum that leads a sum keeps its parentheses as text: read without them it would be flat
+        print_ex(p, term, minus || i || p->form == HN_PRINT_TEXT ? LEVEL_PRODUCT : LEVEL_SUM);
     }
 }
 
@@ -333,7 +345,7 @@ static level level_of(const printer *p, hn_ex e) {
     if (hn_is_number(e, &value)) {
         return value < 0 ? LEVEL_SUM : LEVEL_ATOM;
     }
-    if (e.c < 0 || node->op == HN_OP_SUM) {
+    if (e.c < 0 || (node->op == HN_OP_SUM && can_distribute(p, node, e.c))) {
         return LEVEL_SUM;
     }
     if (e.c != 1 || node->op == HN_OP_MUL || node->op == HN_OP_RECIP) {
@@ -344,7 +356,7 @@ static level level_of(const printer *p, hn_ex e) {
 
 static void put_unwrapped(printer *p, hn_ex e) {
     const hn_node *node = &p->g->nodes[e.n];
-    if (node->op == HN_OP_SUM) {
+    if (node->op == HN_OP_SUM && can_distribute(p, node, e.c)) {
         put_sum(p, node, e.c);
     } else if (e.c < 0) {
         put(p, "-");

@@ -51,7 +51,7 @@ static void powers_signs_and_products_bind_as_in_mathematics(void **state) {
     assert_same(g, "x^-1", "1/x");
     assert_same(g, "x**3", "x*x*x");
     assert_same(g, "l1*l2/d*x", "((l1*l2)/d)*x");
-    assert_same(g, "l1 - l2 - d", "(l1 - l2) - d");
+    assert_same(g, "l1 - l2 - d", "-d - l2 + l1");
     assert_same(g, "--x", "x");
     assert_same(g, "2*-x", "-2*x");
     assert_same(g, "1e-3*x", "x/1000");
@@ -210,7 +210,7 @@ static void write_formula(hn_strbuf *b, unsigned *seed, int depth) {
     }
 }
 
-// what is printed reads back; the text of that is the same again, and so is the value
+// what is printed reads back as the very node it came from
 static void printed_formulas_read_back(void **state) {
     (void)state;
     hn_graph *g = hn_graph_create();
@@ -222,7 +222,7 @@ static void printed_formulas_read_back(void **state) {
     for (int i = 0; i < N_KNOWN; i++) {
         values[i] = 0.3 + 0.17 * i;
     }
-    int same = 0, tried = 0;
+    int tried = 0;
     for (unsigned seed = 1; seed <= 3000; seed++) {
         unsigned s = seed * 7919u;
         hn_strbuf text, again;
@@ -241,15 +241,15 @@ static void printed_formulas_read_back(void **state) {
             if (isfinite(a)) {
                 assert_near(b, a, 1e-9 * (1 + fabs(a)));
             }
-            same += hn_ex_same(e, back);
+            if (!hn_ex_same(e, back)) {
+                fail_msg("%s -> %s is another node", hn_strbuf_text(&text), hn_strbuf_text(&again));
+            }
             tried++;
         }
         hn_strbuf_reset(&text);
         hn_strbuf_reset(&again);
     }
     assert_true(tried > 2500);
-    // a sum inside a product may come back flattened elsewhere; that must stay the exception
-    assert_true(same > 0.97 * tried);
     hn_graph_free(g);
 }
 
