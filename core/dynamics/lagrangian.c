@@ -4,6 +4,7 @@
 //     along (q', v', t') = (v, 0, 1), so that terms of t come in by themselves.                         (2)
 #include "dynamics/system_impl.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static hn_status make_symbols(hn_system *sys) {
@@ -165,6 +166,37 @@ static hn_status trace_constraints(hn_system *sys) {
     return HN_OK;
 }
 
+/// The arm by which an angle moves the constraints at the start, the largest of them: what joints of a body are apart in a
+/// scene of bodies. It is the length of a column of J, so that turning the axes changes nothing. Constraints that no angle
+/// moves leave 1.
+static hn_status find_length(hn_system *sys) {
+    const hn_coordinate *c = sys->scene->coordinates;
+    double *x = hn_arena_doubles(sys->arena, (size_t)hn_graph_n_symbols(sys->g));
+    double *square = hn_arena_doubles(sys->arena, (size_t)sys->nv);
+    double largest = 0;
+    if (!x || !square) {
+        return HN_ERR_MEMORY;
+    }
+    for (int j = 0; j < sys->nv; j++) {
+        x[sys->q_symbols[j]] = c[j].q0;
+    }
+    for (int i = 0; sys->opts.symbolic_params && i < sys->scene->n_params; i++) {
+        x[hn_ex_symbol(sys->g, sys->params[i])] = sys->scene->params[i].value;
+    }
+    for (int k = 0; k < sys->J.n; k++) {
+        const hn_entry *at = &sys->J.at[k];
+        const double value = hn_graph_eval(sys->g, at->e, x);
+        square[at->col] += value * value;
+    }
+    for (int j = 0; j < sys->nv; j++) {
+        largest = fmax(largest, c[j].kind == HN_ANGLE ? square[j] : 0);
+    }
+    if (largest > 0 && isfinite(largest)) {
+        sys->length = sqrt(largest);
+    }
+    return HN_OK;
+}
+
 // points -------------------------------------------------------------------------------------------------------------
 
 static hn_status trace_points(hn_system *sys) {
@@ -215,6 +247,9 @@ hn_status hn_lagrangian_compile(hn_system *sys) {
     }
     if (status == HN_OK) {
         status = trace_constraints(sys);
+    }
+    if (status == HN_OK) {
+        status = find_length(sys);
     }
     if (status == HN_OK) {
         status = trace_points(sys);

@@ -54,7 +54,8 @@ int hn_system_row_is_length(const hn_system *sys, int row);
 /// The joint (scene index) that closes loop i, or -1 for a tear or formula loop; name of the loop.
 int hn_system_loop_joint(const hn_system *sys, int loop);
 const char *hn_system_loop_name(const hn_system *sys, int loop);
-/// Characteristic length [m] for relative tolerances: the largest distance between joint locations of one body (1 if there is none).
+/// Characteristic length [m] for relative tolerances: the largest distance between joint locations of one body; with a
+/// Lagrangian, the largest arm by which an angle moves a constraint at the start. 1 if there is none.
 double hn_system_length(const hn_system *sys);
 
 /// Tree, for telling: parent body and joint of each body in the spanning tree (joint -1 for Lagrangian scenes).
