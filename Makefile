@@ -86,7 +86,7 @@ BROWSER       := $(sort $(wildcard tests/browser/test_*))
 .PHONY: all programs
 # `make` alone assumes nothing but itself, so the compilers come first
 all: build/.packages-run
-	@$(MAKE) $(JOBS) --no-print-directory $(PROGRAM) $(LIBRARY)
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM) $(LIBRARY)
 
 $(PROGRAM): $(call objects,$(SERVER_SOURCES)) $(LIBRARY)
 	$(call say,link $@)
@@ -132,7 +132,7 @@ $(OUT)/%.o: %.c
 
 -include $(patsubst %.c,$(OUT)/%.d,$(ALL_C))
 
-programs: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW) $(BENCH)
+programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libosmesa6-dev libpng-dev \
@@ -160,7 +160,7 @@ BROWSER_READY := $(patsubst %/package.json,%/node_modules/.installed,$(wildcard 
 # ---- using ----------------------------------------------------------------------------------------------------
 .PHONY: run install clean help
 run: all
-	@$(if $(WEB_READY),$(MAKE) --no-print-directory $(WEB_READY))
+	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	@build/holonom serve --port $(PORT) | while IFS= read -r line; do \
 	    printf '%s\n' "$$line"; \
 	    address=$$(printf '%s\n' "$$line" | sed -n 's|.*\(http://[^ ]*\).*|\1|p'); \
@@ -173,7 +173,7 @@ run: all
 	done
 
 install: all
-	@$(if $(WEB_READY),$(MAKE) --no-print-directory $(WEB_READY))
+	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
 	install -D -m 755 build/holonom $(DESTDIR)$(PREFIX)/bin/holonom
 	install -D -m 644 build/libholonom.a $(DESTDIR)$(PREFIX)/lib/libholonom.a
 	@for f in $$(find core -name '*.h'); do \
@@ -202,30 +202,30 @@ help:
 # ---- testing --------------------------------------------------------------------------------------------------
 .PHONY: test test-quick asan tsan bench reference run-suite run-unit run-server run-bench
 test: build/.packages-test
-	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) --no-print-directory $(WEB_READY) $(BROWSER_READY))
-	@$(MAKE) $(JOBS) --no-print-directory run-suite
+	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
+	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
 
 test-quick: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory run-unit
+	@$(MAKE) -s $(JOBS) --no-print-directory run-unit
 
 asan: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-unit
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=asan run-server
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=asan run-unit
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=asan run-server
 
 tsan: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=tsan run-server
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=tsan run-server
 
 bench: all
-	@$(MAKE) $(JOBS) --no-print-directory run-bench
+	@$(MAKE) -s $(JOBS) --no-print-directory run-bench
 
 # kept only when every run was good
 reference: build/.packages-test
-	@$(MAKE) $(JOBS) --no-print-directory $(PROGRAM)
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/reference/table.py $(PROGRAM) >build/reference.txt
 	@cp build/reference.txt tests/reference/results.txt && cat tests/reference/results.txt
 
 # HOLONOM tells the scripts which program to drive
-run-suite: $(if $(wildcard $(MAIN_SOURCE)),$(PROGRAM)) $(UNIT) $(SLOW)
+run-suite: $(PROGRAM) $(UNIT) $(SLOW)
 	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(UNIT) $(SLOW) $(SCRIPTS) $(BROWSER)
 
 run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
@@ -243,10 +243,10 @@ run-bench: $(BENCH)
 # ---- checking -------------------------------------------------------------------------------------------------
 .PHONY: check check-layers check-headers check-format format
 check: build/.packages-check check-layers
-	@$(MAKE) --no-print-directory check-headers
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=gcc programs
-	@$(MAKE) $(JOBS) --no-print-directory VARIANT=clang programs
-	@$(MAKE) --no-print-directory check-format
+	@$(MAKE) -s --no-print-directory check-headers
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=clang programs
+	@$(MAKE) -s --no-print-directory check-format
 	@echo 'check: all good'
 
 # awk gets the table above as layer:need,need
