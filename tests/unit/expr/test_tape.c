@@ -19,13 +19,17 @@ static double random_between(unsigned *seed, double low, double high) {
     return low + (high - low) * next_random(seed) / (double)(1u << 24);
 }
 
-/// A pool of expressions that grow on one another, values kept moderate.
-static void grow_pool(hn_graph *g, unsigned *seed, hn_ex pool[N_POOL]) {
+static void make_symbols(hn_graph *g, hn_ex *x) {
     char name[8] = "x0";
     for (int i = 0; i < N_SYMBOLS; i++) {
         name[1] = (char)('0' + i);
-        pool[i] = hn_symbol(g, name, NULL);
+        x[i] = hn_symbol(g, name, NULL);
     }
+}
+
+/// A pool of expressions that grow on one another, values kept moderate.
+static void grow_pool(hn_graph *g, unsigned *seed, hn_ex pool[N_POOL]) {
+    make_symbols(g, pool);
     for (int i = N_SYMBOLS; i < N_POOL; i++) {
         const hn_ex a = pool[next_random(seed) % (unsigned)i],
                     b = pool[next_random(seed) % (unsigned)i];
@@ -155,11 +159,7 @@ static void operations_are_counted_exactly(void **state) {
     (void)state;
     hn_graph *g = hn_graph_create();
     hn_ex x[N_SYMBOLS];
-    char name[8] = "x0";
-    for (int i = 0; i < N_SYMBOLS; i++) {
-        name[1] = (char)('0' + i);
-        x[i] = hn_symbol(g, name, NULL);
-    }
+    make_symbols(g, x);
     // sin and cos of one argument, one product each, one sum: 1 + 2 + 1
     const hn_ex turn =
         hn_add(g, hn_mul(g, x[0], hn_cos(g, x[1])), hn_mul(g, x[2], hn_sin(g, x[1])));
@@ -197,11 +197,7 @@ static void a_listing_shows_what_runs(void **state) {
     (void)state;
     hn_graph *g = hn_graph_create();
     hn_ex x[N_SYMBOLS];
-    char name[8] = "x0";
-    for (int i = 0; i < N_SYMBOLS; i++) {
-        name[1] = (char)('0' + i);
-        x[i] = hn_symbol(g, name, NULL);
-    }
+    make_symbols(g, x);
     const hn_ex e = hn_add(g, hn_mul(g, x[0], hn_cos(g, x[1])), hn_mul(g, x[2], hn_sin(g, x[1])));
     hn_tape *tape = compile(g, &e, 1);
     hn_strbuf b;
@@ -219,11 +215,7 @@ static void a_chain_of_a_hundred_thousand_nodes_compiles_and_runs(void **state) 
     (void)state;
     hn_graph *g = hn_graph_create();
     hn_ex x[N_SYMBOLS];
-    char name[8] = "x0";
-    for (int i = 0; i < N_SYMBOLS; i++) {
-        name[1] = (char)('0' + i);
-        x[i] = hn_symbol(g, name, NULL);
-    }
+    make_symbols(g, x);
     hn_ex e = x[0];
     for (int i = 0; i < 50000; i++) {
         e = hn_scale(0.5, hn_sin(g, hn_add(g, e, x[1])));
