@@ -10,6 +10,9 @@ static const hn_formulation *const formulations[] = {
     &hn_formulation_nullspace_as_printed,
     &hn_formulation_partitioning,
     &hn_formulation_reduced,
+    &hn_formulation_penalty,
+    &hn_formulation_augmented_lagrangian,
+    &hn_formulation_udwadia_kalaba,
 };
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
 

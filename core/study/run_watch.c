@@ -296,19 +296,26 @@ void hn_run_tell_charts(hn_run *run, long long changes) {
          "other coordinates became the independent ones; the motion goes on unchanged");
 }
 
+// The faster rate at which the method itself pulls the gap to zero, 0 where it does not: of s^2 + 2 damping s + rate^2 the
+// larger root, or its size alone when the pair is complex.
+static double pulling_rate(const hn_run *run) {
+    double damping = hn_method_setting(&run->spec, "alpha", 0);
+    double rate = hn_method_setting(&run->spec, "beta", 0);
+    if (is_formulation(run, "penalty") || is_formulation(run, "augmented-lagrangian")) {
+        rate = hn_method_setting(&run->spec, "omega", 0);
+        damping = rate * hn_method_setting(&run->spec, "xi", 0);
+    } else if (!is_formulation(run, "baumgarte") || hn_method_setting(&run->spec, "rule", 0) != 0) {
+        return 0;
+    }
+    const double square = damping * damping - rate * rate;
+    return square > 0 ? damping + sqrt(square) : fabs(rate);
+}
+
 void hn_run_tell_step_limit(hn_run *run) {
     const double h = hn_method_setting(&run->spec, "h", 0);
-    const double alpha = hn_method_setting(&run->spec, "alpha", 0);
-    const double beta = hn_method_setting(&run->spec, "beta", 0);
     const double limit = run->spec.stepper->real_limit;
+    const double rate = pulling_rate(run);
     over(run, HN_INCIDENT_STEP_LIMIT);
-    if (!is_formulation(run, "baumgarte") || h == 0 ||
-        hn_method_setting(&run->spec, "rule", 0) != 0) {
-        return;
-    }
-    // the faster root of s^2 + 2 alpha s + beta^2; its size alone when the pair is complex
-    const double square = alpha * alpha - beta * beta;
-    const double rate = square > 0 ? alpha + sqrt(square) : fabs(beta);
     if (!(rate * h > limit)) {
         return;
     }
@@ -317,12 +324,18 @@ void hn_run_tell_step_limit(hn_run *run) {
              "the stabilisation is too fast for the step: rate x h = %.3g, %s is stable "
              "up to %.3g",
              rate * h, run->spec.stepper->name, limit);
-    if (i) {
-        const double safe = 0.1 / h;
+    if (!i) {
+        return;
+    }
+    const double safe = 0.1 / h;
+    if (is_formulation(run, "baumgarte")) {
         snprintf(i->remedy[0], sizeof i->remedy[0], "baumgarte:alpha=%.4g,beta=%.4g@%s:h=%.4g",
                  safe, safe, run->spec.stepper->name, h);
-        snprintf(i->remedy[1], sizeof i->remedy[1], "h=%.3g", 0.1 * limit / rate);
+    } else {
+        snprintf(i->remedy[0], sizeof i->remedy[0], "%s:omega=%.4g@%s:h=%.4g",
+                 run->spec.formulation->name, safe, run->spec.stepper->name, h);
     }
+    snprintf(i->remedy[1], sizeof i->remedy[1], "h=%.3g", 0.1 * limit / rate);
 }
 
 static hn_incident_code code_of(hn_status status) {

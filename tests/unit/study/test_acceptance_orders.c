@@ -13,7 +13,8 @@ enum { STEPS = 6 };
 static void every_pair_converges_with_the_order_of_its_integrator(void **state) {
     (void)state;
     static const char *const formulations[] = {
-        "index1", "baumgarte:alpha=5,beta=5", "projection", "nullspace", "partitioning", "reduced"};
+        "index1",  "baumgarte:alpha=5,beta=5", "projection",    "nullspace", "partitioning",
+        "reduced", "augmented-lagrangian",     "udwadia-kalaba"};
     static const struct {
         const char *name;
         double order, first; // largest step, where the error has settled into its power of h

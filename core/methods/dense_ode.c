@@ -1,0 +1,109 @@
+#include "methods/dense_ode.h"
+
+#include "linalg/dense.h"
+#include "methods/flops.h"
+
+#include <stdio.h>
+#include <string.h>
+
+hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_gap, hn_arena *arena,
+                            hn_diag *diag) {
+    const hn_system_info info = hn_system_get_info(sys);
+    const unsigned gap = with_gap ? HN_TERM_PHI | HN_TERM_PHI_T : 0;
+    ode->sys = sys;
+    ode->nq = info.nq;
+    ode->nv = info.nv;
+    ode->nc = info.nc;
+    const hn_status status = hn_eval_create(
+        sys, HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | gap, arena, &ode->eval);
+    if (status != HN_OK) {
+        return hn_diag_set(diag, status, NULL, NULL, "the equations cannot be compiled: %s",
+                           hn_status_text(status));
+    }
+    ode->M = hn_eval_get(ode->eval, HN_TERM_M);
+    ode->f = hn_eval_get(ode->eval, HN_TERM_F);
+    ode->J = hn_eval_get(ode->eval, HN_TERM_J);
+    ode->gamma = hn_eval_get(ode->eval, HN_TERM_GAMMA);
+    ode->phi = with_gap ? hn_eval_get(ode->eval, HN_TERM_PHI) : NULL;
+    ode->phi_t = with_gap ? hn_eval_get(ode->eval, HN_TERM_PHI_T) : NULL;
+    return HN_OK;
+}
+
+void hn_dense_ode_destroy(void *self) {
+    hn_dense_ode *ode = self;
+    hn_eval_free(ode->eval);
+    ode->eval = NULL;
+}
+
+void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
+                       double *out) {
+    for (int i = 0; i < ode->nc; i++) {
+        const double rate = hn_dot(ode->nv, ode->J + (size_t)i * ode->nv, v) + ode->phi_t[i];
+        out[i] = ode->gamma[i] + 2 * xi * omega * rate + omega * omega * ode->phi[i];
+    }
+}
+
+const char *hn_dense_ode_name(const hn_dense_ode *ode, int i) {
+    if (i >= hn_system_get_info(ode->sys).n_user) {
+        return "?";
+    }
+    return hn_system_scene(ode->sys)->coordinates[hn_system_user_coordinate(ode->sys, i)].name;
+}
+
+static hn_status rhs(void *self, double t, const double *y, double *ydot) {
+    hn_dense_ode *ode = self;
+    const double *q = y, *v = y + ode->nq;
+    ode->cost.evals++;
+    hn_eval_run(ode->eval, t, q, v);
+    const hn_status status = ode->accelerate(self, t, v, ydot + ode->nq);
+    if (status != HN_OK) {
+        return status;
+    }
+    if (!hn_all_finite(ode->nv, ydot + ode->nq)) {
+        snprintf(ode->why, sizeof ode->why, "the accelerations at t = %.6g s are not finite", t);
+        return HN_ERR_DIVERGED;
+    }
+    hn_system_kinematics(ode->sys, q, v, ydot);
+    return HN_OK;
+}
+
+static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
+    const hn_dense_ode *ode = self;
+    (void)t;
+    hn_system_kinematics(ode->sys, y, y + ode->nq, pos_dot);
+    return HN_OK;
+}
+
+void hn_dense_ode_get(void *self, hn_ode *out) {
+    const hn_dense_ode *ode = self;
+    *out = (hn_ode){
+        .n_pos = ode->nq, .n_vel = ode->nv, .self = self, .rhs = rhs, .kinematics = kinematics};
+}
+
+hn_status hn_dense_ode_set_state(void *self, double t, const double *q, const double *v,
+                                 double *y) {
+    const hn_dense_ode *ode = self;
+    (void)t;
+    memcpy(y, q, (size_t)ode->nq * sizeof *y);
+    memcpy(y + ode->nq, v, (size_t)ode->nv * sizeof *y);
+    return HN_OK;
+}
+
+hn_status hn_dense_ode_get_state(void *self, double t, const double *y, double *q, double *v) {
+    const hn_dense_ode *ode = self;
+    (void)t;
+    memcpy(q, y, (size_t)ode->nq * sizeof *y);
+    memcpy(v, y + ode->nq, (size_t)ode->nv * sizeof *y);
+    return HN_OK;
+}
+
+void hn_dense_ode_add_cost(const void *self, hn_cost *cost) {
+    const hn_dense_ode *ode = self;
+    hn_cost_add(cost, &ode->cost);
+    cost->ops += (double)ode->cost.evals * hn_eval_info(ode->eval).ops;
+}
+
+const char *hn_dense_ode_why(const void *self) {
+    const hn_dense_ode *ode = self;
+    return ode->why[0] ? ode->why : NULL;
+}

@@ -1,0 +1,43 @@
+#ifndef HN_METHODS_DENSE_ODE_H
+#define HN_METHODS_DENSE_ODE_H
+// What the formulations share that get their acceleration from M, f, J and gamma as dense arrays, by their own formula: the
+// state y = (q, v) in system coordinates and
+//
+//     q' = G(q) v,    v' = accelerate(M, f, J, gamma, ...)                                             (1)
+//
+// A formulation's instance begins with an hn_dense_ode, so that the functions below fit its table.
+
+#include "dynamics/eval.h"
+#include "methods/method.h"
+
+enum { HN_DENSE_WHY_TEXT = 200 };
+
+typedef struct hn_dense_ode {
+    const hn_system *sys;
+    int nq, nv, nc;
+    hn_eval *eval;
+    /// the terms at the state last evaluated, as in eval.h; phi and phi_t only where asked for
+    const double *M, *f, *J, *gamma, *phi, *phi_t;
+    /// Fills a (nv) from the terms. Allocates nothing. Fails with its reason in `why`; counts its own work.
+    hn_status (*accelerate)(void *self, double t, const double *v, double *a);
+    hn_cost cost; ///< what the evaluator does not count itself
+    char why[HN_DENSE_WHY_TEXT];
+} hn_dense_ode;
+
+/// `with_gap`: phi and phi_t are wanted too. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, told in diag.
+HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_gap,
+                                          hn_arena *arena, hn_diag *diag);
+/// out (nc) = gamma + 2 xi omega (J v + phi_t) + omega^2 phi at the terms last evaluated.
+void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
+                       double *out);
+/// Name of the user coordinate behind system coordinate i, for telling.
+const char *hn_dense_ode_name(const hn_dense_ode *ode, int i);
+
+void hn_dense_ode_destroy(void *self);
+void hn_dense_ode_get(void *self, hn_ode *out);
+hn_status hn_dense_ode_set_state(void *self, double t, const double *q, const double *v, double *y);
+hn_status hn_dense_ode_get_state(void *self, double t, const double *y, double *q, double *v);
+void hn_dense_ode_add_cost(const void *self, hn_cost *cost);
+const char *hn_dense_ode_why(const void *self);
+
+#endif
