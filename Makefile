@@ -137,7 +137,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH)
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libosmesa6-dev libpng-dev \
                  ca-certificates node:nodejs npm:npm
-TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema chromium:chromium
+TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile
@@ -225,10 +225,16 @@ reference: build/.packages-test
 	@cp build/reference.txt tests/reference/results.txt && cat tests/reference/results.txt
 
 # HOLONOM tells the scripts which program to drive
-run-suite: $(PROGRAM) $(UNIT) $(SLOW)
+# a locale that writes a comma in its numbers, for the tests alone
+COMMA_LOCALE := build/locale/de_DE.UTF-8
+$(COMMA_LOCALE):
+	@mkdir -p $@
+	@localedef --no-archive -i de_DE -f UTF-8 ./$@
+
+run-suite: $(PROGRAM) $(UNIT) $(SLOW) $(COMMA_LOCALE)
 	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(UNIT) $(SLOW) $(SCRIPTS) $(BROWSER)
 
-run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
+run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
 
