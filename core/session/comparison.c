@@ -434,7 +434,8 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
         put_warning(b, &c->entries[i]);
         put_reason(b, c, &c->entries[i], &s);
-        hn_json_put_number(b, "t_reached", s.t);
+        // an adaptive step may end beyond the clock; what was reached is what can be shown
+        hn_json_put_number(b, "t_reached", fmin(s.t, (double)c->frame * c->frame_dt));
         put_cost(b, &s);
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);

@@ -239,8 +239,10 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
     hn_json_end_array(b);
 }
 
-static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, const char *warning,
-                    hn_status ended, const char *stop_reason, const table *tab) {
+static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
+                    const hn_run_request *request, const char *warning, hn_status ended,
+                    const table *tab) {
+    const char *stopped = request->stop_reason ? request->stop_reason : "stopped on request";
     hn_run_summary s = hn_run_get_summary(run);
     char spelling[HN_SPEC_MAX];
     hn_method_format(hn_run_spec(run), spelling);
@@ -252,8 +254,9 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run, cons
     }
     hn_json_put_string(b, "status", hn_status_name(ended));
     hn_json_put_string(b, "reason",
-                       ended == HN_ERR_BUDGET && s.status == HN_OK ? stop_reason : s.reason);
-    hn_json_put_number(b, "t_reached", s.t);
+                       ended == HN_ERR_BUDGET && s.status == HN_OK ? stopped : s.reason);
+    // an adaptive step may end beyond the time asked for
+    hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
     put_names(b, model);
     put_samples(b, tab);
     hn_json_put_number(b, "worst_gap", s.worst_gap);
@@ -294,8 +297,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
-        put_run(b, model, run, warning, *ended,
-                request->stop_reason ? request->stop_reason : "stopped on request", &tab);
+        put_run(b, model, run, request, warning, *ended, &tab);
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }
     hn_arena_free(tab.arena);
