@@ -27,6 +27,7 @@ typedef struct hn_run_watch_state {
     hn_accel *accel;
     hn_mode_watch *mode;
     double *a, *lambda, *speed_gap;
+    double *row_size; ///< nc: largest length of each row of J so far
     double start_energy, last_energy, v_min, v_max;
     double last_mode;
     int start_rank;

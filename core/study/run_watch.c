@@ -101,6 +101,7 @@ hn_status hn_run_watch_create(hn_run *run) {
     w->a = hn_arena_doubles(run->arena, (size_t)run->info.nv);
     w->lambda = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     w->speed_gap = hn_arena_doubles(run->arena, (size_t)run->info.nc);
+    w->row_size = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     w->conservative = is_conservative(run->sys);
     if (hn_arena_failed(run->arena)) {
         return HN_ERR_MEMORY;
@@ -182,6 +183,20 @@ static void look_at_energy(hn_run *run, double kinetic, double potential) {
     }
 }
 
+// Shortest row of J against the largest that row has been. Where all links of a loop lie on one line a whole row dies away:
+// the pivots of K, each measured against its own row, do not see that.
+static double shortest_row(hn_run *run) {
+    const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
+    double least = 1;
+    for (int i = 0; i < run->info.nc; i++) {
+        const double size = hn_norm2(run->info.nv, J + (size_t)i * (size_t)run->info.nv);
+        double *largest = &run->watch.row_size[i];
+        *largest = fmax(*largest, size);
+        least = fmin(least, *largest > 0 ? size / *largest : 1);
+    }
+    return least;
+}
+
 static void look_at_rank(hn_run *run, int at_start) {
     hn_run_watch_state *w = &run->watch;
     hn_accel_info info = {0};
@@ -207,18 +222,22 @@ static void look_at_rank(hn_run *run, int at_start) {
     } else if (!at_start && status == HN_OK) {
         over(run, HN_INCIDENT_RANK_LOSS);
     }
-    const int near = status != HN_OK || info.pivot_ratio < HN_RUN_WARN_PIVOT;
+    const double row = shortest_row(run),
+                 pivot = row * row * info.pivot_ratio; // J M^-1 J': squared
+    const int near = status != HN_OK || pivot < HN_RUN_WARN_PIVOT;
     if (!near || info.rank < run->info.nc) {
         over(run, HN_INCIDENT_NEAR_SINGULAR);
         return;
     }
     hn_incident *i =
-        tell(run, HN_INCIDENT_NEAR_SINGULAR, "pivot ratio", info.pivot_ratio, HN_RUN_WARN_PIVOT,
-             "the closure rows are nearly dependent: pivot ratio %.2g, told below %.0e",
-             info.pivot_ratio, HN_RUN_WARN_PIVOT);
+        tell(run, HN_INCIDENT_NEAR_SINGULAR, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
+             "the closure rows are nearly dependent: pivot ratio %.2g, told below %.0e", pivot,
+             HN_RUN_WARN_PIVOT);
     if (i) {
         with_finer_steps(run, 0.25, i->remedy[0]);
-        with_formulation(run, "projection", "", i->remedy[1]);
+        if (!is_formulation(run, "projection")) {
+            with_formulation(run, "projection", "", i->remedy[1]);
+        }
     }
 }
 
@@ -260,6 +279,7 @@ void hn_run_watch_start(hn_run *run) {
     double gap = 0, speed_gap = 0, kinetic = 0, potential = 0;
     w->active = 0;
     memset(w->told, 0, sizeof w->told);
+    memset(w->row_size, 0, (size_t)run->info.nc * sizeof *w->row_size);
     w->since = 0;
     hn_run_measure(run, run->now.t, run->now.q, run->now.v, &gap, &speed_gap, &kinetic, &potential);
     w->start_energy = w->last_energy = kinetic + potential;

@@ -1,0 +1,79 @@
+// A run tells when it comes close to a pose where the closure rows depend on each other, and only then.
+
+#include "support/motion.h"
+#include "support/near.h"
+
+static int told(const hn_run *run, hn_incident_code code, double times[HN_RUN_MAX_INCIDENTS]) {
+    const hn_incident *incidents = NULL;
+    int n = 0;
+    for (int i = 0, all = hn_run_incidents(run, &incidents); i < all; i++) {
+        if (incidents[i].code == code) {
+            assert_true(incidents[i].value < incidents[i].limit);
+            times[n++] = incidents[i].t;
+        }
+    }
+    return n;
+}
+
+static void the_flat_poses_of_a_parallelogram_are_told_twice_a_turn(void **state) {
+    (void)state;
+    static const char *const methods[] = {"index1@rk4:h=1e-3", "projection@rk4:h=1e-3",
+                                          "baumgarte:alpha=50,beta=50@rk4:h=1e-3",
+                                          "projection@dopri5:rtol=1e-12"};
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", "N=1");
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        double t[HN_RUN_MAX_INCIDENTS];
+        hn_run *run = hn_motion_start(&m, methods[k]);
+        (void)hn_motion_at(run, 1.92); // one turn takes 1.92371 s
+        assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 2);
+
+        // flat at 0.70845 s and, by symmetry of a turn, 1.92371 - 0.70845 s; told from 0.015 rad on at 4.95 rad/s
+        assert_near(t[0], 0.70845, 0.0045);
+        assert_near(t[1], 1.21526, 0.0045);
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
+static void mechanisms_that_keep_clear_are_told_nothing(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"fb0", "fb0-lagrangian", "fb0-tilted", "slider-crank",
+                                         "five-bar"};
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        double t[HN_RUN_MAX_INCIDENTS];
+        hn_model m;
+        hn_model_open_closed(&m, scenes[k], NULL);
+        hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+        (void)hn_motion_at(run, 3);
+        assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 0);
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+}
+
+static void a_second_run_tells_the_same_as_the_first(void **state) {
+    (void)state;
+    double first[HN_RUN_MAX_INCIDENTS], second[HN_RUN_MAX_INCIDENTS];
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", "N=2");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+    (void)hn_motion_at(run, 1);
+    int n = told(run, HN_INCIDENT_NEAR_SINGULAR, first);
+    assert_int_equal(n, 1);
+    assert_int_equal(hn_run_reset(run), HN_OK);
+    (void)hn_motion_at(run, 1);
+    assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, second), n);
+    assert_near(second[0], first[0], 0);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_flat_poses_of_a_parallelogram_are_told_twice_a_turn),
+        cmocka_unit_test(mechanisms_that_keep_clear_are_told_nothing),
+        cmocka_unit_test(a_second_run_tells_the_same_as_the_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
