@@ -26,6 +26,8 @@ static const double VELOCITY_ROUNDING = 4e-15;
 // A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic there, and a step
 // phi / sigma would be larger than the range in which J means something.
 static const double PROJECTOR_RANK_TOL = 1e-7;
+// and a dependent row that is short at this pose is not stretched: its direction would be rounding
+static const double PROJECTOR_ROW_FLOOR = 0.05;
 
 struct hn_projector {
     const hn_system *sys;
@@ -191,6 +193,7 @@ static double dense_solve_ops(const hn_projector *p) {
 static hn_status factor_dense(hn_projector *p, double t, const double *q) {
     hn_saddle_opts opts = hn_saddle_opts_default();
     opts.rank_tol = PROJECTOR_RANK_TOL;
+    opts.row_floor = PROJECTOR_ROW_FLOOR;
     opts.residual_tol = HUGE_VAL; // rows that cannot all be met are met as well as can be
     hn_eval_run(p->terms, t, q, p->zero);
     const double *W = p->weight == HN_WEIGHT_MASS ? hn_eval_get(p->terms, HN_TERM_M) : p->unit;

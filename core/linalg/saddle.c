@@ -103,19 +103,24 @@ static hn_status scale_coordinates(hn_saddle_ws *ws) {
     return HN_OK;
 }
 
-/// R makes every row of J D of unit length; qr.a receives (R J D)' (whose columns are the rows of J).
+/// R makes every row of J D of unit length, short ones less (row_floor); qr.a receives (R J D)' (whose columns are the rows of J).
 static void scale_rows(hn_saddle_ws *ws) {
     int nv = ws->nv;
+    double longest = 0;
     for (int i = 0; i < ws->nc; i++) {
         const double *row = ws->J + (size_t)i * nv;
         double *col = ws->qr.a + (size_t)i * nv;
         for (int j = 0; j < nv; j++) {
             col[j] = row[j] * ws->d[j];
         }
-        double norm = hn_norm2(nv, col);
+        ws->r[i] = hn_norm2(nv, col);
+        longest = fmax(longest, ws->r[i]);
+    }
+    for (int i = 0; i < ws->nc; i++) {
+        double norm = fmax(ws->r[i], ws->opts.row_floor * longest);
         ws->r[i] = norm > 0 ? 1 / norm : 1;
         for (int j = 0; j < nv; j++) {
-            col[j] *= ws->r[i];
+            ws->qr.a[(size_t)i * nv + j] *= ws->r[i];
         }
     }
 }

@@ -27,6 +27,8 @@ typedef struct hn_saddle_opts {
     /// Dependent rows that disagree by more than this contradict each other, relative to the sizes of gamma, J a
     /// and f, all equilibrated [-]; 1e-8. HUGE_VAL: accept the least-squares answer.
     double residual_tol;
+    double
+        row_floor; ///< rows of J D shorter than this times the longest are not brought to unit length but left as small as they are against it [-]; 0
     double refine_tol; ///< refine until the correction is below this * the solution [-]; 2 eps
     int max_refine;    ///< 4; 0 switches refinement off
     int want_cond;     ///< estimate the condition number too: about five more solves

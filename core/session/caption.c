@@ -33,7 +33,14 @@ static int other_body(const hn_joint *joint, int body) {
     return joint->parent == body ? joint->child : joint->parent;
 }
 
-/// Lengths of a closed chain of three bodies and four revolute joints: ground, input, coupler, output. 0 if it is none.
+/// Both of the joint's axes stand along z, the axis of a plane linkage.
+static int turns_in_the_plane(const hn_joint *j) {
+    return j->type == HN_JOINT_REVOLUTE && j->parent_axis[0] == 0 && j->parent_axis[1] == 0 &&
+           j->child_axis[0] == 0 && j->child_axis[1] == 0;
+}
+
+/// Lengths of a closed plane chain of three bodies and four revolute joints: ground, input, coupler, output. 0 if it is none:
+/// Grashof's rule holds in the plane only.
 static int four_bar_lengths(const hn_scene *scene, double out[4]) {
     if (scene->is_lagrangian || scene->n_bodies != 3 || scene->n_joints != 4) {
         return 0;
@@ -43,7 +50,7 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
         int found = 0;
         for (int j = 0; j < 4 && !found; j++) {
             const hn_joint *joint = &scene->joints[j];
-            if (joint->type != HN_JOINT_REVOLUTE) {
+            if (!turns_in_the_plane(joint)) {
                 return 0;
             }
             int here = chain[n - 1];

@@ -306,6 +306,27 @@ static void rounding_in_a_redundant_row_is_no_contradiction(void **state) {
     assert_true(f->info.dropped < 1e-11);
 }
 
+static void a_short_row_of_noise_is_kept_short_by_a_floor(void **state) {
+    fixture *f = *state;
+    // the second row should be 0 = 0; noise of 1e-7 makes it a row of its own once it is stretched
+    f->p = (problem){.nv = 2,
+                     .nc = 2,
+                     .M = {1, 0, 0, 1},
+                     .J = {1, 0, 0, 1e-7},
+                     .f = {0, 5},
+                     .gamma = {-2, 1e-7}};
+    assert_int_equal(solve(f, NULL), HN_OK);
+    assert_int_equal(f->info.rank, 2);
+    assert_near(f->a[1], -1, 1e-13);
+    hn_saddle_opts opts = hn_saddle_opts_default();
+    opts.row_floor = 0.05;
+    opts.rank_tol = opts.residual_tol = 1e-5;
+    assert_int_equal(solve(f, &opts), HN_OK);
+    assert_int_equal(f->info.rank, 1);
+    assert_near(f->a[0], 2, 1e-13);
+    assert_near(f->a[1], 5, 1e-6);
+}
+
 static void a_row_of_zeros_needs_a_gamma_of_zero(void **state) {
     fixture *f = *state;
     f->p = (problem){.nv = 1, .nc = 2, .M = {1}, .J = {0, 1}, .f = {3}, .gamma = {0, -4}};
@@ -473,6 +494,7 @@ int main(void) {
         with_fixture(negative_mass_is_told),
         with_fixture(rows_that_contradict_each_other_are_refused_or_met_by_least_squares),
         with_fixture(rounding_in_a_redundant_row_is_no_contradiction),
+        with_fixture(a_short_row_of_noise_is_kept_short_by_a_floor),
         with_fixture(a_row_of_zeros_needs_a_gamma_of_zero),
         with_fixture(without_constraints_it_is_newtons_law),
         with_fixture(inputs_that_are_not_finite_leave_the_outputs_alone),

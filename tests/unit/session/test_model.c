@@ -50,6 +50,12 @@ static void captions_follow_grashof_and_count_freedoms(void **state) {
     assert_caption("five-bar", NULL, 0, "2 freedoms (4 \xe2\x88\x92 2)");
     assert_caption("slider-crank", NULL, 0, "1 freedom (3 \xe2\x88\x92 2)");
     assert_caption("n-four-bar", NULL, 0, "1 freedom (5 \xe2\x88\x92 4)");
+    assert_caption("double-rocker", NULL, 0, "double-rocker, 1 freedom (3 \xe2\x88\x92 2)");
+    assert_caption("triple-rocker", NULL, 0, "triple-rocker, 1 freedom (3 \xe2\x88\x92 2)");
+    assert_caption("parallelogram", NULL, 0,
+                   "change-point parallelogram, 1 freedom (3 \xe2\x88\x92 2)");
+    // four hinges in space, opposite links equal: no plane parallelogram
+    assert_caption("bennett", NULL, 0, "1 freedom (3 \xe2\x88\x92 2), 3 redundant rows");
 }
 
 static void an_unknown_scene_gets_the_nearest_name(void **state) {
