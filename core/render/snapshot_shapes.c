@@ -95,16 +95,16 @@ static void draw_spring(const pen *p, const hn_shape *shape) {
     double a[2], b[2], u[2], xy[2 * (2 * COILS + 4)];
     at(p, shape->p, a);
     at(p, shape->q, b);
-    const double length = direction(a, b, u), stub = 0.15 * length, swing = 0.6 * p->s->bar;
+    const double length = direction(a, b, u), lead = 0.15 * length, swing = 0.6 * p->s->bar;
     int n = 0;
     for (int i = -2; i <= 2 * COILS + 1; i++) {
         const int is_end = i <= -1 || i >= 2 * COILS;
         const double share = (i + 0.5) / (2 * COILS);
         const double s = i == -2              ? 0
-                         : i == -1            ? stub
-                         : i == 2 * COILS     ? length - stub
+                         : i == -1            ? lead
+                         : i == 2 * COILS     ? length - lead
                          : i == 2 * COILS + 1 ? length
-                                              : stub + share * (length - 2 * stub);
+                                              : lead + share * (length - 2 * lead);
         const double side = is_end ? 0 : i % 2 == 0 ? swing : -swing;
         xy[2 * n] = a[0] + s * u[0] - side * u[1];
         xy[2 * n + 1] = a[1] + s * u[1] + side * u[0];

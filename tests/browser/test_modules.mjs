@@ -245,6 +245,11 @@ test("growth with time and with its square is growth, an oscillation is not", ()
     trend(() => 4e-16),
     "closed",
   );
+  // what Baumgarte holds at a small step is truncation, not rounding
+  assert.equal(
+    trend(() => 6e-13),
+    "held",
+  );
 });
 
 test("the sentence names the method, its gap and its trend", () => {

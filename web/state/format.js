@@ -15,8 +15,14 @@ const SHOWN = [
 ];
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-/** Below this a gap is rounding, and a prefix would pretend to a size that one can picture. */
-export const ROUNDING = 1e-12;
+/**
+ * Below this a gap [m] is rounding: some hundred roundings of coordinates of a metre or so. What a stabilised method holds
+ * above it is truncation, however small, and is not called closed.
+ */
+export const ROUNDING = 1e-13;
+
+/** The smallest prefix is pico; below it one would pretend to a size that can be pictured. */
+const SMALLEST_PREFIXED = 1e-12;
 
 /** 10 to the n, in words of one line: 10⁻⁴. @param {number} n */
 export function powerOfTen(n) {
@@ -49,7 +55,7 @@ export function quantity(value, unit, digits = 2) {
     return `0${space}${unit}`;
   }
   const rounded = Number(size.toPrecision(digits));
-  if (size < ROUNDING || rounded >= 1e12) {
+  if (size < SMALLEST_PREFIXED || rounded >= 1e12) {
     return `${scientific(value)}${space}${unit}`;
   }
   const exponent = Math.floor(Math.log10(rounded) / 3 + 1e-9) * 3;
