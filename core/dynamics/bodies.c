@@ -246,6 +246,10 @@ static hn_status trace_terms(hn_mech *m) {
 hn_status hn_bodies_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
     hn_mech m;
+    if (scene->n_constraints > 0) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, scene->constraints[0].pointer, NULL,
+                            "constraints beside the joints cannot be compiled");
+    }
     hn_status status =
         hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
     if (status == HN_OK) {

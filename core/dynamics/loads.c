@@ -128,6 +128,10 @@ hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry) {
     hn_status status = HN_OK;
     for (int i = 0; i < sys->scene->n_loads && status == HN_OK; i++) {
         const hn_load *load = &sys->scene->loads[i];
+        if (load->kind >= sizeof ADDERS / sizeof *ADDERS) {
+            return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
+                                "a load of this kind cannot be compiled");
+        }
         status = ADDERS[load->kind](sys, geometry, load);
     }
     return status;

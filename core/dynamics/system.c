@@ -413,3 +413,41 @@ void hn_system_kinematics(const hn_system *sys, const double *q, const double *v
     (void)q;
     memcpy(qdot, v, (size_t)sys->nv * sizeof *v);
 }
+
+void hn_system_move(const hn_system *sys, double *q, const double *delta) {
+    for (int i = 0; i < sys->nv; i++) {
+        q[i] += delta[i];
+    }
+}
+
+void hn_system_difference(const hn_system *sys, const double *from, const double *to,
+                          double *delta) {
+    for (int i = 0; i < sys->nv; i++) {
+        delta[i] = to[i] - from[i];
+    }
+}
+
+int hn_system_normalise(const hn_system *sys, double *q) {
+    (void)sys;
+    (void)q;
+    return 0;
+}
+
+int hn_system_position_of(const hn_system *sys, int i) {
+    HN_ASSERT(i >= 0 && i < sys->nv);
+    return i;
+}
+
+double hn_system_next_corner(const hn_system *sys, double t) {
+    double next = HUGE_VAL;
+    for (int k = 0; k < sys->scene->n_loads; k++) {
+        const hn_profile *table = &sys->scene->loads[k].table;
+        for (int i = 0; i < table->n; i++) {
+            if (table->t[i] > t) {
+                next = fmin(next, table->t[i]);
+                break;
+            }
+        }
+    }
+    return next;
+}

@@ -70,8 +70,21 @@ void hn_system_rates_to_user(const hn_system *sys, const double *v, double *user
 void hn_system_rates_from_user(const hn_system *sys, const double *user_v, double *v);
 /// Generalised forces: user = T' system, such that power is the same.
 void hn_system_forces_to_user(const hn_system *sys, const double *f, double *user_f);
-/// qdot = G(q) v; a copy when nq == nv.
+/// qdot = G(q) v; a copy when nq == nv. A ball (spherical or free joint) has four entries of q, a unit quaternion, and three
+/// of v, the angular velocity in the child's axes; everything else has one of each.
 void hn_system_kinematics(const hn_system *sys, const double *q, const double *v, double *qdot);
+/// q <- q moved by `delta` (nv, a rate times a time): what Newton's corrections and interpolations of q use, so that
+/// quaternions stay unit. A plain sum when nq == nv.
+void hn_system_move(const hn_system *sys, double *q, const double *delta);
+/// The `delta` (nv) that moves `from` to `to`; of two ways round the shorter.
+void hn_system_difference(const hn_system *sys, const double *from, const double *to,
+                          double *delta);
+/// Brings quaternions back to length 1 (a step of an integrator leaves it by its local error). Returns 1 when q changed.
+int hn_system_normalise(const hn_system *sys, double *q);
+/// Entry of q behind entry i of v, -1 for the speeds of a ball.
+int hn_system_position_of(const hn_system *sys, int i);
+/// The first time after t at which a load given as a table has a corner (an integrator restarts there), HUGE_VAL: none.
+double hn_system_next_corner(const hn_system *sys, double t);
 
 // expressions, for printing, exporting and grading; borrowed arrays in the system's graph ------------------
 hn_graph *hn_system_graph(const hn_system *sys);

@@ -403,9 +403,24 @@ static hn_status allocate(const hn_scene *scene, hn_arena *arena, hn_tree *tree)
     return HN_OK;
 }
 
+static hn_status check_types(const hn_scene *scene, hn_diags *diags) {
+    for (int j = 0; j < scene->n_joints; j++) {
+        const hn_joint *joint = &scene->joints[j];
+        if (joint->type != HN_JOINT_REVOLUTE && joint->type != HN_JOINT_PRISMATIC) {
+            return hn_diags_add(diags, HN_ERR_UNSUPPORTED, joint->pointer,
+                                "write it as revolute and prismatic joints",
+                                "a %s joint cannot be compiled", hn_joint_type_name(joint->type));
+        }
+    }
+    return HN_OK;
+}
+
 hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *tree,
                         hn_diags *diags) {
-    hn_status status = allocate(scene, arena, tree);
+    hn_status status = check_types(scene, diags);
+    if (status == HN_OK) {
+        status = allocate(scene, arena, tree);
+    }
     if (status == HN_OK) {
         status = span(scene, arena, tree, diags);
     }

@@ -5,6 +5,8 @@
 #include "base/arena.h"
 #include "methods/method.h"
 
+typedef struct hn_dae_stepper hn_dae_stepper;
+
 typedef struct hn_stepper {
     const char *name, *title; ///< "rk4", "Runge-Kutta 4"
     const char *about, *source;
@@ -17,6 +19,12 @@ typedef struct hn_stepper {
     int n_settings;
     hn_setting_info settings[HN_MAX_SETTINGS]; ///< h, or rtol, atol, h0, hmax
 
+    unsigned
+        forms; ///< bit (1 << form) per hn_dae_form it serves; 0: ordinary differential equations only
+    const hn_dae_stepper
+        *dae; ///< how, see integrators/dae.h; NULL when `forms` has no differential-algebraic form
+
+    /// What follows serves ordinary differential equations; create NULL: it does not.
     void *(*create)(int n_pos, int n_vel, hn_arena *arena);
     /// One trial step of size h from (t, y) to y_new; err (n) receives the embedded error estimate when adaptive. Does not
     /// change y. Fails with the right-hand side's status.

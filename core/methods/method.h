@@ -41,6 +41,16 @@ typedef struct hn_ode {
     hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
 } hn_ode;
 
+/// How a formulation hands the constraints over: as an ordinary differential equation (hn_ode), or to integrators that take the
+/// differential-algebraic system in this form (integrators/dae.h); then `ode` and everything below it but `create` are NULL.
+typedef enum hn_dae_form {
+    HN_FORM_ODE,
+    HN_FORM_INDEX3,
+    HN_FORM_INDEX2,
+    HN_FORM_GGL,
+    HN_FORM_INDEX1
+} hn_dae_form;
+
 typedef struct hn_formulation {
     const char *name;       ///< as spelled: "baumgarte"
     const char *title;      ///< "Baumgarte stabilisation"
@@ -49,8 +59,9 @@ typedef struct hn_formulation {
     const char *drift;      ///< what happens to the gap, in words
     const char *when, *when_not, *source;
     const char *needs; ///< "M f J gamma"
-    int model_error;   ///< 1: converges to something else, on purpose
-    int keeps_gap;     ///< 1: phi stays at rounding level
+    hn_dae_form form;
+    int model_error; ///< 1: converges to something else, on purpose
+    int keeps_gap;   ///< 1: phi stays at rounding level
     int n_settings;
     hn_setting_info settings[HN_MAX_SETTINGS];
 

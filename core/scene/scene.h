@@ -45,7 +45,21 @@ typedef struct hn_body {
     hn_quantity inertia[6]; ///< xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
 } hn_body;
 
-#define HN_JOINT_TYPE_LIST(X) X(HN_JOINT_REVOLUTE, "revolute") X(HN_JOINT_PRISMATIC, "prismatic")
+/// Freedoms of the child against the parent, in the order of the joint's coordinates; z is `axis`, x is `ref`, y = z cross x:
+///   revolute     angle about z                     prismatic    way along z
+///   cylindrical  angle about z, way along z        universal    angle about the parent's z, then about the child's x
+///   spherical    orientation: three entries of its rotation vector; their rates are the angular velocity in the child's axes
+///   planar       ways along the parent's x and y, angle about z
+///   fixed        none                              free         ways along the parent's x, y, z, then orientation
+#define HN_JOINT_TYPE_LIST(X)              \
+    X(HN_JOINT_REVOLUTE, "revolute")       \
+    X(HN_JOINT_PRISMATIC, "prismatic")     \
+    X(HN_JOINT_CYLINDRICAL, "cylindrical") \
+    X(HN_JOINT_UNIVERSAL, "universal")     \
+    X(HN_JOINT_SPHERICAL, "spherical")     \
+    X(HN_JOINT_PLANAR, "planar")           \
+    X(HN_JOINT_FIXED, "fixed")             \
+    X(HN_JOINT_FREE, "free")
 typedef enum hn_joint_type {
 #define HN_JOINT_ENUM(code, name) code,
     HN_JOINT_TYPE_LIST(HN_JOINT_ENUM)
@@ -61,8 +75,9 @@ typedef struct hn_joint {
     hn_quantity parent_at[3], child_at[3];
     double parent_axis[3], child_axis[3]; ///< unit
     double parent_ref[3], child_ref[3];   ///< unit, perpendicular to the axis
-    int cut;        ///< asked to close a loop rather than to carry a coordinate
-    int coordinate; ///< index into coordinates
+    int cut;           ///< asked to close a loop rather than to carry a coordinate
+    int coordinate;    ///< index of its first coordinate, -1 for a fixed joint
+    int n_coordinates; ///< they stand in a row
 } hn_joint;
 
 typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
@@ -72,7 +87,10 @@ typedef struct hn_coordinate {
     const char *name, *rate; ///< th1, w1: as used in formulas; rate defaults to d_<name>
     hn_unit_kind kind;
     int joint; ///< index, or -1 (Lagrangian)
+    int part;  ///< which freedom of its joint: 0 .. n_coordinates - 1
+    int turn; ///< 0, 1, 2: entry of a rotation vector (spherical and free joints), -1: a coordinate of its own
     int actuated;
+    double min, max; ///< limits that are told when passed, -HUGE_VAL and HUGE_VAL: none
     // start: a pinned value is kept, a guess is where assembly begins
     double q0, v0;
     int q0_given, q0_pinned, v0_given, v0_pinned;
@@ -90,8 +108,19 @@ typedef enum hn_load_kind {
     HN_LOAD_SPRING, ///< between points p and q: stiffness [N/m], rest length [m], damping [N s/m]
     HN_LOAD_JOINT_SPRING, ///< along a coordinate: stiffness, rest value, damping
     HN_LOAD_COORDINATE, ///< generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
-    HN_LOAD_FORCE ///< force `value[3]` in world axes at point p, formula of t, q, v
+    HN_LOAD_FORCE,  ///< force `value[3]` in world axes at point p, formula of t, q, v
+    HN_LOAD_MOMENT, ///< moment `value[3]` [N m] in world axes on the body of point p
+    HN_LOAD_FOLLOW, ///< actuator on a coordinate x that follows value[0] = target(t):
+    ///< stiffness (target - x) + damping (target' - x'), no more than value[1] either way if that is > 0
+    HN_LOAD_TABLE ///< on a coordinate: `table` over time
 } hn_load_kind;
+
+/// Values over time, times strictly increasing; before the first and after the last time the end values hold.
+typedef struct hn_profile {
+    int n;
+    const double *t, *value; ///< [s]
+    int steps;               ///< 1: each value holds until the next time, 0: straight lines between
+} hn_profile;
 
 typedef struct hn_load {
     const char *name, *pointer;
@@ -100,7 +129,29 @@ typedef struct hn_load {
     int coordinate; ///< (joint spring, coordinate)
     hn_quantity stiffness, rest, damping;
     hn_quantity value[3];
+    hn_profile table;
 } hn_load;
+
+/// Constraints beside the joints, in a scene of bodies. A point's body gives the frame of directions.
+typedef enum hn_constraint_kind {
+    HN_CONSTRAINT_DISTANCE, ///< a rod without mass: points p and q stay `value` apart [m]
+    HN_CONSTRAINT_LINE,     ///< p stays on the line through q along `direction`
+    HN_CONSTRAINT_PLANE, ///< p stays in the plane through q with normal `direction`, at the distance `value` [m]
+    HN_CONSTRAINT_GEAR,    ///< x + ratio y = value, x and y the two coordinates
+    HN_CONSTRAINT_ROLLING, ///< a wheel with centre p and radius `value` rolls on the line through q along `direction`; its centre
+    ///< stays on the side `up` of the line, its axle parallel to direction cross up
+    HN_CONSTRAINT_FORMULA ///< value = 0, a formula of t and coordinates (a prescribed motion: "th1 - w*t")
+} hn_constraint_kind;
+
+typedef struct hn_constraint {
+    const char *name, *pointer;
+    hn_constraint_kind kind;
+    int p, q;            ///< points; -1 where the kind has none
+    double direction[3]; ///< unit, in the axes of q's body
+    double up[3];        ///< rolling: unit, perpendicular to it
+    int coordinate[2];   ///< gear
+    hn_quantity ratio, value;
+} hn_constraint;
 
 /// Formulas of a Lagrangian scene in coordinates, rates, t and parameters.
 typedef struct hn_lagrangian {
@@ -136,18 +187,21 @@ typedef struct hn_scene {
     const char *id, *name, *title, *about,
         *look_for; ///< id: file name without .json, or the "id" field
     int is_lagrangian;
-    int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_shapes;
+    int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_constraints, n_shapes;
     hn_param *params;
     hn_body *bodies;
     hn_joint *joints;
     hn_coordinate *coordinates;
     hn_point *points;
     hn_load *loads;
+    hn_constraint *constraints;
     hn_shape *shapes; ///< as the scene says, or made from its joints when it says nothing
     int n_tears;      ///< Lagrangian only: pairs of points that coincide when the loop is closed
     int (*tears)[2];
     hn_quantity gravity[3]; ///< acceleration of gravity [m/s^2], world axes; Lagrangian: 0
     hn_lagrangian lagrangian;
+    const char *
+        mode; ///< assembly mode asked for: "open", "crossed", "+", "-" (one sign per loop: "+-+"), NULL: any
     double duration, step;      ///< suggested [s]
     const char *const *methods; ///< suggested method spellings
     int n_methods;

@@ -249,6 +249,9 @@ int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, cons
     s->coordinates = all;
     int k = s->n_coordinates++;
     all[k] = (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
+    all[k].turn = -1;
+    all[k].min = -HUGE_VAL;
+    all[k].max = HUGE_VAL;
     all[k].actuated = hn_rd_flag(r, node, "actuated");
     hn_rd_put_name(r, HN_RD_COORDINATE, k);
     ok = hn_rd_check_identifier(r, rate);
@@ -297,6 +300,7 @@ static void read_joint(hn_reader *r, const cJSON *node, const char *key) {
     j.coordinate =
         hn_rd_add_coordinate(r, node, coordinate, rate,
                              j.type == HN_JOINT_PRISMATIC ? HN_LENGTH : HN_ANGLE, s->n_joints);
+    j.n_coordinates = 1;
     hn_rd_leave(r, mark);
     if (r->n_faults > faults || j.parent == -2 || j.child == -2) {
         return;
