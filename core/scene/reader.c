@@ -165,6 +165,11 @@ int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *
     return 1;
 }
 
+int hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what) {
+    return !node || cJSON_IsArray(node) ||
+           hn_rd_fault(r, NULL, "expected a list of %s, found %s", what, hn_rd_kind(node));
+}
+
 /// One bound of a repetition: a whole number.
 static int read_bound(hn_reader *r, const cJSON *node, int index, long long *out) {
     size_t mark = hn_rd_enter_index(r, index);
@@ -239,4 +244,16 @@ void hn_rd_each(hn_reader *r, const cJSON *node, hn_rd_item item) {
         repeat(r, m, cJSON_IsObject(node) ? m->string : NULL, item);
         hn_rd_leave(r, mark);
     }
+}
+
+void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item) {
+    const cJSON *list = hn_rd_get(node, key);
+    size_t mark = hn_rd_enter(r, key);
+    if (list && (object ? !cJSON_IsObject(list) : !cJSON_IsArray(list))) {
+        hn_rd_fault(r, NULL, "expected %s, found %s", object ? "an object" : "a list",
+                    hn_rd_kind(list));
+    } else if (list) {
+        hn_rd_each(r, list, item);
+    }
+    hn_rd_leave(r, mark);
 }

@@ -14,15 +14,17 @@ enum {
     HN_RD_MAX_POINTS = 10000,
     HN_RD_MAX_SHAPES = 10000,
     HN_RD_MAX_LOADS = 4000,
-    HN_RD_MAX_NAME = 60,   ///< characters of a name
-    HN_RD_MAX_FAULTS = 64, ///< then reading stops
-    HN_RD_MAX_DEPTH = 24   ///< levels of JSON
+    HN_RD_MAX_TABLE = 10000, ///< times of a table
+    HN_RD_MAX_NAME = 60,     ///< characters of a name
+    HN_RD_MAX_FAULTS = 64,   ///< then reading stops
+    HN_RD_MAX_DEPTH = 24     ///< levels of JSON
 };
 
 /// Which names a formula may use, each including those before it.
 typedef enum hn_rd_scope {
     HN_RD_CONST, ///< parameters (and the repetition's name)
-    HN_RD_POSE,  ///< and t, coordinates
+    HN_RD_TIME,  ///< and t
+    HN_RD_POSE,  ///< and coordinates
     HN_RD_STATE  ///< and rates
 } hn_rd_scope;
 
@@ -63,6 +65,7 @@ typedef struct hn_reader {
     int body_at;       ///< the body whose drawing is read
     int shape_kind;    ///< the kind whose list is read
     hn_rd_scope scope; ///< of the formula that is being parsed
+    int turn_refused;  ///< 1 + the entry of a rotation vector that a formula asked for in vain
     struct {
         unsigned char meaning;
         int index;
@@ -97,7 +100,10 @@ int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *
 typedef void (*hn_rd_item)(hn_reader *r, const cJSON *item, const char *key);
 /// Calls `item` for each entry of a list, or each member of an object (key: its name), repeated where it says "for".
 void hn_rd_each(hn_reader *r, const cJSON *node, hn_rd_item item);
-const cJSON *hn_rd_get(const cJSON *object, const char *key); ///< member or NULL
+const cJSON *hn_rd_get(const cJSON *object, const char *key);         ///< member or NULL
+int hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what); ///< absent counts as one
+/// The member `key` through hn_rd_each(): a list, or an object if `object`.
+void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item);
 
 // values --------------------------------------------------------------------------------------------
 /// Text as it stands (title, about); NULL if absent.
@@ -114,6 +120,12 @@ int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int require
                  hn_quantity *out, hn_rd_scope scope);
 /// Two (z = 0) or three entries.
 int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
+/// The member `key` as a direction: two or three numbers of any length but zero, made unit. 0 after a fault.
+int hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]);
+/// Checks that `ref` (written under `key`) is perpendicular to `axis`; what rounding left of the axis in it is taken out.
+int hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]);
+/// The direction nobody gave: the coordinate axis least aligned with `axis` (x before y before z), made perpendicular.
+void hn_rd_default_normal(const double axis[3], double ref[3]);
 /// Value of a formula in parameters, for braces and "for".
 int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out);
 
@@ -130,17 +142,25 @@ void hn_rd_joints(hn_reader *r, const cJSON *root);
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root);
 void hn_rd_points(hn_reader *r, const cJSON *root);
 void hn_rd_loads(hn_reader *r, const cJSON *root);
+void hn_rd_constraints(hn_reader *r, const cJSON *root);
 void hn_rd_shapes(hn_reader *r, const cJSON *root);
 void hn_rd_start(hn_reader *r, const cJSON *root);
 void hn_rd_draw_default(hn_reader *r, const cJSON *root); ///< what the scene leaves undrawn
 
-/// Adds a coordinate after checking its names; index or -1.
-int hn_rd_add_coordinate(hn_reader *r, const cJSON *node, const char *name, const char *rate,
-                         hn_unit_kind kind, int joint);
+/// Adds a coordinate after checking its names; `rate` NULL: made from the name. Index or -1.
+int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_unit_kind kind,
+                         int joint, int actuated);
+/// Reads and adds the coordinates of a joint that will be the next, with what drives and limits them.
+void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j);
+/// The coordinate of "joint" (a joint with one only) or "coordinate"; -1 after a fault. `position`: its value is needed, so
+/// that an entry of a rotation vector is refused.
+int hn_rd_target(hn_reader *r, const cJSON *node, int position);
 /// A body by name ("ground" too), -2 after a fault.
 int hn_rd_body(hn_reader *r, const cJSON *object, const char *key);
 /// A coordinate by its own or (if `rates`) its rate's name at node; -1 after a fault.
 int hn_rd_coordinate(hn_reader *r, const char *name, int rates);
+/// The point under `key`, which must be there; -1 after a fault.
+int hn_rd_end(hn_reader *r, const cJSON *node, const char *key);
 /// A point: a name, numbers in `body`'s frame, or {"body","at"}; index or -1 after a fault.
 int hn_rd_point(hn_reader *r, const cJSON *node, int body);
 /// The index of this unnamed point, made if there is none like it; -1 without memory.
@@ -153,6 +173,10 @@ void hn_rd_check_tree(hn_reader *r,
                       const cJSON *node); ///< names used twice in one object, numbers not finite
 void hn_rd_check_inertia(hn_reader *r, const hn_body *body);
 void hn_rd_check_connected(hn_reader *r);
+/// 1 unless `taken_by` says where the name stands already.
+int hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by);
+/// 1 unless the coordinate is an entry of a rotation vector, whose value is used nowhere but inside its joint.
+int hn_rd_check_no_turn(hn_reader *r, int coordinate);
 /// 1 if `name` can be used in formulas and is still free there; otherwise a fault.
 int hn_rd_check_identifier(hn_reader *r, const char *name);
 

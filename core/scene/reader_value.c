@@ -61,7 +61,13 @@ static int lookup(void *user, const char *name, hn_ex *out) {
         *out = hn_num(value);
         return 1;
     }
-    int found = r->scope != HN_RD_CONST && (strcmp(name, "t") == 0 || meaning == HN_RD_COORDINATE);
+    if (r->scope >= HN_RD_POSE && meaning == HN_RD_COORDINATE &&
+        r->scene->coordinates[k].turn >= 0) {
+        r->turn_refused = 1 + k;
+        return 0;
+    }
+    int found = r->scope >= HN_RD_TIME && strcmp(name, "t") == 0;
+    found |= r->scope >= HN_RD_POSE && meaning == HN_RD_COORDINATE;
     found |= r->scope == HN_RD_STATE && meaning == HN_RD_RATE;
     if (found) {
         *out = hn_symbol(r->graph, name, NULL);
@@ -78,8 +84,10 @@ static int known_names(hn_reader *r, hn_rd_scope scope, const char **names, int 
     for (int i = 0; i < r->scene->n_params && n < room; i++) {
         names[n++] = r->scene->params[i].name;
     }
-    for (int i = 0; scope != HN_RD_CONST && i < r->scene->n_coordinates && n + 1 < room; i++) {
-        names[n++] = r->scene->coordinates[i].name;
+    for (int i = 0; scope >= HN_RD_POSE && i < r->scene->n_coordinates && n + 1 < room; i++) {
+        if (r->scene->coordinates[i].turn < 0) {
+            names[n++] = r->scene->coordinates[i].name;
+        }
         if (scope == HN_RD_STATE) {
             names[n++] = r->scene->coordinates[i].rate;
         }
@@ -94,6 +102,7 @@ static hn_status parse(hn_reader *r, const char *text, hn_rd_scope scope, int su
     const char *known[ROOM];
     hn_rd_scope before = r->scope;
     r->scope = scope;
+    r->turn_refused = 0;
     hn_parse_opts opts = {.lookup = lookup,
                           .user = r,
                           .known = known,
@@ -112,13 +121,19 @@ static int know_any(void *user, const char *name, hn_ex *out) {
 
 static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
     static const char *const allowed[] = {"only parameters may be used here",
+                                          "only parameters and t may be used here",
                                           "only parameters, t and coordinates may be used here",
                                           "parameters, t, coordinates and rates may be used here"};
+    static const char *const other_kind[] = {"the state or time", "the state", "a rate", ""};
     hn_diag diag = {0};
     hn_ex ignored;
-    if (scope != HN_RD_STATE && parse(r, text, HN_RD_STATE, 0, &ignored, &diag) == HN_OK) {
+    if (r->turn_refused == 0 && scope != HN_RD_STATE &&
+        parse(r, text, HN_RD_STATE, 0, &ignored, &diag) == HN_OK) {
         return hn_rd_fault(r, allowed[scope], "the formula '%.80s' depends on %s", text,
-                           scope == HN_RD_CONST ? "the state or time" : "a rate");
+                           other_kind[scope]);
+    }
+    if (r->turn_refused > 0) {
+        return hn_rd_check_no_turn(r, r->turn_refused - 1);
     }
     memset(&diag, 0, sizeof diag);
     hn_status status = parse(r, text, scope, 1, &ignored, &diag);

@@ -76,6 +76,15 @@ int hn_rd_check_identifier(hn_reader *r, const char *name) {
     return by ? hn_rd_fault(r, NULL, "the name '%s' is taken already (%s)", name, by) : 1;
 }
 
+int hn_rd_check_no_turn(hn_reader *r, int coordinate) {
+    const hn_coordinate *c = &r->scene->coordinates[coordinate];
+    return c->turn < 0 ||
+           hn_rd_fault(r, "its rate can be used; for angles of their own take a universal joint",
+                       "'%s' is an entry of a rotation vector: it tells the start of the joint "
+                       "'%s', and is no coordinate that a formula or load could use",
+                       c->name, r->scene->joints[c->joint].name);
+}
+
 // inertia -------------------------------------------------------------------------------------------
 
 /// A tensor belongs to a body of positive mass exactly when S = (trace I / 2) 1 - I, the second moments of its mass, has

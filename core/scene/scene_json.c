@@ -123,6 +123,7 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
         hn_rd_points(r, root);
     }
     if (r->n_faults == 0 && !r->oom) {
+        hn_rd_constraints(r, root);
         hn_rd_loads(r, root);
         hn_rd_shapes(r, root);
         hn_rd_start(r, root);
@@ -133,10 +134,10 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
 }
 
 static void read_root(hn_reader *r, const cJSON *root, const char *id) {
-    static const char *const fields[] = {"holonom",  "id",         "name",    "title",  "about",
-                                         "look_for", "parameters", "gravity", "bodies", "joints",
-                                         "loads",    "lagrangian", "draw",    "start",  "duration",
-                                         "step",     "methods"};
+    static const char *const fields[] = {
+        "holonom",    "id",      "name",   "title",    "about",       "look_for",
+        "parameters", "gravity", "bodies", "joints",   "constraints", "loads",
+        "lagrangian", "draw",    "start",  "duration", "step",        "methods"};
     hn_rd_check_tree(r, root);
     if (r->n_faults > 0 ||
         !hn_rd_object(r, root, "a scene", fields, sizeof fields / sizeof fields[0])) {

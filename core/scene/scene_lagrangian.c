@@ -1,4 +1,4 @@
-// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas; and the start of either kind.
+// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas.
 
 #include "scene/reader.h"
 
@@ -50,7 +50,7 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
         }
     }
     size_t mark = hn_rd_enter(r, "name");
-    hn_rd_add_coordinate(r, node, name, rate, kind, -1);
+    hn_rd_add_coordinate(r, name, rate, kind, -1, hn_rd_flag(r, node, "actuated"));
     hn_rd_leave(r, mark);
 }
 
@@ -112,18 +112,6 @@ static void read_force(hn_reader *r, const cJSON *node, const char *key) {
     }
 }
 
-static void each_of(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item) {
-    const cJSON *list = hn_rd_get(node, key);
-    size_t mark = hn_rd_enter(r, key);
-    if (list && (object ? !cJSON_IsObject(list) : !cJSON_IsArray(list))) {
-        hn_rd_fault(r, NULL, "expected %s, found %s", object ? "an object" : "a list",
-                    hn_rd_kind(list));
-    } else if (list) {
-        hn_rd_each(r, list, item);
-    }
-    hn_rd_leave(r, mark);
-}
-
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
     static const char *const fields[] = {"coordinates", "kinetic", "potential", "constraints",
                                          "forces"};
@@ -131,7 +119,7 @@ void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
     hn_lagrangian *l = &r->scene->lagrangian;
     size_t mark = hn_rd_enter(r, "lagrangian");
     if (hn_rd_object(r, node, "a lagrangian", fields, 5)) {
-        each_of(r, node, "coordinates", 0, read_coordinate);
+        hn_rd_list(r, node, "coordinates", 0, read_coordinate);
         if (r->scene->n_coordinates == 0 && r->n_faults == 0) {
             hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]",
                         "'coordinates' is missing or empty");
@@ -139,89 +127,13 @@ void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
         if (r->n_faults == 0) {
             hn_rd_member(r, node, "kinetic", 1, 0, &l->kinetic, HN_RD_STATE);
             hn_rd_member(r, node, "potential", 0, 0, &l->potential, HN_RD_POSE);
-            each_of(r, node, "constraints", 0, read_constraint);
-            each_of(r, node, "forces", 1, read_force);
+            hn_rd_list(r, node, "constraints", 0, read_constraint);
+            hn_rd_list(r, node, "forces", 1, read_force);
         }
         if (r->n_faults == 0 && !l->kinetic.varies) {
             hn_rd_fault_at(r, "kinetic", "it holds the masses: m*v^2/2",
                            "the kinetic energy does not depend on any rate");
         }
-    }
-    hn_rd_leave(r, mark);
-}
-
-// start ---------------------------------------------------------------------------------------------
-
-/// A start entry: a number or formula is pinned, {"guess": ..} is where assembly begins.
-static int read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pinned) {
-    static const char *const fields[] = {"value", "guess", "for"};
-    *pinned = 1;
-    if (!cJSON_IsObject(node)) {
-        return hn_rd_quantity(r, node, q, HN_RD_CONST);
-    }
-    if (!hn_rd_object(r, node, "a start value", fields, 3)) {
-        return 0;
-    }
-    const cJSON *value = hn_rd_get(node, "value"), *guess = hn_rd_get(node, "guess");
-    if (!value == !guess) {
-        return hn_rd_fault(r, "'value' is kept, 'guess' is where assembly begins",
-                           "expected either 'value' or 'guess', found %s",
-                           value ? "both" : "neither");
-    }
-    *pinned = value != NULL;
-    return hn_rd_member(r, node, value ? "value" : "guess", 1, 0, q, HN_RD_CONST);
-}
-
-static hn_coordinate *start_coordinate(hn_reader *r, const char *key) {
-    const char *name = hn_rd_fill(r, key);
-    int k = name ? hn_rd_coordinate(r, name, 1) : -1;
-    return k >= 0 ? &r->scene->coordinates[k] : NULL;
-}
-
-static void read_position(hn_reader *r, const cJSON *node, const char *key) {
-    hn_quantity q;
-    int pinned;
-    hn_coordinate *c = start_coordinate(r, key);
-    if (!c || !read_entry(r, node, &q, &pinned)) {
-        return;
-    }
-    if (c->q0_given) {
-        hn_rd_fault(r, NULL, "the start of '%s' is given twice", c->name);
-        return;
-    }
-    c->q0 = q.value;
-    c->q0_given = 1;
-    c->q0_pinned = pinned;
-    c->q0_pointer = hn_rd_pointer(r);
-}
-
-static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
-    hn_quantity q;
-    int pinned;
-    hn_coordinate *c = start_coordinate(r, key);
-    if (!c || !read_entry(r, node, &q, &pinned)) {
-        return;
-    }
-    if (c->v0_given) {
-        hn_rd_fault(r, NULL, "the start rate of '%s' is given twice", c->name);
-        return;
-    }
-    c->v0 = q.value;
-    c->v0_given = 1;
-    c->v0_pinned = pinned;
-    c->v0_pointer = hn_rd_pointer(r);
-}
-
-void hn_rd_start(hn_reader *r, const cJSON *root) {
-    static const char *const fields[] = {"positions", "rates"};
-    const cJSON *node = hn_rd_get(root, "start");
-    if (!node) {
-        return;
-    }
-    size_t mark = hn_rd_enter(r, "start");
-    if (hn_rd_object(r, node, "a start", fields, 2)) {
-        each_of(r, node, "positions", 1, read_position);
-        each_of(r, node, "rates", 1, read_rate);
     }
     hn_rd_leave(r, mark);
 }

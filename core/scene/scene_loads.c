@@ -17,8 +17,7 @@ static int add_load(hn_reader *r, const hn_load *load) {
     return 1;
 }
 
-/// A point under `key`.
-static int read_end(hn_reader *r, const cJSON *node, const char *key) {
+int hn_rd_end(hn_reader *r, const cJSON *node, const char *key) {
     const cJSON *point = hn_rd_get(node, key);
     if (!point) {
         hn_rd_fault(r,
@@ -58,8 +57,8 @@ static int read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     if (!hn_rd_object(r, node, "a spring", fields, 5)) {
         return 0;
     }
-    load->p = read_end(r, node, "from");
-    load->q = read_end(r, node, "to");
+    load->p = hn_rd_end(r, node, "from");
+    load->q = hn_rd_end(r, node, "to");
     int ok = read_spring_numbers(r, node, load);
     if (ok && load->rest.value < 0) {
         return hn_rd_fault_at(r, "rest", NULL, "a rest length of %g m is negative",
@@ -71,10 +70,33 @@ static int read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     return ok && load->p >= 0 && load->q >= 0;
 }
 
-/// The coordinate of "joint" (a joint's name) or "coordinate".
-static int read_target(hn_reader *r, const cJSON *node) {
+/// The one coordinate of a joint, or -1 after a fault.
+static int only_coordinate(hn_reader *r, const hn_joint *j) {
+    if (j->n_coordinates != 1) {
+        hn_rd_fault_at(r, "joint", j->n_coordinates > 1 ? "name one with 'coordinate'" : NULL,
+                       "the joint '%s' has %d coordinates", j->name, j->n_coordinates);
+        return -1;
+    }
+    return j->coordinate;
+}
+
+static int find_joint(hn_reader *r, const char *name) {
     enum { ROOM = 256 };
     const hn_scene *s = r->scene;
+    const char *names[ROOM];
+    for (int i = 0; i < s->n_joints; i++) {
+        if (strcmp(s->joints[i].name, name) == 0) {
+            return only_coordinate(r, &s->joints[i]);
+        }
+        names[i < ROOM ? i : ROOM - 1] = s->joints[i].name;
+    }
+    char hint[HN_DIAG_HINT];
+    hn_rd_suggest(hint, sizeof hint, name, names, s->n_joints < ROOM ? s->n_joints : ROOM);
+    hn_rd_fault_at(r, "joint", hint, "there is no joint named '%s'", name);
+    return -1;
+}
+
+int hn_rd_target(hn_reader *r, const cJSON *node, int position) {
     if (!hn_rd_get(node, "joint") == !hn_rd_get(node, "coordinate")) {
         hn_rd_fault(r, NULL, "expected either 'joint' or 'coordinate', found %s",
                     hn_rd_get(node, "joint") ? "both" : "neither");
@@ -85,23 +107,16 @@ static int read_target(hn_reader *r, const cJSON *node) {
     if (!name) {
         return -1;
     }
-    if (key[0] == 'c') {
-        size_t mark = hn_rd_enter(r, key);
-        int k = hn_rd_coordinate(r, name, 0);
-        hn_rd_leave(r, mark);
-        return k;
+    if (key[0] == 'j') {
+        return find_joint(r, name);
     }
-    const char *names[ROOM];
-    for (int i = 0; i < s->n_joints; i++) {
-        if (strcmp(s->joints[i].name, name) == 0) {
-            return s->joints[i].coordinate;
-        }
-        names[i < ROOM ? i : ROOM - 1] = s->joints[i].name;
+    size_t mark = hn_rd_enter(r, key);
+    int k = hn_rd_coordinate(r, name, 0);
+    if (k >= 0 && position && !hn_rd_check_no_turn(r, k)) {
+        k = -1;
     }
-    char hint[HN_DIAG_HINT];
-    hn_rd_suggest(hint, sizeof hint, name, names, s->n_joints < ROOM ? s->n_joints : ROOM);
-    hn_rd_fault_at(r, key, hint, "there is no joint named '%s'", name);
-    return -1;
+    hn_rd_leave(r, mark);
+    return k;
 }
 
 static int read_joint_spring(hn_reader *r, const cJSON *node, hn_load *load) {
@@ -110,7 +125,7 @@ static int read_joint_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     if (!hn_rd_object(r, node, "a joint spring", fields, 5)) {
         return 0;
     }
-    load->coordinate = read_target(r, node);
+    load->coordinate = hn_rd_target(r, node, hn_rd_get(node, "stiffness") != NULL);
     return read_spring_numbers(r, node, load) && load->coordinate >= 0;
 }
 
@@ -121,7 +136,7 @@ static int read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const
     if (!hn_rd_object(r, node, what, fields, 3)) {
         return 0;
     }
-    load->coordinate = read_target(r, node);
+    load->coordinate = hn_rd_target(r, node, 0);
     int ok =
         hn_rd_member(r, node, "value", 1, 0, &load->value[0], HN_RD_STATE) && load->coordinate >= 0;
     if (ok && r->scene->coordinates[load->coordinate].kind != kind) {
@@ -148,7 +163,7 @@ static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
     if (!hn_rd_object(r, node, "a force", fields, 2)) {
         return 0;
     }
-    load->p = read_end(r, node, "at");
+    load->p = hn_rd_end(r, node, "at");
     const cJSON *value = hn_rd_get(node, "value");
     size_t mark = hn_rd_enter(r, "value");
     int ok = value ? hn_rd_vector(r, value, load->value, HN_RD_STATE)
@@ -157,13 +172,116 @@ static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
     return ok && load->p >= 0;
 }
 
+/// On a whole body, in world axes.
+static int read_moment(hn_reader *r, const cJSON *node, hn_load *load) {
+    static const char *const fields[] = {"body", "value"};
+    static const hn_quantity origin[3];
+    load->kind = HN_LOAD_MOMENT;
+    if (!hn_rd_object(r, node, "a moment", fields, 2)) {
+        return 0;
+    }
+    int body = hn_rd_body(r, node, "body");
+    if (body == HN_GROUND) {
+        return hn_rd_fault_at(r, "body", NULL, "a moment on ground does nothing");
+    }
+    const cJSON *value = hn_rd_get(node, "value");
+    size_t mark = hn_rd_enter(r, "value");
+    int ok = value ? hn_rd_vector(r, value, load->value, HN_RD_STATE)
+                   : hn_rd_fault(r, "as in [0, 0, \"M\"]", "the moment has no 'value'");
+    hn_rd_leave(r, mark);
+    load->p = ok && body != -2 ? hn_rd_place(r, body, origin) : -1;
+    return load->p >= 0;
+}
+
+/// An actuator that follows a target over time.
+static int read_follow(hn_reader *r, const cJSON *node, hn_load *load) {
+    static const char *const fields[] = {"joint",   "coordinate", "stiffness",
+                                         "damping", "target",     "limit"};
+    load->kind = HN_LOAD_FOLLOW;
+    if (!hn_rd_object(r, node, "a follower", fields, 6)) {
+        return 0;
+    }
+    load->coordinate = hn_rd_target(r, node, 1);
+    int ok = read_spring_numbers(r, node, load);
+    ok &= hn_rd_member(r, node, "target", 1, 0, &load->value[0], HN_RD_TIME);
+    ok &= hn_rd_member(r, node, "limit", 0, 0, &load->value[1], HN_RD_CONST);
+    if (ok && hn_rd_get(node, "limit") && !(load->value[1].value > 0)) {
+        return hn_rd_fault_at(r, "limit", "leave it out if there is none",
+                              "a limit of %g is not positive", load->value[1].value);
+    }
+    return ok && load->coordinate >= 0;
+}
+
+/// Numbers under `key` into the scene's arena; NULL after a fault.
+static const double *read_column(hn_reader *r, const cJSON *node, const char *key, int *n) {
+    const cJSON *list = hn_rd_get(node, key);
+    if (!cJSON_IsArray(list) || !list->child) {
+        hn_rd_fault(r, "as in [0, 0.5, 1]", "expected a list of numbers under '%s', found %s%s",
+                    key, hn_rd_kind(list), cJSON_IsArray(list) ? " that is empty" : "");
+        return NULL;
+    }
+    *n = cJSON_GetArraySize(list);
+    if (*n > HN_RD_MAX_TABLE) {
+        hn_rd_limit(r, "a table of %d times, at most %d are allowed", *n, HN_RD_MAX_TABLE);
+        return NULL;
+    }
+    double *column = hn_arena_get(r->arena, (size_t)*n * sizeof *column);
+    r->oom |= !column;
+    int ok = column != NULL, i = 0;
+    size_t mark = hn_rd_enter(r, key);
+    for (const cJSON *m = list->child; m && ok && !hn_rd_stopped(r); m = m->next, i++) {
+        hn_quantity q;
+        size_t inner = hn_rd_enter_index(r, i);
+        ok = hn_rd_quantity(r, m, &q, HN_RD_CONST);
+        column[i] = q.value;
+        hn_rd_leave(r, inner);
+    }
+    hn_rd_leave(r, mark);
+    return ok ? column : NULL;
+}
+
+static int check_times(hn_reader *r, const hn_profile *table) {
+    for (int i = 1; i < table->n; i++) {
+        if (!(table->t[i] > table->t[i - 1])) {
+            char key[24];
+            snprintf(key, sizeof key, "%d", i);
+            size_t mark = hn_rd_enter(r, "t");
+            hn_rd_fault_at(r, key, NULL, "the time %g s does not come after %g s", table->t[i],
+                           table->t[i - 1]);
+            hn_rd_leave(r, mark);
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int read_table(hn_reader *r, const cJSON *node, hn_load *load) {
+    static const char *const fields[] = {"joint", "coordinate", "t", "value", "steps"};
+    load->kind = HN_LOAD_TABLE;
+    if (!hn_rd_object(r, node, "a table", fields, 5)) {
+        return 0;
+    }
+    int n = 0;
+    load->coordinate = hn_rd_target(r, node, 0);
+    load->table.t = read_column(r, node, "t", &load->table.n);
+    load->table.value = read_column(r, node, "value", &n);
+    load->table.steps = hn_rd_flag(r, node, "steps");
+    if (!load->table.t || !load->table.value) {
+        return 0;
+    }
+    if (n != load->table.n) {
+        return hn_rd_fault_at(r, "value", NULL, "%d values for %d times", n, load->table.n);
+    }
+    return check_times(r, &load->table) && load->coordinate >= 0;
+}
+
 static const struct {
     const char *name;
     int (*read)(hn_reader *, const cJSON *, hn_load *);
-} KINDS[] = {{"spring", read_spring},
-             {"joint_spring", read_joint_spring},
-             {"torque", read_torque},
-             {"force", read_force}};
+} KINDS[] = {{"spring", read_spring}, {"joint_spring", read_joint_spring},
+             {"torque", read_torque}, {"force", read_force},
+             {"moment", read_moment}, {"follow", read_follow},
+             {"table", read_table}};
 enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
 
 static void read_load(hn_reader *r, const cJSON *node, const char *key) {
@@ -183,7 +301,7 @@ static void read_load(hn_reader *r, const cJSON *node, const char *key) {
     }
     if (n != 1) {
         if (r->n_faults == faults) {
-            hn_rd_fault(r, "allowed: spring, joint_spring, torque, force",
+            hn_rd_fault(r, "allowed: spring, joint_spring, torque, force, moment, follow, table",
                         "expected one kind of load, found %d", n);
         }
         return;
