@@ -224,10 +224,10 @@ static hn_status solve_dense(hn_accel *s, double alpha, double beta, double *a, 
     if (!all_finite(s->in.x, s->in.n)) {
         return HN_ERR_DIVERGED;
     }
-    const double *x = s->in.x;
-    hn_eval_run(s->terms, x[2 * s->nv], x, x + s->nv);
+    const double *q = s->in.x, *v = q + s->in.nq;
+    hn_eval_run(s->terms, v[s->nv], q, v);
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
-    const double blur = fmin(BLUR * stabilise(s, x + s->nv, alpha, beta), BLUR_MAX);
+    const double blur = fmin(BLUR * stabilise(s, v, alpha, beta), BLUR_MAX);
     hn_saddle_opts opts = hn_saddle_opts_default();
     opts.row_floor = blur > opts.rank_tol ? ROW_FLOOR : 0;
     opts.rank_tol = fmax(opts.rank_tol, blur);

@@ -19,11 +19,18 @@ static void trace_base(hn_mech *m, int link) {
     if (l->carry != HN_CARRY_NEW) {
         return;
     }
-    hn_mat3 X = hn_mat3_num(m->tree->groups[l->group].X);
+    const hn_mat3 *X = &m->group_X[l->group];
     hn_vec3 w = hn_mech_work_to_E(m, l->parent, parent->w);
     hn_vec3 al = hn_mech_work_to_E(m, l->parent, parent->al);
-    m->base_w[l->group] = hn_mat3_apply_transposed(m->g, &X, w);
-    m->base_al[l->group] = hn_mat3_apply_transposed(m->g, &X, al);
+    m->base_w[l->group] = w = hn_mat3_apply_transposed(m->g, X, w);
+    m->base_al[l->group] = al = hn_mat3_apply_transposed(m->g, X, al);
+    if (l->type == HN_JOINT_SPHERICAL) { // the frame turns with the link itself
+        const hn_vec3 own = {
+            {m->sys->v[l->coordinate], m->sys->v[l->coordinate + 1], m->sys->v[l->coordinate + 2]}};
+        const hn_vec3 omega = hn_mat3_apply(m->g, &m->at[link].spin, own);
+        m->base_w[l->group] = hn_vec3_add(m->g, w, omega);
+        m->base_al[l->group] = hn_vec3_add(m->g, al, hn_vec3_cross(m->g, w, omega));
+    }
 }
 
 static void trace_rotation(hn_mech *m, int link) {
@@ -36,6 +43,12 @@ static void trace_rotation(hn_mech *m, int link) {
         return;
     }
     trace_base(m, link);
+    if (l->type == HN_JOINT_SPHERICAL) {
+        at->w = m->base_w[l->group];
+        at->al = m->base_al[l->group];
+        at->B = hn_mat3_accel(m->g, at->w, at->al);
+        return;
+    }
     hn_vec3 uz = hn_vec3_scale(m->g, m->sys->v[l->coordinate], hn_vec3_num(Z));
     hn_vec3 w = hn_vec3_add(m->g, m->base_w[l->group], uz);
     hn_vec3 al =
@@ -109,10 +122,14 @@ static void hand_inward(hn_mech *m, int link) {
     p->n_rest = hn_vec3_add(m->g, p->n_rest, hn_mech_moment(m, l->parent, at->r, rest));
 }
 
-static hn_ex joint_force(hn_mech *m, int link) {
+static hn_ex joint_force(hn_mech *m, int link, int part) {
     const hn_link_trace *at = &m->at[link];
     if (m->tree->links[link].type == HN_JOINT_PRISMATIC) {
         return hn_vec3_dot(m->g, hn_mech_slide(m, link), at->f);
+    }
+    if (m->tree->links[link].type == HN_JOINT_SPHERICAL) {
+        hn_vec3 n = hn_vec3_add(m->g, at->n_own, at->n_new);
+        return hn_vec3_dot(m->g, hn_mat3_column(&at->spin, part), n);
     }
     return hn_add(m->g, at->n_own.x[2], at->n_new.x[2]);
 }
@@ -138,14 +155,16 @@ void hn_mech_trace_bias(hn_mech *m) {
         hn_link_trace *at = &m->at[l];
         at->pf = at->n_rest = at->n_new = at->n_all = none;
     }
-    for (int k = 0; k < tree->ground; k++) {
+    for (int k = 0; k < tree->n_order; k++) {
         trace_motion(m, tree->order[k]);
     }
-    for (int k = tree->ground - 1; k >= 0; k--) {
+    for (int k = tree->n_order - 1; k >= 0; k--) {
         int link = tree->order[k];
         close_link(m, link);
-        hn_ex *f = &m->sys->f[tree->links[link].coordinate];
-        *f = hn_sub(m->g, *f, joint_force(m, link));
+        for (int part = 0; part < tree->links[link].n_speeds; part++) {
+            hn_ex *f = &m->sys->f[tree->links[link].coordinate + part];
+            *f = hn_sub(m->g, *f, joint_force(m, link, part));
+        }
         if (tree->links[link].parent != tree->ground) {
             hand_inward(m, link);
         }

@@ -9,7 +9,7 @@
 
 /// 1 if the system coordinate is the scene's own.
 static int is_own(const hn_link *l) {
-    return l->type == HN_JOINT_PRISMATIC || (l->angle_ref < 0 && l->sign > 0 && l->offset == 0);
+    return l->type != HN_JOINT_REVOLUTE || (l->angle_ref < 0 && l->sign > 0 && l->offset == 0);
 }
 
 static int scene_knows(const hn_scene *scene, const char *name) {
@@ -40,23 +40,37 @@ static const char *angle_name(hn_system *sys, const char *stem, const char *body
 }
 
 static hn_status make_symbols(hn_system *sys) {
-    size_t n = (size_t)sys->nv + 1;
-    const char **names = hn_arena_get(sys->arena, n * sizeof *names);
-    const char **rates = hn_arena_get(sys->arena, n * sizeof *rates);
+    const char **names = hn_arena_get(sys->arena, ((size_t)sys->nq + 1) * sizeof *names);
+    const char **rates = hn_arena_get(sys->arena, ((size_t)sys->nv + 1) * sizeof *rates);
     if (!names || !rates) {
         return HN_ERR_MEMORY;
     }
+    static const char *const entries[4] = {"e0", "e1", "e2", "e3"};
     for (int i = 0; i < sys->nv; i++) {
         int link = sys->tree.link_of[i];
         const hn_coordinate *c = &sys->scene->coordinates[sys->tree.user[i]];
-        int own = is_own(&sys->tree.links[link]);
-        names[i] = own ? c->name : angle_name(sys, "theta", sys->scene->bodies[link].name);
-        rates[i] = own ? c->rate : angle_name(sys, "omega", sys->scene->bodies[link].name);
-        if (!names[i] || !rates[i]) {
+        const hn_link *l = &sys->tree.links[link];
+        const char *body = sys->scene->bodies[l->body].name;
+        int own = is_own(l);
+        rates[i] = own ? c->rate : angle_name(sys, "omega", body);
+        if (l->n_speeds == 1) {
+            names[l->position] = own ? c->name : angle_name(sys, "theta", body);
+        }
+        for (int k = 0; k < 4 && l->n_speeds == 3; k++) {
+            names[l->position + k] = angle_name(sys, entries[k], body);
+        }
+    }
+    for (int i = 0; i < sys->nq; i++) {
+        if (!names[i]) {
             return HN_ERR_MEMORY;
         }
     }
-    return hn_system_make_symbols(sys, sys->nv, names, rates);
+    for (int i = 0; i < sys->nv; i++) {
+        if (!rates[i]) {
+            return HN_ERR_MEMORY;
+        }
+    }
+    return hn_system_make_symbols(sys, names, rates);
 }
 
 /// The scene's coordinates of tree joints in terms of the system's.
@@ -64,14 +78,21 @@ static void express_user_coordinates(hn_system *sys) {
     for (int i = 0; i < sys->nv; i++) {
         const hn_link *l = &sys->tree.links[sys->tree.link_of[i]];
         int user = sys->tree.user[i];
-        hn_ex q = sys->q[i], v = sys->v[i];
+        hn_ex v = sys->v[i];
+        if (l->n_speeds ==
+            3) { // three entries of a rotation vector have no formula that is finite at every pose
+            sys->user_v[user] = v;
+            sys->user_known[user] = HN_KNOWN_RATE;
+            continue;
+        }
+        hn_ex q = sys->q[l->position];
         if (l->angle_ref >= 0) {
-            q = hn_sub(sys->g, q, sys->q[l->angle_ref]);
+            q = hn_sub(sys->g, q, sys->q[sys->tree.position[l->angle_ref]]);
             v = hn_sub(sys->g, v, sys->v[l->angle_ref]);
         }
         sys->user_q[user] = hn_scale(l->sign, hn_sub(sys->g, q, hn_num(l->offset)));
         sys->user_v[user] = hn_scale(l->sign, v);
-        sys->user_known[user] = 1;
+        sys->user_known[user] = HN_KNOWN_BOTH;
     }
 }
 
@@ -186,6 +207,7 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
     m->at = hn_arena_get(sys->arena, nl * sizeof *m->at);
     m->base_w = hn_arena_get(sys->arena, ng * sizeof *m->base_w);
     m->base_al = hn_arena_get(sys->arena, ng * sizeof *m->base_al);
+    m->group_X = hn_arena_get(sys->arena, ng * sizeof *m->group_X);
     m->to_world = hn_arena_get(sys->arena, ng * sizeof *m->to_world);
     m->position = hn_arena_get(sys->arena, nl * sizeof *m->position);
     m->path = hn_arena_ints(sys->arena, nl);
@@ -193,15 +215,15 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
 }
 
 /// Entries that M and J may have: beyond that the equations outgrow any tape, and writing them down would take minutes.
-enum { MAX_MASS_ENTRIES = 60000, MAX_CLOSURE_ENTRIES = 300000, ROWS_PER_JOINT = 5 };
+enum { MAX_MASS_ENTRIES = 60000, MAX_CLOSURE_ENTRIES = 300000, ROWS_PER_JOINT = 6 };
 
 /// The mass matrix couples each body to all that carry it; a closure row touches every body on its two paths.
 static hn_status check_size(const hn_mech *m) {
     const hn_tree *tree = m->tree;
     const hn_scene *scene = m->sys->scene;
     long long mass = 0, closure = 0;
-    for (int l = 0; l < tree->ground; l++) {
-        mass += tree->links[l].depth;
+    for (int j = 0; j < tree->n_coordinates; j++) {
+        mass += tree->links[tree->link_of[j]].depth;
     }
     for (int k = 0; k < tree->n_cut; k++) {
         const hn_joint *joint = &scene->joints[tree->cut[k]];
@@ -243,6 +265,22 @@ static hn_status trace_terms(hn_mech *m) {
     return status == HN_OK ? trace_points(m) : status;
 }
 
+/// In the order of their speeds.
+static hn_status list_balls(hn_system *sys) {
+    const hn_tree *tree = &sys->tree;
+    sys->balls = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *sys->balls);
+    if (!sys->balls) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        const hn_link *l = &tree->links[tree->link_of[i]];
+        if (l->n_speeds == 3 && l->coordinate == i) {
+            sys->balls[sys->n_balls++] = (hn_ball){l->position, i};
+        }
+    }
+    return HN_OK;
+}
+
 hn_status hn_bodies_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
     hn_mech m;
@@ -254,8 +292,11 @@ hn_status hn_bodies_compile(hn_system *sys) {
         hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
     if (status == HN_OK) {
         int n_cut = sys->tree.n_cut;
-        status = hn_system_allocate(sys, sys->tree.n_coordinates, ROWS_PER_JOINT * n_cut, n_cut,
-                                    scene->n_points + 2 * n_cut);
+        status = hn_system_allocate(sys, sys->tree.n_positions, sys->tree.n_coordinates,
+                                    ROWS_PER_JOINT * n_cut, n_cut, scene->n_points + 2 * n_cut);
+    }
+    if (status == HN_OK) {
+        status = list_balls(sys);
     }
     if (status == HN_OK) {
         status = make_symbols(sys);

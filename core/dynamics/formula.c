@@ -8,6 +8,7 @@ typedef struct scope {
     hn_system *sys;
     int with_state;      ///< coordinates, rates and t may appear
     const char *refused; ///< a name that exists but has no expression here
+    int refused_ball;    ///< because it is an entry of an orientation
 } scope;
 
 static int find_state(scope *s, const char *name, hn_ex *out) {
@@ -22,8 +23,10 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
         if (!is_position && strcmp(c->rate, name) != 0) {
             continue;
         }
-        if (!sys->user_known[i]) {
+        if (sys->user_known[i] == HN_KNOWN_NOTHING ||
+            (is_position && sys->user_known[i] == HN_KNOWN_RATE)) {
             s->refused = c->name;
+            s->refused_ball = sys->user_known[i] == HN_KNOWN_RATE;
             *out = hn_num(0);
             return 1;
         }
@@ -53,6 +56,13 @@ hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex 
     hn_parse_opts opts = {.lookup = find_name, .user = &s};
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
+    if (status == HN_OK && s.refused && s.refused_ball) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+                            "use its rates, or a joint of revolutes in its place",
+                            "'%s' is an entry of an orientation, which jumps where the turn passes "
+                            "half a revolution, so it has no formula that holds at every pose",
+                            s.refused);
+    }
     if (status == HN_OK && s.refused) {
         return hn_diags_add(
             sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,

@@ -9,12 +9,12 @@ static int count_params(const hn_system *sys) {
 static void begin(const hn_system *sys, double *x, hn_inputs *in) {
     in->x = x;
     for (int i = 0; x && i < count_params(sys); i++) {
-        x[2 * sys->nv + 3 + i] = sys->scene->params[i].value;
+        x[sys->nq + sys->nv + 3 + i] = sys->scene->params[i].value;
     }
 }
 
 static void set_sizes(const hn_system *sys, hn_inputs *in) {
-    *in = (hn_inputs){.nv = sys->nv, .n = 2 * sys->nv + 3 + count_params(sys)};
+    *in = (hn_inputs){.nq = sys->nq, .nv = sys->nv, .n = sys->nq + sys->nv + 3 + count_params(sys)};
 }
 
 hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in) {
@@ -24,9 +24,9 @@ hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in)
 }
 
 static void list_symbols(const hn_system *sys, int *symbols) {
-    memcpy(symbols, sys->q_symbols, (size_t)sys->nv * sizeof *symbols);
-    memcpy(symbols + sys->nv, sys->v_symbols, (size_t)sys->nv * sizeof *symbols);
-    int at = 2 * sys->nv;
+    memcpy(symbols, sys->q_symbols, (size_t)sys->nq * sizeof *symbols);
+    memcpy(symbols + sys->nq, sys->v_symbols, (size_t)sys->nv * sizeof *symbols);
+    int at = sys->nq + sys->nv;
     symbols[at++] = sys->t_symbol;
     symbols[at++] = sys->alpha_symbol;
     symbols[at++] = sys->beta_symbol;
@@ -67,12 +67,15 @@ void hn_inputs_free(hn_inputs *in) {
 void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
                    double beta) {
     double *x = in->x;
-    int n = in->nv;
-    for (int i = 0; i < n; i++) { // for a handful of speeds a loop is quicker than a call
+    for (int i = 0; i < in->nq; i++) { // for a handful of numbers a loop is quicker than a call
         x[i] = q[i];
-        x[n + i] = v ? v[i] : 0;
     }
-    x[2 * n] = t;
-    x[2 * n + 1] = alpha;
-    x[2 * n + 2] = beta;
+    x += in->nq;
+    for (int i = 0; i < in->nv; i++) {
+        x[i] = v ? v[i] : 0;
+    }
+    x += in->nv;
+    x[0] = t;
+    x[1] = alpha;
+    x[2] = beta;
 }

@@ -7,7 +7,7 @@
 #include "expr/tape.h"
 
 typedef struct hn_inputs {
-    int nv, n;
+    int nq, nv, n;
     double *x;             ///< n values; with a tape they stand at the start of its workspace
     hn_tape *tape;         ///< owned; NULL until compiled
     const uint16_t *slots; ///< output k is x[slots[k]]
@@ -19,7 +19,7 @@ HN_MUST_CHECK hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, 
 HN_MUST_CHECK hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out,
                                           hn_arena *arena, hn_inputs *in);
 void hn_inputs_free(hn_inputs *in); ///< the tape
-/// q (nv); v (nv) or NULL for zero.
+/// q (nq); v (nv) or NULL for zero.
 void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
                    double beta);
 #endif

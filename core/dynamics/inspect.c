@@ -10,14 +10,15 @@
 // tree, loops, groups ----------------------------------------------------------------------------
 
 static const char *link_name(const hn_system *sys, int link) {
-    return link == sys->tree.ground ? "ground" : sys->scene->bodies[link].name;
+    const int body = sys->tree.links[link].body;
+    return body < 0 ? "ground" : sys->scene->bodies[body].name;
 }
 
 static void put_branch(hn_strbuf *b, const hn_system *sys, int link) {
     const hn_link *l = &sys->tree.links[link];
     hn_strbuf line;
     hn_strbuf_init(&line);
-    for (int i = 0; i < l->depth; i++) {
+    for (int i = hn_tree_depth(&sys->tree, l->body); i > 0; i--) {
         hn_strbuf_add(&line, "  ");
     }
     hn_strbuf_add(&line, link_name(sys, link));
@@ -37,7 +38,10 @@ static void put_tree(hn_strbuf *b, const hn_system *sys) {
     hn_json_array(b);
     int at = sys->tree.ground;
     while (at >= 0) {
-        put_branch(b, sys, at);
+        if (!links[at]
+                 .is_virtual) { // a joint of several freedoms is told at its end, as the joint it is
+            put_branch(b, sys, at);
+        }
         if (links[at].first_child >= 0) {
             at = links[at].first_child;
             continue;
@@ -86,7 +90,7 @@ static void put_groups(hn_strbuf *b, const hn_system *sys) {
         hn_json_put_bool(b, "base_rotates", tree->groups[k].moving);
         hn_json_key(b, "bodies");
         hn_json_array(b);
-        for (int i = 0; i < tree->ground; i++) {
+        for (int i = 0; i < tree->n_links; i++) {
             if (tree->links[i].group == k && tree->links[i].root == i) {
                 hn_json_string(b, link_name(sys, i));
             }
@@ -107,6 +111,9 @@ static const char *meaning_of(const hn_system *sys, int i) {
     if (l->type == HN_JOINT_PRISMATIC) {
         return "displacement along the joint";
     }
+    if (l->type == HN_JOINT_SPHERICAL) {
+        return "orientation: a unit quaternion, moved by the angular velocity in the child's axes";
+    }
     if (l->angle_ref >= 0) {
         return "absolute angle in its group";
     }
@@ -121,9 +128,17 @@ static void put_coordinates(hn_strbuf *b, const hn_system *sys) {
         hn_strbuf text;
         hn_strbuf_init(&text);
         hn_strbuf_printf(&text, "%s = ", sys->scene->coordinates[user].name);
-        hn_print(&text, sys->g, sys->user_q[user], HN_PRINT_TEXT, 6);
+        const int place = hn_system_position_of(sys, i);
+        if (place >= 0) {
+            hn_print(&text, sys->g, sys->user_q[user], HN_PRINT_TEXT, 6);
+        } else {
+            hn_strbuf_add(&text, "entry of the rotation vector of the quaternion");
+        }
+        const int symbol = place >= 0 ? sys->q_symbols[place] : -1;
         hn_json_object(b);
-        hn_json_put_string(b, "name", hn_graph_symbol_name(sys->g, sys->q_symbols[i]));
+        hn_json_put_string(b, "name",
+                           symbol >= 0 ? hn_graph_symbol_name(sys->g, symbol)
+                                       : sys->scene->coordinates[user].name);
         hn_json_put_string(b, "rate", hn_graph_symbol_name(sys->g, sys->v_symbols[i]));
         hn_json_put_string(b, "meaning", meaning_of(sys, i));
         hn_json_put_string(b, "scene", hn_strbuf_text(&text));

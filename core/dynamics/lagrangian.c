@@ -19,7 +19,7 @@ static hn_status make_symbols(hn_system *sys) {
         names[i] = scene->coordinates[i].name;
         rates[i] = scene->coordinates[i].rate;
     }
-    hn_status status = hn_system_make_symbols(sys, scene->n_coordinates, names, rates);
+    hn_status status = hn_system_make_symbols(sys, names, rates);
     for (int i = 0; i < scene->n_coordinates; i++) {
         sys->user_q[i] = sys->q[i];
         sys->user_v[i] = sys->v[i];
@@ -238,7 +238,8 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
 hn_status hn_lagrangian_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
     int m = scene->lagrangian.n_constraints;
-    hn_status status = hn_system_allocate(sys, scene->n_coordinates, m, m, scene->n_points);
+    hn_status status =
+        hn_system_allocate(sys, scene->n_coordinates, scene->n_coordinates, m, m, scene->n_points);
     if (status == HN_OK) {
         status = make_symbols(sys);
     }

@@ -85,6 +85,14 @@ static hn_status add_joint_spring(hn_system *sys, const hn_geometry *geometry,
     if (status != HN_OK) {
         return status;
     }
+    if (sys->user_known[load->coordinate] == HN_KNOWN_RATE && !hn_is_zero(k)) {
+        return hn_diags_add(
+            sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
+            "give it damping only, or use springs between points",
+            "a spring on '%s' is not served: an entry of an orientation jumps where "
+            "the turn passes half a revolution",
+            sys->scene->coordinates[load->coordinate].name);
+    }
     hn_graph *g = sys->g;
     hn_ex stretch = hn_sub(g, sys->user_q[load->coordinate], rest);
     hn_ex tau = hn_add(g, hn_mul(g, k, stretch), hn_mul(g, c, sys->user_v[load->coordinate]));

@@ -1,7 +1,10 @@
 // Loop closures. A cut joint is written as rows between its two halves, relative to the lowest common ancestor of its bodies
 // and in that loop's frame (relate.c):
-//     revolute   position 3,  x_B . z_A,  y_B . z_A
-//     prismatic  position 2 across the axis,  x_B . y_A,  x_B . z_A,  y_B . z_A
+//     revolute     position 3,  x_B . z_A,  y_B . z_A               universal  position 3,  x_B . z_A
+//     prismatic    position 2 across the axis,  x_B . y_A,  x_B . z_A,  y_B . z_A
+//     cylindrical  position 2 across the axis,  x_B . z_A,  y_B . z_A
+//     planar       position 1 along the axis,  x_B . z_A,  y_B . z_A
+//     spherical    position 3                                       fixed      position 3, turns as prismatic
 // J comes as coefficients on the path's coordinates (axis x lever arm), gamma from the same recursion for accelerations:
 // (p . r)'' = p''. r + 2 p'. r' + p . r''. Differentiating phi instead would cost more operations. Rows that vanish
 // identically drop out when they are added, so a planar loop keeps two, whatever plane it lies in.
@@ -208,47 +211,83 @@ static int count_open(const hn_reach *end) {
     return n;
 }
 
-static hn_status close_revolute(loop *l) {
-    const hn_joint *joint = &l->m->sys->scene->joints[l->joint];
-    hn_status status = HN_OK;
-    for (int i = 0; i < 3 && status == HN_OK; i++) {
-        status = position_row(l, i);
-    }
-    double y[3];
-    hn_num3_cross(joint->child_axis, joint->child_ref, y);
-    direction z_A = fixed_direction(l, 0, joint->parent_axis);
-    direction x_B = fixed_direction(l, 1, joint->child_ref), y_B = fixed_direction(l, 1, y);
-    if (status == HN_OK) {
-        status = perpendicular_row(l, "tilt 1", &z_A, &x_B);
-    }
-    return status == HN_OK ? perpendicular_row(l, "tilt 2", &z_A, &y_B) : status;
-}
+/// The rows of a type, in their order. Places: 3 along the loop's own axes, or where the joint lets the halves move apart, along
+/// axes of the joint (bits: 1 x, 2 y, 4 z). Turns: the pairs that stay perpendicular.
+enum { TURN = 1, TILT_1 = 2, TILT_2 = 4, CROSS = 8 };
+typedef struct closing {
+    int all_places, along, turns;
+} closing;
 
-static hn_status close_prismatic(loop *l) {
+static const closing CLOSINGS[HN_JOINT_TYPE_COUNT] = {
+    [HN_JOINT_REVOLUTE] = {1, 0, TILT_1 | TILT_2},
+    [HN_JOINT_PRISMATIC] = {0, 1 | 2, TURN | TILT_1 | TILT_2},
+    [HN_JOINT_CYLINDRICAL] = {0, 1 | 2, TILT_1 | TILT_2},
+    [HN_JOINT_UNIVERSAL] = {1, 0, CROSS},
+    [HN_JOINT_SPHERICAL] = {1, 0, 0},
+    [HN_JOINT_PLANAR] = {0, 4, TILT_1 | TILT_2},
+    [HN_JOINT_FIXED] = {1, 0, TURN | TILT_1 | TILT_2},
+};
+
+/// Axes of the joint on both sides: x, y, z in their bodies.
+static void joint_axes(loop *l, direction parent[3], direction child[3]) {
     const hn_joint *joint = &l->m->sys->scene->joints[l->joint];
     double yA[3], yB[3];
     hn_num3_cross(joint->parent_axis, joint->parent_ref, yA);
     hn_num3_cross(joint->child_axis, joint->child_ref, yB);
-    direction x_A = fixed_direction(l, 0, joint->parent_ref), y_A = fixed_direction(l, 0, yA);
-    direction z_A = fixed_direction(l, 0, joint->parent_axis);
-    direction x_B = fixed_direction(l, 1, joint->child_ref), y_B = fixed_direction(l, 1, yB);
-    // the side that turns less carries the two directions across
-    int on_child = count_open(&l->rel.b) < count_open(&l->rel.a);
-    const direction *across[2] = {on_child ? &x_B : &x_A, on_child ? &y_B : &y_A};
-    static const char *const names[2] = {"across 1", "across 2"};
-    collect_rate(l);
+    const double *const A[3] = {joint->parent_ref, yA, joint->parent_axis};
+    const double *const B[3] = {joint->child_ref, yB, joint->child_axis};
+    for (int i = 0; i < 3; i++) {
+        parent[i] = fixed_direction(l, 0, A[i]);
+        child[i] = fixed_direction(l, 1, B[i]);
+    }
+}
+
+/// The gap along axes of the joint, on the side that turns less.
+static hn_status measured_rows(loop *l, int along_bits, const direction *parent,
+                               const direction *child) {
+    static const char *const names[3] = {"across 1", "across 2", "along"};
+    const direction *axes = count_open(&l->rel.b) < count_open(&l->rel.a) ? child : parent;
     hn_status status = HN_OK;
-    for (int i = 0; i < 2 && status == HN_OK; i++) {
-        measured row = along(l, across[i]);
-        status = add_row(l, names[i], 1, row.value, row.gamma, row.n);
+    collect_rate(l);
+    for (int i = 0; i < 3 && status == HN_OK; i++) {
+        if (along_bits & (1 << i)) {
+            measured row = along(l, &axes[i]);
+            status = add_row(l, names[i], 1, row.value, row.gamma, row.n);
+        }
     }
-    if (status == HN_OK) {
-        status = perpendicular_row(l, "turn", &y_A, &x_B);
+    return status;
+}
+
+static hn_status turn_rows(loop *l, int turns, const direction *parent, const direction *child) {
+    static const struct {
+        int bit, parent, child;
+        const char *name;
+    } rows[] = {{TURN, 1, 0, "turn"},
+                {CROSS, 2, 0, "cross"},
+                {TILT_1, 2, 0, "tilt 1"},
+                {TILT_2, 2, 1, "tilt 2"}};
+    hn_status status = HN_OK;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows && status == HN_OK; k++) {
+        if (turns & rows[k].bit) {
+            status =
+                perpendicular_row(l, rows[k].name, &parent[rows[k].parent], &child[rows[k].child]);
+        }
     }
-    if (status == HN_OK) {
-        status = perpendicular_row(l, "tilt 1", &z_A, &x_B);
+    return status;
+}
+
+static hn_status close_joint(loop *l) {
+    const closing *rule = &CLOSINGS[l->m->sys->scene->joints[l->joint].type];
+    direction parent[3], child[3];
+    hn_status status = HN_OK;
+    for (int i = 0; i < 3 && rule->all_places && status == HN_OK; i++) {
+        status = position_row(l, i);
     }
-    return status == HN_OK ? perpendicular_row(l, "tilt 2", &z_A, &y_B) : status;
+    joint_axes(l, parent, child);
+    if (status == HN_OK && rule->along) {
+        status = measured_rows(l, rule->along, parent, child);
+    }
+    return status == HN_OK ? turn_rows(l, rule->turns, parent, child) : status;
 }
 
 // coordinates of cut joints ------------------------------------------------------------------------------------
@@ -266,7 +305,7 @@ static int constant_in_group(const hn_tree *tree, int link, int group, double C[
     memcpy(X, tree->groups[group].X, sizeof X);
     hn_num3_transpose(X, back);
     hn_num3_mul(back, own, C);
-    return l->angle < 0 && tree->groups[group].base == tree->ground;
+    return hn_tree_is_still(tree, link) && tree->groups[group].base == tree->ground;
 }
 
 /// A revolute joint between links of one group: Rz(q) = D Rz(theta_B - theta_A + delta_B - delta_A) D with D the identity or
@@ -292,7 +331,8 @@ static int revolute_coordinate(hn_mech *m, const hn_joint *joint, int index) {
     hn_system *sys = m->sys;
     int ia = tree->links[a].angle, ib = tree->links[b].angle;
     hn_ex zero = hn_num(0);
-    hn_ex angle = hn_sub(m->g, ib >= 0 ? sys->q[ib] : zero, ia >= 0 ? sys->q[ia] : zero);
+    hn_ex angle =
+        hn_sub(m->g, ib >= 0 ? hn_mech_q(m, ib) : zero, ia >= 0 ? hn_mech_q(m, ia) : zero);
     hn_ex rate = hn_sub(m->g, ib >= 0 ? sys->v[ib] : zero, ia >= 0 ? sys->v[ia] : zero);
     sys->user_q[index] = hn_scale(sign, hn_add(m->g, angle, hn_num(offset)));
     sys->user_v[index] = hn_scale(sign, rate);
@@ -323,17 +363,14 @@ hn_status hn_mech_cut_coordinates(hn_mech *m) {
     for (int k = 0; k < m->tree->n_cut; k++) {
         const hn_joint *joint = &m->sys->scene->joints[m->tree->cut[k]];
         int index = joint->coordinate;
-        if (index < 0) {
-            continue;
-        }
-        m->sys->user_known[index] = 1;
         if (joint->type == HN_JOINT_PRISMATIC) {
+            m->sys->user_known[index] = HN_KNOWN_BOTH;
             hn_status status = prismatic_coordinate(m, k, joint, index);
             if (status != HN_OK) {
                 return status;
             }
-        } else {
-            m->sys->user_known[index] = (char)revolute_coordinate(m, joint, index);
+        } else if (joint->type == HN_JOINT_REVOLUTE && revolute_coordinate(m, joint, index)) {
+            m->sys->user_known[index] = HN_KNOWN_BOTH;
         }
     }
     return HN_OK;
@@ -347,8 +384,7 @@ hn_status hn_mech_trace_loops(hn_mech *m) {
             return status;
         }
         collect_coefficients(&l);
-        const hn_joint *joint = &m->sys->scene->joints[l.joint];
-        status = joint->type == HN_JOINT_PRISMATIC ? close_prismatic(&l) : close_revolute(&l);
+        status = close_joint(&l);
         if (status != HN_OK) {
             return status;
         }

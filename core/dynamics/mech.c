@@ -35,8 +35,7 @@ hn_vec3 hn_mech_up(const hn_mech *m, int link, hn_vec3 v) {
     if (l->carry == HN_CARRY_GROUP) {
         return F_to_work(m, l->parent, v);
     }
-    hn_mat3 X = hn_mat3_num(m->tree->groups[l->group].X);
-    return hn_mech_E_to_work(m, l->parent, hn_mat3_apply(m->g, &X, v));
+    return hn_mech_E_to_work(m, l->parent, hn_mat3_apply(m->g, &m->group_X[l->group], v));
 }
 
 hn_vec3 hn_mech_down(const hn_mech *m, int link, hn_vec3 v) {
@@ -47,8 +46,7 @@ hn_vec3 hn_mech_down(const hn_mech *m, int link, hn_vec3 v) {
     if (l->carry == HN_CARRY_GROUP) {
         return F_to_work(m, link, work_to_F(m, l->parent, v));
     }
-    hn_mat3 X = hn_mat3_num(m->tree->groups[l->group].X);
-    v = hn_mat3_apply_transposed(m->g, &X, hn_mech_work_to_E(m, l->parent, v));
+    v = hn_mat3_apply_transposed(m->g, &m->group_X[l->group], hn_mech_work_to_E(m, l->parent, v));
     return F_to_work(m, link, v);
 }
 
@@ -57,6 +55,10 @@ hn_vec3 hn_mech_moment(const hn_mech *m, int link, hn_vec3 r, hn_vec3 f) {
         return hn_vec3_cross(m->g, r, f);
     }
     return (hn_vec3){{hn_num(0), hn_num(0), hn_vec3_cross_z(m->g, r, f)}};
+}
+
+hn_ex hn_mech_q(const hn_mech *m, int coordinate) {
+    return m->sys->q[m->tree->position[coordinate]];
 }
 
 hn_vec3 hn_mech_slide(const hn_mech *m, int link) {
@@ -101,9 +103,10 @@ static hn_status trace_arm(hn_mech *m, int link) {
     if (l->type == HN_JOINT_PRISMATIC) {
         // the link's point moves along the axis when the joint's own parent is the link's parent, against it otherwise
         hn_mat3 C = hn_mat3_num(m->tree->links[l->parent].C);
-        hn_vec3 d = hn_mat3_apply(m->g, &C, hn_vec3_num(hn_link_parent_axis(m->sys->scene, l)));
+        const double axis[3] = {l->here[0][2], l->here[1][2], l->here[2][2]};
+        hn_vec3 d = hn_mat3_apply(m->g, &C, hn_vec3_num(axis));
         at->slide = hn_vec3_scale(m->g, hn_num(l->reversed ? -1 : 1), d);
-        hn_vec3 gone = hn_vec3_scale(m->g, m->sys->q[l->coordinate], at->slide);
+        hn_vec3 gone = hn_vec3_scale(m->g, hn_mech_q(m, l->coordinate), at->slide);
         at->arm = hn_vec3_add(m->g, at->arm, gone);
     }
     at->r = hn_mech_E_to_work(m, l->parent, at->arm);
@@ -111,10 +114,13 @@ static hn_status trace_arm(hn_mech *m, int link) {
 }
 
 static hn_status trace_body(hn_mech *m, int link) {
-    const hn_body *body = &m->sys->scene->bodies[link];
+    const hn_body *body = &m->sys->scene->bodies[m->tree->links[link].body];
     hn_link_trace *at = &m->at[link];
     hn_vec3 rho;
     hn_sym3 I;
+    if (m->tree->links[link].is_virtual) {
+        return HN_OK; // zeroed: no mass
+    }
     hn_status status = hn_system_quantity(m->sys, &body->mass, &at->mass);
     for (int k = 0; k < 6 && status == HN_OK; k++) {
         status = hn_system_quantity(m->sys, &body->inertia[k], &I.x[k]);
@@ -138,13 +144,61 @@ static void trace_world_frame(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     if (l->carry == HN_CARRY_NEW) {
         const hn_link_trace *base = &m->at[l->parent];
-        hn_mat3 X = hn_mat3_num(m->tree->groups[l->group].X);
         hn_mat3 turned = hn_mat3_turn_z(base->c, base->s);
-        turned = hn_mat3_mul(m->g, &turned, &X);
+        turned = hn_mat3_mul(m->g, &turned, &m->group_X[l->group]);
         turned = hn_mat3_mul(m->g, &m->to_world[m->tree->links[l->parent].group], &turned);
         hn_mat3_snap(&turned);
         m->to_world[l->group] = turned;
     }
+}
+
+/// The turn R of a unit quaternion (w, x, y, z).
+static hn_mat3 turn_of(hn_mech *m, const hn_ex *q) {
+    hn_graph *g = m->g;
+    hn_ex twice[4][4]; // 2 q_i q_j, i > 0
+    for (int i = 1; i < 4; i++) {
+        for (int j = 0; j <= i; j++) {
+            twice[i][j] = hn_scale(2, hn_mul(g, q[i], q[j]));
+        }
+    }
+    hn_mat3 R;
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3; // cyclic: R_ij = 2 (q_i q_j - w q_k)
+        const hn_ex ij = twice[i > j ? i + 1 : j + 1][i > j ? j + 1 : i + 1];
+        hn_ex diagonal[3] = {hn_num(1), hn_neg(twice[j + 1][j + 1]), hn_neg(twice[k + 1][k + 1])};
+        R.x[i][i] = hn_sum(g, diagonal, 3);
+        R.x[i][j] = hn_sub(g, ij, twice[k + 1][0]);
+        R.x[j][i] = hn_add(g, ij, twice[k + 1][0]);
+    }
+    return R;
+}
+
+static hn_mat3 transposed(const hn_mat3 *a) {
+    hn_mat3 out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out.x[i][j] = a->x[j][i];
+        }
+    }
+    return out;
+}
+
+/// Where a ball's frame stands in its parent's, and the axes of its speeds. A joint whose parent is the link itself turns back: its
+/// child's axes, in which the speeds are, are then those on the link's parent, and its child turns the other way.
+static void trace_ball(hn_mech *m, int link) {
+    const hn_link *l = &m->tree->links[link];
+    hn_mat3 here = hn_mat3_num(m->tree->groups[l->group].X);
+    hn_mat3 R = turn_of(m, m->sys->q + l->position);
+    m->at[link].spin = hn_mat3_identity();
+    if (l->reversed) {
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                m->at[link].spin.x[i][j] = hn_neg(R.x[i][j]);
+            }
+        }
+        R = transposed(&R);
+    }
+    m->group_X[l->group] = hn_mat3_mul(m->g, &here, &R);
 }
 
 hn_status hn_mech_trace_geometry(hn_mech *m) {
@@ -154,14 +208,18 @@ hn_status hn_mech_trace_geometry(hn_mech *m) {
     ground->s = hn_num(0);
     m->position[tree->ground] = hn_vec3_zero();
     for (int k = 0; k < tree->n_groups; k++) {
+        m->group_X[k] = hn_mat3_num(tree->groups[k].X);
         m->to_world[k] = hn_mat3_num(tree->groups[k].R); // right for groups of the ground
     }
-    for (int k = 0; k < tree->ground; k++) {
+    for (int k = 0; k < tree->n_order; k++) {
         int link = tree->order[k];
         hn_link_trace *at = &m->at[link];
         int angle = tree->links[link].angle;
-        at->c = angle >= 0 ? hn_cos(m->g, m->sys->q[angle]) : hn_num(1);
-        at->s = angle >= 0 ? hn_sin(m->g, m->sys->q[angle]) : hn_num(0);
+        at->c = angle >= 0 ? hn_cos(m->g, hn_mech_q(m, angle)) : hn_num(1);
+        at->s = angle >= 0 ? hn_sin(m->g, hn_mech_q(m, angle)) : hn_num(0);
+        if (tree->links[link].type == HN_JOINT_SPHERICAL) {
+            trace_ball(m, link);
+        }
         hn_status status = trace_arm(m, link);
         if (status == HN_OK) {
             status = trace_body(m, link);
@@ -218,9 +276,8 @@ static void full_in_parent(hn_mech *m, int child, hn_vec3 *s, hn_sym3 *I) {
         *I = hn_sym3_turn_z(m->g, parent->c, hn_neg(parent->s), I);
         return;
     }
-    hn_mat3 X = hn_mat3_num(m->tree->groups[l->group].X);
-    *s = hn_mat3_apply(m->g, &X, *s);
-    *I = hn_sym3_rotate(m->g, &X, I);
+    *s = hn_mat3_apply(m->g, &m->group_X[l->group], *s);
+    *I = hn_sym3_rotate(m->g, &m->group_X[l->group], I);
 }
 
 /// Adds a child to its parent's composites (all in E of the parent).
@@ -268,7 +325,7 @@ void hn_mech_trace_composites(hn_mech *m) {
         at->IK = at->IB = at->IF = at->I_own;
         at->sigma = at->eta = hn_vec3_zero();
     }
-    for (int k = m->tree->ground - 1; k >= 0; k--) {
+    for (int k = m->tree->n_order - 1; k >= 0; k--) {
         int link = m->tree->order[k], parent = m->tree->links[link].parent;
         if (parent != m->tree->ground) {
             add_child(m, parent, link);
@@ -283,9 +340,22 @@ typedef struct wrench {
     hn_vec3 f, nK, nF;
 } wrench;
 
-static wrench unit_wrench(hn_mech *m, int link) {
+/// Turning about `axis` (E) with what hangs on a ball: it has no group children, so everything turns.
+static wrench ball_wrench(hn_mech *m, int link, hn_vec3 axis) {
+    const hn_link_trace *at = &m->at[link];
+    wrench w;
+    w.f = hn_vec3_cross(m->g, axis, at->sK);
+    w.nK = w.nF = hn_sym3_apply(m->g, &at->IK, axis);
+    return w;
+}
+
+/// Of the link's speed number `part`.
+static wrench unit_wrench(hn_mech *m, int link, int part) {
     const hn_link_trace *at = &m->at[link];
     int planar = hn_mech_is_planar(m, link);
+    if (m->tree->links[link].type == HN_JOINT_SPHERICAL) {
+        return ball_wrench(m, link, hn_mat3_column(&at->spin, part));
+    }
     hn_vec3 s = hn_mech_E_to_work(m, link, at->sK);
     wrench w;
     if (m->tree->links[link].type == HN_JOINT_PRISMATIC) {
@@ -325,9 +395,12 @@ static wrench wrench_up(hn_mech *m, int child, wrench w) {
     return up;
 }
 
-static hn_ex project_wrench(hn_mech *m, int link, const wrench *w) {
+static hn_ex project_wrench(hn_mech *m, int link, int part, const wrench *w) {
     if (m->tree->links[link].type == HN_JOINT_PRISMATIC) {
         return hn_vec3_dot(m->g, hn_mech_slide(m, link), w->f);
+    }
+    if (m->tree->links[link].type == HN_JOINT_SPHERICAL) {
+        return hn_vec3_dot(m->g, hn_mat3_column(&m->at[link].spin, part), w->nK);
     }
     return w->nK.x[2];
 }
@@ -335,16 +408,23 @@ static hn_ex project_wrench(hn_mech *m, int link, const wrench *w) {
 void hn_mech_trace_mass(hn_mech *m) {
     const hn_tree *tree = m->tree;
     for (int j = 0; j < tree->n_coordinates; j++) {
-        int link = tree->link_of[j];
-        wrench w = unit_wrench(m, link);
+        const int own = tree->link_of[j];
+        int link = own;
+        wrench w = unit_wrench(m, link, j - tree->links[link].coordinate);
         for (int i = link; i != tree->ground; i = tree->links[i].parent) {
             if (i != link) {
                 w = wrench_up(m, link, w);
                 link = i;
             }
-            int row = tree->links[i].coordinate;
-            hn_entries_add(&m->sys->M, row > j ? row : j, row > j ? j : row,
-                           project_wrench(m, i, &w));
+            const int first = tree->links[i].coordinate;
+            for (int part = 0; part < tree->links[i].n_speeds; part++) {
+                const int row = first + part;
+                if (i == own && row > j) {
+                    continue; // the block of a ball itself: one triangle
+                }
+                hn_entries_add(&m->sys->M, row > j ? row : j, row > j ? j : row,
+                               project_wrench(m, i, part, &w));
+            }
         }
     }
 }

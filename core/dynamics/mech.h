@@ -15,7 +15,9 @@ typedef struct hn_link_trace {
     hn_vec3
         arm; ///< from the parent's joint point to this one's, in E(parent), with the slide of a prismatic joint
     hn_vec3 slide; ///< prismatic: direction of a growing coordinate, in E(parent)
-    hn_vec3 r;     ///< arm in the parent's work frame
+    hn_mat3
+        spin; ///< ball: column k is the axis of speed k, in E (a turning link also has z: hn_mech_axis)
+    hn_vec3 r; ///< arm in the parent's work frame
 
     // own body, about its joint point, in E
     hn_ex mass;
@@ -47,9 +49,11 @@ typedef struct hn_mech {
     const hn_tree *tree;
     hn_link_trace *at;         ///< per link
     hn_vec3 *base_w, *base_al; ///< per group, in F
-    hn_mat3 *to_world;         ///< per group: F to world
-    hn_vec3 *position;         ///< per link: joint point in the world
-    int *path;                 ///< scratch, n_links
+    hn_mat3
+        *group_X; ///< per group: F to the theta-free frame of its base (of a ball: of its parent)
+    hn_mat3 *to_world; ///< per group: F to world
+    hn_vec3 *position; ///< per link: joint point in the world
+    int *path;         ///< scratch, n_links
 } hn_mech;
 
 /// 1 when the link's work frame is F.
@@ -61,9 +65,10 @@ hn_vec3 hn_mech_up(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_down(const hn_mech *m, int link, hn_vec3 v);
 /// A cross product where the link can only use the z component of moments, a whole one elsewhere.
 hn_vec3 hn_mech_moment(const hn_mech *m, int link, hn_vec3 r, hn_vec3 f);
-hn_vec3
-hn_mech_slide(const hn_mech *m,
-              int link); ///< prismatic: direction in the work frame (its own and its parent's)
+/// Prismatic: direction in the work frame (its own and its parent's).
+hn_vec3 hn_mech_slide(const hn_mech *m, int link);
+/// The position behind a speed that has one of its own.
+hn_ex hn_mech_q(const hn_mech *m, int coordinate);
 /// A point given in a body's own axes: from the link's joint point, in E.
 HN_MUST_CHECK hn_status hn_mech_arm_of(const hn_mech *m, int link, const hn_quantity *at,
                                        hn_vec3 *out);

@@ -91,7 +91,8 @@ static int place_in_ring(const hn_system *sys, int user) {
         int above = -1; // bodies between the cut joint and the one that this coordinate moves
         for (int body = ends[side], n = 0; body != HN_GROUND; n++) {
             const hn_joint *joint = &scene->joints[hn_system_tree_joint(sys, body)];
-            above = joint->coordinate == coordinate ? n : above;
+            const int part = coordinate - joint->coordinate;
+            above = part >= 0 && part < joint->n_coordinates ? n : above;
             body = joint->child == body ? joint->parent : joint->child;
         }
         if (above >= 0) {

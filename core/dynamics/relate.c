@@ -31,12 +31,15 @@ static int list_path(hn_mech *m, int common, int link) {
     return n;
 }
 
-/// The first revolute link on the way down, or -1.
+/// The first revolute link on the way down, or -1: none, or a ball comes first and groups behind it say nothing here.
 static int first_revolute(hn_mech *m, int common, int link) {
     int n = list_path(m, common, link);
     for (int k = 0; k < n; k++) {
         if (m->tree->links[m->path[k]].type == HN_JOINT_REVOLUTE) {
             return m->path[k];
+        }
+        if (m->tree->links[m->path[k]].type == HN_JOINT_SPHERICAL) {
+            return -1;
         }
     }
     return -1;
@@ -57,7 +60,7 @@ static void choose_frame(walk *w, int a, int b) {
     for (int side = 0; side < 2 && w->group < 0; side++) {
         w->group = first[side] >= 0 ? links[first[side]].group : -1;
     }
-    if (w->group < 0 && links[w->common].angle < 0) {
+    if (w->group < 0 && hn_tree_is_still(w->m->tree, w->common)) {
         w->group = links[w->common].group; // nothing rotates: the ground's own frame
         w->fixed = 0;
     }
@@ -120,8 +123,8 @@ static void slide_along(walk *w, int link) {
 
 /// The frame of a new group: fixed in the present link, from which it takes its base's motion.
 static void enter_group(walk *w, int group) {
-    hn_mat3 X = hn_mat3_num(w->m->tree->groups[group].X);
-    w->W = group == w->group ? hn_mat3_identity() : hn_mat3_mul(w->m->g, &w->out->U, &X);
+    w->W = group == w->group ? hn_mat3_identity()
+                             : hn_mat3_mul(w->m->g, &w->out->U, &w->m->group_X[group]);
     hn_mat3_snap(&w->W);
     w->base_w = w->out->w;
     w->base_al = w->al;
@@ -147,10 +150,45 @@ static void turn_about(walk *w, int link) {
     push(w, l->coordinate, l->group, 0, z);
 }
 
+/// A ball turns about three axes at once.
+static void turn_ball(walk *w, int link) {
+    hn_mech *m = w->m;
+    const hn_link *l = &m->tree->links[link];
+    enter_group(w, l->group);
+    w->out->U = w->W;
+    hn_vec3 omega = hn_vec3_zero();
+    for (int part = 0; part < 3; part++) {
+        const hn_vec3 spin = hn_mat3_column(&m->at[link].spin, part);
+        const hn_vec3 axis = hn_mat3_apply(m->g, &w->W, spin);
+        const hn_vec3 turned = hn_vec3_scale(m->g, m->sys->v[l->coordinate + part], axis);
+        omega = hn_vec3_add(m->g, omega, turned);
+        push(w, l->coordinate + part, l->group, 0, axis);
+    }
+    w->out->w = hn_vec3_add(m->g, w->base_w, omega);
+    w->al = hn_vec3_add(m->g, w->base_al, hn_vec3_cross(m->g, w->base_w, omega));
+    w->out->B = hn_mat3_accel(m->g, w->out->w, w->al);
+}
+
+static void step_down(walk *w, int link) {
+    switch (w->m->tree->links[link].type) {
+    case HN_JOINT_PRISMATIC:
+        slide_along(w, link);
+        break;
+    case HN_JOINT_REVOLUTE:
+        turn_about(w, link);
+        break;
+    case HN_JOINT_SPHERICAL:
+        turn_ball(w, link);
+        break;
+    default: // fixed: nothing moves
+        break;
+    }
+}
+
 static hn_status reach(walk *w, int link, hn_vec3 arm, hn_reach *out) {
     hn_mech *m = w->m;
     int n = list_path(m, w->common, link);
-    out->levers = hn_arena_get(m->sys->arena, ((size_t)n + 1) * sizeof *out->levers);
+    out->levers = hn_arena_get(m->sys->arena, (3 * (size_t)n + 1) * sizeof *out->levers);
     if (!out->levers) {
         return HN_ERR_MEMORY;
     }
@@ -159,11 +197,7 @@ static hn_status reach(walk *w, int link, hn_vec3 arm, hn_reach *out) {
     for (int k = 0; k < n; k++) {
         int next = m->path[k];
         extend(w, m->at[next].arm);
-        if (m->tree->links[next].type == HN_JOINT_PRISMATIC) {
-            slide_along(w, next);
-        } else {
-            turn_about(w, next);
-        }
+        step_down(w, next);
     }
     extend(w, arm);
     return HN_OK;
@@ -173,7 +207,7 @@ static hn_status reach(walk *w, int link, hn_vec3 arm, hn_reach *out) {
 static void tell_world(walk *w, hn_relative *out) {
     const hn_tree *tree = w->m->tree;
     out->aligned = 0;
-    if (tree->links[w->common].angle >= 0) {
+    if (!hn_tree_is_still(tree, w->common)) {
         return;
     }
     const hn_group *group = &tree->groups[w->group >= 0 ? w->group : tree->links[w->common].group];

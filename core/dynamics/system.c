@@ -1,3 +1,4 @@
+#include "dynamics/quaternion.h"
 #include "dynamics/system_impl.h"
 
 #include <math.h>
@@ -32,12 +33,12 @@ static hn_ex new_symbol(hn_system *sys, const char *stem, int *number) {
     return e;
 }
 
-hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names,
+hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
                                  const char *const *rates) {
-    for (int i = 0; i < nv; i++) {
+    for (int i = 0; i < sys->nq; i++) {
         sys->q[i] = new_symbol(sys, names[i], &sys->q_symbols[i]);
     }
-    for (int i = 0; i < nv; i++) {
+    for (int i = 0; i < sys->nv; i++) {
         sys->v[i] = new_symbol(sys, rates[i], &sys->v_symbols[i]);
     }
     sys->t = new_symbol(sys, "t", &sys->t_symbol);
@@ -56,12 +57,14 @@ static hn_ex *get_exprs(hn_system *sys, size_t n) {
                         (n ? n : 1) * sizeof(hn_ex)); // zeroed: {0, HN_NODE_ONE} is the number zero
 }
 
-hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, int n_points) {
+hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n_loops,
+                             int n_points) {
     size_t n = (size_t)nv, m = (size_t)max_rows, nu = (size_t)sys->scene->n_coordinates;
+    sys->nq = nq;
     sys->nv = nv;
     sys->n_loops = n_loops;
     sys->info.n_points = n_points;
-    sys->q = get_exprs(sys, n);
+    sys->q = get_exprs(sys, (size_t)nq);
     sys->v = get_exprs(sys, n);
     sys->f = get_exprs(sys, n);
     sys->phi = get_exprs(sys, m);
@@ -72,7 +75,7 @@ hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops, 
     sys->user_q = get_exprs(sys, nu);
     sys->user_v = get_exprs(sys, nu);
     sys->user_known = hn_arena_get(sys->arena, nu);
-    sys->q_symbols = hn_arena_ints(sys->arena, n);
+    sys->q_symbols = hn_arena_ints(sys->arena, (size_t)nq);
     sys->v_symbols = hn_arena_ints(sys->arena, n);
     sys->rows = hn_arena_get(sys->arena, m * sizeof *sys->rows);
     sys->loops = hn_arena_get(sys->arena, (size_t)n_loops * sizeof *sys->loops);
@@ -175,7 +178,8 @@ static hn_status finish(hn_system *sys) {
     for (int k = 0; k < sys->J.n; k++) {
         sys->J_dense[(size_t)sys->J.at[k].row * n + (size_t)sys->J.at[k].col] = sys->J.at[k].e;
     }
-    sys->info.nq = sys->info.nv = sys->info.n_user = sys->nv;
+    sys->info.nq = sys->nq;
+    sys->info.nv = sys->info.n_user = sys->nv;
     sys->info.nc = sys->nc;
     sys->info.n_loops = sys->n_loops;
     sys->info.has_time = depends_on_time(sys);
@@ -352,90 +356,164 @@ static const hn_link *link_of(const hn_system *sys, int coordinate) {
     return &sys->tree.links[sys->tree.link_of[coordinate]];
 }
 
-static void to_user(const hn_system *sys, const double *q, double *user, int with_offset) {
+/// Angles and ways: user_i = sign (q_i - q_ref - offset); `place` says where q_i stands (NULL: at i). Balls are left out.
+static void to_user(const hn_system *sys, const double *q, double *user, const int *place) {
     for (int i = 0; i < sys->nv; i++) {
-        if (sys->scene->is_lagrangian) {
-            user[i] = q[i];
+        const hn_link *l = link_of(sys, i);
+        if (l->n_speeds == 3) {
             continue;
         }
-        const hn_link *l = link_of(sys, i);
-        double ref = l->angle_ref >= 0 ? q[l->angle_ref] : 0;
-        user[i] = l->sign * (q[i] - ref - (with_offset ? l->offset : 0));
+        const int ref = l->angle_ref;
+        const double turned = ref < 0 ? 0 : q[place ? place[ref] : ref];
+        user[i] = l->sign * (q[place ? place[i] : i] - turned - (place ? l->offset : 0));
     }
 }
 
-static void from_user(const hn_system *sys, const double *user, double *q, int with_offset) {
-    if (sys->scene->is_lagrangian) {
-        memcpy(q, user, (size_t)sys->nv * sizeof *q);
-        return;
-    }
-    for (int k = 0; k < sys->nv; k++) {
+static void from_user(const hn_system *sys, const double *user, double *q, const int *place) {
+    for (int k = 0; k < sys->tree.n_order; k++) {
         const hn_link *l = &sys->tree.links[sys->tree.order[k]];
-        double ref = l->angle_ref >= 0 ? q[l->angle_ref] : 0;
-        q[l->coordinate] = l->sign * user[l->coordinate] + ref + (with_offset ? l->offset : 0);
+        if (l->n_speeds != 1) {
+            continue;
+        }
+        const int i = l->coordinate, ref = l->angle_ref;
+        const double turned = ref < 0 ? 0 : q[place ? place[ref] : ref];
+        q[place ? place[i] : i] = l->sign * user[i] + turned + (place ? l->offset : 0);
+    }
+}
+
+static void copy(const double *from, double *to, int n) {
+    if (n > 0) {
+        memcpy(to, from, (size_t)n * sizeof *to);
     }
 }
 
 void hn_system_to_user(const hn_system *sys, const double *q, double *user_q) {
-    to_user(sys, q, user_q, 1);
+    if (sys->scene->is_lagrangian) {
+        copy(q, user_q, sys->nv);
+        return;
+    }
+    to_user(sys, q, user_q, sys->tree.position);
+    for (int k = 0; k < sys->n_balls; k++) {
+        hn_quat_log(q + sys->balls[k].position, user_q + sys->balls[k].speed);
+    }
 }
 
 void hn_system_from_user(const hn_system *sys, const double *user_q, double *q) {
-    from_user(sys, user_q, q, 1);
+    if (sys->scene->is_lagrangian) {
+        copy(user_q, q, sys->nv);
+        return;
+    }
+    from_user(sys, user_q, q, sys->tree.position);
+    for (int k = 0; k < sys->n_balls; k++) {
+        hn_quat_exp(user_q + sys->balls[k].speed, q + sys->balls[k].position);
+    }
 }
 
 void hn_system_rates_to_user(const hn_system *sys, const double *v, double *user_v) {
-    to_user(sys, v, user_v, 0);
+    if (sys->scene->is_lagrangian) {
+        copy(v, user_v, sys->nv);
+        return;
+    }
+    to_user(sys, v, user_v, NULL);
+    for (int k = 0; k < sys->n_balls; k++) {
+        copy(v + sys->balls[k].speed, user_v + sys->balls[k].speed, 3);
+    }
 }
 
 void hn_system_rates_from_user(const hn_system *sys, const double *user_v, double *v) {
-    from_user(sys, user_v, v, 0);
+    if (sys->scene->is_lagrangian) {
+        copy(user_v, v, sys->nv);
+        return;
+    }
+    from_user(sys, user_v, v, NULL);
+    for (int k = 0; k < sys->n_balls; k++) {
+        copy(user_v + sys->balls[k].speed, v + sys->balls[k].speed, 3);
+    }
 }
 
 void hn_system_forces_to_user(const hn_system *sys, const double *f, double *user_f) {
-    memcpy(user_f, f, (size_t)sys->nv * sizeof *f);
+    copy(f, user_f, sys->nv);
     if (sys->scene->is_lagrangian) {
         return;
     }
     // v = S user_v with S filled from references downwards, so user_f = S' f gathers from the leaves up
-    for (int k = sys->nv - 1; k >= 0; k--) {
+    for (int k = sys->tree.n_order - 1; k >= 0; k--) {
         const hn_link *l = &sys->tree.links[sys->tree.order[k]];
         if (l->angle_ref >= 0) {
             user_f[l->angle_ref] += user_f[l->coordinate];
         }
     }
     for (int i = 0; i < sys->nv; i++) {
-        user_f[i] *= link_of(sys, i)->sign;
+        user_f[i] *= link_of(sys, i)->sign; // 1 for balls
     }
 }
 
+// positions and speeds: balls, and everything else --------------------------------------------------------------------
+
+/// Entries of q that are not a ball's stand in the order of their speeds, so between balls runs of equal length go in step.
+typedef struct stretch {
+    int position, speed, n;
+} stretch;
+
+/// The run of plain coordinates before ball k (k = n_balls: after the last).
+static stretch run_before(const hn_system *sys, int k) {
+    stretch run = {0, 0, 0};
+    if (k > 0) {
+        run.position = sys->balls[k - 1].position + 4;
+        run.speed = sys->balls[k - 1].speed + 3;
+    }
+    run.n = (k < sys->n_balls ? sys->balls[k].speed : sys->nv) - run.speed;
+    return run;
+}
+
 void hn_system_kinematics(const hn_system *sys, const double *q, const double *v, double *qdot) {
-    (void)q;
-    memcpy(qdot, v, (size_t)sys->nv * sizeof *v);
+    for (int k = 0; k <= sys->n_balls; k++) {
+        const stretch run = run_before(sys, k);
+        copy(v + run.speed, qdot + run.position, run.n);
+    }
+    for (int k = 0; k < sys->n_balls; k++) {
+        const hn_ball *ball = &sys->balls[k];
+        hn_quat_rate(q + ball->position, v + ball->speed, qdot + ball->position);
+    }
 }
 
 void hn_system_move(const hn_system *sys, double *q, const double *delta) {
-    for (int i = 0; i < sys->nv; i++) {
-        q[i] += delta[i];
+    for (int k = 0; k <= sys->n_balls; k++) {
+        const stretch run = run_before(sys, k);
+        for (int i = 0; i < run.n; i++) {
+            q[run.position + i] += delta[run.speed + i];
+        }
+    }
+    for (int k = 0; k < sys->n_balls; k++) {
+        hn_quat_move(q + sys->balls[k].position, delta + sys->balls[k].speed);
     }
 }
 
 void hn_system_difference(const hn_system *sys, const double *from, const double *to,
                           double *delta) {
-    for (int i = 0; i < sys->nv; i++) {
-        delta[i] = to[i] - from[i];
+    for (int k = 0; k <= sys->n_balls; k++) {
+        const stretch run = run_before(sys, k);
+        for (int i = 0; i < run.n; i++) {
+            delta[run.speed + i] = to[run.position + i] - from[run.position + i];
+        }
+    }
+    for (int k = 0; k < sys->n_balls; k++) {
+        const hn_ball *ball = &sys->balls[k];
+        hn_quat_difference(from + ball->position, to + ball->position, delta + ball->speed);
     }
 }
 
 int hn_system_normalise(const hn_system *sys, double *q) {
-    (void)sys;
-    (void)q;
-    return 0;
+    int changed = 0;
+    for (int k = 0; k < sys->n_balls; k++) {
+        changed |= hn_quat_normalise(q + sys->balls[k].position);
+    }
+    return changed;
 }
 
 int hn_system_position_of(const hn_system *sys, int i) {
     HN_ASSERT(i >= 0 && i < sys->nv);
-    return i;
+    return sys->scene->is_lagrangian ? i : sys->tree.position[i];
 }
 
 double hn_system_next_corner(const hn_system *sys, double t) {

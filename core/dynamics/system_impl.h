@@ -20,6 +20,14 @@ typedef struct hn_loop {
     const char *why; ///< why this joint was cut, for telling; static text
 } hn_loop;
 
+/// Four entries of q from `position` and three speeds from `speed`: see tree.h.
+typedef struct hn_ball {
+    int position, speed;
+} hn_ball;
+
+/// What a formula may say about a scene coordinate.
+enum { HN_KNOWN_NOTHING, HN_KNOWN_BOTH, HN_KNOWN_RATE };
+
 struct hn_system {
     const hn_scene *scene;
     hn_system_opts opts;
@@ -27,17 +35,19 @@ struct hn_system {
     hn_graph *g;
     hn_diags *diags; ///< while compiling
     hn_tree tree;    ///< bodies and joints only
-    int nv, nc;
+    int nq, nv, nc;
+    int n_balls;
+    hn_ball *balls;
     hn_system_info info;
 
     // symbols
-    hn_ex *q, *v;         ///< nv each
+    hn_ex *q, *v;         ///< nq, nv
     hn_ex t, alpha, beta; ///< alpha, beta: Baumgarte's gains
     int *q_symbols, *v_symbols;
     int t_symbol, alpha_symbol, beta_symbol;
     hn_ex *params;          ///< per scene parameter: a number, or its symbol
     hn_ex *user_q, *user_v; ///< per SCENE coordinate; a cut joint's is derived
-    char *user_known;       ///< per scene coordinate: 0 has no expression here
+    char *user_known;       ///< per scene coordinate: HN_KNOWN_...
 
     // terms
     hn_entries M; ///< lower triangle with diagonal: row >= col
@@ -90,11 +100,11 @@ typedef struct hn_geometry {
 /// Loads of either kind, by virtual work: adds to f, springs also to potential.
 HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
 
-/// Symbols of nv coordinates and rates under these names (a name that is taken gets underscores), then t and the gains.
-HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, int nv, const char *const *names,
+/// Symbols of the nq coordinates and nv rates under these names (a name that is taken gets underscores), then t and the gains.
+HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
                                                const char *const *rates);
-/// Allocates what is sized by nv, and rows for at most max_rows.
-HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nv, int max_rows, int n_loops,
-                                           int n_points);
+/// Allocates what is sized by nq and nv, and rows for at most max_rows.
+HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows,
+                                           int n_loops, int n_points);
 HN_MUST_CHECK hn_status hn_system_make_drawing(hn_system *sys, int n_tears);
 #endif

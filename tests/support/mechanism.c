@@ -96,46 +96,149 @@ void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at,
     add_scaled(a, 1, t);
 }
 
-static void move_body(const hn_scene *scene, int body, double q, double qd, body_motion *all) {
+/// The child's half of a joint seen from the parent's, in the parent's joint axes: turn, place, and their derivatives at zero
+/// second derivatives of the coordinates.
+typedef struct relative_motion {
+    double R[3][3], d[3], w[3], v[3], al[3], a[3];
+} relative_motion;
+
+static void turn_about(double axis_angle[3], double R[3][3]) {
+    double angle = sqrt(dot(axis_angle, axis_angle)), c = cos(angle), s = sin(angle);
+    double n[3] = {1, 0, 0};
+    for (int i = 0; i < 3 && angle > 0; i++) {
+        n[i] = axis_angle[i] / angle;
+    }
+    double cross_n[3][3] = {{0, -n[2], n[1]}, {n[2], 0, -n[0]}, {-n[1], n[0], 0}};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            R[i][j] = (i == j) * c + (1 - c) * n[i] * n[j] + s * cross_n[i][j];
+        }
+    }
+}
+
+static void relative_of(hn_joint_type type, const double *q, const double *qd, relative_motion *m) {
+    double turn[3] = {0, 0, 0}, x[3], y[3], z[3] = {0, 0, 1}, second[3] = {0, 0, 0}, Rx[3][3];
+    *m = (relative_motion){.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    switch (type) {
+    case HN_JOINT_REVOLUTE:
+    case HN_JOINT_CYLINDRICAL:
+    case HN_JOINT_UNIVERSAL:
+        turn[2] = q[0];
+        m->w[2] = qd[0];
+        break;
+    case HN_JOINT_PRISMATIC:
+        m->d[2] = q[0];
+        m->v[2] = qd[0];
+        break;
+    case HN_JOINT_SPHERICAL:
+        memcpy(turn, q, sizeof turn);
+        break;
+    case HN_JOINT_PLANAR:
+        turn[2] = q[2];
+        m->w[2] = qd[2];
+        memcpy(m->d, q, 2 * sizeof *q);
+        memcpy(m->v, qd, 2 * sizeof *q);
+        break;
+    case HN_JOINT_FREE:
+        memcpy(turn, q + 3, sizeof turn);
+        memcpy(m->d, q, 3 * sizeof *q);
+        memcpy(m->v, qd, 3 * sizeof *q);
+        break;
+    default:
+        break;
+    }
+    turn_about(turn, m->R);
+    if (type == HN_JOINT_CYLINDRICAL) {
+        m->d[2] = q[1];
+        m->v[2] = qd[1];
+    }
+    if (type == HN_JOINT_UNIVERSAL) {
+        for (int i = 0; i < 3; i++) {
+            x[i] = m->R[i][0];
+        }
+        second[0] = q[1];
+        turn_about(second, Rx);
+        multiply(m->R, Rx, m->R);
+        cross(z, x, y);
+        add_scaled(m->w, qd[1], x);
+        add_scaled(m->al, qd[0] * qd[1], y);
+    }
+    if (type == HN_JOINT_SPHERICAL || type == HN_JOINT_FREE) {
+        apply(m->R, qd + (type == HN_JOINT_FREE ? 3 : 0), m->w);
+    }
+}
+
+/// The same seen from the child.
+static void reverse(relative_motion *m) {
+    relative_motion out;
+    double t[3], u[3];
+    transpose(m->R, out.R);
+    for (int i = 0; i < 3; i++) {
+        t[i] = -m->w[i];
+        u[i] = -m->al[i];
+    }
+    apply(out.R, t, out.w);
+    apply(out.R, u, out.al);
+    for (int i = 0; i < 3; i++) {
+        t[i] = -m->d[i];
+    }
+    apply(out.R, t, out.d);
+    cross(m->w, m->d, t); // v - w x d
+    for (int i = 0; i < 3; i++) {
+        u[i] = t[i] - m->v[i];
+    }
+    apply(out.R, u, out.v);
+    double a[3] = {-m->a[0], -m->a[1], -m->a[2]};
+    cross(m->w, m->v, u);
+    add_scaled(a, 2, u);
+    cross(m->al, m->d, u);
+    add_scaled(a, 1, u);
+    cross(m->w, t, u);
+    add_scaled(a, -1, u);
+    apply(out.R, a, out.a);
+    *m = out;
+}
+
+static void move_body(const hn_scene *scene, int body, const double *q, const double *qd,
+                      body_motion *all) {
     const hn_joint *j = &scene->joints[body];
     int reversed = j->child != body, base = reversed ? j->child : j->parent;
-    double s = reversed ? -1 : 1;
     body_motion ground = {.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     body_motion B = base == HN_GROUND ? ground : all[base], out;
-    double here[3][3], there[3][3], back[3][3], turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                                axis[3];
+    double here[3][3], there[3][3], back[3][3];
     triad(j->parent_axis, j->parent_ref, reversed ? there : here);
     triad(j->child_axis, j->child_ref, reversed ? here : there);
     multiply(B.R, here, here);
-    for (int i = 0; i < 3; i++) {
-        axis[i] = s * here[i][2];
+    relative_motion rel;
+    relative_of(j->type, q, qd, &rel);
+    if (reversed) {
+        reverse(&rel);
     }
-    // the joint's point on the base, seen from the base
+    double *const in_world[5] = {rel.d, rel.w, rel.v, rel.al, rel.a};
+    for (int i = 0; i < 5; i++) {
+        apply(here, in_world[i], in_world[i]);
+    }
+    // the joint's point on the base, then on the body, seen from the base
     double x[3], v[3], a[3], t[3], u[3];
     mechanism_point(all, base, reversed ? j->child_at : j->parent_at, x, v, a);
     memcpy(out.w, B.w, sizeof out.w);
     memcpy(out.al, B.al, sizeof out.al);
-    if (j->type == HN_JOINT_REVOLUTE) {
-        turn[0][0] = turn[1][1] = cos(s * q);
-        turn[1][0] = sin(s * q);
-        turn[0][1] = -turn[1][0];
-        add_scaled(out.w, qd, axis);
-        cross(B.w, axis, t);
-        add_scaled(out.al, qd, t);
-    } else {
-        double slid[3] = {q * axis[0], q * axis[1], q * axis[2]};
-        add_scaled(x, 1, slid);
-        cross(B.w, slid, t);
-        add_scaled(v, 1, t);
-        add_scaled(v, qd, axis);
-        cross(B.w, t, t);
-        add_scaled(a, 1, t);
-        cross(B.al, slid, t);
-        add_scaled(a, 1, t);
-        cross(B.w, axis, t);
-        add_scaled(a, 2 * qd, t);
-    }
-    multiply(here, turn, here);
+    add_scaled(out.w, 1, rel.w);
+    add_scaled(out.al, 1, rel.al);
+    cross(B.w, rel.w, t);
+    add_scaled(out.al, 1, t);
+    add_scaled(x, 1, rel.d);
+    cross(B.w, rel.d, t);
+    add_scaled(v, 1, t);
+    add_scaled(v, 1, rel.v);
+    cross(B.w, t, t);
+    add_scaled(a, 1, t);
+    cross(B.al, rel.d, t);
+    add_scaled(a, 1, t);
+    cross(B.w, rel.v, t);
+    add_scaled(a, 2, t);
+    add_scaled(a, 1, rel.a);
+    multiply(here, rel.R, here);
     transpose(there, back);
     multiply(here, back, out.R);
     // from the joint's point to the body's origin
@@ -155,9 +258,18 @@ static void move_body(const hn_scene *scene, int body, double q, double qd, body
     all[body] = out;
 }
 
-void mechanism_move(const hn_scene *scene, const double *q, const double *qd, body_motion *out) {
+int mechanism_coordinates(const hn_scene *scene) {
+    int n = 0;
     for (int b = 0; b < scene->n_bodies; b++) {
-        move_body(scene, b, q[b], qd[b], out);
+        n += scene->joints[b].n_coordinates;
+    }
+    return n;
+}
+
+void mechanism_move(const hn_scene *scene, const double *q, const double *qd, body_motion *out) {
+    for (int b = 0, at = 0; b < scene->n_bodies; b++) {
+        move_body(scene, b, q + at, qd + at, out);
+        at += scene->joints[b].n_coordinates;
     }
 }
 
@@ -174,13 +286,13 @@ static void world_inertia(const hn_body *body, double R[3][3], double out[3][3])
 
 void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, double *M, double *h,
                      double *kinetic, double *potential) {
-    int n = scene->n_bodies;
-    body_motion *now = calloc((size_t)n * (size_t)(n + 1), sizeof *now), *unit = now + n;
-    double *e = calloc((size_t)n, sizeof *e);
+    const int n = mechanism_coordinates(scene), nb = scene->n_bodies;
+    body_motion *now = calloc((size_t)nb * (size_t)(n + 1), sizeof *now), *unit = now + nb;
+    double *e = calloc((size_t)n + 1, sizeof *e);
     mechanism_move(scene, q, qd, now);
     for (int i = 0; i < n; i++) {
         e[i] = 1;
-        mechanism_move(scene, q, e, unit + i * n);
+        mechanism_move(scene, q, e, unit + i * nb);
         e[i] = 0;
     }
     double g[3];
@@ -188,7 +300,7 @@ void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, d
     *kinetic = *potential = 0;
     memset(M, 0, (size_t)(n * n) * sizeof *M);
     memset(h, 0, (size_t)n * sizeof *h);
-    for (int b = 0; b < n; b++) {
+    for (int b = 0; b < nb; b++) {
         const hn_body *body = &scene->bodies[b];
         double m = body->mass.value, I[3][3], x[3], v[3], a[3], Iw[3], Ial[3], gyro[3];
         world_inertia(body, now[b].R, I);
@@ -202,14 +314,14 @@ void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, d
         add_scaled(a, -1, g);
         for (int i = 0; i < n; i++) {
             double xi[3], vi[3], ai[3], Iwi[3];
-            const body_motion *ui = unit + i * n;
+            const body_motion *ui = unit + i * nb;
             mechanism_point(ui, b, body->com, xi, vi, ai);
             apply(I, ui[b].w, Iwi);
             h[i] += m * dot(vi, a) + dot(ui[b].w, Ial);
             for (int j = 0; j < n; j++) {
                 double vj[3];
-                mechanism_point(unit + j * n, b, body->com, xi, vj, ai);
-                M[i * n + j] += m * dot(vi, vj) + dot(Iwi, (unit + j * n)[b].w);
+                mechanism_point(unit + j * nb, b, body->com, xi, vj, ai);
+                M[i * n + j] += m * dot(vi, vj) + dot(Iwi, (unit + j * nb)[b].w);
             }
         }
     }
@@ -272,6 +384,32 @@ static void random_body(unsigned *seed, const mechanism_opts *o, hn_body *body) 
     }
 }
 
+/// Room for as many coordinates as the type has, numbered on.
+static void add_coordinates(hn_scene *s, hn_joint *j, int joint) {
+    static const int counts[HN_JOINT_TYPE_COUNT] = {1, 1, 2, 2, 3, 3, 0, 6};
+    j->n_coordinates = counts[j->type];
+    j->coordinate = j->n_coordinates ? s->n_coordinates : -1;
+    const int first_turn = j->type == HN_JOINT_FREE ? 3 : j->type == HN_JOINT_SPHERICAL ? 0 : 6;
+    for (int k = 0; k < j->n_coordinates; k++) {
+        hn_coordinate *c = &s->coordinates[s->n_coordinates];
+        char text[32];
+        snprintf(text, sizeof text, "c%d", s->n_coordinates);
+        c->name = hn_arena_strdup(s->arena, text);
+        snprintf(text, sizeof text, "d_c%d", s->n_coordinates++);
+        c->rate = hn_arena_strdup(s->arena, text);
+        c->joint = joint;
+        c->part = k;
+        c->turn = k >= first_turn ? k - first_turn : -1;
+    }
+}
+
+/// Any type but the last `without`.
+static hn_joint_type random_type(unsigned *seed, int without) {
+    const int n = HN_JOINT_TYPE_COUNT - without;
+    const int type = (int)((random_signed(seed) + 1) * 0.5 * n);
+    return (hn_joint_type)(type < n ? type : n - 1);
+}
+
 static void make_tree_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed, int i) {
     hn_joint *j = &s->joints[i];
     int base = i == 0 ? HN_GROUND : (int)((random_signed(seed) + 1) * 0.5 * (i + 1)) - 1;
@@ -279,6 +417,10 @@ static void make_tree_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed
     int reversed = random_signed(seed) > 0.5,
         prismatic = (random_signed(seed) + 1) * 0.5 < o->prismatic;
     j->type = prismatic ? HN_JOINT_PRISMATIC : HN_JOINT_REVOLUTE;
+    if (o->mixed > 0 && (random_signed(seed) + 1) * 0.5 < o->mixed) {
+        j->type = random_type(seed, 0);
+    }
+    add_coordinates(s, j, i);
     j->parent = reversed ? i : base;
     j->child = reversed ? base : i;
     double *base_axis = reversed ? j->child_axis : j->parent_axis,
@@ -310,10 +452,15 @@ static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed,
     int k = i - s->n_bodies;
     j->type =
         (random_signed(seed) + 1) * 0.5 < o->prismatic ? HN_JOINT_PRISMATIC : HN_JOINT_REVOLUTE;
+    if (o->mixed > 0 && (random_signed(seed) + 1) * 0.5 < o->mixed) {
+        j->type = random_type(seed, 1);
+    }
+    add_coordinates(s, j, i);
     j->parent = s->n_bodies - 1 - k % s->n_bodies;
     j->child = k % 2 || s->n_bodies < 3 ? HN_GROUND : (j->parent + 1 + k) % s->n_bodies;
     j->cut = 1;
-    double at[3], x[3], v[3], a[3], q = 0;
+    double at[3], x[3], v[3], a[3], q[6] = {0};
+    const double none[6] = {0};
     random_axis(seed, o, j->type == HN_JOINT_PRISMATIC, j->parent_axis);
     random_ref(seed, j->parent_axis, j->parent_ref);
     random_vector(seed, at);
@@ -324,8 +471,23 @@ static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed,
     apply(Rp, j->parent_axis, axis);
     apply(Rp, j->parent_ref, ref);
     if (j->type == HN_JOINT_PRISMATIC) { // anywhere along the axis
-        q = random_signed(seed);
-        add_scaled(x, q, axis);
+        q[0] = random_signed(seed);
+        add_scaled(x, q[0], axis);
+    } else if (j->type != HN_JOINT_REVOLUTE) { // anywhere at all
+        relative_motion rel;
+        double world[3][3];
+        for (int k2 = 0; k2 < j->n_coordinates; k2++) {
+            q[k2] = random_signed(seed);
+        }
+        relative_of(j->type, q, none, &rel);
+        triad(axis, ref, world);
+        apply(world, rel.d, rel.d);
+        add_scaled(x, 1, rel.d);
+        multiply(world, rel.R, world);
+        for (int i2 = 0; i2 < 3; i2++) {
+            ref[i2] = world[i2][0];
+            axis[i2] = world[i2][2];
+        }
     }
     if (j->child != HN_GROUND) {
         memcpy(Rc, pose[j->child].R, sizeof Rc);
@@ -335,7 +497,9 @@ static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed,
     set_values(j->child_at, x, 0);
     apply_back(Rc, axis, j->child_axis);
     apply_back(Rc, ref, j->child_ref);
-    s->coordinates[i].q0 = q;
+    for (int k2 = 0; k2 < j->n_coordinates; k2++) {
+        s->coordinates[j->coordinate + k2].q0 = q[k2];
+    }
 }
 
 static char *name_of(hn_arena *arena, const char *stem, int i) {
@@ -349,12 +513,12 @@ hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *o) {
     hn_scene *s = hn_arena_get(arena, sizeof *s);
     s->arena = arena;
     s->n_bodies = o->n_bodies;
-    s->n_joints = s->n_coordinates = o->n_bodies + o->n_cuts;
+    s->n_joints = o->n_bodies + o->n_cuts;
+    const size_t room = 6 * (size_t)s->n_joints;
     s->bodies = hn_arena_get(arena, (size_t)s->n_bodies * sizeof *s->bodies);
     s->joints = hn_arena_get(arena, (size_t)s->n_joints * sizeof *s->joints);
-    s->coordinates = hn_arena_get(arena, (size_t)s->n_joints * sizeof *s->coordinates);
-    double *q = hn_arena_doubles(arena, (size_t)s->n_joints),
-           *rest = hn_arena_doubles(arena, (size_t)s->n_joints);
+    s->coordinates = hn_arena_get(arena, room * sizeof *s->coordinates);
+    double *q = hn_arena_doubles(arena, room), *rest = hn_arena_doubles(arena, room);
     double g[3];
     random_vector(&seed, g);
     for (int i = 0; i < 3; i++) {
@@ -363,16 +527,15 @@ hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *o) {
     for (int i = 0; i < s->n_joints; i++) {
         s->joints[i].name = name_of(arena, "J", i);
         s->joints[i].pointer = "";
-        s->joints[i].coordinate = i;
-        s->coordinates[i] = (hn_coordinate){
-            .name = name_of(arena, "c", i), .rate = name_of(arena, "d_c", i), .joint = i};
     }
     for (int i = 0; i < s->n_bodies; i++) {
         s->bodies[i].name = name_of(arena, "body", i);
         s->bodies[i].pointer = "";
         random_body(&seed, o, &s->bodies[i]);
         make_tree_joint(s, o, &seed, i);
-        q[i] = s->coordinates[i].q0 = random_signed(&seed);
+        for (int k = s->n_coordinates - s->joints[i].n_coordinates; k < s->n_coordinates; k++) {
+            q[k] = s->coordinates[k].q0 = random_signed(&seed);
+        }
     }
     body_motion *pose = hn_arena_get(arena, (size_t)s->n_bodies * sizeof *pose);
     mechanism_move(s, q, rest, pose);

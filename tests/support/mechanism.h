@@ -11,10 +11,12 @@ typedef struct mechanism_opts {
     int n_bodies, n_cuts; ///< a cut joint is placed so that it is closed at q0 of the coordinates
     double parallel;      ///< share of joints whose axis is parallel to the joint below [-]
     double prismatic;     ///< share of prismatic joints [-]
-    int planar;           ///< all axes along z (prismatic: across), everything in the plane
+    double
+        mixed; ///< share of joints of any type, in the tree and among the cuts (there all but free) [-]
+    int planar; ///< all axes along z (prismatic: across), everything in the plane
 } mechanism_opts;
 
-/// Tree joint i carries body i; the cut joints follow. Coordinate i belongs to joint i. Memory from the arena.
+/// Tree joint i carries body i; the cut joints follow, and so do their coordinates. Memory from the arena.
 hn_scene *mechanism_random(hn_arena *arena, const mechanism_opts *opts);
 
 typedef struct body_motion {
@@ -22,7 +24,9 @@ typedef struct body_motion {
     double w[3], v[3], al[3], a[3]; ///< at zero second derivatives of the coordinates
 } body_motion;
 
-/// Motion of all bodies for scene coordinates (one per body).
+/// Coordinates of the tree joints: the first so many.
+int mechanism_coordinates(const hn_scene *scene);
+/// Motion of all bodies for the coordinates of the tree joints (q: rotation vectors; qd: angular velocities in the child's axes).
 void mechanism_move(const hn_scene *scene, const double *q, const double *qd, body_motion *out);
 /// World place, velocity and acceleration of a point in a body's own axes (HN_GROUND: fixed).
 void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3],
