@@ -31,6 +31,40 @@ static void put_settings(hn_strbuf *b, const hn_setting_info *table, int n) {
     hn_json_end_array(b);
 }
 
+static void put_optional(hn_strbuf *b, const char *key, const char *text) {
+    hn_json_put_string(b, key, text ? text : "");
+}
+
+static void put_integrators_of(hn_strbuf *b, const hn_formulation *f) {
+    hn_json_key(b, "integrators");
+    hn_json_array(b);
+    for (int i = 0; i < hn_stepper_count(); i++) {
+        if (hn_method_fits(f, hn_stepper_at(i))) {
+            hn_json_string(b, hn_stepper_at(i)->name);
+        }
+    }
+    hn_json_end_array(b);
+}
+
+static void put_served_by(hn_strbuf *b, const hn_stepper *s) {
+    hn_json_key(b, "forms");
+    hn_json_array(b);
+    for (int form = 0; form < HN_FORM_COUNT; form++) {
+        if (hn_stepper_serves(s, (hn_dae_form)form)) {
+            hn_json_string(b, hn_form_name((hn_dae_form)form));
+        }
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "serves");
+    hn_json_array(b);
+    for (int i = 0; i < hn_formulation_count(); i++) {
+        if (hn_method_fits(hn_formulation_at(i), s)) {
+            hn_json_string(b, hn_formulation_at(i)->name);
+        }
+    }
+    hn_json_end_array(b);
+}
+
 static void put_formulation(hn_strbuf *b, const hn_formulation *f) {
     hn_json_object(b);
     hn_json_put_string(b, "name", f->name);
@@ -42,6 +76,11 @@ static void put_formulation(hn_strbuf *b, const hn_formulation *f) {
     hn_json_put_string(b, "when_not", f->when_not);
     hn_json_put_string(b, "source", f->source);
     hn_json_put_string(b, "needs", f->needs);
+    put_optional(b, "order_note", f->order_note);
+    put_optional(b, "limits", f->limits);
+    hn_json_put_string(b, "form", hn_form_name(f->form));
+    hn_json_put_int(b, "index", f->index);
+    put_integrators_of(b, f);
     hn_json_put_bool(b, "model_error", f->model_error);
     hn_json_put_bool(b, "keeps_gap", f->keeps_gap);
     put_settings(b, f->settings, f->n_settings);
@@ -62,6 +101,7 @@ static void put_stepper(hn_strbuf *b, const hn_stepper *s) {
     hn_json_put_number(b, "real_limit", s->real_limit);
     hn_json_put_number(b, "imag_limit", s->imag_limit);
     hn_json_put_int(b, "dense_order", s->dense_order);
+    put_served_by(b, s);
     put_settings(b, s->settings, s->n_settings);
     hn_json_end_object(b);
 }

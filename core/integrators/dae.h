@@ -24,6 +24,10 @@ struct hn_dae_stepper {
     /// One trial step of size h from (t, y) to y_new; err (nq + nv) receives the error estimate when adaptive. Leaves y, and what start
     /// or the last accepted step left, as they were, so that a trial can be repeated with another h.
     hn_status (*step)(void *self, double t, double h, const double *y, double *y_new, double *err);
+    /// One step whose size the integrator chooses itself, from (t, y) to (*t_new, y_new), not beyond t_stop (HUGE_VAL: no
+    /// bound); then `step` is not called and may be NULL. NULL: the run chooses the size.
+    hn_status (*advance)(void *self, double t, double t_stop, const double *y, double *t_new,
+                         double *y_new);
     /// The trial became the state. `changed` 1: y_new was changed afterwards.
     void (*accepted)(void *self, int changed);
     /// y at t + theta h in the step just accepted; NULL: none.

@@ -8,6 +8,10 @@ static const hn_stepper *const steppers[] = {
 };
 enum { N_STEPPERS = sizeof steppers / sizeof steppers[0] };
 
+int hn_stepper_serves(const hn_stepper *stepper, hn_dae_form form) {
+    return stepper->forms ? (stepper->forms >> form & 1u) != 0 : form == HN_FORM_ODE;
+}
+
 int hn_stepper_count(void) {
     return N_STEPPERS;
 }

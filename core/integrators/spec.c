@@ -188,6 +188,47 @@ static void warn_below_zero(const hn_setting_info *table, int n, const double *s
     }
 }
 
+int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper) {
+    return hn_stepper_serves(stepper, formulation->form);
+}
+
+// names of what fits, as "a, b, c", ending in "..." where room runs out; returns how many there are
+static int list_fitting(const hn_method_spec *spec, int integrators, char *list, size_t room) {
+    const int n = integrators ? hn_stepper_count() : hn_formulation_count();
+    size_t used = 0;
+    int found = 0;
+    list[0] = '\0';
+    for (int i = 0; i < n; i++) {
+        const hn_formulation *f = integrators ? spec->formulation : hn_formulation_at(i);
+        const hn_stepper *s = integrators ? hn_stepper_at(i) : spec->stepper;
+        if (!hn_method_fits(f, s)) {
+            continue;
+        }
+        const char *name = integrators ? s->name : f->name, *comma = found++ ? ", " : "";
+        if (used + strlen(comma) + strlen(name) + sizeof ", ..." > room) {
+            snprintf(list + used, room - used, "%s", ", ...");
+            break;
+        }
+        used += (size_t)snprintf(list + used, room - used, "%s%s", comma, name);
+    }
+    return found;
+}
+
+static hn_status check_pair(piece right, const hn_method_spec *spec, hn_diag *diag) {
+    char list[HN_DIAG_MESSAGE / 2], served[HN_DIAG_HINT - MAX_WORD], hint[HN_DIAG_HINT];
+    if (hn_method_fits(spec->formulation, spec->stepper)) {
+        return HN_OK;
+    }
+    const int of_dae = spec->formulation->form != HN_FORM_ODE;
+    list_fitting(spec, 0, served, sizeof served);
+    snprintf(hint, sizeof hint, "%.40s serves %s", spec->stepper->name, served);
+    const int n = list_fitting(spec, 1, list, sizeof list);
+    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s hands over %s; %s%s", spec->formulation->name,
+                of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
+                n ? "take one of " : "no integrator serves it", list);
+    return at_column(diag, right, HN_ERR_INPUT);
+}
+
 hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) {
     hn_method_spec spec = {0};
     const size_t n = strlen(text);
@@ -214,6 +255,9 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     hn_status status = find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag);
     if (status == HN_OK) {
         status = find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag);
+    }
+    if (status == HN_OK) {
+        status = check_pair(right, &spec, diag);
     }
     if (status == HN_OK) {
         status = parse_side(left, left_colon, spec.formulation->settings,
@@ -249,6 +293,10 @@ double hn_method_setting(const hn_method_spec *spec, const char *key, double oth
     return otherwise;
 }
 
+int hn_method_is_adaptive(const hn_method_spec *spec) {
+    return spec->stepper->adaptive && !(hn_method_setting(spec, "h", 0) > 0);
+}
+
 // --- writing ----------------------------------------------------------------------------------------------
 
 // a short text that reads back to the same double; six digits write 20 as 20, not as 2e+01
@@ -269,18 +317,19 @@ static void format_value(const hn_setting_info *info, double value, char *out, s
     }
 }
 
-static int is_key_of_accuracy(const char *key) {
-    return strcmp(key, "h") == 0 || strcmp(key, "rtol") == 0;
+// the key that decides about accuracy and is written even where it has its default: h or rtol
+static const char *key_of_accuracy(const hn_method_spec *spec) {
+    return hn_method_is_adaptive(spec) ? "rtol" : "h";
 }
 
 static size_t format_side(const char *name, const hn_setting_info *table, int n, const double *set,
-                          char *out, size_t room) {
+                          const char *always, char *out, size_t room) {
     size_t used = 0;
     int wrote = snprintf(out, room, "%s", name);
     used += (size_t)wrote;
     char separator = ':';
     for (int i = 0; i < n && used < room; i++) {
-        if (set[i] == table[i].initial && !is_key_of_accuracy(table[i].key)) {
+        if (set[i] == table[i].initial && strcmp(table[i].key, always) != 0) {
             continue;
         }
         char value[MAX_WORD];
@@ -293,13 +342,14 @@ static size_t format_side(const char *name, const hn_setting_info *table, int n,
 }
 
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]) {
+    const char *always = key_of_accuracy(spec);
     size_t used =
         format_side(spec->formulation->name, spec->formulation->settings,
-                    spec->formulation->n_settings, spec->formulation_set, out, HN_SPEC_MAX);
+                    spec->formulation->n_settings, spec->formulation_set, always, out, HN_SPEC_MAX);
     HN_ASSERT(used + 1 < HN_SPEC_MAX);
     out[used++] = '@';
     used += format_side(spec->stepper->name, spec->stepper->settings, spec->stepper->n_settings,
-                        spec->stepper_set, out + used, HN_SPEC_MAX - used);
+                        spec->stepper_set, always, out + used, HN_SPEC_MAX - used);
     HN_ASSERT(used < HN_SPEC_MAX);
 }
 

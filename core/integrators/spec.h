@@ -17,13 +17,17 @@ typedef struct hn_method_spec {
 } hn_method_spec;
 
 /// Parses and checks. Faults (HN_ERR_INPUT): unknown formulation, integrator or key with a near miss, a value that is no number
-/// ("2e-2 s", "20 ms" and "0,02" are read as 0.02), out of range, given twice, missing '@'. `diag->column` says where. With
+/// ("2e-2 s", "20 ms" and "0,02" are read as 0.02), out of range, given twice, missing '@', an integrator that does not serve the formulation. `diag->column` says where. With
 /// HN_OK, diag->message is "" or a warning ("alpha = -5 1/s: below zero it pushes the loop apart").
 HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag);
-/// The normal spelling: only settings that differ from their defaults, plus h or rtol always. Reads back to the same spec.
+/// The normal spelling: only settings that differ from their defaults, plus h or rtol (what the step is taken or chosen by) always. Reads back to the same spec.
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]);
 /// The value of a setting by key, of the formulation or else of the integrator; `otherwise` when neither has it.
 double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise);
+/// 1 if the integrator serves what the formulation hands over.
+int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper);
+/// 1 if the step is chosen from tolerances: the integrator is adaptive and no h > 0 fixes it.
+int hn_method_is_adaptive(const hn_method_spec *spec);
 /// Checks one value against its table entry: HN_OK or HN_ERR_INPUT with the reason in diag (no column).
 HN_MUST_CHECK hn_status hn_setting_check(const hn_setting_info *info, double value, hn_diag *diag);
 /// Reads one value as hn_method_parse() does ("0,02", "20 ms", "auto"); checked.

@@ -10,9 +10,10 @@ typedef struct hn_dae_stepper hn_dae_stepper;
 typedef struct hn_stepper {
     const char *name, *title; ///< "rk4", "Runge-Kutta 4"
     const char *about, *source;
-    int order;       ///< of the solution that is kept
-    int stages;      ///< right-hand sides per step
-    int adaptive;    ///< chooses its own step from rtol, atol
+    int order;         ///< of the solution that is kept
+    int control_order; ///< order of the embedded solution + 1, which the step is chosen with; 0: `order`
+    int stages;        ///< right-hand sides per step
+    int adaptive; ///< chooses its own step from rtol, atol; where there is a setting h too, h > 0 fixes the step
     int partitioned; ///< treats positions and speeds differently (symplectic Euler)
     double real_limit,
         imag_limit; ///< |h s| limits of the stability region on the axes; HUGE_VAL: none
@@ -26,6 +27,9 @@ typedef struct hn_stepper {
 
     /// What follows serves ordinary differential equations; create NULL: it does not.
     void *(*create)(int n_pos, int n_vel, hn_arena *arena);
+    void (*destroy)(void *self); ///< what is not from the arena; NULL: nothing
+    /// Settings in table order, once after create. NULL: it needs none.
+    void (*configure)(void *self, const double *settings);
     /// One trial step of size h from (t, y) to y_new; err (n) receives the embedded error estimate when adaptive. Does not
     /// change y. Fails with the right-hand side's status.
     hn_status (*step)(void *self, const hn_ode *ode, double t, double h, const double *y,
@@ -38,7 +42,17 @@ typedef struct hn_stepper {
     /// Dense output in the step just accepted: y at t + theta h, theta in [0, 1]. NULL: none.
     void (*dense)(void *self, double theta, double *y);
     int dense_order;
+    /// One step whose size the integrator chooses itself, from (t, y) to (*t_new, y_new), not beyond t_stop (HUGE_VAL: no
+    /// bound); then `step` is not called and may be NULL. NULL: the run chooses the size.
+    hn_status (*advance)(void *self, const hn_ode *ode, double t, double t_stop, const double *y,
+                         double *t_new, double *y_new);
+    void (*add_cost)(const void *self,
+                     hn_cost *cost);      ///< beside the right-hand sides; NULL: nothing
+    const char *(*why)(const void *self); ///< reason of its own last failure, or NULL
 } hn_stepper;
+
+/// 1 if it serves formulations of this form.
+int hn_stepper_serves(const hn_stepper *stepper, hn_dae_form form);
 
 int hn_stepper_count(void);
 const hn_stepper *hn_stepper_at(int i);

@@ -148,6 +148,7 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
                 "beyond the integrator's stability limit; large mechanisms (dense)",
     .source = "Bayo, Garcia de Jalon & Serna 1988; Bayo & Avello 1994",
     .needs = "M f phi J gamma",
+    .index = 1,
     .n_settings = 4,
     .settings =
         {

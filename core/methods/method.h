@@ -39,10 +39,13 @@ typedef struct hn_ode {
     hn_status (*rhs)(void *self, double t, const double *y, double *ydot);
     /// only the position part of y' (partitioned integrators call it with new speeds)
     hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
+    /// dF/dy at (t, y), (n_pos + n_vel) square, row-major, for implicit integrators; fails as rhs does. NULL: by differences.
+    hn_status (*jacobian)(void *self, double t, const double *y, double *jac);
 } hn_ode;
 
 /// How a formulation hands the constraints over: as an ordinary differential equation (hn_ode), or to integrators that take the
-/// differential-algebraic system in this form (integrators/dae.h); then `ode` and everything below it but `create` are NULL.
+/// differential-algebraic system in this form (integrators/dae.h); then `ode` and everything below it are NULL, and `create`,
+/// which may be NULL too, only says whether the scene can be served.
 typedef enum hn_dae_form {
     HN_FORM_ODE,
     HN_FORM_INDEX3,
@@ -59,7 +62,11 @@ typedef struct hn_formulation {
     const char *drift;      ///< what happens to the gap, in words
     const char *when, *when_not, *source;
     const char *needs; ///< "M f J gamma"
+    const char
+        *order_note;    ///< orders of q, v and lambda where they are not the integrator's, or NULL
+    const char *limits; ///< what it cannot serve, or NULL
     hn_dae_form form;
+    int index; ///< differential index of the equations that are handed over; 0: no multipliers in them
     int model_error; ///< 1: converges to something else, on purpose
     int keeps_gap;   ///< 1: phi stays at rounding level
     int n_settings;
@@ -84,6 +91,10 @@ typedef struct hn_formulation {
     void (*add_cost)(const void *self, hn_cost *cost); ///< adds its counters
     const char *(*why)(const void *self); ///< the reason of the last failure in words, or NULL
 } hn_formulation;
+
+/// "ode", "index3", "index2", "ggl", "index1".
+const char *hn_form_name(hn_dae_form form);
+enum { HN_FORM_COUNT = HN_FORM_INDEX1 + 1 };
 
 int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);

@@ -114,6 +114,7 @@ const hn_formulation hn_formulation_projection = {
         "very long conservative runs (energy drifts linearly); a massless link with weight=mass",
     .source = "Eich 1993; Ascher, Chin & Reich 1994; Blajer 2002",
     .needs = "M f phi J gamma",
+    .index = 1,
     .keeps_gap = 1,
     .n_settings = 2,
     .settings =

@@ -13,8 +13,17 @@ static const hn_formulation *const formulations[] = {
     &hn_formulation_penalty,
     &hn_formulation_augmented_lagrangian,
     &hn_formulation_udwadia_kalaba,
+    &hn_formulation_ggl,
+    &hn_formulation_index2,
+    &hn_formulation_index3,
 };
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
+
+const char *hn_form_name(hn_dae_form form) {
+    static const char *const names[HN_FORM_COUNT] = {"ode", "index3", "index2", "ggl", "index1"};
+    HN_ASSERT((int)form < HN_FORM_COUNT);
+    return names[form];
+}
 
 int hn_formulation_count(void) {
     return N_FORMULATIONS;

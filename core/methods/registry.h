@@ -6,6 +6,7 @@
 extern const hn_formulation hn_formulation_index1, hn_formulation_baumgarte,
     hn_formulation_projection, hn_formulation_nullspace, hn_formulation_nullspace_as_printed,
     hn_formulation_partitioning, hn_formulation_reduced, hn_formulation_penalty,
-    hn_formulation_augmented_lagrangian, hn_formulation_udwadia_kalaba;
+    hn_formulation_augmented_lagrangian, hn_formulation_udwadia_kalaba, hn_formulation_ggl,
+    hn_formulation_index2, hn_formulation_index3;
 
 #endif

@@ -253,6 +253,7 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
                 "cube of the size); near a singular pose, where the rank tolerance decides",
     .source = "Udwadia & Kalaba 1992; Udwadia & Phohomsiri 2006",
     .needs = "M f J gamma",
+    .index = 1,
     .create = create,
     .destroy = hn_dense_ode_destroy,
     .ode = hn_dense_ode_get,

@@ -80,7 +80,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
         return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
     }
     entry *e = &c->entries[c->n];
-    e->h = spec.stepper->adaptive ? 0 : stepper_setting(&spec, "h", 0);
+    e->h = hn_method_is_adaptive(&spec) ? 0 : stepper_setting(&spec, "h", 0);
     e->slot = choose_slot(c, spec.formulation);
     c->n++;
     return HN_OK;

@@ -62,6 +62,7 @@ typedef struct hn_run_request {
     double every;          ///< 0: 200 samples
     long long max_samples; ///< bound
     long long max_steps;
+    int raw_lambda; ///< 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
     /// called now and then with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
     const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"

@@ -17,12 +17,14 @@ typedef struct table {
     int n_user, nc;
     long long n, cap;
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
+    double *raw_lambda; ///< NULL: not asked for, or the method has none
 } table;
 
-static hn_status table_create(table *tab, const hn_system *sys, long long cap, hn_diags *diags) {
+static hn_status table_create(table *tab, const hn_system *sys, long long cap, int raw_lambda,
+                              hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
-    double width = 4 + 2.0 * info.n_user + info.nc;
+    double width = 4 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
     if (width * (double)cap > LARGEST_TABLE) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
@@ -38,6 +40,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, h
     tab->q = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
     tab->v = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
     tab->lambda = hn_arena_doubles(tab->arena, n * (size_t)info.nc);
+    tab->raw_lambda = raw_lambda ? hn_arena_doubles(tab->arena, n * (size_t)info.nc) : NULL;
     tab->gap = hn_arena_doubles(tab->arena, n);
     tab->velocity_gap = hn_arena_doubles(tab->arena, n);
     tab->energy = hn_arena_doubles(tab->arena, n);
@@ -51,6 +54,9 @@ static void table_add(table *tab, const hn_sample *s) {
     memcpy(tab->v + k * nq, s->v, nq * sizeof(double));
     if (nc > 0) {
         memcpy(tab->lambda + k * nc, s->lambda, nc * sizeof(double));
+    }
+    for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
+        tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // told as null
     }
     tab->gap[k] = s->gap;
     tab->velocity_gap[k] = s->velocity_gap;
@@ -143,12 +149,7 @@ static hn_status take_sample(hn_run *run, double h, double t, const hn_run_reque
 }
 
 static double fixed_step(const hn_method_spec *spec) {
-    for (int i = 0; i < spec->stepper->n_settings && !spec->stepper->adaptive; i++) {
-        if (strcmp(spec->stepper->settings[i].key, "h") == 0) {
-            return spec->stepper_set[i];
-        }
-    }
-    return 0;
+    return hn_method_is_adaptive(spec) ? 0 : hn_method_setting(spec, "h", 0);
 }
 
 /// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
@@ -183,6 +184,9 @@ static void put_samples(hn_strbuf *b, const table *tab) {
     put_rows(b, "q", tab->q, tab->n, tab->n_user);
     put_rows(b, "v", tab->v, tab->n, tab->n_user);
     put_rows(b, "lambda", tab->lambda, tab->n, tab->nc);
+    if (tab->raw_lambda) {
+        put_rows(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
+    }
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
     hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
@@ -286,6 +290,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
         if (request->max_steps > 0) {
             opts.max_steps = request->max_steps;
         }
+        opts.raw_lambda = request->raw_lambda;
         status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
                                &opts, &run, &diag);
         if (status != HN_OK) {
@@ -293,7 +298,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
         }
     }
     if (status == HN_OK) {
-        status = table_create(&tab, hn_model_system(model), times.n + 1, diags);
+        const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
+        status = table_create(&tab, hn_model_system(model), times.n + 1, raw, diags);
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);

@@ -30,7 +30,7 @@ static double max_difference(int n, const double *x, const double *y) {
 }
 
 static double *accuracy(hn_method_spec *spec) {
-    const char *key = spec->stepper->adaptive ? "rtol" : "h";
+    const char *key = hn_method_is_adaptive(spec) ? "rtol" : "h";
     for (int i = 0; i < spec->stepper->n_settings; i++) {
         if (strcmp(spec->stepper->settings[i].key, key) == 0) {
             return &spec->stepper_set[i];

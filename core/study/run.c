@@ -18,19 +18,13 @@ enum { FAILED_TRIAL = 8, TROUBLE_LIMIT = 200 };
 #define UNDERFLOW_EPS 3.6e-15 // 16 eps: smaller steps no longer move t reliably
 
 hn_run_opts hn_run_opts_default(void) {
-    return (hn_run_opts){0, DEFAULT_MAX_STEPS, HN_RUN_WARN_GAP};
+    return (hn_run_opts){.max_steps = DEFAULT_MAX_STEPS, .warn_gap = HN_RUN_WARN_GAP};
 }
 
 static double thread_seconds(void) {
     struct timespec ts;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
     return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
-static hn_cost read_cost(const hn_run *run) {
-    hn_cost cost = {0};
-    run->spec.formulation->add_cost(run->main.formulation, &cost);
-    return cost;
 }
 
 /// What one pair of readings adds to an interval: the median of some pairs with nothing between, taken off each interval. A
@@ -52,13 +46,14 @@ static double calc_clock_cost(void) {
 
 // everything between start_clock and stop_clock is the method's own work
 static void start_clock(hn_run *run) {
-    run->cost_mark = read_cost(run);
+    run->cost_mark = hn_engine_cost(run, &run->main);
     run->cpu_mark = thread_seconds();
 }
 
 static void stop_clock(hn_run *run) {
     run->summary.cpu_seconds += fmax(0, thread_seconds() - run->cpu_mark - run->clock_cost);
-    const hn_cost now = read_cost(run), spent = hn_cost_between(&run->cost_mark, &now);
+    const hn_cost now = hn_engine_cost(run, &run->main),
+                  spent = hn_cost_between(&run->cost_mark, &now);
     hn_cost_add(&run->summary.cost, &spent);
     hn_run_tell_charts(run, spent.chart_changes);
 }
@@ -67,8 +62,8 @@ static void stop_clock(hn_run *run) {
 
 static hn_status fail(hn_run *run, hn_status status) {
     const char *why = NULL;
-    if (run->main.formulation && status != HN_ERR_BUDGET && status != HN_ERR_DIVERGED) {
-        why = run->spec.formulation->why(run->main.formulation);
+    if (status != HN_ERR_BUDGET && status != HN_ERR_DIVERGED) {
+        why = hn_engine_why(run, &run->main);
     }
     run->summary.state = HN_RUN_FAILED;
     run->summary.status = status;
@@ -92,27 +87,22 @@ static int state_is_sane(int n, const double *y) {
 
 static hn_status take(hn_run *run, double h, double t_new, int *changed) {
     hn_run_engine *e = &run->main;
-    const hn_formulation *f = run->spec.formulation;
-    const int n = e->ode.n_pos + e->ode.n_vel;
-    hn_status status =
-        run->spec.stepper->step(e->stepper, &e->ode, run->now.t, h, e->y, e->y_new, e->err);
+    const hn_status status = hn_engine_step(run, e, run->now.t, h);
     if (status != HN_OK) {
         return status;
     }
-    if (!state_is_sane(n, e->y_new)) {
+    if (!state_is_sane(e->ode.n_pos + e->ode.n_vel, e->y_new)) {
         return HN_ERR_DIVERGED;
     }
     *changed = 0;
-    if (run->spec.stepper->adaptive) {
-        return HN_OK; // mended only once the error is accepted
-    }
-    return f->after_step ? f->after_step(e->formulation, t_new, e->y_new, changed) : HN_OK;
+    // an adaptive step is mended only once its error is accepted
+    return run->adaptive ? HN_OK : hn_engine_mend(run, e, t_new, e->y_new, changed);
 }
 
 static hn_status accept(hn_run *run, double h, double t_new, int changed) {
     hn_run_engine *e = &run->main;
     const hn_run_state_at spare = run->before;
-    run->spec.stepper->accepted(e->stepper, changed);
+    hn_engine_accepted(run, e, changed);
     double *const y = e->y;
     e->y = e->y_new;
     e->y_new = y;
@@ -124,7 +114,7 @@ static hn_status accept(hn_run *run, double h, double t_new, int changed) {
     run->summary.h_last = h;
     run->summary.t = t_new;
     run->summary.steps++;
-    return run->spec.formulation->get_state(e->formulation, t_new, e->y, run->now.q, run->now.v);
+    return hn_engine_read(run, e, t_new, e->y, run->now.q, run->now.v);
 }
 
 static hn_status step_fixed(hn_run *run) {
@@ -160,30 +150,25 @@ static hn_status choose_first_step(hn_run *run, double rtol, double atol) {
 static double try_adaptive(hn_run *run, double h, double rtol, double atol, int *changed,
                            hn_status *status) {
     hn_run_engine *e = &run->main;
-    const hn_formulation *f = run->spec.formulation;
     *status = take(run, h, run->now.t + h, changed);
     if (*status != HN_OK) {
         return HUGE_VAL;
     }
     const int n = e->ode.n_pos + e->ode.n_vel;
     const double err = hn_error_norm(n, e->err, e->y, e->y_new, rtol, atol);
-    if (err <= 1 && run->spec.stepper->finish) {
-        *status = run->spec.stepper->finish(e->stepper, &e->ode);
-        if (*status != HN_OK) {
-            return HUGE_VAL;
+    if (err <= 1) {
+        *status = hn_engine_finish(run, e);
+        if (*status == HN_OK) {
+            *status = hn_engine_mend(run, e, run->now.t + h, e->y_new, changed);
         }
     }
-    if (err <= 1 && f->after_step) {
-        *status = f->after_step(e->formulation, run->now.t + h, e->y_new, changed);
-        return *status == HN_OK ? err : HUGE_VAL;
-    }
-    return err;
+    return *status == HN_OK ? err : HUGE_VAL;
 }
 
 static hn_status underflow(hn_run *run, hn_status cause) {
     const char *why = NULL;
     if (cause != HN_OK) {
-        why = run->spec.formulation->why(run->main.formulation);
+        why = hn_engine_why(run, &run->main);
         why = why ? why : hn_status_text(cause);
     }
     // what stopped the trials is the reason, the small step only its shadow
@@ -200,7 +185,8 @@ static hn_status underflow(hn_run *run, hn_status cause) {
 static hn_status step_adaptive(hn_run *run) {
     const double rtol = hn_method_setting(&run->spec, "rtol", 1e-6);
     const double atol = absolute_tolerance(run, rtol);
-    const int k = run->spec.stepper->order; // embedded order + 1
+    const int order = run->spec.stepper->control_order;
+    const int k = order > 0 ? order : run->spec.stepper->order;
     hn_status status = HN_OK;
     if (run->h_next <= 0) {
         status = choose_first_step(run, rtol, atol);
@@ -228,6 +214,27 @@ static hn_status step_adaptive(hn_run *run) {
     }
 }
 
+static hn_status step_of_its_own(hn_run *run) {
+    hn_run_engine *e = &run->main;
+    double t_new = run->now.t;
+    int changed = 0;
+    hn_status status = hn_engine_advance(run, e, run->now.t, HUGE_VAL, &t_new);
+    if (status == HN_OK && !state_is_sane(e->ode.n_pos + e->ode.n_vel, e->y_new)) {
+        status = HN_ERR_DIVERGED;
+    }
+    if (status == HN_OK) {
+        status = hn_engine_mend(run, e, t_new, e->y_new, &changed);
+    }
+    return status == HN_OK ? accept(run, t_new - run->now.t, t_new, changed) : status;
+}
+
+static hn_status take_one(hn_run *run) {
+    if (hn_engine_paces_itself(run)) {
+        return step_of_its_own(run);
+    }
+    return run->adaptive ? step_adaptive(run) : step_fixed(run);
+}
+
 static hn_status step_once(hn_run *run) {
     if (run->summary.steps + run->summary.rejected >= run->opts.max_steps) {
         snprintf(run->summary.reason, sizeof run->summary.reason,
@@ -235,10 +242,10 @@ static hn_status step_once(hn_run *run) {
                  run->now.t);
         return HN_ERR_BUDGET;
     }
-    const long long charts = run->main.formulation ? read_cost(run).chart_changes : 0;
-    const hn_status status = run->spec.stepper->adaptive ? step_adaptive(run) : step_fixed(run);
-    run->dense_valid =
-        status == HN_OK && run->spec.stepper->dense && read_cost(run).chart_changes == charts;
+    const long long charts = hn_engine_cost(run, &run->main).chart_changes;
+    const hn_status status = take_one(run);
+    run->dense_valid = status == HN_OK && hn_engine_has_dense(run) &&
+                       hn_engine_cost(run, &run->main).chart_changes == charts;
     return status;
 }
 
@@ -254,7 +261,7 @@ static hn_status step_until(hn_run *run, double t_end, int one) {
     hn_status status = HN_OK;
     int ticking = 0;
     do {
-        const double slack = run->spec.stepper->adaptive ? 0 : LANDING * run->h_next;
+        const double slack = run->adaptive ? 0 : LANDING * run->h_next;
         if (!one && run->now.t >= t_end - slack) {
             break;
         }
@@ -300,29 +307,6 @@ hn_status hn_run_step(hn_run *run) {
 
 // --- life -------------------------------------------------------------------------------------------------
 
-static hn_status create_formulation(hn_run *run, hn_run_engine *e, hn_diag *diag) {
-    const size_t room = (size_t)(run->info.nq + run->info.nv);
-    e->y = hn_arena_doubles(run->arena, room);
-    e->y_new = hn_arena_doubles(run->arena, room);
-    e->err = hn_arena_doubles(run->arena, room);
-    if (hn_arena_failed(run->arena)) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    return run->spec.formulation->create(run->sys, run->spec.formulation_set, run->arena,
-                                         &e->formulation, diag);
-}
-
-static hn_status start_engine(hn_run *run, hn_run_engine *e) {
-    const hn_formulation *f = run->spec.formulation;
-    hn_status status = f->set_state(e->formulation, run->opts.t0, run->start.q, run->start.v, e->y);
-    if (status != HN_OK) {
-        return status;
-    }
-    f->ode(e->formulation, &e->ode);
-    e->stepper = run->spec.stepper->create(e->ode.n_pos, e->ode.n_vel, run->arena);
-    return e->stepper ? HN_OK : HN_ERR_MEMORY;
-}
-
 static hn_status create_memory(hn_run *run, const double *q, const double *v) {
     const size_t nq = (size_t)run->info.nq, nv = (size_t)run->info.nv;
     hn_run_state_at *states[] = {&run->start, &run->now, &run->before};
@@ -337,7 +321,9 @@ static hn_status create_memory(hn_run *run, const double *q, const double *v) {
     run->sample_points = hn_arena_doubles(run->arena, 3 * (size_t)run->info.n_points);
     run->at_q = hn_arena_doubles(run->arena, nq);
     run->at_v = hn_arena_doubles(run->arena, nv);
+    run->sample_raw = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     run->at_a = hn_arena_doubles(run->arena, nv);
+    run->at_lambda = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     run->work = hn_arena_doubles(run->arena, nq + nv);
     if (hn_arena_failed(run->arena)) {
         return HN_ERR_MEMORY;
@@ -355,12 +341,16 @@ static void clear(hn_run *run) {
     run->n_incidents = 0;
     run->has_step = run->dense_valid = run->trouble = 0;
     run->control = (hn_step_control){.last = 1};
-    run->h_next = run->spec.stepper->adaptive ? 0 : hn_method_setting(&run->spec, "h", 0);
+    run->h_next = run->adaptive ? 0 : hn_method_setting(&run->spec, "h", 0);
     run->now.t = run->opts.t0;
     memcpy(run->now.q, run->start.q, (size_t)run->info.nq * sizeof(double));
     memcpy(run->now.v, run->start.v, (size_t)run->info.nv * sizeof(double));
     hn_run_watch_start(run);
     hn_run_tell_step_limit(run);
+}
+
+static hn_status start_engine(hn_run *run, hn_run_engine *e) {
+    return hn_engine_start(run, e, run->opts.t0, run->start.q, run->start.v);
 }
 
 static hn_status create_parts(hn_run *run, const double *q, const double *v, hn_diag *diag) {
@@ -373,9 +363,9 @@ static hn_status create_parts(hn_run *run, const double *q, const double *v, hn_
                            "the starting coordinates and speeds must be finite and below %g",
                            STATE_BOUND);
     }
-    status = create_formulation(run, &run->main, diag);
+    status = hn_engine_create(run, &run->main, diag);
     if (status == HN_OK) {
-        status = create_formulation(run, &run->side, diag);
+        status = hn_engine_create(run, &run->side, diag);
     }
     if (status != HN_OK) {
         return status;
@@ -408,6 +398,7 @@ hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const 
     run->sys = sys;
     run->spec = *spec;
     run->info = hn_system_get_info(sys);
+    run->adaptive = hn_method_is_adaptive(spec) || hn_engine_paces_itself(run);
     run->length = hn_system_length(sys);
     run->clock_cost = calc_clock_cost();
     run->opts = opts ? *opts : hn_run_opts_default();
@@ -430,12 +421,8 @@ void hn_run_free(hn_run *run) {
     if (!run) {
         return;
     }
-    hn_run_engine *engines[] = {&run->main, &run->side};
-    for (int i = 0; i < 2; i++) {
-        if (engines[i]->formulation) {
-            run->spec.formulation->destroy(engines[i]->formulation);
-        }
-    }
+    hn_engine_destroy(run, &run->main);
+    hn_engine_destroy(run, &run->side);
     hn_run_watch_free(run);
     hn_eval_free(run->points);
     hn_arena_free(run->arena);
@@ -444,14 +431,8 @@ void hn_run_free(hn_run *run) {
 
 hn_status hn_run_reset(hn_run *run) {
     clear(run);
-    // a run that could not start has no stepper: it fails again for the same reason
-    const hn_status status = run->spec.formulation->set_state(
-        run->main.formulation, run->opts.t0, run->start.q, run->start.v, run->main.y);
-    if (status != HN_OK) {
-        return fail(run, status);
-    }
-    run->spec.stepper->accepted(run->main.stepper, 1);
-    return HN_OK;
+    const hn_status status = start_engine(run, &run->main);
+    return status == HN_OK ? HN_OK : fail(run, status);
 }
 
 double hn_run_time(const hn_run *run) {
@@ -523,7 +504,7 @@ hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag) 
     }
     run->spec.formulation_set[i] = value;
     if (run->main.stepper) {
-        run->spec.stepper->accepted(run->main.stepper, 1); // slopes kept from before are stale
+        hn_engine_accepted(run, &run->main, 1); // slopes kept from before are stale
     }
     hn_run_tell_step_limit(run);
     return HN_OK;

@@ -62,6 +62,7 @@ typedef struct hn_run_opts {
     double t0;
     long long max_steps; ///< HN_ERR_BUDGET beyond; 0: 50,000,000
     double warn_gap;     ///< times the characteristic length; 0: HN_RUN_WARN_GAP
+    int raw_lambda;      ///< samples carry the scheme's own multipliers too, where it has some
 } hn_run_opts;
 hn_run_opts hn_run_opts_default(void);
 
@@ -72,6 +73,9 @@ typedef struct hn_sample {
     const double *a;     ///< n_user accelerations
     const double *
         lambda; ///< nc, recomputed from the saddle system at this state; a and lambda are NaN where it has no solution
+    const double *
+        raw_lambda; ///< nc: the multipliers that the scheme itself found at the end of its step, converging with a
+    ///< lower order or not at all; NULL: none, or not asked for (hn_run_opts)
     const double *points;                             ///< 3 n_points
     double gap, velocity_gap;                         ///< ||phi||, ||J v + phi_t||
     double kinetic, potential, energy, energy_change; ///< change: since the start
@@ -108,9 +112,12 @@ hn_status hn_run_advance(hn_run *run, double t_end);
 /// Exactly one accepted step.
 hn_status hn_run_step(hn_run *run);
 double hn_run_time(const hn_run *run);
-/// The sample at time t, where t is the present time or lies within the last step (adaptive: dense output) or ahead of the
-/// present time by less than one step (fixed: a side step of the same integrator that leaves the run as it was).
+/// The sample at time t, where t is the present time or lies within the last step (dense output where the integrator has it, else a
+/// side step of the same integrator from that step's start, which leaves the run as it was) or ahead of the present time by
+/// less than one step (fixed: a side step). With raw multipliers asked for it is always a side step.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
+/// 1 if the integrator finds multipliers of its own (hn_sample.raw_lambda).
+int hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);
 int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; borrowed
 /// Back to the start; counters and incidents forgotten.

@@ -9,8 +9,8 @@
 /// One copy of formulation and stepper. A run has two: `main` makes the steps, `side` looks at times between them, so that a
 /// sample never touches charts, warm starts or kept slopes of the run itself.
 typedef struct hn_run_engine {
-    void *formulation, *stepper;
-    hn_ode ode;
+    void *formulation, *stepper; ///< stepper: of an hn_stepper or an hn_dae_stepper
+    hn_ode ode; ///< with a differential-algebraic pair y' for a first step size only
     double *y, *y_new, *err;
 } hn_run_engine;
 
@@ -42,6 +42,7 @@ struct hn_run {
     hn_method_spec spec;
     hn_run_opts opts;
     hn_system_info info;
+    int adaptive; ///< hn_method_is_adaptive, or the integrator paces itself
     double length;
     hn_run_engine main, side;
     hn_run_state_at start, now, before;
@@ -58,9 +59,36 @@ struct hn_run {
     hn_run_watch_state watch;
     hn_eval *points;
     // what a sample hands out
-    double *sample_q, *sample_v, *sample_a, *sample_lambda, *sample_points;
-    double *at_q, *at_v, *at_a, *work;
+    double *sample_q, *sample_v, *sample_a, *sample_lambda, *sample_points, *sample_raw;
+    double *at_q, *at_v, *at_a, *at_lambda, *work;
+    const double *at_raw; ///< raw multipliers of the state in at_q, at_v, or NULL
 };
+
+// engines, run_engine.c: e is &run->main or &run->side ------------------------------------------------------
+HN_MUST_CHECK hn_status hn_engine_create(hn_run *run, hn_run_engine *e, hn_diag *diag);
+void hn_engine_destroy(hn_run *run, hn_run_engine *e);
+/// e->y from a state, everything before forgotten; the first time it makes the stepper of an ordinary differential equation, whose
+/// size may depend on the state.
+hn_status hn_engine_start(hn_run *run, hn_run_engine *e, double t, const double *q,
+                          const double *v);
+/// A trial from e->y to e->y_new, e->err its error.
+hn_status hn_engine_step(hn_run *run, hn_run_engine *e, double t, double h);
+/// 1 if the integrator chooses the size of its steps itself: then `advance` takes the place of `step`.
+int hn_engine_paces_itself(const hn_run *run);
+hn_status hn_engine_advance(hn_run *run, hn_run_engine *e, double t, double t_stop, double *t_new);
+hn_status hn_engine_finish(hn_run *run, hn_run_engine *e); ///< what dense output needs beside
+/// What the formulation does to a state at the end of a step; *changed is set to 1 when y moved.
+hn_status hn_engine_mend(hn_run *run, hn_run_engine *e, double t, double *y, int *changed);
+void hn_engine_accepted(hn_run *run, hn_run_engine *e, int changed);
+hn_status hn_engine_read(hn_run *run, hn_run_engine *e, double t, const double *y, double *q,
+                         double *v);
+int hn_engine_has_dense(const hn_run *run);
+void hn_engine_dense(hn_run *run, hn_run_engine *e, double theta, double *y);
+int hn_engine_has_raw_lambda(const hn_run *run);
+/// The scheme's own multipliers at the end of its last accepted step, NULL: none.
+const double *hn_engine_raw_lambda(const hn_run *run, const hn_run_engine *e);
+hn_cost hn_engine_cost(const hn_run *run, const hn_run_engine *e);
+const char *hn_engine_why(const hn_run *run, const hn_run_engine *e);
 
 /// Memory and evaluators of the watch.
 HN_MUST_CHECK hn_status hn_run_watch_create(hn_run *run);

@@ -7,12 +7,24 @@
 
 // a state of `side` at time t from its y: mended as after a step, then read
 static hn_status finish_side(hn_run *run, double t, double *y) {
-    const hn_formulation *f = run->spec.formulation;
     hn_run_engine *e = &run->side;
     int changed = 0;
-    hn_status status = f->after_step ? f->after_step(e->formulation, t, y, &changed) : HN_OK;
-    if (status == HN_OK) {
-        status = f->get_state(e->formulation, t, y, run->at_q, run->at_v);
+    const hn_status status = hn_engine_mend(run, e, t, y, &changed);
+    return status == HN_OK ? hn_engine_read(run, e, t, y, run->at_q, run->at_v) : status;
+}
+
+// steps of an integrator that chooses their size, up to t
+static hn_status side_steps_to(hn_run *run, double from, double t) {
+    hn_run_engine *e = &run->side;
+    hn_status status = HN_OK;
+    while (status == HN_OK && from < t) {
+        int changed = 0;
+        status = hn_engine_advance(run, e, from, t, &from);
+        if (status == HN_OK && from < t) {
+            status = hn_engine_mend(run, e, from, e->y_new, &changed);
+            hn_engine_accepted(run, e, changed);
+            memcpy(e->y, e->y_new, (size_t)(e->ode.n_pos + e->ode.n_vel) * sizeof *e->y);
+        }
     }
     return status;
 }
@@ -20,48 +32,55 @@ static hn_status finish_side(hn_run *run, double t, double *y) {
 // a step of the same integrator from a known state, made by the engine that is not the run's own
 static hn_status side_step(hn_run *run, const hn_run_state_at *from, double t) {
     hn_run_engine *e = &run->side;
-    const hn_formulation *f = run->spec.formulation;
-    hn_status status = f->set_state(e->formulation, from->t, from->q, from->v, e->y);
+    hn_status status = hn_engine_start(run, e, from->t, from->q, from->v);
     if (status != HN_OK) {
         return status;
     }
-    run->spec.stepper->accepted(e->stepper, 1);
-    f->ode(e->formulation, &e->ode);
-    status =
-        run->spec.stepper->step(e->stepper, &e->ode, from->t, t - from->t, e->y, e->y_new, e->err);
+    status = hn_engine_paces_itself(run) ? side_steps_to(run, from->t, t)
+                                         : hn_engine_step(run, e, from->t, t - from->t);
+    if (status == HN_OK && run->opts.raw_lambda) {
+        hn_engine_accepted(run, e, 0);
+        run->at_raw = hn_engine_raw_lambda(run, e);
+    }
     return status == HN_OK ? finish_side(run, t, e->y_new) : status;
 }
 
 // dense output of the last step, then closed like any other state
 static hn_status interpolate(hn_run *run, double t) {
     hn_run_engine *e = &run->main;
-    const hn_formulation *f = run->spec.formulation;
-    run->spec.stepper->dense(e->stepper, (t - run->before.t) / (run->now.t - run->before.t),
-                             run->side.y_new);
-    hn_status status = f->get_state(e->formulation, t, run->side.y_new, run->at_q, run->at_v);
-    if (status != HN_OK || !f->after_step) {
-        return status;
+    hn_engine_dense(run, e, (t - run->before.t) / (run->now.t - run->before.t), run->side.y_new);
+    if (!run->spec.formulation->after_step) {
+        int changed = 0;
+        const hn_status mended = hn_engine_mend(run, e, t, run->side.y_new, &changed);
+        return mended == HN_OK ? hn_engine_read(run, e, t, run->side.y_new, run->at_q, run->at_v)
+                               : mended;
     }
-    status = f->set_state(run->side.formulation, t, run->at_q, run->at_v, run->side.y);
+    hn_status status = hn_engine_read(run, e, t, run->side.y_new, run->at_q, run->at_v);
+    if (status == HN_OK) {
+        status = hn_engine_start(run, &run->side, t, run->at_q, run->at_v);
+    }
     return status == HN_OK ? finish_side(run, t, run->side.y) : status;
 }
 
 static hn_status locate(hn_run *run, double t) {
     const double h = run->h_next;
     const double tol = SAME_TIME * (run->h > 0 ? run->h : fabs(h));
-    if (fabs(t - run->now.t) <= (run->spec.stepper->adaptive ? 0 : tol)) {
+    if (fabs(t - run->now.t) <= (run->adaptive ? 0 : tol)) {
         memcpy(run->at_q, run->now.q, (size_t)run->info.nq * sizeof(double));
         memcpy(run->at_v, run->now.v, (size_t)run->info.nv * sizeof(double));
+        run->at_raw = run->has_step ? hn_engine_raw_lambda(run, &run->main) : NULL;
         return HN_OK;
     }
     if (t < run->now.t) {
         if (!run->has_step || t < run->before.t) {
             return HN_ERR_INPUT;
         }
-        return run->dense_valid ? interpolate(run, t) : side_step(run, &run->before, t);
+        const int dense =
+            run->dense_valid && !(run->opts.raw_lambda && hn_engine_has_raw_lambda(run));
+        return dense ? interpolate(run, t) : side_step(run, &run->before, t);
     }
     const int ahead_allowed =
-        !run->spec.stepper->adaptive && t < run->now.t + h && run->summary.state != HN_RUN_FAILED;
+        !run->adaptive && t < run->now.t + h && run->summary.state != HN_RUN_FAILED;
     return ahead_allowed ? side_step(run, &run->now, t) : HN_ERR_INPUT;
 }
 
@@ -82,10 +101,15 @@ static void fill_forces(hn_run *run, double t, hn_sample *out) {
     out->rank = info.rank;
 }
 
+int hn_run_has_raw_lambda(const hn_run *run) {
+    return hn_engine_has_raw_lambda(run);
+}
+
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
     if (!isfinite(t)) {
         return HN_ERR_INPUT;
     }
+    run->at_raw = NULL;
     const hn_status status = locate(run, t);
     if (status != HN_OK) {
         return status;
@@ -98,6 +122,10 @@ hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
                        .points = run->sample_points};
     hn_system_to_user(run->sys, run->at_q, run->sample_q);
     hn_system_rates_to_user(run->sys, run->at_v, run->sample_v);
+    if (run->opts.raw_lambda && run->at_raw) {
+        memcpy(run->sample_raw, run->at_raw, (size_t)run->info.nc * sizeof(double));
+        out->raw_lambda = run->sample_raw;
+    }
     fill_forces(run, t, out);
     hn_run_measure(run, t, run->at_q, run->at_v, &out->gap, &out->velocity_gap, &out->kinetic,
                    &out->potential);

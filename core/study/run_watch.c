@@ -25,13 +25,17 @@ enum {
     MAX_TOLD = 5
 }; // of one kind, so that a condition that comes and goes leaves room for others
 
-// another formulation with its defaults, the integrator as it is
+// another formulation with its defaults, the integrator as it is where it serves that too
 static void with_formulation(const hn_run *run, const char *name, const char *settings,
                              remedy_text out) {
     hn_method_spec spec = run->spec;
     char text[HN_SPEC_MAX];
     spec.formulation = hn_formulation_find(name);
     HN_ASSERT(spec.formulation);
+    if (!hn_method_fits(spec.formulation, spec.stepper)) {
+        snprintf(out, sizeof(remedy_text), "%s%s@dopri5:rtol=1e-8", name, settings);
+        return;
+    }
     for (int i = 0; i < spec.formulation->n_settings; i++) {
         spec.formulation_set[i] = spec.formulation->settings[i].initial;
     }
@@ -42,7 +46,7 @@ static void with_formulation(const hn_run *run, const char *name, const char *se
 
 // a smaller step or tolerance of the same method, as "h=0.005"
 static void with_finer_steps(const hn_run *run, double factor, remedy_text out) {
-    const char *key = run->spec.stepper->adaptive ? "rtol" : "h";
+    const char *key = run->adaptive ? "rtol" : "h";
     snprintf(out, sizeof(remedy_text), "%s=%.4g", key,
              hn_method_setting(&run->spec, key, 0) * factor);
 }

@@ -37,6 +37,8 @@ static const option OPTIONS[] = {
     {"--at", "T1,T2,...", OPTION_NUMBERS, AT(at), "output times, ascending [s]"},
     {"--every", "DT", OPTION_NUMBER, AT(every),
      "output interval [s]; 200 samples when neither is given"},
+    {"--raw-lambda", NULL, OPTION_FLAG, AT(raw_lambda),
+     "a column raw_lambda too: the multipliers the scheme itself found, where it has some"},
     {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},
     {"--t", "T", OPTION_NUMBER, AT(t), "time [s]"},
     {"--q", "NAME=VALUE...", OPTION_WORDS, AT(state_q),

@@ -24,7 +24,7 @@ static const hn_command COMMANDS[] = {
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
-     MODEL_OPTIONS " --method --time --at --every --format", 1, 1, hn_command_run},
+     MODEL_OPTIONS " --method --time --at --every --raw-lambda --format", 1, 1, hn_command_run},
     {"compare", "SCENE", "several methods on one clock, and where they part",
      MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
     {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",

@@ -40,6 +40,10 @@ static int find_columns(column *columns, const cJSON *run) {
     int n = add_parts(columns, 1, samples, "q", "", hn_document_get(run, "coordinates"));
     n = add_parts(columns, n, samples, "v", "", hn_document_get(run, "rates"));
     n = add_parts(columns, n, samples, "lambda", "lambda ", hn_document_get(run, "rows"));
+    if (hn_document_get(samples, "raw_lambda")) {
+        n = add_parts(columns, n, samples, "raw_lambda", "raw lambda ",
+                      hn_document_get(run, "rows"));
+    }
     for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
         columns[n] = (column){.list = hn_document_get(samples, last[i]), .part = -1};
         snprintf(columns[n++].name, sizeof columns[0].name, "%s", last[i]);
@@ -156,6 +160,7 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .at = args->at.n > 0 ? args->at.value : NULL,
                                   .n_at = args->at.n,
                                   .every = isnan(args->every) ? 0 : args->every,
+                                  .raw_lambda = args->raw_lambda,
                                   .progress = tell_progress,
                                   .user = &progress};
         if (!isnan(args->every) && !(args->every > 0)) {

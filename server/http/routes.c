@@ -67,6 +67,11 @@ static const hn_field RUN[] = {SCENE_FIELDS,
                                 .min = 1e-9,
                                 .max = LONGEST_RUN,
                                 .about = "output interval [s]; 200 samples when neither is given"},
+                               {.name = "raw_lambda",
+                                .type = HN_FIELD_BOOL,
+                                .about =
+                                    "a column raw_lambda too: the multipliers the scheme itself "
+                                    "found, where it has some"},
                                END_OF_FIELDS};
 
 static const hn_field COMPARISON[] = {

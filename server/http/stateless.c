@@ -136,14 +136,16 @@ void hn_handle_run(hn_request *r) {
     allowance a = {.server = r->server, .cpu_end = thread_cpu() + r->server->opts.max_run_cpu};
     const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
     double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
-    hn_run_request request = {.method = hn_body_text(r->json, "method"),
-                              .time = hn_body_number(r->json, "time", 0),
-                              .at = at ? times : NULL,
-                              .every = hn_body_number(r->json, "every", 0),
-                              .max_samples = r->server->opts.max_samples,
-                              .progress = may_go_on,
-                              .stop_reason = "the computing time of one request is used up",
-                              .user = &a};
+    hn_run_request request = {
+        .method = hn_body_text(r->json, "method"),
+        .time = hn_body_number(r->json, "time", 0),
+        .at = at ? times : NULL,
+        .every = hn_body_number(r->json, "every", 0),
+        .max_samples = r->server->opts.max_samples,
+        .raw_lambda = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "raw_lambda")),
+        .progress = may_go_on,
+        .stop_reason = "the computing time of one request is used up",
+        .user = &a};
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_diags diags = {0};

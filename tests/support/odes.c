@@ -22,7 +22,7 @@ static hn_status oscillator_kinematics(void *self, double t, const double *y, do
 }
 
 hn_ode hn_test_oscillator_ode(hn_test_oscillator *self) {
-    return (hn_ode){1, 1, self, oscillator_rhs, oscillator_kinematics};
+    return (hn_ode){1, 1, self, oscillator_rhs, oscillator_kinematics, NULL};
 }
 
 static hn_status kepler_rhs(void *self, double t, const double *y, double *ydot) {
@@ -45,7 +45,7 @@ static hn_status kepler_kinematics(void *self, double t, const double *y, double
 }
 
 hn_ode hn_test_kepler_ode(void) {
-    return (hn_ode){2, 2, NULL, kepler_rhs, kepler_kinematics};
+    return (hn_ode){2, 2, NULL, kepler_rhs, kepler_kinematics, NULL};
 }
 
 void hn_test_kepler_exact(double e, double t, double y[4]) {

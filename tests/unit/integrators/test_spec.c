@@ -128,20 +128,38 @@ static void normal_spelling_reads_back_to_the_same_spec(void **state) {
     }
 }
 
-static void every_formulation_can_be_spelled_with_every_integrator(void **state) {
+static void a_pair_is_read_exactly_when_the_integrator_serves_the_formulation(void **state) {
     (void)state;
     for (int i = 0; i < hn_formulation_count(); i++) {
         for (int j = 0; j < hn_stepper_count(); j++) {
             char text[HN_SPEC_MAX];
             hn_method_spec s;
             hn_diag d;
-            snprintf(text, sizeof text, "%s@%s", hn_formulation_at(i)->name,
-                     hn_stepper_at(j)->name);
+            const hn_formulation *f = hn_formulation_at(i);
+            const hn_stepper *integrator = hn_stepper_at(j);
+            snprintf(text, sizeof text, "%s@%s", f->name, integrator->name);
+            if (!hn_method_fits(f, integrator)) {
+                assert_int_equal(parse(text, &s, &d), HN_ERR_INPUT);
+                assert_non_null(strstr(d.message, f->name));
+                assert_non_null(strstr(d.hint, integrator->name));
+                assert_int_equal(d.column, strlen(f->name) + 2);
+                continue;
+            }
             assert_int_equal(parse(text, &s, &d), HN_OK);
-            assert_ptr_equal(s.formulation, hn_formulation_at(i));
-            assert_ptr_equal(s.stepper, hn_stepper_at(j));
+            assert_ptr_equal(s.formulation, f);
+            assert_ptr_equal(s.stepper, integrator);
         }
     }
+}
+
+static void a_refused_pair_names_what_fits_on_either_side(void **state) {
+    (void)state;
+    hn_method_spec s;
+    hn_diag d;
+    assert_int_equal(parse("index3@rk4:h=0.01", &s, &d), HN_ERR_INPUT);
+    assert_non_null(strstr(d.message, "index3 hands over a differential-algebraic system"));
+    assert_non_null(strstr(d.hint, "rk4 serves index1, baumgarte"));
+    assert_null(strstr(d.hint, "index3,"));
 }
 
 static int n_words(const char *text) {
@@ -266,7 +284,8 @@ int main(void) {
         cmocka_unit_test(each_fault_has_its_column_and_its_hint),
         cmocka_unit_test(a_negative_alpha_is_allowed_and_told),
         cmocka_unit_test(normal_spelling_reads_back_to_the_same_spec),
-        cmocka_unit_test(every_formulation_can_be_spelled_with_every_integrator),
+        cmocka_unit_test(a_pair_is_read_exactly_when_the_integrator_serves_the_formulation),
+        cmocka_unit_test(a_refused_pair_names_what_fits_on_either_side),
         cmocka_unit_test(cards_keep_to_their_space_and_choices_to_their_range),
         cmocka_unit_test(json_names_choices_and_never_holds_infinity),
         cmocka_unit_test(random_text_is_refused_or_reads_back),

@@ -236,7 +236,7 @@ static void failure_of_the_right_hand_side_is_handed_on(void **state) {
     (void)state;
     for (int k = 0; k < hn_stepper_count(); k++) {
         const hn_stepper *s = hn_stepper_at(k);
-        const hn_ode ode = {1, 1, NULL, refuse, refuse};
+        const hn_ode ode = {.n_pos = 1, .n_vel = 1, .rhs = refuse, .kinematics = refuse};
         double y[2] = {0, 0}, next[2], err[2];
         void *self = s->create(1, 1, arena);
         assert_int_equal(s->step(self, &ode, 0.05, 0.1, y, next, err), HN_ERR_CHART);

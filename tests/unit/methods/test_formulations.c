@@ -94,7 +94,7 @@ static void every_sound_formulation_implies_the_same_acceleration(void **state) 
         for (int i = 0; i < hn_formulation_count(); i++) {
             instance in;
             double implied[MAX], size = 1;
-            if (hn_formulation_at(i)->model_error) {
+            if (hn_formulation_at(i)->model_error || hn_formulation_at(i)->form != HN_FORM_ODE) {
                 continue;
             }
             open_instance(&in, hn_formulation_at(i), &trial);
@@ -132,6 +132,9 @@ static void state_goes_in_and_comes_out_unchanged(void **state) {
         for (int i = 0; i < hn_formulation_count(); i++) {
             instance in;
             double q[MAX], v[MAX];
+            if (hn_formulation_at(i)->form != HN_FORM_ODE) {
+                continue;
+            }
             open_instance(&in, hn_formulation_at(i), &trial);
             hn_poison_fill(q, MAX);
             hn_poison_fill(v, MAX);
@@ -151,6 +154,9 @@ static void reading_a_state_elsewhere_leaves_the_right_hand_side_as_it_was(void 
     for (int i = 0; i < hn_formulation_count(); i++) {
         instance in;
         double first[2 * MAX], again[2 * MAX], y[2 * MAX], q[MAX], v[MAX];
+        if (hn_formulation_at(i)->form != HN_FORM_ODE) {
+            continue;
+        }
         open_instance(&in, hn_formulation_at(i), &trial);
         const int n = in.ode.n_pos + in.ode.n_vel;
         assert_int_equal(in.ode.rhs(in.ode.self, 0, in.y, first), HN_OK);
@@ -173,6 +179,9 @@ static void right_hand_sides_and_mending_do_not_allocate(void **state) {
             instance in;
             double ydot[2 * MAX];
             int changed = 0;
+            if (hn_formulation_at(i)->form != HN_FORM_ODE) {
+                continue;
+            }
             open_instance(&in, hn_formulation_at(i), &trial);
             const long before = hn_alloc_count();
             for (int k = 0; k < 5; k++) {

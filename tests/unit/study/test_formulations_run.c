@@ -73,7 +73,7 @@ static void a_constraint_that_moves_in_time_drives_every_formulation_alike(void 
     for (int i = 0; i < hn_formulation_count(); i++) {
         char text[HN_SPEC_MAX];
         hn_sample s;
-        if (hn_formulation_at(i)->model_error) {
+        if (hn_formulation_at(i)->model_error || hn_formulation_at(i)->form != HN_FORM_ODE) {
             continue;
         }
         snprintf(text, sizeof text, "%s@rk4:h=2e-3", hn_formulation_at(i)->name);
@@ -205,6 +205,9 @@ static void operations_are_counted_and_follow_the_evaluations(void **state) {
     hn_trial_open(&trial, FB0);
     for (int i = 0; i < hn_formulation_count(); i++) {
         char text[HN_SPEC_MAX];
+        if (hn_formulation_at(i)->form != HN_FORM_ODE) {
+            continue;
+        }
         snprintf(text, sizeof text, "%s@rk4:h=0.01", hn_formulation_at(i)->name);
         hn_run *run = hn_trial_run(&trial, text);
         assert_int_equal(hn_run_advance(run, 1), HN_OK);
