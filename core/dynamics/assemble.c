@@ -41,6 +41,22 @@ static hn_status check_pins(const hn_assembler *s) {
     return status;
 }
 
+/// An orientation is pinned as a whole: one entry of its rotation vector alone says nothing that could be held.
+static hn_status check_orientations(const hn_assembler *s) {
+    for (int i = 0; i + 2 < s->n; i++) {
+        const hn_coordinate *c = user_coordinate(s, i);
+        if (s->turn[i] == 0 &&
+            (c[0].q0_pinned != c[1].q0_pinned || c[1].q0_pinned != c[2].q0_pinned)) {
+            const hn_coordinate *pinned = &c[c[0].q0_pinned ? 0 : c[1].q0_pinned ? 1 : 2];
+            return hn_diags_add(s->diags, HN_ERR_INPUT, pinned->q0_pointer,
+                                "pin all three entries, or none and give them as a guess",
+                                "%s, %s and %s are one orientation: %s alone cannot be pinned",
+                                c[0].name, c[1].name, c[2].name, pinned->name);
+        }
+    }
+    return HN_OK;
+}
+
 /// T^-1 column by column, nonzeros only.
 static hn_status read_map(hn_assembler *s) {
     int n = s->n, count = 0;
@@ -84,7 +100,8 @@ static hn_status start(hn_assembler *s) {
     size_t n = (size_t)s->n, nc = (size_t)s->nc;
     s->x = hn_arena_doubles(s->arena, n);
     s->guess = hn_arena_doubles(s->arena, n);
-    s->q = hn_arena_doubles(s->arena, n);
+    s->q = hn_arena_doubles(s->arena, (size_t)s->nq);
+    s->turn = hn_arena_ints(s->arena, n);
     s->rest = hn_arena_doubles(s->arena, n);
     s->reach = hn_arena_doubles(s->arena, n);
     s->free = hn_arena_ints(s->arena, n);
@@ -93,8 +110,9 @@ static hn_status start(hn_assembler *s) {
     if (hn_arena_failed(s->arena)) {
         return HN_ERR_MEMORY;
     }
-    for (int i = 0; i < s->n; i++) {
+    for (int i = 0, at = 0; i < s->n; i++) {
         const hn_coordinate *c = user_coordinate(s, i);
+        s->turn[i] = hn_system_position_of(s->sys, i) < 0 ? at++ % 3 : -1;
         s->x[i] = s->guess[i] = c->q0;
         s->reach[i] = c->kind == HN_LENGTH ? s->length : 1;
         if (!c->q0_pinned) {
@@ -104,7 +122,10 @@ static hn_status start(hn_assembler *s) {
     for (int i = 0; i < s->nc; i++) {
         s->row_scale[i] = hn_system_row_is_length(s->sys, i) ? 1 / s->length : 1;
     }
-    hn_status status = read_map(s);
+    hn_status status = check_orientations(s);
+    if (status == HN_OK) {
+        status = read_map(s);
+    }
     if (status != HN_OK) {
         return status;
     }
@@ -147,7 +168,7 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     report->iterations = s->iterations;
     report->route = s->route;
     for (int i = 0; i < s->n; i++) {
-        report->moved = fmax(report->moved, fabs(s->x[i] - s->guess[i]));
+        report->moved = fmax(report->moved, hn_assemble_moved(s, i));
     }
     if (status == HN_ERR_UNREACHABLE) {
         report->worst_loop = find_worst_loop(s);
@@ -419,7 +440,7 @@ static hn_status fill_report(hn_assembler *s, hn_assembly *report) {
 
 static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda,
                             hn_assembly *report) {
-    memset(q, 0, (size_t)s->n * sizeof *q);
+    memset(q, 0, (size_t)s->nq * sizeof *q);
     memset(v, 0, (size_t)s->n * sizeof *v);
     hn_status status = check_pins(s);
     if (status == HN_OK) {
@@ -429,7 +450,7 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
         return status;
     }
     status = find_pose(s, report);
-    memcpy(q, s->q, (size_t)s->n * sizeof *q);
+    memcpy(q, s->q, (size_t)s->nq * sizeof *q);
     if (status == HN_OK) {
         status = find_rates(s, v, report);
     }
@@ -444,7 +465,7 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
 hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
                       double *lambda, hn_assembly *report, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
-    HN_ASSERT(info.nq == info.nv && info.n_user == info.nv);
+    HN_ASSERT(info.n_user == info.nv);
     hn_assembly local;
     report = report ? report : &local;
     *report = (hn_assembly){.worst_loop = -1, .mode_name = "none", .route = "already closed"};
@@ -454,6 +475,7 @@ hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, doub
                       .diags = diags,
                       .t = t,
                       .n = info.nv,
+                      .nq = info.nq,
                       .nc = info.nc,
                       .length = hn_system_length(sys),
                       .route = "already closed"};

@@ -3,6 +3,8 @@
 // only if no side is longer than all the others together.
 
 #include "dynamics/assemble_internal.h"
+#include "dynamics/quaternion.h"
+#include "dynamics/tree.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -64,37 +66,67 @@ static void place(const hn_quantity at[3], double out[3]) {
     }
 }
 
-/// Rotation and shift from the joint's child to its parent at coordinate value x: p_parent = R p_child + shift.
-static void joint_transform(const hn_joint *joint, double x, pose *out) {
-    double B[9], C[9], Ct[9], turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9];
-    joint_frame(joint->parent_axis, joint->parent_ref, B);
-    joint_frame(joint->child_axis, joint->child_ref, C);
-    if (joint->type == HN_JOINT_REVOLUTE) {
-        turn[0] = turn[4] = cos(x);
-        turn[3] = sin(x);
-        turn[1] = -turn[3];
-    }
-    transpose(C, Ct);
-    multiply(B, turn, half);
-    multiply(half, Ct, out->R);
-
-    double at_parent[3], at_child[3], arm[3];
-    place(joint->parent_at, at_parent);
-    place(joint->child_at, at_child);
-    rotate(out->R, at_child, arm);
-    double slide = joint->type == HN_JOINT_PRISMATIC ? x : 0;
-    for (int i = 0; i < 3; i++) {
-        out->p[i] = at_parent[i] + slide * joint->parent_axis[i] - arm[i];
+/// Turn by one primitive of a joint at its coordinates x, in the joint's axes, and the way it moves.
+static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[9],
+                             double way[3]) {
+    const int i = (primitive->along + 1) % 3, j = (primitive->along + 2) % 3;
+    if (primitive->type == HN_JOINT_REVOLUTE) {
+        turn[4 * i] = turn[4 * j] = cos(x[0]);
+        turn[3 * j + i] = sin(x[0]);
+        turn[3 * i + j] = -turn[3 * j + i];
+    } else if (primitive->type == HN_JOINT_PRISMATIC) {
+        way[primitive->along] = x[0];
+    } else if (primitive->type == HN_JOINT_SPHERICAL) {
+        for (int k = 0; k < 3; k++) { // column k: the unit vector k turned
+            double q[4], back[4], e[4] = {0}, out[4];
+            hn_quat_exp(x, q);
+            hn_quat_exp((double[3]){-x[0], -x[1], -x[2]}, back);
+            e[k + 1] = 1;
+            hn_quat_mul(q, e, out);
+            hn_quat_mul(out, back, out);
+            for (int r = 0; r < 3; r++) {
+                turn[3 * r + k] = out[r + 1];
+            }
+        }
     }
 }
 
-static double coordinate_value(const hn_assembler *s, int coordinate) {
+/// Rotation and shift from the joint's child to its parent at coordinate values x: p_parent = R p_child + shift.
+static void joint_transform(const hn_joint *joint, const double *x, pose *out) {
+    double B[9], C[9], Ct[9], so_far[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9], slid[3] = {0};
+    const hn_primitive *chain;
+    const int n = hn_joint_primitives(joint->type, &chain);
+    joint_frame(joint->parent_axis, joint->parent_ref, B);
+    joint_frame(joint->child_axis, joint->child_ref, C);
+    for (int k = 0; k < n; k++) {
+        double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, way[3] = {0, 0, 0}, gone[3];
+        primitive_motion(&chain[k], x + chain[k].part, turn, way);
+        rotate(so_far, way, gone);
+        hn_axpy(3, 1, gone, slid);
+        multiply(so_far, turn, half);
+        memcpy(so_far, half, sizeof half);
+    }
+    transpose(C, Ct);
+    multiply(B, so_far, half);
+    multiply(half, Ct, out->R);
+
+    double at_parent[3], at_child[3], arm[3], gone[3];
+    place(joint->parent_at, at_parent);
+    place(joint->child_at, at_child);
+    rotate(out->R, at_child, arm);
+    rotate(B, slid, gone);
+    for (int i = 0; i < 3; i++) {
+        out->p[i] = at_parent[i] + gone[i] - arm[i];
+    }
+}
+
+static void coordinate_values(const hn_assembler *s, const hn_joint *joint, double x[6]) {
     for (int k = 0; k < s->n; k++) {
-        if (hn_system_user_coordinate(s->sys, k) == coordinate) {
-            return s->x[k];
+        const int part = hn_system_user_coordinate(s->sys, k) - joint->coordinate;
+        if (joint->coordinate >= 0 && part >= 0 && part < joint->n_coordinates) {
+            x[part] = s->x[k];
         }
     }
-    return 0;
 }
 
 /// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on failure.
@@ -103,7 +135,9 @@ static pose find_pose(const hn_assembler *s, int body) {
     while (body != HN_GROUND) {
         const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
         pose step, next;
-        joint_transform(joint, coordinate_value(s, joint->coordinate), &step);
+        double x[6] = {0};
+        coordinate_values(s, joint, x);
+        joint_transform(joint, x, &step);
         if (joint->child != body) { // the tree runs through this joint backwards
             pose inverse;
             transpose(step.R, inverse.R);
@@ -178,9 +212,17 @@ static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
     return n;
 }
 
+/// The joint cannot move: a fixed one, or one with all its freedoms pinned.
 static int is_pinned(const hn_assembler *s, int joint) {
-    return !hn_system_joint_is_cut(s->sys, joint) &&
-           s->scene->coordinates[s->scene->joints[joint].coordinate].q0_pinned;
+    const hn_joint *j = &s->scene->joints[joint];
+    if (j->type == HN_JOINT_FIXED) {
+        return 1;
+    }
+    int pinned = !hn_system_joint_is_cut(s->sys, joint);
+    for (int k = 0; k < j->n_coordinates; k++) {
+        pinned &= s->scene->coordinates[j->coordinate + k].q0_pinned;
+    }
+    return pinned;
 }
 
 static const char *body_name(const hn_assembler *s, int body) {
@@ -244,7 +286,7 @@ static double side_length(const hn_assembler *s, const ring_part *first, const r
 static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side *sides) {
     int first = 0, count = 0;
     while (is_pinned(s, parts[first].joint_in)) {
-        first++; // the ring has a cut joint, which is never pinned
+        first++; // a polygon has a joint that may turn
     }
     for (int k = 0; k < n;) {
         side *now = &sides[count++];

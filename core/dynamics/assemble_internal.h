@@ -15,12 +15,13 @@ typedef struct hn_assembler {
     hn_arena *arena;
     hn_diags *diags;
     double t;
-    int n, nc; ///< user coordinates (= nv), constraint rows
+    int n, nq, nc; ///< user coordinates (= nv), system positions, constraint rows
     double length;
 
     hn_eval *eval; ///< M, phi, phi_t, J, energy
     double *x, *guess, *q,
         *rest;              ///< user coordinates, their start, system coordinates, speeds of zero
+    int *turn;              ///< n: 0, 1, 2 for the entries of a rotation vector, else -1
     double *reach;          ///< n
     double *row_scale;      ///< nc
     int n_free, *free;      ///< user coordinates that may move
@@ -39,6 +40,10 @@ typedef struct hn_assembler {
 HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
 /// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
 int hn_assemble_evaluate(hn_assembler *s);
+/// x moved by `delta` (n, user rates times time): a sum, and for orientations the turn by that much in the child's axes.
+void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);
+/// How far user coordinate i is from its guess; of an orientation, the angle of the turn between them.
+double hn_assemble_moved(const hn_assembler *s, int i);
 /// Row i of J in user rates, out (n).
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out);
 /// Euclidean norm of the unscaled phi, over all rows (loop < 0) or those of one loop.

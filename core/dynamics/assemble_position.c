@@ -2,6 +2,7 @@
 // Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982; Allgower & Georg 1990.
 
 #include "dynamics/assemble_internal.h"
+#include "dynamics/quaternion.h"
 #include "linalg/dense.h"
 
 #include <float.h>
@@ -26,6 +27,7 @@ typedef struct search {
     double *goal;  // nc: the residual aimed at; 0 but during homotopy
     double *A, *g; // J'J + mu I, J' r
     double *step, *start, *r;
+    double *delta; // n of all user coordinates, unscaled
     double *best_x, best_size;
     int damped; // damped steps taken
     hn_qr qr;
@@ -41,6 +43,30 @@ int hn_assemble_evaluate(hn_assembler *s) {
     int finite = hn_all_finite(s->nc, s->residual);
     s->size = finite ? hn_norm2(s->nc, s->residual) : HUGE_VAL;
     return finite;
+}
+
+void hn_assemble_move(const hn_assembler *s, double *x, const double *delta) {
+    for (int i = 0; i < s->n; i++) {
+        if (s->turn[i] < 0) {
+            x[i] += delta[i];
+        } else if (s->turn[i] == 0) {
+            double turned[4];
+            hn_quat_exp(x + i, turned);
+            hn_quat_move(turned, delta + i);
+            hn_quat_log(turned, x + i);
+        }
+    }
+}
+
+double hn_assemble_moved(const hn_assembler *s, int i) {
+    if (s->turn[i] < 0) {
+        return fabs(s->x[i] - s->guess[i]);
+    }
+    double from[4], to[4], delta[3];
+    hn_quat_exp(s->guess + i - s->turn[i], from);
+    hn_quat_exp(s->x + i - s->turn[i], to);
+    hn_quat_difference(from, to, delta);
+    return hn_norm2(3, delta);
 }
 
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out) {
@@ -61,6 +87,7 @@ static hn_status search_init(search *w, hn_assembler *s) {
     w->A = hn_arena_doubles(s->arena, n * n);
     w->g = hn_arena_doubles(s->arena, n);
     w->step = hn_arena_doubles(s->arena, (size_t)s->n);
+    w->delta = hn_arena_doubles(s->arena, (size_t)s->n);
     w->start = hn_arena_doubles(s->arena, (size_t)s->n);
     w->best_x = hn_arena_doubles(s->arena, (size_t)s->n);
     w->goal = hn_arena_doubles(s->arena, nc);
@@ -122,8 +149,10 @@ static void save_start(search *w) {
 static void move_from_start(search *w) {
     hn_assembler *s = w->s;
     for (int k = 0; k < w->n; k++) {
-        s->x[s->free[k]] = w->start[s->free[k]] + s->reach[s->free[k]] * w->step[k];
+        w->delta[s->free[k]] = s->reach[s->free[k]] * w->step[k];
     }
+    memcpy(s->x, w->start, (size_t)s->n * sizeof *s->x);
+    hn_assemble_move(s, s->x, w->delta);
 }
 
 /// Back to w->start, with everything evaluated there.
@@ -301,8 +330,9 @@ static int try_random_starts(search *w) {
         double spread = 2.0 * k / RANDOM_STARTS; // 2 rad, or two characteristic lengths, at most
         memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < w->n; i++) {
-            s->x[s->free[i]] += spread * s->reach[s->free[i]] * random_unit(&seed);
+            w->delta[s->free[i]] = spread * s->reach[s->free[i]] * random_unit(&seed);
         }
+        hn_assemble_move(s, s->x, w->delta);
         int closed = descend(w, CLOSED, MAX_ITERATIONS);
         keep_best(w);
         if (closed) {

@@ -145,7 +145,6 @@ static hn_status create_parts(hn_projector *p, hn_arena *arena) {
 hn_status hn_projector_create(const hn_system *sys, hn_weight weight, hn_arena *arena,
                               hn_projector **out) {
     hn_system_info info = hn_system_get_info(sys);
-    HN_ASSERT(info.nq == info.nv); // corrections of q are taken as rates
     hn_projector *p = hn_arena_get(arena, sizeof *p);
     if (!p) {
         return HN_ERR_MEMORY;
@@ -266,7 +265,7 @@ static hn_status step_position(hn_projector *p, double t, double *q) {
     }
     hn_status status = solve(p);
     if (status == HN_OK) {
-        hn_axpy(p->nq, 1, p->step, q);
+        hn_system_move(p->sys, q, p->step);
         p->ops += p->nq;
     }
     return status;
@@ -293,10 +292,13 @@ static hn_status close_gap(hn_projector *p, double t, double *q, double tol, dou
         info->iterations++;
         info->rank = p->rank;
         int nothing_moves =
-            hn_norm_max(p->nq, p->step) <= STEP_ROUNDING * (1 + hn_norm_max(p->nq, q));
+            hn_norm_max(p->nv, p->step) <= STEP_ROUNDING * (1 + hn_norm_max(p->nq, q));
         if ((before <= rounding || nothing_moves) && gap > 0.5 * before) {
             if (gap > before) {
-                hn_axpy(p->nq, -1, p->step, q);
+                for (int i = 0; i < p->nv; i++) {
+                    p->step[i] = -p->step[i];
+                }
+                hn_system_move(p->sys, q, p->step);
             }
             info->gap = fmin(gap, before);
             return HN_OK;

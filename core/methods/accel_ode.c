@@ -79,6 +79,13 @@ hn_status hn_accel_ode_get_state(void *self, double t, const double *y, double *
     return HN_OK;
 }
 
+hn_status hn_accel_ode_after_step(void *self, double t, double *y, int *changed) {
+    const hn_accel_ode *ode = self;
+    (void)t;
+    *changed = hn_system_normalise(ode->sys, y);
+    return HN_OK;
+}
+
 void hn_accel_ode_add_cost(const void *self, hn_cost *cost) {
     const hn_accel_ode *ode = self;
     const long long evals = hn_accel_count(ode->accel);

@@ -27,6 +27,8 @@ void hn_accel_ode_get(void *self, hn_ode *out);
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot);
 hn_status hn_accel_ode_set_state(void *self, double t, const double *q, const double *v, double *y);
 hn_status hn_accel_ode_get_state(void *self, double t, const double *y, double *q, double *v);
+/// After a step: quaternions of balls back to length 1; `changed` only where that moved them by more than rounding.
+hn_status hn_accel_ode_after_step(void *self, double t, double *y, int *changed);
 void hn_accel_ode_add_cost(const void *self, hn_cost *cost);
 const char *hn_accel_ode_why(const void *self);
 

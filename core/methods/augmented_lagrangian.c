@@ -163,6 +163,7 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
     .ode = hn_dense_ode_get,
     .set_state = hn_dense_ode_set_state,
     .get_state = hn_dense_ode_get_state,
+    .after_step = hn_dense_ode_after_step,
     .set = set,
     .add_cost = hn_dense_ode_add_cost,
     .why = hn_dense_ode_why,

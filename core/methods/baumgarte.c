@@ -71,7 +71,7 @@ static double fastest_rate(baumgarte *b, const double *v) {
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     baumgarte *b = self;
     const double h = t - b->t_last;
-    *changed = 0;
+    (void)hn_accel_ode_after_step(self, t, y, changed);
     b->t_last = t;
     if (b->rule != RULE_AUTO || !(h > 0)) {
         return HN_OK;

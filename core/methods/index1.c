@@ -32,6 +32,7 @@ const hn_formulation hn_formulation_index1 = {
     .ode = hn_accel_ode_get,
     .set_state = hn_accel_ode_set_state,
     .get_state = hn_accel_ode_get_state,
+    .after_step = hn_accel_ode_after_step,
     .add_cost = hn_accel_ode_add_cost,
     .why = hn_accel_ode_why,
 };

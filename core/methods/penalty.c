@@ -63,6 +63,7 @@ const hn_formulation hn_formulation_penalty = {
     .ode = hn_dense_ode_get,
     .set_state = hn_dense_ode_set_state,
     .get_state = hn_dense_ode_get_state,
+    .after_step = hn_dense_ode_after_step,
     .set = hn_penalised_set,
     .add_cost = hn_dense_ode_add_cost,
     .why = hn_dense_ode_why,

@@ -67,7 +67,7 @@ static hn_status project_position(projection *p, double t, double *q, hn_project
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     projection *p = self;
     hn_project_info info = {0};
-    *changed = 0;
+    (void)hn_accel_ode_after_step(self, t, y, changed);
     if (!p->projector) {
         return HN_OK; // no loop to close
     }

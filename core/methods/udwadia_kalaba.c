@@ -259,6 +259,7 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
     .ode = hn_dense_ode_get,
     .set_state = hn_dense_ode_set_state,
     .get_state = hn_dense_ode_get_state,
+    .after_step = hn_dense_ode_after_step,
     .add_cost = hn_dense_ode_add_cost,
     .why = hn_dense_ode_why,
 };
