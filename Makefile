@@ -67,8 +67,9 @@ HEADERS        := $(sort $(wildcard core/*/*.h server/*.h server/*/*.h tests/sup
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
+TABLE_SOURCES  := tests/survival/survival.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
-                  $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c))
+                  $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES)
 
 objects  = $(patsubst %.c,$(OUT)/%.o,$(1))
 archive  = $(OUT)/lib/libhn_$(1).a
@@ -79,6 +80,7 @@ CORE_OBJECTS  := $(foreach l,$(CORE_LAYERS),$(call objects,$(SOURCES_$(l))))
 UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
+TABLES        := $(call programs,$(TABLE_SOURCES))
 SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
@@ -120,6 +122,10 @@ $(OUT)/tests/bench/%: $(OUT)/tests/bench/%.o $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+$(OUT)/tests/survival/%: $(OUT)/tests/survival/%.o $(call archive,support) $(LIBRARY)
+	$(call say,link $@)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
 $(OUT)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(call say,compile $<)
@@ -132,7 +138,7 @@ $(OUT)/%.o: %.c
 
 -include $(patsubst %.c,$(OUT)/%.d,$(ALL_C))
 
-programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH)
+programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libosmesa6-dev libpng-dev \
@@ -194,13 +200,14 @@ help:
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
+	@echo 'make survival     the ladder of four-bars through its flat poses: which step sizes survive, kept in tests/survival/results.txt'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference survival run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -223,6 +230,11 @@ reference: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/reference/table.py $(PROGRAM) >build/reference.txt
 	@cp build/reference.txt tests/reference/results.txt && cat tests/reference/results.txt
+
+survival: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(TABLES)
+	@$(OUT)/tests/survival/survival >build/survival.txt
+	@cp build/survival.txt tests/survival/results.txt && cat tests/survival/results.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone

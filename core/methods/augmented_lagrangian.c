@@ -43,16 +43,17 @@ static double choose_weight(augmented *al) {
     if (al->p.a > 0) {
         return al->p.a;
     }
+    const size_t nv = (size_t)ode->nv;
+    memset(al->size, 0, (size_t)ode->nc * sizeof *al->size);
+    for (int e = 0; e < ode->n_J; e++) {
+        const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
+        const double m = ode->M[j * nv + j], entry = ode->J[i * nv + j];
+        al->size[i] += m > 0 ? entry * entry / m : 0;
+    }
     int n = 0;
     for (int k = 0; k < ode->nc; k++) {
-        const double *row = ode->J + (size_t)k * ode->nv;
-        double sum = 0;
-        for (int j = 0; j < ode->nv; j++) {
-            const double m = ode->M[(size_t)j * ode->nv + j];
-            sum += m > 0 ? row[j] * row[j] / m : 0;
-        }
-        if (sum > 0) {
-            al->size[n++] = sum;
+        if (al->size[k] > 0) {
+            al->size[n++] = al->size[k];
         }
     }
     const double typical = median(n, al->size);
@@ -62,20 +63,19 @@ static double choose_weight(augmented *al) {
 // residual (nv) = f - M acc + J' (lambda - weight (J acc + r)): what (1) still misses at acc
 static void find_residual(augmented *al, double weight, const double *acc) {
     const hn_dense_ode *ode = &al->p.ode;
-    const int nv = ode->nv;
+    const size_t nv = (size_t)ode->nv;
+    hn_dense_ode_rows(ode, acc, al->p.work);
     for (int k = 0; k < ode->nc; k++) {
-        const double left = hn_dot(nv, ode->J + (size_t)k * nv, acc) + al->p.pull[k];
-        al->p.work[k] = al->lambda[k] - weight * left;
+        al->p.work[k] = al->lambda[k] - weight * (al->p.work[k] + al->p.pull[k]);
     }
-    memcpy(al->residual, ode->f, (size_t)nv * sizeof *al->residual);
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j <= i; j++) {
-            const double m = ode->M[(size_t)i * nv + j];
-            al->residual[i] -= m * acc[j];
-            al->residual[j] -= i != j ? m * acc[i] : 0;
-        }
+    memcpy(al->residual, ode->f, nv * sizeof *al->residual);
+    for (int k = 0; k < ode->n_M; k++) {
+        const size_t i = (size_t)ode->M_row[k], j = (size_t)ode->M_col[k];
+        const double m = ode->M[i * nv + j];
+        al->residual[i] -= m * acc[j];
+        al->residual[j] -= i != j ? m * acc[i] : 0;
     }
-    hn_penalised_add_rows(&al->p, al->p.work, al->residual);
+    hn_dense_ode_add_rows(ode, al->p.work, al->residual);
 }
 
 static hn_status accelerate(void *self, double t, const double *v, double *acc) {
@@ -94,14 +94,14 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
         find_residual(al, weight, acc);
         hn_penalised_solve(p, al->residual);
         hn_axpy(nv, 1, al->residual, acc);
+        hn_dense_ode_rows(&p->ode, acc, p->work);
         for (int k = 0; k < nc; k++) {
-            const double left = hn_dot(nv, p->ode.J + (size_t)k * nv, acc) + p->pull[k];
-            al->lambda[k] -= weight * left;
+            al->lambda[k] -= weight * (p->work[k] + p->pull[k]);
         }
         p->ode.cost.newton++;
-        p->ode.cost.ops += 6.0 * nc * nv + 2.0 * nv * nv;
+        p->ode.cost.ops += 6.0 * p->ode.n_J + 4.0 * p->ode.n_M + 6.0 * nc;
     }
-    p->ode.cost.ops += 5.0 * nc * nv;
+    p->ode.cost.ops += 5.0 * p->ode.n_J;
     return HN_OK;
 }
 
@@ -145,7 +145,7 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
         "redundant rows, passing through poses where the loop loses rank; multipliers stay bounded",
     .when_not = "very different masses in one loop (more iterations are needed); close to a pose "
                 "where the loop loses rank (energy is lost there); omega h "
-                "beyond the integrator's stability limit; large mechanisms (dense)",
+                "beyond the integrator's stability limit",
     .source = "Bayo, Garcia de Jalon & Serna 1988; Bayo & Avello 1994",
     .needs = "M f phi J gamma",
     .index = 1,

@@ -7,27 +7,39 @@
 #include <stdio.h>
 #include <string.h>
 
-#define PIVOT_TOL 1e-13 // of the largest pivot: J_d is singular to rounding
 enum { MAX_NEWTON = 25 };
 
-static void init_point(hn_chart_point *p, int nv, int nc, hn_arena *arena, int *ok) {
-    p->q = hn_arena_doubles(arena, (size_t)nv);
-    p->J = hn_arena_doubles(arena, (size_t)nc * (size_t)nv);
-    p->N = hn_arena_doubles(arena, (size_t)nv * (size_t)nv);
-    p->s = hn_arena_doubles(arena, (size_t)nv);
-    *ok = hn_qr_init(&p->jd, arena, nc, nv) && *ok;
+static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
+    const size_t nv = (size_t)chart->nv;
+    p->q = hn_arena_doubles(arena, (size_t)chart->nq);
+    p->N = hn_arena_doubles(arena, nv * nv);
+    p->s = hn_arena_doubles(arena, nv);
+    if (!with_factor) {
+        return 1;
+    }
+    p->J = hn_arena_doubles(arena, (size_t)chart->n_J);
+    p->jd_values = hn_arena_doubles(arena, (size_t)chart->n_J);
+    p->lu = hn_sparse_lu_create(arena, chart->nc, chart->n_J);
+    return p->lu && hn_qr_init(&p->jd, arena, chart->nc, chart->nv);
 }
 
 static int init_memory(hn_chart *chart, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv, nc = (size_t)chart->nc;
     int ok = hn_qr_init(&chart->all, arena, chart->nc, chart->nv);
-    init_point(&chart->here, chart->nv, chart->nc, arena, &ok);
-    init_point(&chart->probe, chart->nv, chart->nc, arena, &ok);
-    init_point(&chart->base, chart->nv, chart->nc, arena, &ok);
+    ok = init_point(chart, &chart->here, 1, arena) && ok;
+    ok = init_point(chart, &chart->probe, 1, arena) && ok;
+    ok = init_point(chart, &chart->base, 0, arena) && ok;
+    chart->jd_entry = hn_arena_ints(arena, (size_t)chart->n_J);
+    chart->jd_row = hn_arena_ints(arena, (size_t)chart->n_J);
+    chart->jd_col = hn_arena_ints(arena, (size_t)chart->n_J);
+    chart->dep_at = hn_arena_ints(arena, nv);
+    chart->at = hn_arena_ints(arena, nv);
+    chart->delta = hn_arena_doubles(arena, nv);
     chart->dep = hn_arena_ints(arena, nv);
     chart->ind = hn_arena_ints(arena, nv);
     chart->order = hn_arena_ints(arena, nv);
     chart->new_dep = hn_arena_ints(arena, nv);
+    chart->first_dep = hn_arena_ints(arena, nv);
     chart->scale = hn_arena_doubles(arena, nv);
     chart->c = hn_arena_doubles(arena, nv);
     chart->Mx = hn_arena_doubles(arena, nv * nv);
@@ -43,25 +55,26 @@ hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate, hn
                         hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     memset(chart, 0, sizeof *chart);
-    if (info.nq != info.nv) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use index1, baumgarte or projection",
-                           "independent speeds need one coordinate per speed; this scene has %d "
-                           "coordinates and %d speeds",
-                           info.nq, info.nv);
-    }
     chart->sys = sys;
+    chart->nq = info.nq;
     chart->nv = info.nv;
     chart->nc = info.nc;
     chart->rank = chart->r = -1;
     chart->with_rate = with_rate;
     chart->length = hn_system_length(sys);
-    hn_status status = init_memory(chart, arena) ? HN_OK : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
-    }
+    hn_status status =
+        hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F | (with_rate ? HN_TERM_GAMMA : 0), arena,
                                 &chart->full);
+    }
+    if (status == HN_OK) {
+        chart->n_J = hn_eval_pattern(chart->loop, HN_TERM_J, &chart->J_row, &chart->J_col);
+        chart->n_M = hn_eval_pattern(chart->full, HN_TERM_M, &chart->M_row, &chart->M_col);
+        status = init_memory(chart, arena) ? HN_OK : HN_ERR_MEMORY;
+    }
+    for (int i = 0; status == HN_OK && i < chart->nv; i++) {
+        chart->at[i] = hn_system_position_of(sys, i);
     }
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
@@ -76,111 +89,18 @@ void hn_chart_destroy(hn_chart *chart) {
 hn_status hn_chart_fail(hn_chart *chart, hn_status status, double t, const double *q,
                         const char *what) {
     const hn_scene *scene = hn_system_scene(chart->sys);
-    const int i = chart->r > 0 ? chart->ind[0] : 0;
-    const char *name = "?";
-    if (i < hn_system_get_info(chart->sys).n_user) {
-        name = scene->coordinates[hn_system_user_coordinate(chart->sys, i)].name;
+    const int i = chart->r > 0 ? chart->ind[0] : 0, at = chart->nv > 0 ? chart->at[i] : -1;
+    if (at >= 0 && at < hn_system_get_info(chart->sys).n_user) {
+        const char *name = scene->coordinates[hn_system_user_coordinate(chart->sys, at)].name;
+        snprintf(chart->why, sizeof chart->why, "%s = %.6g at t = %.6g s: %s", name, q[at], t,
+                 what);
+    } else {
+        snprintf(chart->why, sizeof chart->why, "at t = %.6g s: %s", t, what);
     }
-    snprintf(chart->why, sizeof chart->why, "%s = %.6g at t = %.6g s: %s", name, q[i], t, what);
     return status;
 }
 
 // --- one configuration ------------------------------------------------------------------------------------
-
-// Householder reflections have determinant -1, a column permutation its parity
-static int sign_of_det(const hn_qr *qr, int n) {
-    int sign = 1;
-    for (int k = 0; k < n; k++) {
-        if (qr->tau[k] != 0) {
-            sign = -sign;
-        }
-        if (qr->a[k * qr->m + k] < 0) {
-            sign = -sign;
-        }
-        for (int j = k + 1; j < n; j++) {
-            if (qr->perm[j] < qr->perm[k]) {
-                sign = -sign;
-            }
-        }
-    }
-    return sign;
-}
-
-// x_d (rank) <- J_d^-1 b, b (nc) overwritten
-static void solve_dependent(hn_chart *chart, const hn_chart_point *p, double *b, double *x_d) {
-    hn_qr_apply_qt(&p->jd, b);
-    hn_qr_solve_r(&p->jd, b);
-    for (int k = 0; k < chart->rank; k++) {
-        x_d[p->jd.perm[k]] = b[k];
-    }
-    chart->cost.solves++;
-    chart->cost.ops += hn_flops_qr_solve(chart->nc, chart->rank);
-}
-
-static double smallest_pivot(const hn_chart_point *p, int rank) {
-    double smallest = HUGE_VAL;
-    for (int k = 0; k < rank; k++) {
-        smallest = fmin(smallest, fabs(p->jd.a[k * p->jd.m + k]));
-    }
-    return smallest;
-}
-
-static double log_volume(const hn_chart_point *p, int rank) {
-    double sum = 0;
-    for (int k = 0; k < rank; k++) {
-        sum += log(fabs(p->jd.a[k * p->jd.m + k]));
-    }
-    return sum;
-}
-
-double hn_chart_volume(const hn_chart *chart) {
-    return exp(log_volume(&chart->here, chart->rank) - chart->volume_start);
-}
-
-// copies phi's neighbourhood from the tape and factors J_d; 0 when det J_d has vanished
-static int factor_dependent(hn_chart *chart, hn_chart_point *p) {
-    const int nv = chart->nv, nc = chart->nc, rank = chart->rank;
-    memcpy(p->J, hn_eval_get(chart->loop, HN_TERM_J), (size_t)nc * (size_t)nv * sizeof(double));
-    for (int k = 0; k < rank; k++) {
-        const int column = chart->dep[k];
-        for (int i = 0; i < nc; i++) {
-            p->jd.a[k * nc + i] = p->J[i * nv + column] * chart->scale[column];
-        }
-    }
-    hn_qr_factor(&p->jd, nc, rank, PIVOT_TOL);
-    chart->cost.factorisations++;
-    chart->cost.ops += hn_flops_qr(nc, rank);
-    p->sign = nc == rank && p->jd.rank == rank ? sign_of_det(&p->jd, rank) : 0;
-    return rank == 0 ||
-           (p->jd.rank == rank && smallest_pivot(p, rank) > HN_CHART_FOLD * chart->pivot_start);
-}
-
-static void make_basis(hn_chart *chart, hn_chart_point *p) {
-    const int nv = chart->nv, nc = chart->nc, rank = chart->rank, r = chart->r;
-    double *b = chart->z, *x = chart->dq;
-    memset(p->N, 0, (size_t)nv * (size_t)r * sizeof(double));
-    for (int j = 0; j < r; j++) {
-        p->N[chart->ind[j] * r + j] = 1;
-        for (int i = 0; i < nc; i++) {
-            b[i] = -p->J[i * nv + chart->ind[j]];
-        }
-        solve_dependent(chart, p, b, x);
-        for (int k = 0; k < rank; k++) {
-            p->N[chart->dep[k] * r + j] = x[k] * chart->scale[chart->dep[k]];
-        }
-    }
-    memset(p->s, 0, (size_t)nv * sizeof(double));
-    const double *phi_t = hn_eval_get(chart->loop, HN_TERM_PHI_T);
-    if (hn_norm_max(nc, phi_t) > 0) {
-        for (int i = 0; i < nc; i++) {
-            b[i] = -phi_t[i];
-        }
-        solve_dependent(chart, p, b, x);
-        for (int k = 0; k < rank; k++) {
-            p->s[chart->dep[k]] = x[k] * chart->scale[chart->dep[k]];
-        }
-    }
-}
 
 static void eval_loop(hn_chart *chart, hn_chart_point *p, double t) {
     hn_eval_run(chart->loop, t, p->q, p->s);
@@ -189,25 +109,33 @@ static void eval_loop(hn_chart *chart, hn_chart_point *p, double t) {
 }
 
 static const char FOLD[] = "its dead point: the other coordinates no longer follow from it";
+static const char SINGULAR[] = "a singular pose: closure rows depend on each other here, so no "
+                               "choice of coordinates is regular";
+
+/// J_d was singular at (t, q): of this chart, or of all of them.
+static hn_status fail_singular(hn_chart *chart, double t, const double *q) {
+    const int fold = hn_chart_has_full_rank(chart, t, q);
+    return hn_chart_fail(chart, HN_ERR_CHART, t, q, fold ? FOLD : SINGULAR);
+}
 
 hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *p, double t, const double *q) {
     p->valid = 0;
-    memmove(p->q, q, (size_t)chart->nv * sizeof *q);
-    if (!hn_all_finite(chart->nv, p->q)) {
+    memmove(p->q, q, (size_t)chart->nq * sizeof *q);
+    if (!hn_all_finite(chart->nq, p->q)) {
         return hn_chart_fail(chart, HN_ERR_DIVERGED, t, q, "the state is not finite");
     }
     eval_loop(chart, p, t);
-    if (!factor_dependent(chart, p)) {
-        return hn_chart_fail(chart, HN_ERR_CHART, t, q, FOLD);
+    if (!hn_chart_factor(chart, p)) {
+        return fail_singular(chart, t, p->q);
     }
-    make_basis(chart, p);
+    hn_chart_make_basis(chart, p);
     p->tol = HUGE_VAL;
     p->valid = 1;
     return HN_OK;
 }
 
 int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *p, double t, const double *q) {
-    return p->valid && p->t == t && memcmp(p->q, q, (size_t)chart->nv * sizeof *q) == 0;
+    return p->valid && p->t == t && memcmp(p->q, q, (size_t)chart->nq * sizeof *q) == 0;
 }
 
 hn_status hn_chart_check_mode(hn_chart *chart) {
@@ -229,15 +157,17 @@ hn_status hn_chart_settle(hn_chart *chart) {
     if (status != HN_OK) {
         return status;
     }
-    memcpy(to->q, from->q, nv * sizeof(double));
+    memcpy(to->q, from->q, (size_t)chart->nq * sizeof(double));
     memcpy(to->s, from->s, nv * sizeof(double));
     memcpy(to->N, from->N, nv * r * sizeof(double));
     to->t = from->t;
     to->sign = from->sign;
     to->valid = 1;
-    if (chart->pivot_start == 0) {
-        chart->pivot_start = smallest_pivot(from, chart->rank);
-        chart->volume_start = log_volume(from, chart->rank);
+    if (!chart->is_measured) {
+        // a chart chosen near a singular pose must not take that pose for its measure
+        chart->pivot_start = fmax(chart->pivot_start, hn_chart_smallest_pivot(chart, from));
+        chart->volume_start = hn_chart_log_volume(chart, from);
+        chart->is_measured = 1;
     }
     return HN_OK;
 }
@@ -246,30 +176,32 @@ hn_status hn_chart_settle(hn_chart *chart) {
 static void newton_step(hn_chart *chart, hn_chart_point *p) {
     double *b = chart->z, *x = chart->dq;
     memcpy(b, hn_eval_get(chart->loop, HN_TERM_PHI), (size_t)chart->nc * sizeof *b);
-    solve_dependent(chart, p, b, x);
+    hn_chart_solve_dependent(chart, p, b, x);
+    memset(chart->delta, 0, (size_t)chart->nv * sizeof(double));
     for (int k = 0; k < chart->rank; k++) {
-        p->q[chart->dep[k]] -= x[k] * chart->scale[chart->dep[k]];
+        chart->delta[chart->dep[k]] = -x[k] * chart->scale[chart->dep[k]];
     }
+    hn_system_move(chart->sys, p->q, chart->delta);
     chart->cost.newton++;
 }
 
 hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q, double tol) {
     double last = HUGE_VAL;
     p->valid = 0;
-    memmove(p->q, q, (size_t)chart->nv * sizeof *q);
+    memmove(p->q, q, (size_t)chart->nq * sizeof *q);
     for (int i = 0; i < MAX_NEWTON; i++) {
         eval_loop(chart, p, t);
         if (!isfinite(p->gap)) {
             return hn_chart_fail(chart, HN_ERR_DIVERGED, t, q, "the loop gap is not finite");
         }
-        if (!factor_dependent(chart, p)) {
-            return hn_chart_fail(chart, HN_ERR_CHART, t, q, FOLD);
+        if (!hn_chart_factor(chart, p)) {
+            return fail_singular(chart, t, p->q);
         }
         // a gap that stopped falling at rounding level is as closed as it gets
         const int at_floor = p->gap <= 1e-11 * chart->length && p->gap >= 0.5 * last;
         if (p->gap <= tol * chart->length || at_floor) {
-            make_basis(chart, p);
-            memmove(q, p->q, (size_t)chart->nv * sizeof *q);
+            hn_chart_make_basis(chart, p);
+            memmove(q, p->q, (size_t)chart->nq * sizeof *q);
             p->tol = tol;
             p->valid = 1;
             return HN_OK;
@@ -282,18 +214,20 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
         "no pose closes the loops with this value: the end of its range was passed");
 }
 
-void hn_chart_predict(const hn_chart *chart, double t, const double *q_ind, double *q) {
+void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {
     const hn_chart_point *from = &chart->base;
     const int r = chart->r;
     for (int i = 0; i < chart->nv; i++) {
         double step = from->s[i] * (t - from->t);
         for (int j = 0; j < r; j++) {
-            step += from->N[i * r + j] * (q_ind[j] - from->q[chart->ind[j]]);
+            step += from->N[i * r + j] * (q_ind[j] - from->q[chart->at[chart->ind[j]]]);
         }
-        q[i] = from->q[i] + step;
+        chart->delta[i] = step;
     }
+    memcpy(q, from->q, (size_t)chart->nq * sizeof *q);
+    hn_system_move(chart->sys, q, chart->delta);
     for (int j = 0; j < r; j++) {
-        q[chart->ind[j]] = q_ind[j];
+        q[chart->at[chart->ind[j]]] = q_ind[j];
     }
 }
 
@@ -308,19 +242,26 @@ void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *p, const doubl
     }
 }
 
-// A (r x r) = N' M N, with MN left in Mx
+// y (nv x r) = M x, entry by entry of the lower triangle
+static void multiply_mass(const hn_chart *chart, const double *M, const double *x, int r,
+                          double *y) {
+    const size_t nv = (size_t)chart->nv;
+    memset(y, 0, nv * (size_t)r * sizeof *y);
+    for (int k = 0; k < chart->n_M; k++) {
+        const size_t i = (size_t)chart->M_row[k], j = (size_t)chart->M_col[k];
+        const double m = M[i * nv + j];
+        hn_axpy(r, m, x + j * (size_t)r, y + i * (size_t)r);
+        if (i != j) {
+            hn_axpy(r, m, x + i * (size_t)r, y + j * (size_t)r);
+        }
+    }
+}
+
+// A (r x r) = N' M N, lower triangle
 static void project_mass(hn_chart *chart, const double *M) {
     const int nv = chart->nv, r = chart->r;
     const double *N = chart->here.N;
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j < r; j++) {
-            double sum = 0;
-            for (int k = 0; k < nv; k++) {
-                sum += M[i * nv + k] * N[k * r + j];
-            }
-            chart->Mx[i * r + j] = sum;
-        }
-    }
+    multiply_mass(chart, M, N, r, chart->Mx);
     for (int i = 0; i < r; i++) {
         for (int j = 0; j <= i; j++) {
             double sum = 0;
@@ -330,7 +271,7 @@ static void project_mass(hn_chart *chart, const double *M) {
             chart->A[i * r + j] = sum;
         }
     }
-    chart->cost.ops += hn_flops_product(nv, nv, r) + hn_flops_product(r, nv, r) / 2;
+    chart->cost.ops += 4.0 * chart->n_M * r + hn_flops_product(r, nv, r) / 2;
 }
 
 hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
@@ -342,19 +283,20 @@ hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
     memset(chart->c, 0, (size_t)nv * sizeof(double));
     if (nc > 0 && chart->with_rate) {
         memcpy(chart->z, hn_eval_get(chart->full, HN_TERM_GAMMA), (size_t)nc * sizeof(double));
-        solve_dependent(chart, p, chart->z, chart->dq);
+        hn_chart_solve_dependent(chart, p, chart->z, chart->dq);
         for (int k = 0; k < chart->rank; k++) {
             chart->c[chart->dep[k]] = -chart->dq[k] * chart->scale[chart->dep[k]];
         }
     }
     // N' (f - M c)
     double *force = chart->dq;
+    multiply_mass(chart, M, chart->c, 1, force);
     for (int i = 0; i < nv; i++) {
-        force[i] = f[i] - hn_dot(nv, M + i * nv, chart->c);
+        force[i] = f[i] - force[i];
     }
     project_mass(chart, M);
     hn_mat_t_vec(nv, r, p->N, force, u_dot);
-    chart->cost.ops += hn_flops_product(nv, nv, 1) + hn_flops_product(r, nv, 1);
+    chart->cost.ops += 4.0 * chart->n_M + hn_flops_product(r, nv, 1);
     return hn_chart_solve_reduced(chart, p->t, u_dot);
 }
 

@@ -9,11 +9,19 @@
 // where u are the independent speeds. The basis rate needs no differentiation: with this N, N' u plus the rate of s is
 // exactly c. A chart ends where det J_d = 0 (a dead point of the chosen coordinates); the mechanism does not.
 //
-// Redundant rows: J_d holds rank J columns and is solved in the least-squares sense by QR, which for consistent rows is
-// exact. Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982.
+// A square J_d (no redundant rows) is factored sparse, in an order chosen where the chart was chosen, and M and J are taken
+// entry by entry, so that an evaluation costs what they hold: linearly for a chain of loops. With redundant rows J_d holds
+// rank J columns and is solved in the least-squares sense by dense QR, which for consistent rows is exact.
+//
+// Positions move along speeds (hn_system_move), so balls need no chart of their own; but the speed of a ball has no position
+// of its own and cannot be integrated alone: minimal coordinates keep balls dependent (see minimal_state.h).
+//
+// Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982; for which columns to take,
+// Goreinov, Tyrtyshnikov & Zamarashkin 1997 (submatrices of locally maximal volume).
 
 #include "dynamics/eval.h"
 #include "linalg/qr.h"
+#include "linalg/sparse_lu.h"
 #include "methods/method.h"
 
 enum { HN_CHART_TEXT = 240 };
@@ -22,11 +30,14 @@ enum { HN_CHART_TEXT = 240 };
 typedef struct hn_chart_point {
     int valid;
     double t;
-    double *q;  ///< nv, closed when made by hn_chart_close
-    double *J;  ///< nc x nv
-    double *N;  ///< nv x r row-major
-    double *s;  ///< nv
-    hn_qr jd;   ///< factor of J_d, nc x rank
+    double *q; ///< nq, closed when made by hn_chart_close
+    double *
+        J; ///< the entries of J that are not identically zero, in the order of hn_chart.J_row, J_col
+    double *N;        ///< nv x r row-major
+    double *s;        ///< nv
+    hn_sparse_lu *lu; ///< factor of J_d when it is square, its columns scaled
+    double *jd_values;
+    hn_qr jd;   ///< factor of J_d otherwise, nc x rank
     int sign;   ///< of det J_d when square, else 0
     double gap; ///< ||phi||
     double tol; ///< that q was closed to; infinite when it was only located
@@ -34,19 +45,29 @@ typedef struct hn_chart_point {
 
 typedef struct hn_chart {
     const hn_system *sys;
-    int nv, nc, rank, r;  ///< r = nv - rank
+    int nq, nv, nc, rank, r; ///< r = nv - rank
+    int plain_only; ///< 1: only coordinates with a position of their own may be independent
+    int n_J,
+        n_M; ///< entries that are not identically zero, and where: borrowed from the evaluators
+    const int *J_row, *J_col, *M_row, *M_col;
+    int *jd_entry, *jd_row, *jd_col; ///< entries of J that are in J_d, and their places there
+    int n_jd;
+    int *dep_at;          ///< nv: where a column is in dep, -1: independent
+    int *at;              ///< nv: its entry of q, -1 for the speed of a ball
     hn_eval *loop, *full; ///< phi, phi_t, J; and M, f, gamma
     int *dep, *ind;       ///< rank and r column numbers, ascending
     double *scale;        ///< nv, 1 / sqrt(M_jj) at the start: makes columns of J comparable
     int with_rate;        ///< 1: gamma is evaluated, c of (2) enters (3); 0: c is taken as zero
-    hn_chart_point here, probe;  ///< where the right-hand side is, and one for looking elsewhere
-    hn_chart_point base;         ///< the last accepted state: q, N, s, t and sign alone
-    hn_qr all;                   ///< pivoted factor of all of J, for choosing
-    double *c, *Mx, *A, *z, *dq; ///< scratch
-    double *basis, *columns;     ///< scratch of the choice
+    hn_chart_point here, probe; ///< where the right-hand side is, and one for looking elsewhere
+    hn_chart_point base;        ///< the last accepted state: q, N, s, t and sign alone
+    hn_qr all;                  ///< pivoted factor of all of J, for choosing
+    double *c, *Mx, *A, *z, *dq, *delta; ///< scratch
+    double *basis, *columns;             ///< scratch of the choice
     int *order, *new_dep;
+    int *first_dep, has_first; ///< the first choice of all
     double
-        pivot_start; ///< smallest pivot of the scaled J_d where the chart was chosen, 0: not known yet
+        pivot_start; ///< largest of the smallest pivots of the scaled J_d where charts were chosen
+    int is_measured; ///< the next two belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
     double length;       ///< characteristic length [m]
     hn_cost cost;
@@ -59,7 +80,6 @@ typedef struct hn_chart {
 #define HN_CHART_FOLD \
     1e-4 ///< the chart has ended where the smallest pivot of J_d is this fraction of the one it began with
 
-/// Refuses (HN_ERR_UNSUPPORTED, diag) systems whose speeds are not the rates of their coordinates.
 HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate,
                                       hn_arena *arena, hn_diag *diag);
 void hn_chart_destroy(hn_chart *chart);
@@ -69,15 +89,17 @@ enum {
     HN_CHART_PREFERRED =
         -1, ///< the actuated coordinates and then the first ones, as long as |det J_d| is at least
             ///< HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide
-    HN_CHART_BEST = -2 ///< the pivots decide: when an earlier choice has become poor
+    HN_CHART_BEST =
+        -2 ///< when an earlier choice has become poor: columns change places while |det J_d| grows
 };
-/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first` cannot be independent, or when
-/// the rank differs from the one of an earlier choice.
+/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first` cannot be independent, when
+/// the rank differs from the one of an earlier choice, or when the speed of a ball would have to be independent (plain_only).
 HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
-/// 1 when J_d at `here` has fallen below tau times the best choice and a better one exists (more than twice as good).
+/// 1 when changing one dependent column for an independent one would make |det J_d| at `here` larger by more than 1 / tau, and
+/// at least double it. With one freedom this compares with the best choice there is.
 int hn_chart_is_poor(hn_chart *chart, double tau);
 
-/// Closes the loops at `point` for given independent entries of q (nv; the dependent ones are a guess, overwritten).
+/// Closes the loops at `point` for given independent entries of q (nq; the dependent ones are a guess, overwritten).
 /// The point then holds q, J, N, s and the factor. HN_ERR_CHART: no pose, or det J_d vanished on the way.
 HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, double t, double *q,
                                        double tol);
@@ -86,13 +108,28 @@ HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, d
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);
 /// The check of hn_chart_settle() alone.
 HN_MUST_CHECK hn_status hn_chart_check_mode(hn_chart *chart);
-/// 1 when `point` is at (t, q) already: q (nv).
+/// 1 when `point` is at (t, q) already: q (nq).
 int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
+/// J_d at the point factored; 0 when it is singular, or has come too near to it for this chart. For hn_chart_locate() and close().
+int hn_chart_factor(hn_chart *chart, hn_chart_point *point);
+/// x (rank, in the scaled columns) <- J_d^-1 b, b (nc) overwritten.
+void hn_chart_solve_dependent(hn_chart *chart, const hn_chart_point *point, double *b, double *x);
+/// N and s from the factor.
+void hn_chart_make_basis(hn_chart *chart, hn_chart_point *point);
+double hn_chart_smallest_pivot(const hn_chart *chart, const hn_chart_point *point);
+double hn_chart_log_volume(const hn_chart *chart, const hn_chart_point *point);
+/// Sets the entries of J_d for a choice in dep and ind.
+void hn_chart_set_columns(hn_chart *chart);
+/// How |det J_d| would change if dependent column k (of dep) and independent column j (of ind) changed places [-].
+double hn_chart_exchange(const hn_chart *chart, const hn_chart_point *point, int k, int j);
+/// 1 when all of J has full row rank nearby; for telling a dead point of the chart from a singular pose.
+int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q);
+
 /// The point at q as it is, closed or not: J, N, s and the factor.
 HN_MUST_CHECK hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *point, double t,
                                         const double *q);
-/// q (nv) from independent entries q_ind (r), the dependent ones predicted along the tangent at `base`.
-void hn_chart_predict(const hn_chart *chart, double t, const double *q_ind, double *q);
+/// q (nq) from independent entries q_ind (r, plain coordinates), the others predicted along the tangent at `base`.
+void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q);
 /// v = N u + s at the point.
 void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *point, const double *u,
                      double *v);

@@ -11,19 +11,24 @@
 // be compared.
 
 #define RANK_TOL 1e-10
+#define SINGULAR_TOL \
+    1e-3 // smallest pivot of J against its largest: below, the pose is to blame and not the choice
 #define DEAD_POINT 1e-6 // of the best volume: the coordinate asked for cannot serve
+#define GAIN 1.01       // a change of columns that gains less is not worth it
 #define INDEPENDENT_TOL \
     1e-3 // residual of a column, relative to its length, that still counts as a new direction
 
-static void fill_scaled(hn_chart *chart, const double *J) {
-    for (int j = 0; j < chart->nv; j++) {
-        for (int i = 0; i < chart->nc; i++) {
-            chart->columns[j * chart->nc + i] = J[i * chart->nv + j] * chart->scale[j];
-        }
+static void fill_scaled(hn_chart *chart) {
+    const double *J = hn_eval_get(chart->loop, HN_TERM_J);
+    const size_t nv = (size_t)chart->nv, nc = (size_t)chart->nc;
+    memset(chart->columns, 0, nv * nc * sizeof *chart->columns);
+    for (int e = 0; e < chart->n_J; e++) {
+        const size_t i = (size_t)chart->J_row[e], j = (size_t)chart->J_col[e];
+        chart->columns[j * nc + i] = J[i * nv + j] * chart->scale[j];
     }
 }
 
-static double log_volume(const hn_qr *qr, int rank) {
+static double log_of_diagonal(const hn_qr *qr, int rank) {
     double sum = 0;
     for (int k = 0; k < rank; k++) {
         sum += log(fabs(qr->a[k * qr->m + k]));
@@ -38,20 +43,30 @@ static int choose_by_pivots(hn_chart *chart, double *volume) {
     chart->cost.factorisations++;
     chart->cost.ops += hn_flops_qr(chart->nc, chart->nv);
     memcpy(chart->new_dep, chart->all.perm, (size_t)chart->all.rank * sizeof(int));
-    *volume = log_volume(&chart->all, chart->all.rank);
+    *volume = log_of_diagonal(&chart->all, chart->all.rank);
     return chart->all.rank;
 }
 
-// last coordinates first, actuated ones after all others, `first` at the very end
-static void order_columns(hn_chart *chart, int first) {
+enum { TURN_BALL, TURN_PASSIVE, TURN_ACTUATED, N_TURNS };
+
+static int turn_of(const hn_chart *chart, int j) {
     const hn_scene *scene = hn_system_scene(chart->sys);
-    const int n_user = hn_system_get_info(chart->sys).n_user;
+    const int at = chart->at[j];
+    if (at < 0) {
+        return TURN_BALL;
+    }
+    const int known = at < hn_system_get_info(chart->sys).n_user;
+    return known && scene->coordinates[hn_system_user_coordinate(chart->sys, at)].actuated
+               ? TURN_ACTUATED
+               : TURN_PASSIVE;
+}
+
+// speeds of balls first, then last coordinates first, actuated ones after all others, `first` at the very end
+static void order_columns(hn_chart *chart, int first) {
     int n = 0;
-    for (int wanted = 0; wanted <= 1; wanted++) {
+    for (int turn = 0; turn < N_TURNS; turn++) {
         for (int j = chart->nv - 1; j >= 0; j--) {
-            const int actuated =
-                j < n_user && scene->coordinates[hn_system_user_coordinate(chart->sys, j)].actuated;
-            if (j != first && (actuated != 0) == wanted) {
+            if (j != first && turn_of(chart, j) == turn) {
                 chart->order[n++] = j;
             }
         }
@@ -125,13 +140,112 @@ static void scale_columns(hn_chart *chart, double t, const double *q, const doub
     }
 }
 
-hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first) {
-    const int rank_before = chart->rank;
-    double best = 0;
+// 1 when all speeds of balls are dependent, or may be independent
+static int serves(const hn_chart *chart) {
+    for (int j = 0; j < chart->r && chart->plain_only; j++) {
+        if (chart->at[chart->ind[j]] < 0) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static hn_status fail_ball(hn_chart *chart, double t, const double *q) {
+    return hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, q,
+                         "no chart: the turning of a spherical or free joint would have to be an "
+                         "independent coordinate, and it has no coordinate of its own; use "
+                         "nullspace or projection");
+}
+
+static void eval_here(hn_chart *chart, double t, const double *q) {
     memset(chart->here.s, 0, (size_t)chart->nv * sizeof(double));
     scale_columns(chart, t, q, chart->here.s);
     hn_eval_run(chart->loop, t, q, chart->here.s);
-    fill_scaled(chart, hn_eval_get(chart->loop, HN_TERM_J));
+}
+
+static void begin(hn_chart *chart) {
+    sort_choice(chart);
+    hn_chart_set_columns(chart);
+    chart->here.valid = chart->probe.valid = chart->base.valid = 0;
+    chart->is_measured = 0;
+}
+
+// the pair of columns whose exchange makes |det J_d| largest, and by how much
+static double best_exchange(const hn_chart *chart, int *dep, int *ind) {
+    double best = 0;
+    for (int k = 0; k < chart->rank; k++) {
+        for (int j = 0; j < chart->r && !(chart->plain_only && chart->at[chart->dep[k]] < 0); j++) {
+            const double gain = hn_chart_exchange(chart, &chart->here, k, j);
+            if (gain > best) {
+                best = gain;
+                *dep = k;
+                *ind = j;
+            }
+        }
+    }
+    return best;
+}
+
+// from the present choice, one exchange after the other while the volume grows
+static hn_status improve(hn_chart *chart, double t, const double *q) {
+    for (int turn = 0; turn <= chart->nv; turn++) {
+        int k = 0, j = 0;
+        if (!hn_chart_factor(chart, &chart->here)) {
+            break;
+        }
+        hn_chart_make_basis(chart, &chart->here);
+        if (!(best_exchange(chart, &k, &j) > GAIN)) {
+            begin(chart);
+            return HN_OK;
+        }
+        const int column = chart->dep[k];
+        chart->dep[k] = chart->ind[j];
+        chart->ind[j] = column;
+        begin(chart);
+    }
+    const int full = hn_chart_has_full_rank(chart, t, q);
+    return hn_chart_fail(chart, HN_ERR_CHART, t, q,
+                         full ? "no choice of coordinates is regular enough here"
+                              : "a singular pose: no choice of coordinates is regular there");
+}
+
+int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
+    double volume;
+    eval_here(chart, t, q);
+    fill_scaled(chart);
+    memcpy(chart->all.a, chart->columns, (size_t)chart->nc * (size_t)chart->nv * sizeof(double));
+    hn_qr_factor(&chart->all, chart->nc, chart->nv, 0);
+    chart->here.valid = 0;
+    volume = chart->all.rank == chart->rank && chart->rank > 0 ? hn_qr_pivot_ratio(&chart->all) : 0;
+    return volume > SINGULAR_TOL;
+}
+
+// The first choice of an instance is made from all of J, densely; later ones begin with the same columns and exchange some
+// where those have become poor. So a choice depends on the first state and on the present one, not on what was between.
+static hn_status choose_again(hn_chart *chart, double t, const double *q, int first) {
+    int k, j;
+    const double limit = first >= 0 ? 1 / DEAD_POINT : 1 / HN_CHART_TAU;
+    memcpy(chart->dep, chart->first_dep, (size_t)chart->rank * sizeof *chart->dep);
+    begin(chart);
+    chart->pivot_start = 0;
+    if (hn_chart_factor(chart, &chart->here)) {
+        hn_chart_make_basis(chart, &chart->here);
+        if (best_exchange(chart, &k, &j) <= limit) {
+            begin(chart);
+            return HN_OK;
+        }
+    }
+    if (first >= 0) {
+        return hn_chart_fail(chart, HN_ERR_CHART, t, q,
+                             "a dead point: this coordinate cannot be independent here");
+    }
+    return improve(chart, t, q);
+}
+
+static hn_status choose_first(hn_chart *chart, double t, const double *q, int first) {
+    double best = 0;
+    const int rank_before = chart->rank;
+    fill_scaled(chart);
     const int rank = choose_by_pivots(chart, &best);
     if (rank_before >= 0 && rank != rank_before) {
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
@@ -145,25 +259,40 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
                              "a dead point: this coordinate cannot be independent here");
     }
+    sort_choice(chart);
+    const int preferred_serves = preferred > -HUGE_VAL && serves(chart);
     if (first == HN_CHART_BEST ||
         (first == HN_CHART_PREFERRED && preferred < best + log(HN_CHART_TAU))) {
         memcpy(chart->dep, chart->new_dep, (size_t)rank * sizeof(int));
+        sort_choice(chart);
+        if (!serves(chart) && preferred_serves) {
+            (void)choose_by_order(chart, first, rank);
+        }
     }
-    sort_choice(chart);
-    chart->here.valid = chart->probe.valid = chart->base.valid = 0;
+    begin(chart);
     chart->pivot_start = 0;
-    return HN_OK;
+    return serves(chart) ? HN_OK : fail_ball(chart, t, q);
+}
+
+hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first) {
+    eval_here(chart, t, q);
+    if (!chart->has_first || chart->rank < chart->nc) {
+        const hn_status status = choose_first(chart, t, q, first);
+        if (status == HN_OK && !chart->has_first) {
+            memcpy(chart->first_dep, chart->dep, (size_t)chart->rank * sizeof *chart->dep);
+            chart->has_first = 1;
+        }
+        return status;
+    }
+    return first == HN_CHART_BEST ? improve(chart, t, q) : choose_again(chart, t, q, first);
 }
 
 int hn_chart_is_poor(hn_chart *chart, double tau) {
-    double best = 0;
-    if (chart->rank == 0 || chart->r == 0) {
+    int k, j;
+    if (chart->rank <= 0 || chart->r == 0) {
         return 0;
     }
-    fill_scaled(chart, chart->here.J);
-    if (choose_by_pivots(chart, &best) != chart->rank) {
-        return 0; // rank lost at this pose: no choice is better than another
-    }
-    const double present = log_volume(&chart->here.jd, chart->rank);
-    return present < best + log(tau) && present < best - log(2);
+    const double gain = best_exchange(chart, &k, &j);
+    chart->cost.ops += 3.0 * chart->rank * chart->r;
+    return gain * tau > 1 && gain > 2;
 }

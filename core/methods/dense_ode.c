@@ -24,6 +24,8 @@ hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_ga
     ode->f = hn_eval_get(ode->eval, HN_TERM_F);
     ode->J = hn_eval_get(ode->eval, HN_TERM_J);
     ode->gamma = hn_eval_get(ode->eval, HN_TERM_GAMMA);
+    ode->n_M = hn_eval_pattern(ode->eval, HN_TERM_M, &ode->M_row, &ode->M_col);
+    ode->n_J = hn_eval_pattern(ode->eval, HN_TERM_J, &ode->J_row, &ode->J_col);
     ode->phi = with_gap ? hn_eval_get(ode->eval, HN_TERM_PHI) : NULL;
     ode->phi_t = with_gap ? hn_eval_get(ode->eval, HN_TERM_PHI_T) : NULL;
     return HN_OK;
@@ -37,9 +39,27 @@ void hn_dense_ode_destroy(void *self) {
 
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
                        double *out) {
+    hn_dense_ode_rows(ode, v, out);
     for (int i = 0; i < ode->nc; i++) {
-        const double rate = hn_dot(ode->nv, ode->J + (size_t)i * ode->nv, v) + ode->phi_t[i];
+        const double rate = out[i] + ode->phi_t[i];
         out[i] = ode->gamma[i] + 2 * xi * omega * rate + omega * omega * ode->phi[i];
+    }
+}
+
+void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y) {
+    const size_t nv = (size_t)ode->nv;
+    memset(y, 0, (size_t)ode->nc * sizeof *y);
+    for (int e = 0; e < ode->n_J; e++) {
+        const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
+        y[i] += ode->J[i * nv + j] * x[j];
+    }
+}
+
+void hn_dense_ode_add_rows(const hn_dense_ode *ode, const double *y, double *x) {
+    const size_t nv = (size_t)ode->nv;
+    for (int e = 0; e < ode->n_J; e++) {
+        const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
+        x[j] += ode->J[i * nv + j] * y[i];
     }
 }
 

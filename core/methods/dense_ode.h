@@ -18,6 +18,9 @@ typedef struct hn_dense_ode {
     hn_eval *eval;
     /// the terms at the state last evaluated, as in eval.h; phi and phi_t only where asked for
     const double *M, *f, *J, *gamma, *phi, *phi_t;
+    /// entries of M (lower triangle) and of J that are not identically zero
+    int n_M, n_J;
+    const int *M_row, *M_col, *J_row, *J_col;
     /// Fills a (nv) from the terms. Allocates nothing. Fails with its reason in `why`; counts its own work.
     hn_status (*accelerate)(void *self, double t, const double *v, double *a);
     hn_cost cost; ///< what the evaluator does not count itself
@@ -30,6 +33,9 @@ HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sy
 /// out (nc) = gamma + 2 xi omega (J v + phi_t) + omega^2 phi at the terms last evaluated.
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
                        double *out);
+/// y (nc) = J x and x (nv) += J' y, entry by entry.
+void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y);
+void hn_dense_ode_add_rows(const hn_dense_ode *ode, const double *y, double *x);
 /// Name of the user coordinate behind system coordinate i, for telling.
 const char *hn_dense_ode_name(const hn_dense_ode *ode, int i);
 

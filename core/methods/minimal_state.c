@@ -8,13 +8,15 @@
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
     const size_t nv = (size_t)hn_system_get_info(sys).nv;
-    s->q = hn_arena_doubles(arena, nv);
+    s->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
     s->v = hn_arena_doubles(arena, nv);
     s->last_v = hn_arena_doubles(arena, nv);
     if (!s->q || !s->v || !s->last_v) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    return hn_chart_init(&s->chart, sys, 1, arena, diag);
+    const hn_status status = hn_chart_init(&s->chart, sys, 1, arena, diag);
+    s->chart.plain_only = 1;
+    return status;
 }
 
 void hn_minimal_destroy(void *self) {
@@ -28,7 +30,7 @@ static hn_status place(hn_minimal_state *s, double t, const double *y, double to
     hn_chart_point *p = &chart->here;
     int same = p->valid && p->t == t && p->tol <= tol;
     for (int j = 0; j < chart->r && same; j++) {
-        same = p->q[chart->ind[j]] == y[j];
+        same = p->q[chart->at[chart->ind[j]]] == y[j];
     }
     if (same) {
         return HN_OK;
@@ -70,7 +72,7 @@ void hn_minimal_ode(void *self, hn_ode *out) {
 hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
                            const double *v, double *y) {
     hn_chart *chart = &s->chart;
-    memmove(s->q, q, (size_t)chart->nv * sizeof *q);
+    memmove(s->q, q, (size_t)chart->nq * sizeof *q);
     memmove(s->v, v, (size_t)chart->nv * sizeof *v);
     hn_status status = hn_chart_choose(chart, t, s->q, first);
     if (status == HN_OK) {
@@ -80,7 +82,7 @@ hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const doubl
         return status;
     }
     for (int j = 0; j < chart->r; j++) {
-        y[j] = s->q[chart->ind[j]];
+        y[j] = s->q[chart->at[chart->ind[j]]];
         y[chart->r + j] = s->v[chart->ind[j]];
     }
     status = hn_chart_settle(chart);

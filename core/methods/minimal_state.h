@@ -1,13 +1,14 @@
 #ifndef HN_METHODS_MINIMAL_STATE_H
 #define HN_METHODS_MINIMAL_STATE_H
 // What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many entries as the mechanism
-// has freedoms. Every right-hand side closes the loops first, by Newton from a tangent prediction, so no gap can open.
+// has freedoms. Which entry of q an independent speed moves must be plain, so the speeds of balls are always dependent; where
+// that cannot be, the scene is refused. Every right-hand side closes the loops first, by Newton from a tangent prediction, so no gap can open.
 
 #include "methods/chart.h"
 
 typedef struct hn_minimal_state {
     hn_chart chart;
-    double *q, *v; ///< nv, scratch
+    double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step
     double *last_v;             ///< nv
     double volume, volume_rate; ///< |det J_d|, and its change per second

@@ -19,9 +19,9 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     for (int k = 0; k < p->ode.nc; k++) {
         p->work[k] = -p->a * p->pull[k];
     }
-    hn_penalised_add_rows(p, p->work, acc);
+    hn_dense_ode_add_rows(&p->ode, p->work, acc);
     hn_penalised_solve(p, acc);
-    p->ode.cost.ops += 4.0 * p->ode.nc * p->ode.nv;
+    p->ode.cost.ops += 4.0 * p->ode.n_J;
     return HN_OK;
 }
 
@@ -47,7 +47,7 @@ const hn_formulation hn_formulation_penalty = {
     .when = "redundant rows, massless links, joints that do give",
     .when_not = "more than a few digits: the error falls only as 1 / a, and a beyond 1e10 meets "
                 "rounding; poses where the loop loses rank; omega h beyond the integrator's "
-                "stability limit; large mechanisms (dense)",
+                "stability limit",
     .source = "Bayo, Garcia de Jalon & Serna 1988",
     .needs = "M f phi J gamma",
     .model_error = 1,

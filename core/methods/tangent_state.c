@@ -68,29 +68,30 @@ static hn_status close_here(hn_tangent_state *s, double t, double *q) {
 
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_tangent_state *s = self;
-    const int nv = s->chart.nv;
+    const int nq = s->chart.nq;
     s->chart.cost.evals++;
     const hn_status status = locate(s, &s->chart.here, t, y);
     if (status != HN_OK) {
         return status;
     }
-    hn_chart_speeds(&s->chart, &s->chart.here, y + nv, ydot);
-    memcpy(s->v, ydot, (size_t)nv * sizeof *ydot);
-    return hn_chart_accel(&s->chart, s->v, ydot + nv);
+    hn_chart_speeds(&s->chart, &s->chart.here, y + nq, s->v);
+    hn_system_kinematics(s->chart.sys, y, s->v, ydot);
+    return hn_chart_accel(&s->chart, s->v, ydot + nq);
 }
 
 static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
     hn_tangent_state *s = self;
     const hn_status status = locate(s, &s->chart.here, t, y);
     if (status == HN_OK) {
-        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nv, pos_dot);
+        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
+        hn_system_kinematics(s->chart.sys, y, s->v, pos_dot);
     }
     return status;
 }
 
 void hn_tangent_ode(void *self, hn_ode *out) {
     const hn_tangent_state *s = self;
-    *out = (hn_ode){.n_pos = s->chart.nv,
+    *out = (hn_ode){.n_pos = s->chart.nq,
                     .n_vel = s->chart.r,
                     .self = self,
                     .rhs = rhs,
@@ -114,9 +115,9 @@ static void speeds_to_basis(const hn_tangent_state *s, const double *v, double *
 
 static hn_status start(hn_tangent_state *s, int choice, double t, const double *q, const double *v,
                        double *y) {
-    const int nv = s->chart.nv;
-    memmove(s->v, v, (size_t)nv * sizeof *v);
-    memmove(y, q, (size_t)nv * sizeof *q);
+    memmove(s->v, v, (size_t)s->chart.nv * sizeof *v);
+    memmove(y, q, (size_t)s->chart.nq * sizeof *q);
+    (void)hn_system_normalise(s->chart.sys, y);
     hn_status status = hn_chart_choose(&s->chart, t, y, choice);
     if (status == HN_OK) {
         status = close_here(s, t, y);
@@ -124,7 +125,7 @@ static hn_status start(hn_tangent_state *s, int choice, double t, const double *
     if (status != HN_OK) {
         return status;
     }
-    speeds_to_basis(s, s->v, y + nv);
+    speeds_to_basis(s, s->v, y + s->chart.nq);
     return hn_chart_settle(&s->chart);
 }
 
@@ -134,7 +135,7 @@ hn_status hn_tangent_set_state(void *self, double t, const double *q, const doub
 
 hn_status hn_tangent_get_state(void *self, double t, const double *y, double *q, double *v) {
     hn_tangent_state *s = self;
-    const int nv = s->chart.nv;
+    const int nq = s->chart.nq;
     const hn_chart_point *p = &s->chart.base;
     if (!hn_chart_is_at(&s->chart, p, t, y)) {
         const hn_status status = locate(s, &s->chart.probe, t, y);
@@ -143,15 +144,15 @@ hn_status hn_tangent_get_state(void *self, double t, const double *y, double *q,
         }
         p = &s->chart.probe;
     }
-    memcpy(q, y, (size_t)nv * sizeof *q);
-    hn_chart_speeds(&s->chart, p, y + nv, v);
+    memcpy(q, y, (size_t)nq * sizeof *q);
+    hn_chart_speeds(&s->chart, p, y + nq, v);
     return HN_OK;
 }
 
 hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
     hn_tangent_state *s = self;
     hn_chart *chart = &s->chart;
-    *changed = chart->nc > 0;
+    *changed = hn_system_normalise(chart->sys, y) || chart->nc > 0;
     hn_status status = close_here(s, t, y);
     if (status == HN_OK) {
         status = hn_chart_settle(chart);
@@ -160,7 +161,7 @@ hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
         return status;
     }
     chart->cost.chart_changes++;
-    hn_chart_speeds(chart, &chart->here, y + chart->nv, s->v);
+    hn_chart_speeds(chart, &chart->here, y + chart->nq, s->v);
     return start(s, HN_CHART_BEST, t, y, s->v, y);
 }
 

@@ -1,0 +1,348 @@
+#include "linalg/sparse_lu.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double THRESHOLD = 0.1; // of the largest entry of a column: what may be its pivot
+
+struct hn_sparse_lu {
+    int n_max, entries_max;
+    int n, n_entries, ordered;
+    // the entries of A by row of P A Q: a_entry[a_start[k] ..] are numbers of entries
+    int *row, *col, *a_start, *a_entry;
+    int *p, *q;           // pivot k is A(p[k], q[k])
+    int *row_at, *col_at; // the inverse
+    // pattern and values, row by row in pivot order, columns as pivot numbers in rising order
+    int *l_start, *l_col, *u_start, *u_col;
+    double *l, *u, *diag;
+    double *work;
+    // while an order is chosen
+    double *full;
+    char *filled;
+    int *row_count, *col_count;
+    int sign;
+    double refactor_ops, last_ops;
+};
+
+hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
+    hn_sparse_lu *lu = hn_arena_get(arena, sizeof *lu);
+    if (!lu) {
+        return NULL;
+    }
+    const size_t n = (size_t)n_max, m = (size_t)entries_max, half = n * (n + 1) / 2;
+    *lu = (hn_sparse_lu){.n_max = n_max, .entries_max = entries_max};
+    int **of_n[] = {&lu->a_start, &lu->p,       &lu->q,         &lu->row_at,   &lu->col_at,
+                    &lu->l_start, &lu->u_start, &lu->row_count, &lu->col_count};
+    for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++) {
+        *of_n[i] = hn_arena_ints(arena, n + 1);
+    }
+    lu->row = hn_arena_ints(arena, m);
+    lu->col = hn_arena_ints(arena, m);
+    lu->a_entry = hn_arena_ints(arena, m);
+    lu->l_col = hn_arena_ints(arena, half);
+    lu->u_col = hn_arena_ints(arena, half);
+    lu->l = hn_arena_doubles(arena, half);
+    lu->u = hn_arena_doubles(arena, half);
+    lu->diag = hn_arena_doubles(arena, n);
+    lu->work = hn_arena_doubles(arena, n);
+    lu->full = hn_arena_doubles(arena, n * n);
+    lu->filled = hn_arena_get(arena, n * n + 1);
+    return hn_arena_failed(arena) ? NULL : lu;
+}
+
+void hn_sparse_lu_set_pattern(hn_sparse_lu *lu, int n, int n_entries, const int *row,
+                              const int *col) {
+    HN_ASSERT(n <= lu->n_max && n_entries <= lu->entries_max);
+    lu->n = n;
+    lu->n_entries = n_entries;
+    lu->ordered = 0;
+    memcpy(lu->row, row, (size_t)n_entries * sizeof *row);
+    memcpy(lu->col, col, (size_t)n_entries * sizeof *col);
+}
+
+// --- choosing the order ---------------------------------------------------------------------------------------
+
+static void spread(hn_sparse_lu *lu, const double *values) {
+    const size_t n = (size_t)lu->n;
+    memset(lu->full, 0, n * n * sizeof *lu->full);
+    memset(lu->filled, 0, n * n);
+    memset(lu->row_count, 0, n * sizeof *lu->row_count);
+    memset(lu->col_count, 0, n * sizeof *lu->col_count);
+    for (int k = 0; k < lu->n_entries; k++) {
+        const size_t at = (size_t)lu->row[k] * n + (size_t)lu->col[k];
+        lu->full[at] = values[k];
+        lu->filled[at] = 1;
+        lu->row_count[lu->row[k]]++;
+        lu->col_count[lu->col[k]]++;
+    }
+    for (int i = 0; i < lu->n; i++) {
+        lu->row_at[i] = lu->col_at[i] = -1; // not eliminated yet
+    }
+}
+
+// the row of column j that may be its pivot and fills least; -1 when the column has vanished
+static int choose_row(const hn_sparse_lu *lu, int j) {
+    const int n = lu->n;
+    double largest = 0;
+    int best = -1;
+    for (int i = 0; i < n; i++) {
+        if (lu->row_at[i] < 0) {
+            largest = fmax(largest, fabs(lu->full[(size_t)i * n + j]));
+        }
+    }
+    for (int i = 0; i < n && largest > 0; i++) {
+        const double size = fabs(lu->full[(size_t)i * n + j]);
+        if (lu->row_at[i] >= 0 || size < THRESHOLD * largest) {
+            continue;
+        }
+        const int fewer = best < 0 || lu->row_count[i] < lu->row_count[best];
+        const int larger = best >= 0 && lu->row_count[i] == lu->row_count[best] &&
+                           size > fabs(lu->full[(size_t)best * n + j]);
+        if (fewer || larger) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+static int choose_column(const hn_sparse_lu *lu) {
+    int best = -1;
+    for (int j = 0; j < lu->n; j++) {
+        if (lu->col_at[j] < 0 && (best < 0 || lu->col_count[j] < lu->col_count[best])) {
+            best = j;
+        }
+    }
+    return best;
+}
+
+// subtracts the pivot's part from row i, which gains the entries it did not have
+static void eliminate_row(hn_sparse_lu *lu, int i, int p, int q) {
+    const int n = lu->n;
+    double *row = lu->full + (size_t)i * n;
+    const double *pivot_row = lu->full + (size_t)p * n;
+    char *filled = lu->filled + (size_t)i * n;
+    const char *pivot_filled = lu->filled + (size_t)p * n;
+    const double factor = row[q] / pivot_row[q];
+    for (int j = 0; j < n; j++) {
+        if (!pivot_filled[j] || lu->col_at[j] >= 0) {
+            continue;
+        }
+        row[j] -= factor * pivot_row[j];
+        if (!filled[j]) {
+            filled[j] = 1;
+            lu->row_count[i]++;
+            lu->col_count[j]++;
+        }
+    }
+    lu->row_count[i]--; // its entry in the pivot's column
+}
+
+static int eliminate(hn_sparse_lu *lu, int k) {
+    const int n = lu->n, q = choose_column(lu), p = choose_row(lu, q);
+    if (p < 0) {
+        return 0;
+    }
+    lu->p[k] = p;
+    lu->q[k] = q;
+    lu->row_at[p] = k;
+    lu->col_at[q] = k;
+    for (int j = 0; j < n; j++) {
+        lu->col_count[j] -= lu->col_at[j] < 0 && lu->filled[(size_t)p * n + j];
+    }
+    for (int i = 0; i < n; i++) {
+        if (lu->row_at[i] < 0 && lu->filled[(size_t)i * n + q]) {
+            eliminate_row(lu, i, p, q);
+        }
+    }
+    return 1;
+}
+
+static void list_pattern(hn_sparse_lu *lu) {
+    const int n = lu->n;
+    int n_l = 0, n_u = 0;
+    for (int k = 0; k < n; k++) {
+        const char *filled = lu->filled + (size_t)lu->p[k] * n;
+        lu->l_start[k] = n_l;
+        lu->u_start[k] = n_u;
+        for (int m = 0; m < k; m++) {
+            if (filled[lu->q[m]]) {
+                lu->l_col[n_l++] = m;
+            }
+        }
+        for (int m = k + 1; m < n; m++) {
+            if (filled[lu->q[m]]) {
+                lu->u_col[n_u++] = m;
+            }
+        }
+    }
+    lu->l_start[n] = n_l;
+    lu->u_start[n] = n_u;
+    lu->refactor_ops = 0;
+    for (int i = 0; i < n_l; i++) {
+        const int m = lu->l_col[i];
+        lu->refactor_ops += 1 + 2.0 * (lu->u_start[m + 1] - lu->u_start[m]);
+    }
+}
+
+static void list_entries(hn_sparse_lu *lu) {
+    const int n = lu->n;
+    int *next = lu->row_count; // free by now
+    memset(next, 0, (size_t)n * sizeof *next);
+    for (int e = 0; e < lu->n_entries; e++) {
+        next[lu->row_at[lu->row[e]]]++;
+    }
+    lu->a_start[0] = 0;
+    for (int k = 0; k < n; k++) {
+        lu->a_start[k + 1] = lu->a_start[k] + next[k];
+        next[k] = lu->a_start[k];
+    }
+    for (int e = 0; e < lu->n_entries; e++) {
+        lu->a_entry[next[lu->row_at[lu->row[e]]]++] = e;
+    }
+}
+
+// parity of a permutation, from the lengths of its cycles; `seen` is scratch
+static int parity(int n, const int *perm, int *seen) {
+    int sign = 1;
+    memset(seen, 0, (size_t)n * sizeof *seen);
+    for (int i = 0; i < n; i++) {
+        for (int j = i, first = 1; !seen[j]; j = perm[j], first = 0) {
+            seen[j] = 1;
+            sign = first ? sign : -sign;
+        }
+    }
+    return sign;
+}
+
+static int choose_order(hn_sparse_lu *lu, const double *values) {
+    lu->ordered = 0;
+    spread(lu, values);
+    for (int k = 0; k < lu->n; k++) {
+        if (!eliminate(lu, k)) {
+            return 0;
+        }
+    }
+    list_pattern(lu);
+    list_entries(lu);
+    lu->sign = parity(lu->n, lu->p, lu->col_count) * parity(lu->n, lu->q, lu->col_count);
+    lu->ordered = 1;
+    return 1;
+}
+
+// --- factoring and solving --------------------------------------------------------------------------------------
+
+// row k of L and U; the largest entry of L
+static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
+    double *w = lu->work, growth = 0;
+    for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {
+        w[lu->l_col[i]] = 0;
+    }
+    for (int i = lu->u_start[k]; i < lu->u_start[k + 1]; i++) {
+        w[lu->u_col[i]] = 0;
+    }
+    w[k] = 0;
+    for (int i = lu->a_start[k]; i < lu->a_start[k + 1]; i++) {
+        const int e = lu->a_entry[i];
+        w[lu->col_at[lu->col[e]]] = values[e];
+    }
+    for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {
+        const int m = lu->l_col[i];
+        const double factor = w[m] / lu->diag[m];
+        lu->l[i] = factor;
+        growth = fmax(growth, fabs(factor));
+        for (int j = lu->u_start[m]; j < lu->u_start[m + 1]; j++) {
+            w[lu->u_col[j]] -= factor * lu->u[j];
+        }
+    }
+    for (int i = lu->u_start[k]; i < lu->u_start[k + 1]; i++) {
+        lu->u[i] = w[lu->u_col[i]];
+    }
+    lu->diag[k] = w[k];
+    return growth;
+}
+
+// 0 when the order does not serve these values
+static int factor_in_order(hn_sparse_lu *lu, const double *values) {
+    lu->last_ops += lu->refactor_ops;
+    for (int k = 0; k < lu->n; k++) {
+        const double growth = factor_row(lu, k, values);
+        if (!(growth <= HN_SPARSE_LU_GROWTH) || lu->diag[k] == 0 || !isfinite(lu->diag[k])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+hn_status hn_sparse_lu_factor(hn_sparse_lu *lu, const double *values) {
+    lu->last_ops = 0;
+    if (!hn_all_finite(lu->n_entries, values)) {
+        return HN_ERR_DIVERGED;
+    }
+    if (lu->ordered && factor_in_order(lu, values)) {
+        return HN_OK;
+    }
+    if (!choose_order(lu, values)) {
+        return HN_ERR_SINGULAR;
+    }
+    lu->last_ops += lu->refactor_ops;
+    return factor_in_order(lu, values) ? HN_OK : HN_ERR_SINGULAR;
+}
+
+void hn_sparse_lu_solve(const hn_sparse_lu *lu, const double *b, double *x) {
+    double *y = lu->work;
+    for (int k = 0; k < lu->n; k++) {
+        double sum = b[lu->p[k]];
+        for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {
+            sum -= lu->l[i] * y[lu->l_col[i]];
+        }
+        y[k] = sum;
+    }
+    for (int k = lu->n - 1; k >= 0; k--) {
+        double sum = y[k];
+        for (int i = lu->u_start[k]; i < lu->u_start[k + 1]; i++) {
+            sum -= lu->u[i] * y[lu->u_col[i]];
+        }
+        y[k] = sum / lu->diag[k];
+    }
+    for (int k = 0; k < lu->n; k++) {
+        x[lu->q[k]] = y[k];
+    }
+}
+
+double hn_sparse_lu_smallest_pivot(const hn_sparse_lu *lu) {
+    double smallest = HUGE_VAL;
+    for (int k = 0; k < lu->n; k++) {
+        smallest = fmin(smallest, fabs(lu->diag[k]));
+    }
+    return smallest;
+}
+
+double hn_sparse_lu_log_volume(const hn_sparse_lu *lu) {
+    double sum = 0;
+    for (int k = 0; k < lu->n; k++) {
+        sum += log(fabs(lu->diag[k]));
+    }
+    return sum;
+}
+
+int hn_sparse_lu_sign(const hn_sparse_lu *lu) {
+    int sign = lu->sign;
+    for (int k = 0; k < lu->n; k++) {
+        sign = lu->diag[k] < 0 ? -sign : sign;
+    }
+    return sign;
+}
+
+int hn_sparse_lu_nnz(const hn_sparse_lu *lu) {
+    return lu->l_start[lu->n] + lu->u_start[lu->n] + lu->n;
+}
+
+double hn_sparse_lu_factor_ops(const hn_sparse_lu *lu) {
+    return lu->last_ops;
+}
+
+double hn_sparse_lu_solve_ops(const hn_sparse_lu *lu) {
+    return 2.0 * (lu->l_start[lu->n] + lu->u_start[lu->n]) + lu->n;
+}

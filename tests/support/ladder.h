@@ -1,0 +1,39 @@
+#ifndef HN_SUPPORT_LADDER_H
+#define HN_SUPPORT_LADDER_H
+// The ladder of N four-bars and its exact motion, for tests of what methods make of its flat poses. Twice a turn all bars
+// lie on one line and every loop could fold over; the exact motion goes straight through.
+
+#include "study/run.h"
+#include "support/model.h"
+
+enum { HN_LADDER_GRID = 10000 };
+
+/// All verticals turn alike: ((N+1)/3 + N) b'' = g ((N+1)/2 + N) sin b, b clockwise from the upright, b = 0 and b' = 1 at the start.
+typedef struct hn_ladder_motion {
+    int n_loops;
+    double duration; ///< [s]
+    double b[HN_LADDER_GRID + 1], rate[HN_LADDER_GRID + 1];
+} hn_ladder_motion;
+
+void hn_ladder_motion_fill(hn_ladder_motion *motion, int n_loops, double duration);
+/// b at 0 <= t <= duration [rad].
+double hn_ladder_motion_angle(const hn_ladder_motion *motion, double t);
+
+/// What became of one run.
+typedef enum hn_ladder_end {
+    HN_LADDER_SURVIVED, ///< the tips stayed within 1e-2 m of the exact motion throughout
+    HN_LADDER_OFF, ///< they did not, but the verticals stayed parallel: the right branch, inaccurately
+    HN_LADDER_STOPPED, ///< the run ended early and said why
+    HN_LADDER_TOLD,    ///< a loop folded over and an incident says that something went wrong
+    HN_LADDER_SILENT,  ///< a loop folded over and nothing was told
+    HN_LADDER_ENDS
+} hn_ladder_end;
+
+/// Runs `method` ("projection@rk4:h=0.01") over the whole motion. *worst (may be NULL): the largest distance of a tip from its
+/// exact place at a hundred times and more [m], until the run stopped.
+hn_ladder_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
+                            double *worst);
+/// The k-th of n steps from 0.0022 s to 0.02 s.
+double hn_ladder_step(int k, int n);
+
+#endif
