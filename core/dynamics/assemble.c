@@ -164,13 +164,17 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     int finite = hn_assemble_evaluate(s);
     report->gap_before = hn_assemble_gap(s, -1);
     hn_status status = finite ? hn_assemble_position(s) : HN_ERR_DIVERGED;
+    const int closed = status == HN_OK;
+    if (closed) {
+        status = hn_assemble_mode(s);
+    }
     report->gap = hn_assemble_gap(s, -1);
     report->iterations = s->iterations;
     report->route = s->route;
     for (int i = 0; i < s->n; i++) {
         report->moved = fmax(report->moved, hn_assemble_moved(s, i));
     }
-    if (status == HN_ERR_UNREACHABLE) {
+    if (status == HN_ERR_UNREACHABLE && !closed) {
         report->worst_loop = find_worst_loop(s);
         hn_assemble_explain(s, report->worst_loop);
     } else if (status == HN_ERR_DIVERGED) {
@@ -421,8 +425,20 @@ static hn_status report_mode(hn_assembler *s, hn_assembly *report) {
     if (status != HN_OK) {
         return status;
     }
-    report->mode = hn_mode_sign(hn_mode_watch_value(watch, s->t, s->q));
+    const int n = hn_mode_watch_count(watch);
+    double *values = hn_arena_doubles(s->arena, (size_t)n + 1);
+    if (values) {
+        hn_mode_watch_values(watch, s->t, s->q, values);
+        report->mode = hn_mode_sign(values[0]);
+    }
+    for (int k = 0; values && k < n && k < (int)sizeof report->modes - 1; k++) {
+        const int sign = hn_mode_sign(values[k]);
+        report->modes[k] = sign > 0 ? '+' : (sign < 0 ? '-' : '0');
+    }
     hn_mode_watch_free(watch);
+    if (!values) {
+        return HN_ERR_MEMORY;
+    }
     status = hn_mode_is_four_bar(s->sys, s->arena, &four_bar);
     if (report->mode != 0) {
         const char *positive = four_bar ? "open" : "+", *negative = four_bar ? "crossed" : "-";

@@ -7,6 +7,8 @@
 #include "dynamics/eval.h"
 #include "linalg/qr.h"
 
+#include <stdint.h>
+
 /// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates, made comparable:
 /// z = x / reach (1 rad, or the characteristic length), residual r = phi / L in length rows, phi elsewhere.
 typedef struct hn_assembler {
@@ -38,6 +40,14 @@ typedef struct hn_assembler {
 /// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual, s->size.
 /// HN_OK: closed; HN_ERR_UNREACHABLE; HN_ERR_DIVERGED: phi is not finite at the guess; HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
+/// Goes to the assembly mode that the scene asks for, from a closed pose in s->x. HN_ERR_UNREACHABLE, told, when it is not found: s->x is then
+/// as it was. HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_assemble_mode(hn_assembler *s);
+/// One descent from s->x, as often as wanted; 1 when it closed.
+typedef struct hn_assemble_search hn_assemble_search;
+HN_MUST_CHECK hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out);
+int hn_assemble_descend(hn_assemble_search *w);
+double hn_assemble_random(uint64_t *seed); ///< in [-1, 1), the same on every machine
 /// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
 int hn_assemble_evaluate(hn_assembler *s);
 /// x moved by `delta` (n, user rates times time): a sum, and for orientations the turn by that much in the child's axes.
@@ -54,6 +64,9 @@ void hn_assemble_explain(hn_assembler *s, int loop);
 /// *out = 1: the first loop is a planar four-bar (two rows, three angles, every axis of the ring in the same sense), so
 /// that "open" and "crossed" mean something. Scratch from `arena`. Fails: HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out);
+/// The user coordinates of loop `loop` that depend on the others (room for 6); returns their number. Scratch from `arena`.
+HN_MUST_CHECK hn_status hn_mode_dependent(const hn_system *sys, hn_arena *arena, int loop,
+                                          int *dependent, int *n);
 int hn_mode_sign(double value); ///< +1, -1, or 0 within rounding
 
 #endif

@@ -20,7 +20,7 @@ static const double RANK_TOL = 1e-9;
 enum { MAX_ITERATIONS = 100, MAX_HOMOTOPY_STEPS = 60, MAX_CORRECTIONS = 8, RANDOM_STARTS = 8 };
 
 /// Scratch of the search, all in scaled free coordinates z.
-typedef struct search {
+struct hn_assemble_search {
     hn_assembler *s;
     int n, nc;
     double *J;     // nc x n, scaled
@@ -31,7 +31,8 @@ typedef struct search {
     double *best_x, best_size;
     int damped; // damped steps taken
     hn_qr qr;
-} search;
+};
+typedef struct hn_assemble_search search;
 
 int hn_assemble_evaluate(hn_assembler *s) {
     hn_system_from_user(s->sys, s->x, s->q);
@@ -315,7 +316,7 @@ static int follow_homotopy(search *w) {
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same starts on every machine.
-static double random_unit(uint64_t *seed) {
+double hn_assemble_random(uint64_t *seed) {
     uint64_t z = (*seed += 0x9e3779b97f4a7c15u);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -330,7 +331,7 @@ static int try_random_starts(search *w) {
         double spread = 2.0 * k / RANDOM_STARTS; // 2 rad, or two characteristic lengths, at most
         memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < w->n; i++) {
-            w->delta[s->free[i]] = spread * s->reach[s->free[i]] * random_unit(&seed);
+            w->delta[s->free[i]] = spread * s->reach[s->free[i]] * hn_assemble_random(&seed);
         }
         hn_assemble_move(s, s->x, w->delta);
         int closed = descend(w, CLOSED, MAX_ITERATIONS);
@@ -340,6 +341,15 @@ static int try_random_starts(search *w) {
         }
     }
     return 0;
+}
+
+hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out) {
+    *out = hn_arena_get(s->arena, sizeof **out);
+    return *out ? search_init(*out, s) : HN_ERR_MEMORY;
+}
+
+int hn_assemble_descend(hn_assemble_search *w) {
+    return descend(w, CLOSED, MAX_ITERATIONS);
 }
 
 hn_status hn_assemble_position(hn_assembler *s) {
