@@ -105,7 +105,7 @@ static void a_mode_that_pins_exclude_is_missed_with_those_found(void **state) {
     hn_model_open_text(&m, write_scene(text, "-", pin), NULL);
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     assert_non_null(strstr(m.diags.item[0].message, "'-' was not found"));
-    assert_non_null(strstr(m.diags.item[0].message, "'++'"));
+    assert_non_null(strstr(m.diags.item[0].message, "found: '+"));
     hn_model_close(&m);
 }
 
