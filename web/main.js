@@ -10,6 +10,7 @@ import { createEquations } from "./views/equations.js";
 import { createHappening } from "./views/happening.js";
 import { createHeader } from "./views/header.js";
 import { createKeysDialog } from "./views/keys-dialog.js";
+import { createLook } from "./views/look.js";
 import { createMethodDialog } from "./views/method-dialog.js";
 import { createMethods } from "./views/methods.js";
 import { createPlots } from "./views/plots.js";
@@ -32,6 +33,7 @@ const views = [
   createHeader(at("top"), store, session, { toggleTheme: theme.toggle, openKeys: keys.open }),
   createDrawing(at("mechanism"), store, session),
   createTear(at("mechanism"), store),
+  createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),
   createMethods(at("methods"), store, session, dialog.open),
   createControls(at("controls"), store, session),

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double WIDE_ENOUGH =
@@ -17,7 +18,7 @@ static const double SMALLEST_VIEW = 1e-6; // [m]
 enum { TEXT = 256 };
 
 hn_snapshot_opts hn_snapshot_opts_default(void) {
-    return (hn_snapshot_opts){.time = (double)NAN, .labels = 1};
+    return (hn_snapshot_opts){.time = (double)NAN, .look = hn_view_front(), .labels = 1};
 }
 
 // ---- what is there ----------------------------------------------------------------------------------------------
@@ -67,11 +68,12 @@ static int find_selected(const hn_drawing *d, const hn_snapshot_pose *poses, int
 }
 
 static void fit_view(const hn_drawing *d, const hn_snapshot_pose *poses, int n_poses,
-                     double view[4]) {
+                     const hn_view *look, double view[4]) {
     double box[4] = {(double)INFINITY, -(double)INFINITY, (double)INFINITY, -(double)INFINITY};
     for (int i = 0; i < n_poses; i++) {
         for (int k = 0; k < d->n_points && hn_pose_is_drawable(d, &poses[i]); k++) {
-            const double *p = poses[i].points + 3 * k;
+            double p[2];
+            hn_view_project(look, poses[i].points + 3 * k, p);
             box[0] = fmin(box[0], p[0]);
             box[1] = fmax(box[1], p[0]);
             box[2] = fmin(box[2], p[1]);
@@ -138,6 +140,8 @@ static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing
     s->height = height;
     s->font = fmin(24, fmax(10, 0.0235 * fmin(width, 1.4 * height)));
     s->line = 2 * fmin(1.3, fmax(0.65, s->font / 16));
+    s->look = opts->look;
+    s->in_space = s->look.toward[2] < 1 - 1e-12;
     s->selected = find_selected(d, poses, n_poses);
     if (s->selected < 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
@@ -147,7 +151,7 @@ static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing
     if (opts->view[1] > opts->view[0]) {
         memcpy(s->view, opts->view, sizeof s->view);
     } else {
-        fit_view(d, poses, n_poses, s->view);
+        fit_view(d, poses, n_poses, &s->look, s->view);
     }
     place_boxes(s, n_poses, s->widest.pose >= 0);
     place_view(s);
@@ -155,9 +159,15 @@ static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing
     return HN_OK;
 }
 
+void hn_sheet_place(const hn_sheet *s, const double plane[2], double out[2]) {
+    out[0] = s->origin[0] + s->scale * plane[0];
+    out[1] = s->origin[1] - s->scale * plane[1];
+}
+
 void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]) {
-    out[0] = s->origin[0] + s->scale * world[0];
-    out[1] = s->origin[1] - s->scale * world[1];
+    double plane[2];
+    hn_view_project(&s->look, world, plane);
+    hn_sheet_place(s, plane, out);
 }
 
 // ---- colours ----------------------------------------------------------------------------------------------------
@@ -261,6 +271,27 @@ static void draw_scale_bar(hn_canvas *c, const hn_sheet *s) {
                    hn_paint_solid(surface->muted), text);
 }
 
+/// World axes, where one does not look from the front: at the lower right of the drawing.
+static void draw_triad(hn_canvas *c, const hn_sheet *s) {
+    static const char *const names[3] = {"x", "y", "z"};
+    const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    if (!s->in_space) {
+        return;
+    }
+    const double length = 2.2 * s->font, x = s->drawing.x + s->drawing.width - 1.6 * length,
+                 y = s->drawing.y + s->drawing.height - 1.1 * length;
+    const hn_stroke stroke = hn_stroke_solid(surface->muted, 0.7 * s->line);
+    for (int i = 0; i < 3; i++) {
+        const double dx = length * s->look.right[i], dy = -length * s->look.up[i];
+        if (hypot(dx, dy) < 0.15 * length) {
+            continue; // seen end on
+        }
+        hn_canvas_arrow(c, x, y, x + dx, y + dy, 0.45 * s->font, &stroke);
+        hn_canvas_text(c, x + 1.3 * dx, y + 1.3 * dy + 0.3 * s->font, 0.85 * s->font,
+                       HN_ALIGN_CENTRE, hn_paint_solid(surface->muted), names[i]);
+    }
+}
+
 // ---- the two doors ----------------------------------------------------------------------------------------------
 
 static void draw_poses(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
@@ -286,6 +317,14 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
         return status;
     }
     const hn_snapshot_pose *selected = &poses[sheet.selected];
+    const size_t n_shapes = (size_t)drawing->n_shapes + 1;
+    sheet.shapes = malloc(n_shapes * sizeof *sheet.shapes);
+    sheet.depth = malloc(n_shapes * sizeof *sheet.depth);
+    if (!sheet.shapes || !sheet.depth) {
+        free(sheet.shapes);
+        free(sheet.depth);
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
     hn_snapshot_ground(c, &sheet, drawing, selected);
     draw_poses(c, &sheet, drawing, poses, n_poses);
     hn_snapshot_loads(c, &sheet, selected, opts);
@@ -294,8 +333,11 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
     }
     hn_snapshot_tears(c, &sheet, drawing, poses, n_poses);
     draw_scale_bar(c, &sheet);
+    draw_triad(c, &sheet);
     draw_header(c, &sheet, opts);
     draw_legend(c, &sheet, drawing, poses, n_poses);
+    free(sheet.shapes);
+    free(sheet.depth);
     return HN_OK;
 }
 
@@ -356,6 +398,7 @@ hn_status hn_snapshot_describe(hn_strbuf *b, int width, int height, const hn_dra
     }
     hn_json_object(b);
     hn_json_put_numbers(b, "view", sheet.view, 4);
+    hn_json_put_numbers(b, "toward_viewer", sheet.look.toward, 3);
     hn_json_put_number(b, "metres_per_pixel", 1 / sheet.scale);
     describe_poses(b, &sheet, drawing, poses, n_poses);
     describe_tears(b, drawing, poses, n_poses);

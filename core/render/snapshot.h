@@ -11,10 +11,12 @@
 //    ////       ////                           gap 4.2 mm
 //    |-----| 200 mm                      - - - projection
 //
-// World x is to the right, y up; the view is fitted once to opts.view, so that a series does not jump.
+// Seen from opts.look (the front: world x to the right, y up; else a triad tells); fitted once to opts.view, so that a series
+// does not jump.
 
 #include "dynamics/drawing.h"
 #include "render/canvas.h"
+#include "render/view.h"
 
 typedef struct hn_snapshot_pose {
     const double *
@@ -39,13 +41,15 @@ typedef struct hn_snapshot_load {
 typedef struct hn_snapshot_opts {
     const char *title, *caption; ///< may be NULL
     double time;                 ///< [s]; NaN: not shown
-    double view[4]; ///< world x0, x1, y0, y1 [m] to fit; x1 <= x0: fitted to the poses given
+    hn_view look;                ///< where one looks from
+    double view
+        [4]; ///< right0, right1, up0, up1 [m] to fit; right1 <= right0: fitted to the poses given
     int n_loads;
     const hn_snapshot_load *loads;
     int labels; ///< 1: points with a name show it
 } hn_snapshot_opts;
-hn_snapshot_opts
-hn_snapshot_opts_default(void); ///< no texts, no loads, labels on, fitted to the poses
+hn_snapshot_opts hn_snapshot_opts_default(
+    void); ///< no texts, no loads, labels on, from the front, fitted to the poses
 
 /// Draws on a fresh canvas. A pose with a point that is not finite is listed but not drawn. Fails with HN_ERR_INPUT when
 /// no pose can be drawn; faults of the canvas itself show when it is painted.

@@ -20,17 +20,23 @@ typedef struct hn_sheet {
     double line; ///< width of an outline [px]
     double font; ///< body text [px]
     hn_box drawing, inset, legend;
-    double scale;         ///< [px/m]
-    double origin[2];     ///< pixel of world (0, 0)
-    double bar;           ///< width of a bar whose scene says nothing [px]
-    double view[4];       ///< world x0, x1, y0, y1 shown [m]
-    int selected;         ///< index of the opaque pose
-    hn_tear widest;       ///< shown in the inset
+    double scale;     ///< [px/m]
+    double origin[2]; ///< pixel of the world's origin
+    double bar;       ///< width of a bar whose scene says nothing [px]
+    hn_view look;
+    int in_space;   ///< not seen from the front: what is nearer covers what is farther
+    int *shapes;    ///< scratch: numbers of the shapes of a drawing, in the order they are painted
+    double *depth;  ///< scratch: per shape, towards the viewer [m]
+    double view[4]; ///< right0, right1, up0, up1 shown [m]
+    int selected;   ///< index of the opaque pose
+    hn_tear widest; ///< shown in the inset
     double magnification; ///< of the inset against the drawing
     double scale_bar;     ///< [m]
 } hn_sheet;
 
 void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]);
+/// Pixel of a place given along right and up [m].
+void hn_sheet_place(const hn_sheet *s, const double plane[2], double out[2]);
 /// 1 if every point the pose needs is finite.
 int hn_pose_is_drawable(const hn_drawing *drawing, const hn_snapshot_pose *pose);
 double hn_tear_gap(const hn_drawing *drawing, const hn_snapshot_pose *pose, int tear);

@@ -168,7 +168,7 @@ static double reach(const hn_sheet *s, const double a[2], const double u[2]) {
     for (int i = 0; i < 4; i++) {
         const double corner[2] = {s->view[i % 2], s->view[2 + i / 2]};
         double xy[2];
-        hn_sheet_pixel(s, corner, xy);
+        hn_sheet_place(s, corner, xy);
         most = fmax(most, (xy[0] - a[0]) * u[0] + (xy[1] - a[1]) * u[1]);
     }
     return most;
@@ -212,14 +212,73 @@ static const shape_row rows[] = {
 };
 enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 5 };
 
+static const shape_row *row_of(hn_shape_kind kind, int order, int ground) {
+    for (int k = 0; k < N_ROWS; k++) {
+        if (rows[k].kind == kind && rows[k].order == order && rows[k].belongs_to_ground == ground) {
+            return &rows[k];
+        }
+    }
+    return NULL;
+}
+
+/// How far a shape's middle lies towards the viewer; a pin stands out from its bar.
+static double depth_of(const pen *p, const hn_shape *shape, int order) {
+    const int ends[2] = {shape->p,
+                         shape->kind == HN_SHAPE_POLYGON || shape->q < 0 ? shape->p : shape->q};
+    double depth = order == N_ORDERS - 1 ? p->s->bar / p->s->scale : 0;
+    for (int e = 0; e < 2; e++) {
+        for (int i = 0; i < 3; i++) {
+            depth += 0.5 * p->s->look.toward[i] * p->points[3 * ends[e] + i];
+        }
+    }
+    return depth;
+}
+
+/// Shell sort: stable enough, in place, and a drawing has hundreds of shapes, not millions.
+static void sort_by_depth(int *shapes, double *depth, int n) {
+    for (int gap = n / 2; gap > 0; gap /= 2) {
+        for (int i = gap; i < n; i++) {
+            const int shape = shapes[i];
+            const double d = depth[i];
+            int k = i;
+            for (; k >= gap && depth[k - gap] > d; k -= gap) {
+                shapes[k] = shapes[k - gap];
+                depth[k] = depth[k - gap];
+            }
+            shapes[k] = shape;
+            depth[k] = d;
+        }
+    }
+}
+
+/// Shape and order in one number, so that they are sorted together.
+static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
+    int n = 0;
+    for (int i = 0; i < d->n_shapes; i++) {
+        for (int order = 0; order < N_ORDERS; order++) {
+            if (row_of(d->shapes[i].kind, order, ground)) {
+                p->s->depth[n] = depth_of(p, &d->shapes[i], order);
+                p->s->shapes[n++] = i * N_ORDERS + order;
+            }
+        }
+    }
+    sort_by_depth(p->s->shapes, p->s->depth, n);
+    for (int k = 0; k < n; k++) {
+        const hn_shape *shape = &d->shapes[p->s->shapes[k] / N_ORDERS];
+        row_of(shape->kind, p->s->shapes[k] % N_ORDERS, ground)->draw(p, shape);
+    }
+}
+
 static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
+    if (p->s->in_space) {
+        draw_by_depth(p, d, ground);
+        return;
+    }
     for (int order = 0; order < N_ORDERS; order++) {
         for (int i = 0; i < d->n_shapes; i++) {
-            for (int k = 0; k < N_ROWS; k++) {
-                if (rows[k].kind == d->shapes[i].kind && rows[k].order == order &&
-                    rows[k].belongs_to_ground == ground) {
-                    rows[k].draw(p, &d->shapes[i]);
-                }
+            const shape_row *row = row_of(d->shapes[i].kind, order, ground);
+            if (row) {
+                row->draw(p, &d->shapes[i]);
             }
         }
     }
@@ -349,24 +408,29 @@ void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     double largest = 0;
     for (int i = 0; i < opts->n_loads; i++) {
-        largest = fmax(largest, hypot(opts->loads[i].force[0], opts->loads[i].force[1]));
+        double seen[2];
+        hn_view_project(&s->look, opts->loads[i].force, seen);
+        largest = fmax(largest, hypot(seen[0], seen[1]));
     }
     const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
     for (int i = 0; i < opts->n_loads; i++) {
         const hn_snapshot_load *load = &opts->loads[i];
-        const double size = hypot(load->force[0], load->force[1]);
+        double seen[2];
+        hn_view_project(&s->look, load->force, seen);
+        const double size = hypot(seen[0], seen[1]);
+        const double whole =
+            hypot(hypot(load->force[0], load->force[1]), load->force[2]); // what the text tells
         if (!(size > 0) || !isfinite(size)) {
             continue;
         }
         double tip[2];
         hn_sheet_pixel(s, pose->points + 3 * load->point, tip);
         const double length = LONGEST_LOAD * view * size / largest;
-        const double x = tip[0] - length * load->force[0] / size,
-                     y = tip[1] + length * load->force[1] / size;
+        const double x = tip[0] - length * seen[0] / size, y = tip[1] + length * seen[1] / size;
         const hn_stroke stroke = hn_stroke_solid(surface->ink, s->line);
         hn_canvas_arrow(c, x, y, tip[0], tip[1], s->font, &stroke);
         char text[HN_SI_TEXT];
-        hn_si_format(size, load->unit, 3, text);
+        hn_si_format(whole, load->unit, 3, text);
         hn_canvas_text(c, x, y - 0.5 * s->font, 0.9 * s->font, HN_ALIGN_CENTRE,
                        hn_paint_solid(surface->ink), text);
     }

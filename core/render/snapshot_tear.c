@@ -30,15 +30,17 @@ typedef struct glass {
     hn_canvas *c;
     const hn_drawing *d;
     const hn_snapshot_pose *pose;
+    hn_view look;
     double centre[2]; ///< of the inset [px]
-    double middle[2]; ///< world [m]
+    double middle[2]; ///< along right and up [m]
     double scale;     ///< [px/m]
     double side;      ///< [px]
     double line;      ///< [px]
 } glass;
 
 static void through(const glass *g, int point, double out[2]) {
-    const double *w = g->pose->points + 3 * point;
+    double w[2];
+    hn_view_project(&g->look, g->pose->points + 3 * point, w);
     out[0] = g->centre[0] + g->scale * (w[0] - g->middle[0]);
     out[1] = g->centre[1] - g->scale * (w[1] - g->middle[1]);
 }
@@ -129,13 +131,18 @@ static void draw_inset(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     glass g = {.c = c,
                .d = d,
                .pose = pose,
+               .look = s->look,
                .scale = s->scale * s->magnification,
                .side = fmin(box->width, box->height),
                .line = s->line};
     g.centre[0] = box->x + box->width / 2;
     g.centre[1] = box->y + box->height / 2;
+    double half[2][2];
     for (int k = 0; k < 2; k++) {
-        g.middle[k] = (pose->points[3 * tear[0] + k] + pose->points[3 * tear[1] + k]) / 2;
+        hn_view_project(&s->look, pose->points + 3 * tear[k], half[k]);
+    }
+    for (int k = 0; k < 2; k++) {
+        g.middle[k] = (half[0][k] + half[1][k]) / 2;
     }
 
     hn_canvas_polygon(c, frame, 4, hn_paint_solid(surface->raised));

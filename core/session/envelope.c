@@ -9,6 +9,7 @@
 /// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene makes it slow.
 enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
 static const double ENVELOPE_SECONDS = 10;
+static const double FLAT = 1e-6; ///< of the largest extent: thinner than that is a plane mechanism
 static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
 /// 1 for a point that only tells the direction of a slider or a guide: nothing is drawn there.
@@ -26,21 +27,77 @@ static char is_direction_only(const hn_drawing *d, int point) {
     return directs && !d->labels[point];
 }
 
-/// Box around every point that is drawn, from points (3 n).
-static void grow_box(double box[4], const double *points, const char *skipped, int n) {
+/// What every point that is drawn has been through: in the world, from the front and in the view for space.
+typedef struct reach {
+    double low[3], high[3];
+    double direction[HN_ENVELOPE_EXTREMES][3], farthest[HN_ENVELOPE_EXTREMES];
+    double extremes[HN_ENVELOPE_EXTREMES][3];
+    hn_view views[2];
+    double boxes[2][4];
+} reach;
+
+/// Directions spread evenly over the sphere, each a golden angle further round than the one before.
+static void spread_directions(reach *r) {
+    const double golden = 3.14159265358979324 * (3 - sqrt(5.0));
+    for (int i = 0; i < HN_ENVELOPE_EXTREMES; i++) {
+        const double y = 1 - (2.0 * i + 1) / HN_ENVELOPE_EXTREMES, across = sqrt(1 - y * y);
+        r->direction[i][0] = across * cos(golden * i);
+        r->direction[i][1] = y;
+        r->direction[i][2] = across * sin(golden * i);
+        r->farthest[i] = -HUGE_VAL;
+    }
+}
+
+static void grow_extremes(reach *r, const double p[3]) {
+    for (int i = 0; i < HN_ENVELOPE_EXTREMES; i++) {
+        const double *d = r->direction[i];
+        const double far = d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
+        if (far > r->farthest[i]) {
+            r->farthest[i] = far;
+            memcpy(r->extremes[i], p, sizeof r->extremes[i]);
+        }
+    }
+}
+
+static void begin_reach(reach *r, const hn_view *look) {
+    r->views[0] = look ? *look : hn_view_front();
+    r->views[1] = look ? *look : hn_view_space();
+    memset(r->extremes, 0, sizeof r->extremes);
+    spread_directions(r);
+    for (int k = 0; k < 3; k++) {
+        r->low[k] = HUGE_VAL;
+        r->high[k] = -HUGE_VAL;
+    }
+    for (int i = 0; i < 2; i++) {
+        r->boxes[i][0] = r->boxes[i][1] = HUGE_VAL;
+        r->boxes[i][2] = r->boxes[i][3] = -HUGE_VAL;
+    }
+}
+
+static void grow(reach *r, const double *points, const char *skipped, int n) {
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < 2; k++) {
-            double x = points[3 * i + k];
-            if (!skipped[i] && isfinite(x)) {
-                box[k] = fmin(box[k], x);
-                box[2 + k] = fmax(box[2 + k], x);
+        const double *p = points + 3 * i;
+        if (skipped[i] || !isfinite(p[0] + p[1] + p[2])) {
+            continue;
+        }
+        grow_extremes(r, p);
+        for (int k = 0; k < 3; k++) {
+            r->low[k] = fmin(r->low[k], p[k]);
+            r->high[k] = fmax(r->high[k], p[k]);
+        }
+        for (int i_view = 0; i_view < 2; i_view++) {
+            double seen[2];
+            hn_view_project(&r->views[i_view], p, seen);
+            for (int k = 0; k < 2; k++) {
+                r->boxes[i_view][k] = fmin(r->boxes[i_view][k], seen[k]);
+                r->boxes[i_view][2 + k] = fmax(r->boxes[i_view][2 + k], seen[k]);
             }
         }
     }
 }
 
 /// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
-static void grow_box_by_motion(double box[4], const char *skipped, const hn_model *model) {
+static void grow_by_motion(reach *r, const char *skipped, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
     hn_run *run = NULL;
@@ -60,7 +117,7 @@ static void grow_box_by_motion(double box[4], const char *skipped, const hn_mode
         if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
             break;
         }
-        grow_box(box, sample.points, skipped, info.n_points);
+        grow(r, sample.points, skipped, info.n_points);
     }
     hn_run_free(run);
 }
@@ -80,24 +137,37 @@ hn_status hn_model_points(const hn_model *model, const double *q, double *points
     return status;
 }
 
-void hn_model_envelope(const hn_model *model, double box[4]) {
+static void read_reach(const reach *r, hn_envelope *out) {
+    double size = 0;
+    for (int k = 0; k < 3; k++) {
+        out->low[k] = isfinite(r->low[k]) ? r->low[k] : 0;
+        out->high[k] = isfinite(r->high[k]) ? r->high[k] : 0;
+        size = fmax(size, out->high[k] - out->low[k]);
+    }
+    memcpy(out->extremes, r->extremes, sizeof out->extremes);
+    out->spatial = out->high[2] - out->low[2] > FLAT * size;
+    out->look = r->views[out->spatial];
+    for (int k = 0; k < 4; k++) {
+        const double x = r->boxes[out->spatial][k];
+        out->box[k] = isfinite(x) ? x : 0;
+    }
+}
+
+void hn_model_envelope(const hn_model *model, const hn_view *look, hn_envelope *out) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
     char *skipped = arena ? hn_arena_get(arena, (size_t)n + 1) : NULL;
-    memset(box, 0, 4 * sizeof *box);
+    reach r;
+    begin_reach(&r, look);
     if (n > 0 && points && skipped && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
-        box[0] = box[1] = HUGE_VAL;
-        box[2] = box[3] = -HUGE_VAL;
         const hn_drawing drawing = hn_system_drawing(hn_model_system(model));
         for (int i = 0; i < n; i++) {
             skipped[i] = is_direction_only(&drawing, i);
         }
-        grow_box(box, points, skipped, n);
-        grow_box_by_motion(box, skipped, model);
-        for (int k = 0; k < 4; k++) {
-            box[k] = isfinite(box[k]) ? box[k] : 0;
-        }
+        grow(&r, points, skipped, n);
+        grow_by_motion(&r, skipped, model);
     }
+    read_reach(&r, out);
     hn_arena_free(arena);
 }

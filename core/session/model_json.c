@@ -134,17 +134,26 @@ static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a) {
     hn_json_put_number(b, "energy", a->energy);
 }
 
-/// World points at the start and the box around the motion: [xmin, ymin, xmax, ymax].
+/// World points at the start; the box around the motion in the world, and in the view that fits it.
 static void put_points(hn_strbuf *b, const hn_model *model) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
-    double box[4];
     if (points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
-        hn_model_envelope(model, box);
+        hn_envelope e;
+        hn_model_envelope(model, NULL, &e);
         hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
         if (n > 0) {
-            hn_json_put_numbers(b, "envelope", box, 4);
+            hn_json_put_numbers(b, "envelope", e.box, 4);
+            if (e.spatial) {
+                hn_json_put_numbers(b, "extremes", e.extremes[0], 3 * HN_ENVELOPE_EXTREMES);
+            }
+            hn_json_key(b, "view");
+            hn_json_object(b);
+            hn_json_put_bool(b, "spatial", e.spatial);
+            hn_json_put_numbers(b, "right", e.look.right, 3);
+            hn_json_put_numbers(b, "up", e.look.up, 3);
+            hn_json_end_object(b);
         }
     } else {
         b->failed = 1;

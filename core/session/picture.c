@@ -121,20 +121,27 @@ static hn_status gather_given_pose(scene_picture *p, hn_diags *diags) {
 }
 
 /// The frame is fitted to the motion, so that a series of pictures does not jump; a given pose may lie outside it.
-static void choose_view(scene_picture *p) {
-    double box[4];
-    hn_model_envelope(p->model, box);
+static hn_status choose_view(scene_picture *p, hn_diags *diags) {
+    hn_envelope e;
+    hn_view asked;
+    hn_diag diag = {0};
+    if (p->request->view && hn_view_parse(p->request->view, &asked, &diag) != HN_OK) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/view", diag.hint, "%s", diag.message);
+    }
+    hn_model_envelope(p->model, p->request->view ? &asked : NULL, &e);
     p->opts = hn_snapshot_opts_default();
-    if (p->request->methods && box[2] > box[0]) {
-        p->opts.view[0] = box[0];
-        p->opts.view[1] = box[2];
-        p->opts.view[2] = box[1];
-        p->opts.view[3] = box[3];
+    p->opts.look = e.look;
+    if (p->request->methods && e.box[2] > e.box[0]) {
+        p->opts.view[0] = e.box[0];
+        p->opts.view[1] = e.box[2];
+        p->opts.view[2] = e.box[1];
+        p->opts.view[3] = e.box[3];
     }
     hn_model_caption(p->model, p->caption, sizeof p->caption);
     p->opts.title = hn_model_scene(p->model)->title;
     p->opts.caption = p->request->caption ? p->request->caption : p->caption;
     p->opts.time = p->request->methods ? p->request->time : (double)NAN;
+    return HN_OK;
 }
 
 static hn_status add_diag(hn_diags *diags, hn_status status, const hn_diag *d) {
@@ -198,7 +205,9 @@ hn_status hn_model_picture(hn_strbuf *png, hn_strbuf *describe, const hn_model *
         status = gather_given_pose(&p, diags);
     }
     if (status == HN_OK) {
-        choose_view(&p);
+        status = choose_view(&p, diags);
+    }
+    if (status == HN_OK) {
         status = paint(&p, png, diags);
     }
     if (status == HN_OK && describe) {

@@ -15,6 +15,8 @@ typedef struct hn_picture_request {
     const char *caption; ///< NULL: the scene's
     int width, height;   ///< [px]; 0: 1200 x 720
     hn_theme theme;
+    const char *
+        view; ///< hn_view_parse() spelling; NULL: the front, or for a mechanism in space from the side and above
     double cpu_budget; ///< seconds of stepping allowed in all: HN_ERR_LIMIT beyond; 0: not bounded
 } hn_picture_request;
 

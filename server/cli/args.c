@@ -52,6 +52,8 @@ static const option OPTIONS[] = {
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
     {"--theme", "light|dark", OPTION_TEXT, AT(theme), "paper or slate"},
+    {"--view", "VIEW", OPTION_TEXT, AT(view),
+     "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
     {"--seed", "N", OPTION_COUNT, AT(seed), "chooses the states at which answers are compared"},
     {"--host", "ADDRESS", OPTION_TEXT, AT(host), "where to listen; 127.0.0.1 when left out"},
     {"--port", "N", OPTION_COUNT, AT(port), "8080 when left out; 0: any free one"},

@@ -28,7 +28,7 @@ static const hn_command COMMANDS[] = {
     {"compare", "SCENE", "several methods on one clock, and where they part",
      MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
     {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
-     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme", 1, 1,
+     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
      hn_command_snapshot},
     {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",

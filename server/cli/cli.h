@@ -34,7 +34,7 @@ typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme;
+    const char *method, *format, *out, *host, *theme, *view;
     double time, every, t, port, width, height, seed, frame_dt;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
     int json, open, help, raw_lambda;

@@ -19,6 +19,7 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "light or dark", "'%.40s' is not a theme",
                             args->theme);
     }
+    request->view = args->view;
     if (!args->out) {
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
                             "where should the picture go?");

@@ -127,6 +127,9 @@ static const hn_field SNAPSHOT[] = {
      .max = HN_CANVAS_MAX,
      .about = "pixels"},
     {.name = "theme", .type = HN_FIELD_CHOICE, .choices = THEMES, .about = "paper or slate"},
+    {.name = "view",
+     .type = HN_FIELD_TEXT,
+     .about = "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
     END_OF_FIELDS};
 
 static const hn_field GRADE[] = {

@@ -179,6 +179,7 @@ void hn_handle_snapshot(hn_request *r) {
                                   .height = (int)hn_body_number(r->json, "height", 0),
                                   .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
                                                                                : HN_THEME_LIGHT,
+                                  .view = hn_body_text(r->json, "view"),
                                   .cpu_budget = r->server->opts.max_run_cpu};
     hn_strbuf png;
     hn_diags diags = {0};

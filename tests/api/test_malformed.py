@@ -101,6 +101,7 @@ AT_FAULT = [
     ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "width": 5}, "/width", ""),
     ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "width": 1e9}, "/width", ""),
     ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "theme": "drak"}, "/theme", "dark"),
+    ("snapshots", {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"], "time": 0, "view": "tob"}, "/view", "top"),
     ("grade", {"problem": "p33", "submission": {}}, "/problem", "p3"),
     ("grade", {"problem": "p3"}, "/submission", "missing"),
 ]

@@ -26,7 +26,8 @@ import {
 import { sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
 import { INCIDENT_CODES } from "../../web/views/happening.js";
 import { bar, circle } from "../../web/widgets/shapes.js";
-import { createCamera } from "../../web/widgets/camera.js";
+import { anglesOf, lookFrom } from "../../web/state/look.js";
+import { createCamera, seenBox } from "../../web/widgets/camera.js";
 
 const ROOT = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const CATALOGUE = {
@@ -296,6 +297,22 @@ test("y points up, and the envelope lies inside the view", () => {
     assert.ok(value >= 0 && value <= limit);
   }
   assert.ok(Math.abs((x1 - x0) / 4 - (y0 - y1) / 6) < 1e-9);
+});
+
+test("a mechanism in space is seen without distortion, from where one asked to", () => {
+  const look = lookFrom(0.6, 0.4);
+  const [azimuth, elevation] = anglesOf(look);
+  assert.ok(Math.abs(azimuth - 0.6) < 1e-12 && Math.abs(elevation - 0.4) < 1e-12);
+  const points = [-1, -1, -2, 1, 2, 2, 0, 3, -1, 2, 0, 1];
+  const camera = createCamera(seenBox(points, look), 500, 300, look);
+  for (let i = 0; i < 4; i++) {
+    const [x, y] = camera.point(points, i);
+    assert.ok(x >= 0 && x <= 500 && y >= 0 && y <= 300);
+  }
+  const [a, b, c] = [lookFrom(0, 0), lookFrom(Math.PI / 2, 0), lookFrom(0, Math.PI / 2)];
+  assert.ok(a.right[0] === 1 && a.up[1] === 1);
+  assert.ok(Math.abs(b.right[2] + 1) < 1e-12); // from the side, z points to the left
+  assert.ok(Math.abs(c.up[2] + 1) < 1e-12); // from above, z points down
 });
 
 test("outlines are finite even where two points coincide", () => {

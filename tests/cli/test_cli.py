@@ -198,6 +198,7 @@ class CommandLine(unittest.TestCase):
             (("snapshot", "four-bar"), "-o"),
             (("snapshot", "four-bar", "-o", "/no/such/folder/a.png"), "a.png"),
             (("snapshot", "four-bar", "-o", "-", "--theme", "drak"), "dark"),
+            (("snapshot", "bennett", "-o", "-", "--view", "tob"), "top"),
             (("snapshot", "four-bar", "-o", "-", "--width", "3"), "16"),
             (("grade", "p33", "x.json"), "p3"),
             (("grade", "p3"), "needs"),

@@ -6,7 +6,8 @@
  * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
  * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: {p: number, q: number, name: string}[]}} Drawing
  * @typedef {{id: string, title: string, about: string, look_for: string, caption: string, parameters: Parameter[], n: number, m: number,
- *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], envelope: number[], methods: string[],
+ *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], envelope: number[], extremes?: number[],
+ *   view: {spatial: boolean, right: number[], up: number[]}, methods: string[],
  *   duration: number, step: number}} Scene
  * @typedef {{slot: number, short: string, label: string, rule: string, drift: string, model_error: boolean, keeps_gap: boolean, order: number,
  *   spelling: string, formulation: string, integrator: string, title: string}} Method
@@ -64,6 +65,7 @@ function initialData() {
       /** index into the history, or -1: the latest */ shown: -1,
       labels: true,
       traces: false,
+      /** where one looks from; null: as the scene is best seen @type {{right: number[], up: number[]} | null} */ look: null,
       letters: true,
       stepped: false,
       /** the method whose card is open, or -1 */ why: -1,

@@ -1,9 +1,10 @@
 // @ts-check
 // The mechanism: supports once, one ghost per method, the selected method opaque and on top.
+import { lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
 import { quantity } from "../state/format.js";
 import { describeDrawing } from "../state/words.js";
-import { boxAround, createCamera } from "../widgets/camera.js";
+import { boxAround, createCamera, seenBox } from "../widgets/camera.js";
 import { h, s, say, set } from "../widgets/dom.js";
 import * as shapes from "../widgets/shapes.js";
 
@@ -145,11 +146,11 @@ export function createDrawing(el, store, actions) {
     if (!data.scene) {
       return;
     }
-    camera = createCamera(
-      boxAround(data.scene.envelope, data.scene.points),
-      size.width,
-      size.height,
-    );
+    const from = lookOf(data);
+    const box = data.scene.extremes
+      ? seenBox(data.scene.extremes, from)
+      : boxAround(data.scene.envelope, data.scene.points);
+    camera = createCamera(box, size.width, size.height, from);
     drawFixed(data.scene.points);
     drawScale();
     update();
@@ -340,7 +341,12 @@ export function createDrawing(el, store, actions) {
       spoken.textContent = "";
     },
     methods: makeGhosts,
-    view: arrange,
+    view: () => {
+      if (camera.look !== lookOf(data)) {
+        fit();
+      }
+      arrange();
+    },
     state: () => {
       if (data.state !== "running") {
         say(title, describeDrawing(data, shown()));

@@ -1,6 +1,7 @@
 // @ts-check
 // The cut joint under a magnifying glass: its two halves, and the gap between them in red with its true size.
 import { ROUNDING, magnification, niceBelow, quantity } from "../state/format.js";
+import { lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
 import { h, s, say, set } from "../widgets/dom.js";
 
@@ -38,12 +39,13 @@ export function createTear(el, store) {
   /** The cut whose halves are farthest apart. @param {ArrayLike<number>} points */
   function widest(points) {
     let best = null;
+    const { right, up } = lookOf(data);
     for (const { p, q, name } of data.scene?.drawing.tears ?? []) {
-      const dx = points[3 * q] - points[3 * p];
-      const dy = points[3 * q + 1] - points[3 * p + 1];
-      const gap = Math.hypot(dx, dy, points[3 * q + 2] - points[3 * p + 2]);
+      const d = [0, 1, 2].map((k) => points[3 * q + k] - points[3 * p + k]);
+      const along = (axis) => axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
+      const gap = Math.hypot(...d);
       if (!best || gap > best.gap) {
-        best = { dx, dy, gap, name };
+        best = { dx: along(right), dy: along(up), gap, name };
       }
     }
     return best;

@@ -1,15 +1,33 @@
 // @ts-check
-// From metres (y up) to pixels (y down). The view is fitted once to the envelope of the motion and does not move after that.
+// From metres to pixels (y down): a parallel view, fitted once to the envelope of the motion; it moves only when it is turned.
 import { niceBelow } from "../state/format.js";
+import { FRONT } from "../state/look.js";
+
+/** @typedef {import("../state/look.js").Look} Look */
 
 const MARGIN = { left: 36, right: 36, top: 40, bottom: 56 }; // [px] room for hatching, labels and the scale bar
 const SCALE_BAR = 150; // [px] at most
 
+const dot = (a, x, y, z) => a[0] * x + a[1] * y + a[2] * z;
+
+/** Box [left, bottom, right, top] around points (flat x, y, z) as they are seen. @param {number[]} points @param {Look} look */
+export function seenBox(points, look) {
+  const out = [Infinity, Infinity, -Infinity, -Infinity];
+  for (let i = 0; i + 2 < points.length; i += 3) {
+    [look.right, look.up].forEach((axis, k) => {
+      const along = dot(axis, points[i], points[i + 1], points[i + 2]);
+      out[k] = Math.min(out[k], along);
+      out[k + 2] = Math.max(out[k + 2], along);
+    });
+  }
+  return out;
+}
+
 /**
- * @param {number[]} box [xmin, ymin, xmax, ymax] in metres
- * @param {number} width [px] @param {number} height [px]
+ * @param {number[]} box [left, bottom, right, top] in metres, as seen
+ * @param {number} width [px] @param {number} height [px] @param {Look} look
  */
-export function createCamera(box, width, height) {
+export function createCamera(box, width, height, look = FRONT) {
   const w = Math.max(box[2] - box[0], 1e-9);
   const h = Math.max(box[3] - box[1], 1e-9);
   const room = {
@@ -22,14 +40,19 @@ export function createCamera(box, width, height) {
   const mx = (box[0] + box[2]) / 2;
   const my = (box[1] + box[3]) / 2;
   const length = niceBelow(SCALE_BAR / scale);
+  const { right, up } = look;
   return {
     scale,
+    look,
     scaleBar: { metres: length, pixels: length * scale },
     /** @param {ArrayLike<number>} points flat x, y, z @param {number} i @returns {[number, number]} */
-    point: (points, i) => [
-      cx + (points[3 * i] - mx) * scale,
-      cy - (points[3 * i + 1] - my) * scale,
-    ],
+    point: (points, i) => {
+      const [x, y, z] = [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
+      return [
+        cx + (dot(right, x, y, z) - mx) * scale,
+        cy - (dot(up, x, y, z) - my) * scale,
+      ];
+    },
   };
 }
 

@@ -127,6 +127,38 @@ static void with_a_fixed_view_the_scale_does_not_depend_on_the_pose(void **state
                 described(&other, 1, &opts, "metres_per_pixel"), 0);
 }
 
+/// Pixels that are exactly this colour.
+static int coloured_pixels(const unsigned char *rgb, uint32_t colour) {
+    int n = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        n += rgb[3 * i] == (colour >> 16 & 0xff) && rgb[3 * i + 1] == (colour >> 8 & 0xff) &&
+             rgb[3 * i + 2] == (colour & 0xff);
+    }
+    return n;
+}
+
+/// Two crossing bars, one before the other: turning the mechanism round exchanges what is covered.
+static void in_space_what_is_nearer_covers_what_is_farther(void **state) {
+    (void)state;
+    static const char *const none[4] = {NULL, NULL, NULL, NULL};
+    static const hn_shape cross[] = {{HN_SHAPE_BAR, 0, 1, 0, 0.3, 0},
+                                     {HN_SHAPE_PIVOT, 2, 2, 0, 0.3, 1}};
+    const hn_drawing d = {3, none, 2, cross, 0, NULL, NULL};
+    int shown[2];
+    for (int behind = 0; behind < 2; behind++) {
+        const double points[9] = {-1, 0, 0, 1, 0, 0, 0, 0, behind ? -1 : 1};
+        const hn_snapshot_pose pose = {.points = points, .selected = 1};
+        hn_snapshot_opts opts = hn_snapshot_opts_default();
+        const double view[4] = {-1, 1, -1, 1};
+        memcpy(opts.view, view, sizeof view);
+        opts.look = hn_view_look(1e-3, 0);
+        unsigned char *rgb = draw(&d, &pose, 1, &opts);
+        shown[behind] = coloured_pixels(rgb, hn_look_get(0)->colour[HN_THEME_LIGHT]);
+        free(rgb);
+    }
+    assert_true(shown[0] > shown[1] + 5); // the pivot's ring, seen or hidden
+}
+
 static void a_pose_that_is_not_finite_is_listed_but_not_drawn(void **state) {
     (void)state;
     double good[15], bad[15];
@@ -310,6 +342,7 @@ int main(void) {
         cmocka_unit_test(a_closed_joint_is_not_magnified_into_its_rounding),
         cmocka_unit_test(the_widest_tear_of_all_poses_is_the_one_shown),
         cmocka_unit_test(with_a_fixed_view_the_scale_does_not_depend_on_the_pose),
+        cmocka_unit_test(in_space_what_is_nearer_covers_what_is_farther),
         cmocka_unit_test(a_pose_that_is_not_finite_is_listed_but_not_drawn),
         cmocka_unit_test(the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_percent),
         cmocka_unit_test(every_kind_of_shape_but_arrow_and_trace_leaves_ink),
