@@ -6,6 +6,9 @@
 extern const hn_stepper hn_stepper_euler, hn_stepper_symplectic_euler, hn_stepper_verlet,
     hn_stepper_heun, hn_stepper_rk4, hn_stepper_dopri5, hn_stepper_dop853;
 
+extern const hn_stepper hn_stepper_hem3, hn_stepper_hem4, hn_stepper_hem4_adaptive,
+    hn_stepper_half_explicit_rk4, hn_stepper_rattle;
+
 /// The one setting of every fixed-step integrator.
 #define HN_SETTING_STEP \
     { "h", 1e-3, 1e-12, 100, "s", "step size", NULL, 0, 0 }

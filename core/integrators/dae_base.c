@@ -1,0 +1,184 @@
+#include "integrators/dae_base.h"
+
+#include "linalg/dense.h"
+#include "methods/flops.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// pivots of J' with unit rows below this belong to rows that follow from the others; at a closed pose those are at rounding
+static const double DEPENDENT_ROW = 1e-8;
+
+hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena, hn_diag *diag) {
+    const hn_system_info info = hn_system_get_info(sys);
+    const hn_accel_opts opts = {.baumgarte = 0, .want_lambda = 1};
+    *b = (hn_dae_base){.sys = sys,
+                       .nq = info.nq,
+                       .nv = info.nv,
+                       .nc = info.nc,
+                       .length = hn_system_length(sys)};
+    hn_status status = hn_accel_create(sys, &opts, arena, &b->accel);
+    if (status == HN_OK) {
+        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F, arena, &b->dyn);
+    }
+    if (status == HN_OK) {
+        status = hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &b->loop);
+    }
+    b->rows = hn_arena_ints(arena, (size_t)b->nc);
+    if (status == HN_OK && (!hn_qr_init(&b->qr, arena, b->nv, b->nc) || hn_arena_failed(arena))) {
+        status = HN_ERR_MEMORY;
+    }
+    if (status != HN_OK) {
+        hn_dae_base_destroy(b);
+        return hn_diag_set(diag, status, NULL, NULL, "the equations cannot be compiled: %s",
+                           hn_status_text(status));
+    }
+    b->M = hn_eval_get(b->dyn, HN_TERM_M);
+    b->f = hn_eval_get(b->dyn, HN_TERM_F);
+    b->phi = hn_eval_get(b->loop, HN_TERM_PHI);
+    b->phi_t = hn_eval_get(b->loop, HN_TERM_PHI_T);
+    b->J = hn_eval_get(b->loop, HN_TERM_J);
+    return HN_OK;
+}
+
+void hn_dae_base_destroy(hn_dae_base *b) {
+    hn_accel_free(b->accel);
+    hn_eval_free(b->dyn);
+    hn_eval_free(b->loop);
+    b->accel = NULL;
+    b->dyn = b->loop = NULL;
+}
+
+void hn_dae_base_add_cost(const hn_dae_base *b, hn_cost *cost) {
+    const long long solves = hn_accel_count(b->accel), dense = hn_accel_fallbacks(b->accel);
+    hn_cost_add(cost, &b->cost);
+    cost->factorisations += solves;
+    cost->solves += solves;
+    cost->fallbacks += dense;
+    cost->ops += (double)solves * hn_accel_tape_info(b->accel).ops +
+                 (double)dense * hn_flops_saddle(b->nv, b->nc) +
+                 (double)hn_eval_count(b->dyn) * hn_eval_info(b->dyn).ops +
+                 (double)hn_eval_count(b->loop) * hn_eval_info(b->loop).ops;
+}
+
+const char *hn_dae_base_why(const hn_dae_base *b) {
+    return b->why[0] ? b->why : NULL;
+}
+
+void hn_dae_dynamics(hn_dae_base *b, double t, const double *q, const double *v) {
+    b->cost.evals++;
+    hn_eval_run(b->dyn, t, q, v);
+}
+
+void hn_dae_loops(hn_dae_base *b, double t, const double *q) {
+    hn_eval_run(b->loop, t, q, NULL);
+}
+
+static void sort_rows(int n, int *rows) {
+    for (int i = 1; i < n; i++) {
+        const int row = rows[i];
+        int j = i;
+        for (; j > 0 && rows[j - 1] > row; j--) {
+            rows[j] = rows[j - 1];
+        }
+        rows[j] = row;
+    }
+}
+
+void hn_dae_choose_rows(hn_dae_base *b) {
+    const int nv = b->nv, nc = b->nc;
+    for (int i = 0; i < nc; i++) {
+        const double *row = b->J + (size_t)i * nv;
+        const double size = hn_norm2(nv, row);
+        for (int j = 0; j < nv; j++) {
+            b->qr.a[(size_t)i * nv + j] = size > 0 ? row[j] / size : 0;
+        }
+    }
+    hn_qr_factor(&b->qr, nv, nc, DEPENDENT_ROW);
+    b->nr = b->qr.rank;
+    memcpy(b->rows, b->qr.perm, (size_t)b->nr * sizeof *b->rows);
+    sort_rows(b->nr, b->rows);
+    b->cost.ops += hn_flops_qr(nv, nc);
+}
+
+double hn_dae_speed_gap(const hn_dae_base *b, int k, const double *v) {
+    const int row = b->rows[k];
+    return hn_dot(b->nv, b->J + (size_t)row * b->nv, v) + b->phi_t[row];
+}
+
+void hn_dae_add_rows(const hn_dae_base *b, const double *J, double s, const double *x,
+                     double *out) {
+    for (int k = 0; k < b->nr; k++) {
+        hn_axpy(b->nv, s * x[k], J + (size_t)b->rows[k] * b->nv, out);
+    }
+}
+
+void hn_dae_spread_rows(const hn_dae_base *b, const double *x, double *out) {
+    memset(out, 0, (size_t)b->nc * sizeof *out);
+    for (int k = 0; k < b->nr; k++) {
+        out[b->rows[k]] = x[k];
+    }
+}
+
+hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double *q, const double *v, double *a,
+                            double *lambda) {
+    const hn_status status = hn_accel_eval(b->accel, t, q, v, 0, 0, a, lambda, NULL);
+    b->cost.evals++;
+    return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t, "the accelerations");
+}
+
+// squared mass norm of the displacement that opens one loop by the mechanism's length
+static double loop_opening(const hn_dae_base *b) {
+    double most = 0;
+    for (int j = 0; j < b->nv; j++) {
+        double arm = 0;
+        for (int i = 0; i < b->nc; i++) {
+            arm = fmax(arm, fabs(b->J[(size_t)i * b->nv + j]));
+        }
+        const double d = arm > 0 ? b->length / arm : 0;
+        most = fmax(most, b->M[(size_t)j * b->nv + j] * d * d);
+    }
+    return most;
+}
+
+double hn_dae_newton_size(const hn_dae_base *b, const double *delta, const double *moved,
+                          const double *q) {
+    double scale = fmax(loop_opening(b), hn_quad_sym(b->nv, b->M, moved, moved));
+    if (b->nq == b->nv) {
+        scale = fmax(scale, hn_quad_sym(b->nv, b->M, q, q));
+    }
+    const double size = hn_quad_sym(b->nv, b->M, delta, delta);
+    return size > 0 || !isfinite(size) ? sqrt(size / scale) : 0;
+}
+
+hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what) {
+    const char *reason = hn_status_text(status);
+    if (status == HN_ERR_SINGULAR) {
+        reason = "the equations of this step have no unique answer: the loop is at, or has been "
+                 "thrown to, a pose where its rows depend on each other";
+    } else if (status == HN_ERR_NO_CONVERGENCE) {
+        reason = "Newton's iteration does not converge: the step is too long for it, or the pose "
+                 "is close to one where the loop loses rank";
+    }
+    snprintf(b->why, sizeof b->why, "%s at t = %.6g s: %s", what, t, reason);
+    return status;
+}
+
+hn_newton_verdict hn_newton_look(hn_newton *n, double size) {
+    n->iterations++;
+    if (!isfinite(size)) {
+        return HN_NEWTON_DIVERGES;
+    }
+    n->contraction = n->iterations > 1 && n->last > 0 ? size / n->last : 1;
+    const double left = n->contraction < 1 ? size * fmin(1, n->contraction / (1 - n->contraction)) : size;
+    const int at_rounding = size <= HN_NEWTON_ROUNDING && n->iterations > 1 && n->contraction > 0.5;
+    n->last = size;
+    if (size <= HN_NEWTON_TOL || left <= HN_NEWTON_TOL || at_rounding) {
+        return HN_NEWTON_DONE;
+    }
+    if (n->iterations >= HN_NEWTON_MAX || (n->iterations > 3 && n->contraction > 2)) {
+        return HN_NEWTON_DIVERGES;
+    }
+    return HN_NEWTON_GO_ON;
+}

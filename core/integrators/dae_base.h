@@ -1,0 +1,75 @@
+#ifndef HN_INTEGRATORS_DAE_BASE_H
+#define HN_INTEGRATORS_DAE_BASE_H
+// What integrators of the differential-algebraic system share: evaluators of its terms, consistent accelerations and
+// multipliers to begin from, and the constraint rows that count.
+//
+// Redundant rows. A Newton matrix with dependent rows of J has no inverse, and away from the closed poses, where Newton's
+// iterates are, dependent rows are dependent no longer. So each step begins by choosing independent rows at its closed first
+// pose, by column-pivoted QR of J', and goes on with those alone; the others follow, because every motion that keeps the
+// chosen rows closed keeps them closed. The multipliers of rows left out are 0 inside a scheme.
+
+#include "dynamics/eval.h"
+#include "integrators/dae.h"
+#include "linalg/qr.h"
+
+enum { HN_DAE_WHY_TEXT = 240 };
+
+typedef struct hn_dae_base {
+    const hn_system *sys;
+    int nq, nv, nc;
+    double length;  ///< hn_system_length()
+    hn_accel *accel;
+    hn_eval *dyn;   ///< M, f
+    hn_eval *loop;  ///< phi, phi_t, J
+    const double *M, *f, *phi, *phi_t, *J; ///< the terms last evaluated; NULL where there are no rows
+    int nr;         ///< rows that count, see hn_dae_choose_rows()
+    int *rows;      ///< their numbers
+    hn_qr qr;
+    hn_cost cost;   ///< what the evaluators do not count themselves
+    char why[HN_DAE_WHY_TEXT];
+} hn_dae_base;
+
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, told in diag.
+HN_MUST_CHECK hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena,
+                                         hn_diag *diag);
+void hn_dae_base_destroy(hn_dae_base *b);
+void hn_dae_base_add_cost(const hn_dae_base *b, hn_cost *cost);
+const char *hn_dae_base_why(const hn_dae_base *b);
+
+/// M and f at (t, q, v); phi, phi_t and J at (t, q).
+void hn_dae_dynamics(hn_dae_base *b, double t, const double *q, const double *v);
+void hn_dae_loops(hn_dae_base *b, double t, const double *q);
+/// Chooses the rows that count from J last evaluated.
+void hn_dae_choose_rows(hn_dae_base *b);
+/// J v + phi_t of chosen row k, at the terms last evaluated.
+double hn_dae_speed_gap(const hn_dae_base *b, int k, const double *v);
+/// out (nv) += s J' x for x (nr) on the chosen rows of J.
+void hn_dae_add_rows(const hn_dae_base *b, const double *J, double s, const double *x, double *out);
+/// out (nc) = x (nr) on the chosen rows, 0 elsewhere.
+void hn_dae_spread_rows(const hn_dae_base *b, const double *x, double *out);
+
+/// Consistent a (nv) and lambda (nc, may be NULL) at a state; a failure is told in `why`.
+HN_MUST_CHECK hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double *q,
+                                          const double *v, double *a, double *lambda);
+/// Size of a displacement `delta` (nv) in the mass norm at the terms last evaluated, relative to the largest of the step's whole
+/// displacement `moved` (nv), the coordinates themselves and the displacement that opens a loop by the mechanism's length [-]: the
+/// same in any units, and not below what rounding of the coordinates allows.
+double hn_dae_newton_size(const hn_dae_base *b, const double *delta, const double *moved,
+                          const double *q);
+/// Notes `what` failed at time t and returns `status`.
+hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
+
+/// A Newton iteration watched: it has converged when the correction, or what the contraction seen so far leaves of it, is
+/// below tol times the size of the unknowns, or when it has shrunk to rounding and stays there.
+typedef struct hn_newton {
+    int iterations;
+    double last;        ///< size of the last correction, relative
+    double contraction; ///< of the last two corrections
+} hn_newton;
+typedef enum hn_newton_verdict { HN_NEWTON_GO_ON, HN_NEWTON_DONE, HN_NEWTON_DIVERGES } hn_newton_verdict;
+#define HN_NEWTON_TOL 1e-15      ///< of what is left after the correction just made
+#define HN_NEWTON_ROUNDING 1e-11 ///< a correction below this that no longer shrinks meets rounding
+enum { HN_NEWTON_MAX = 25 };
+/// `size`: relative size of the correction just made, see hn_dae_newton_size().
+hn_newton_verdict hn_newton_look(hn_newton *n, double size);
+#endif
