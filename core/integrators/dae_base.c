@@ -13,11 +13,8 @@ static const double DEPENDENT_ROW = 1e-8;
 hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena, hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     const hn_accel_opts opts = {.baumgarte = 0, .want_lambda = 1};
-    *b = (hn_dae_base){.sys = sys,
-                       .nq = info.nq,
-                       .nv = info.nv,
-                       .nc = info.nc,
-                       .length = hn_system_length(sys)};
+    *b = (hn_dae_base){
+        .sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc, .length = hn_system_length(sys)};
     hn_status status = hn_accel_create(sys, &opts, arena, &b->accel);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F, arena, &b->dyn);
@@ -171,7 +168,8 @@ hn_newton_verdict hn_newton_look(hn_newton *n, double size) {
         return HN_NEWTON_DIVERGES;
     }
     n->contraction = n->iterations > 1 && n->last > 0 ? size / n->last : 1;
-    const double left = n->contraction < 1 ? size * fmin(1, n->contraction / (1 - n->contraction)) : size;
+    const double left =
+        n->contraction < 1 ? size * fmin(1, n->contraction / (1 - n->contraction)) : size;
     const int at_rounding = size <= HN_NEWTON_ROUNDING && n->iterations > 1 && n->contraction > 0.5;
     n->last = size;
     if (size <= HN_NEWTON_TOL || left <= HN_NEWTON_TOL || at_rounding) {

@@ -17,15 +17,16 @@ enum { HN_DAE_WHY_TEXT = 240 };
 typedef struct hn_dae_base {
     const hn_system *sys;
     int nq, nv, nc;
-    double length;  ///< hn_system_length()
+    double length; ///< hn_system_length()
     hn_accel *accel;
-    hn_eval *dyn;   ///< M, f
-    hn_eval *loop;  ///< phi, phi_t, J
-    const double *M, *f, *phi, *phi_t, *J; ///< the terms last evaluated; NULL where there are no rows
-    int nr;         ///< rows that count, see hn_dae_choose_rows()
-    int *rows;      ///< their numbers
+    hn_eval *dyn;  ///< M, f
+    hn_eval *loop; ///< phi, phi_t, J
+    const double *M, *f, *phi, *phi_t,
+        *J;    ///< the terms last evaluated; NULL where there are no rows
+    int nr;    ///< rows that count, see hn_dae_choose_rows()
+    int *rows; ///< their numbers
     hn_qr qr;
-    hn_cost cost;   ///< what the evaluators do not count themselves
+    hn_cost cost; ///< what the evaluators do not count themselves
     char why[HN_DAE_WHY_TEXT];
 } hn_dae_base;
 
@@ -66,7 +67,11 @@ typedef struct hn_newton {
     double last;        ///< size of the last correction, relative
     double contraction; ///< of the last two corrections
 } hn_newton;
-typedef enum hn_newton_verdict { HN_NEWTON_GO_ON, HN_NEWTON_DONE, HN_NEWTON_DIVERGES } hn_newton_verdict;
+typedef enum hn_newton_verdict {
+    HN_NEWTON_GO_ON,
+    HN_NEWTON_DONE,
+    HN_NEWTON_DIVERGES
+} hn_newton_verdict;
 #define HN_NEWTON_TOL 1e-15      ///< of what is left after the correction just made
 #define HN_NEWTON_ROUNDING 1e-11 ///< a correction below this that no longer shrinks meets rounding
 enum { HN_NEWTON_MAX = 25 };

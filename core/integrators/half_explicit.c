@@ -8,21 +8,45 @@
 #include <string.h>
 
 static const double hem3_A[] = {
-    0,       0,      0,      // stage 1
-    1.0 / 3, 0,      0,      // stage 2
-    -1,      2,      0,      // stage 3
-    0,       0.75,   0.25,   // b
+    0,       0,    0,    // stage 1
+    1.0 / 3, 0,    0,    // stage 2
+    -1,      2,    0,    // stage 3
+    0,       0.75, 0.25, // b
 };
 const hn_half_explicit hn_half_explicit_hem3 = {3, 3, hem3_A};
 
 #define ROOT6 2.449489742783178098197284074705891
 static const double hem4_A[] = {
-    0, 0, 0, 0, 0, // stage 1
-    0.3, 0, 0, 0, 0,
-    (1 + ROOT6) / 30, (11 - 4 * ROOT6) / 30, 0, 0, 0,
-    (-79 - 31 * ROOT6) / 150, (-1 - 4 * ROOT6) / 30, (24 + 11 * ROOT6) / 25, 0, 0,
-    (14 + 5 * ROOT6) / 6, (-8 + 7 * ROOT6) / 6, (-9 - 7 * ROOT6) / 4, (9 - ROOT6) / 4, 0,
-    0, 0, (16 - ROOT6) / 36, (16 + ROOT6) / 36, 1.0 / 9,
+    0,
+    0,
+    0,
+    0,
+    0, // stage 1
+    0.3,
+    0,
+    0,
+    0,
+    0,
+    (1 + ROOT6) / 30,
+    (11 - 4 * ROOT6) / 30,
+    0,
+    0,
+    0,
+    (-79 - 31 * ROOT6) / 150,
+    (-1 - 4 * ROOT6) / 30,
+    (24 + 11 * ROOT6) / 25,
+    0,
+    0,
+    (14 + 5 * ROOT6) / 6,
+    (-8 + 7 * ROOT6) / 6,
+    (-9 - 7 * ROOT6) / 4,
+    (9 - ROOT6) / 4,
+    0,
+    0,
+    0,
+    (16 - ROOT6) / 36,
+    (16 + ROOT6) / 36,
+    1.0 / 9,
 };
 const hn_half_explicit hn_half_explicit_hem4 = {5, 4, hem4_A};
 
@@ -45,9 +69,8 @@ typedef struct half_explicit {
     double *middle, *whole; // nq + nv each, doubled only
 } half_explicit;
 
-hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled,
-                                  const hn_system *sys, hn_arena *arena, void **self,
-                                  hn_diag *diag) {
+hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, const hn_system *sys,
+                                  hn_arena *arena, void **self, hn_diag *diag) {
     half_explicit *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

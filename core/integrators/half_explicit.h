@@ -23,7 +23,8 @@ typedef struct hn_half_explicit {
 
 extern const hn_half_explicit hn_half_explicit_hem3; ///< 3 stages, order 3
 extern const hn_half_explicit hn_half_explicit_hem4; ///< 5 stages, order 4
-extern const hn_half_explicit hn_half_explicit_rk4;  ///< the classical tableau, order 3 when used like this
+extern const hn_half_explicit
+    hn_half_explicit_rk4; ///< the classical tableau, order 3 when used like this
 
 /// For the slots of hn_dae_stepper. `doubled`: each step is made once whole and once in halves; the halves are kept and the
 /// difference estimates their error (Richardson).

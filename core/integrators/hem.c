@@ -1,24 +1,24 @@
 #include "integrators/half_explicit.h"
 #include "integrators/registry.h"
 
-#define HALF_EXPLICIT(name, scheme, doubled)                                                    \
-    static hn_status create_##name(const hn_system *sys, hn_dae_form form,                      \
-                                   const double *settings, const double *form_settings,         \
-                                   hn_arena *arena, void **self, hn_diag *diag) {               \
-        (void)form;                                                                             \
-        (void)settings;                                                                         \
-        (void)form_settings;                                                                    \
-        return hn_half_explicit_create(&(scheme), doubled, sys, arena, self, diag);             \
-    }                                                                                           \
-    static const hn_dae_stepper dae_##name = {                                                  \
-        .create = create_##name,                                                                \
-        .destroy = hn_half_explicit_destroy,                                                    \
-        .start = hn_half_explicit_start,                                                        \
-        .step = hn_half_explicit_step,                                                          \
-        .accepted = hn_half_explicit_accepted,                                                  \
-        .raw_lambda = hn_half_explicit_raw_lambda,                                              \
-        .add_cost = hn_half_explicit_add_cost,                                                  \
-        .why = hn_half_explicit_why,                                                            \
+#define HALF_EXPLICIT(name, scheme, doubled)                                                       \
+    static hn_status create_##name(const hn_system *sys, hn_dae_form form, const double *settings, \
+                                   const double *form_settings, hn_arena *arena, void **self,      \
+                                   hn_diag *diag) {                                                \
+        (void)form;                                                                                \
+        (void)settings;                                                                            \
+        (void)form_settings;                                                                       \
+        return hn_half_explicit_create(&(scheme), doubled, sys, arena, self, diag);                \
+    }                                                                                              \
+    static const hn_dae_stepper dae_##name = {                                                     \
+        .create = create_##name,                                                                   \
+        .destroy = hn_half_explicit_destroy,                                                       \
+        .start = hn_half_explicit_start,                                                           \
+        .step = hn_half_explicit_step,                                                             \
+        .accepted = hn_half_explicit_accepted,                                                     \
+        .raw_lambda = hn_half_explicit_raw_lambda,                                                 \
+        .add_cost = hn_half_explicit_add_cost,                                                     \
+        .why = hn_half_explicit_why,                                                               \
     }
 
 HALF_EXPLICIT(hem3, hn_half_explicit_hem3, 0);
@@ -45,8 +45,9 @@ const hn_stepper hn_stepper_hem3 = {
 const hn_stepper hn_stepper_hem4 = {
     .name = "hem4",
     .title = "half-explicit Runge-Kutta 4",
-    .about = "Five explicit stages of order 4 for the index-2 system; speeds fit the loops at every "
-             "stage, positions drift with the error of the method.",
+    .about =
+        "Five explicit stages of order 4 for the index-2 system; speeds fit the loops at every "
+        "stage, positions drift with the error of the method.",
     .source = "Brasey & Hairer 1993",
     .order = 4,
     .stages = 5,
@@ -65,6 +66,7 @@ const hn_stepper hn_stepper_hem4_adaptive = {
              "the halves are kept.",
     .source = "Brasey & Hairer 1993; Hairer, Norsett & Wanner 1993, section II.4",
     .order = 4,
+    .control_order = 5,
     .stages = 15,
     .adaptive = 1,
     .real_limit = 10.729,

@@ -96,10 +96,9 @@ static hn_status compile_rest(source *s, hn_arena *arena, part *p) {
     for (int i = 0; i < n; i++) {
         const hn_ex moving = hn_sub(s->g, s->ex.f[i], s->still[i]);
         const hn_ex inertia = hn_sub(s->g, turned[i], s->kinetic[i]);
-        const hn_ex parts[4] = {hn_mul(s->g, s->ex.f[i], s->ex.f[i]),
-                                hn_mul(s->g, s->still[i], s->still[i]),
-                                hn_mul(s->g, turned[i], turned[i]),
-                                hn_mul(s->g, s->kinetic[i], s->kinetic[i])};
+        const hn_ex parts[4] = {
+            hn_mul(s->g, s->ex.f[i], s->ex.f[i]), hn_mul(s->g, s->still[i], s->still[i]),
+            hn_mul(s->g, turned[i], turned[i]), hn_mul(s->g, s->kinetic[i], s->kinetic[i])};
         s->list[i] = hn_add(s->g, moving, inertia);
         s->list[n + i] = hn_sum(s->g, parts, 4);
     }

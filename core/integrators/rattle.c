@@ -39,12 +39,12 @@ typedef struct rattle {
     int split, constant, fresh; // fresh: `now` has to be taken from y
     hn_square square;
     carried now, next;
-    double *J0;                   // nc x nv
-    double *D, *middle, *w;       // nv: q1 - q0; (q0 + q1) / 2; D / h
-    double *force, *pull;         // nv: h/2 F; h/2 J0' lambda
-    double *x;                    // nv + nc
-    double *lambda;               // nc: h^2/2 lambda on the chosen rows
-    double *v, *kick;             // nv
+    double *J0;             // nc x nv
+    double *D, *middle, *w; // nv: q1 - q0; (q0 + q1) / 2; D / h
+    double *force, *pull;   // nv: h/2 F; h/2 J0' lambda
+    double *x;              // nv + nc
+    double *lambda;         // nc: h^2/2 lambda on the chosen rows
+    double *v, *kick;       // nv
 } rattle;
 
 static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
@@ -64,7 +64,8 @@ static hn_status allocate(rattle *s, hn_arena *arena) {
     s->J0 = hn_arena_doubles(arena, nc * nv);
     s->x = hn_arena_doubles(arena, nv + nc);
     s->lambda = hn_arena_doubles(arena, nc);
-    const int good = carried_init(&s->now, arena, nv, nc) && carried_init(&s->next, arena, nv, nc) &&
+    const int good = carried_init(&s->now, arena, nv, nc) &&
+                     carried_init(&s->next, arena, nv, nc) &&
                      hn_square_init(&s->square, arena, (int)(nv + nc));
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }

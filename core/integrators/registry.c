@@ -3,9 +3,17 @@
 #include <string.h>
 
 static const hn_stepper *const steppers[] = {
-    &hn_stepper_euler, &hn_stepper_symplectic_euler, &hn_stepper_verlet, &hn_stepper_heun,
-    &hn_stepper_rk4,   &hn_stepper_dopri5,           &hn_stepper_dop853,
-    &hn_stepper_hem3, &hn_stepper_hem4, &hn_stepper_hem4_adaptive, &hn_stepper_half_explicit_rk4,
+    &hn_stepper_euler,
+    &hn_stepper_symplectic_euler,
+    &hn_stepper_verlet,
+    &hn_stepper_heun,
+    &hn_stepper_rk4,
+    &hn_stepper_dopri5,
+    &hn_stepper_dop853,
+    &hn_stepper_hem3,
+    &hn_stepper_hem4,
+    &hn_stepper_hem4_adaptive,
+    &hn_stepper_half_explicit_rk4,
     &hn_stepper_rattle,
 };
 enum { N_STEPPERS = sizeof steppers / sizeof steppers[0] };

@@ -15,8 +15,8 @@ typedef struct hn_test_dae {
     double t, *y, *y_new, *err;
     long long steps;
     hn_accel *accel;
-    hn_eval *terms;              ///< phi, J, phi_t, energies
-    double *a, *lambda;          ///< from the saddle system, by hn_test_dae_measure()
+    hn_eval *terms;     ///< phi, J, phi_t, energies
+    double *a, *lambda; ///< from the saddle system, by hn_test_dae_measure()
     double gap, speed_gap, energy;
 } hn_test_dae;
 
