@@ -15,6 +15,11 @@ static const hn_stepper *const steppers[] = {
     &hn_stepper_hem4_adaptive,
     &hn_stepper_half_explicit_rk4,
     &hn_stepper_rattle,
+    &hn_stepper_ida,
+    &hn_stepper_gsl_rk8pd,
+    &hn_stepper_gsl_msadams,
+    &hn_stepper_gsl_msbdf,
+    &hn_stepper_gsl_bsimp,
 };
 enum { N_STEPPERS = sizeof steppers / sizeof steppers[0] };
 

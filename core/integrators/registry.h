@@ -4,7 +4,8 @@
 #include "integrators/stepper.h"
 
 extern const hn_stepper hn_stepper_euler, hn_stepper_symplectic_euler, hn_stepper_verlet,
-    hn_stepper_heun, hn_stepper_rk4, hn_stepper_dopri5, hn_stepper_dop853;
+    hn_stepper_heun, hn_stepper_rk4, hn_stepper_dopri5, hn_stepper_dop853, hn_stepper_gsl_rk8pd,
+    hn_stepper_gsl_msadams, hn_stepper_gsl_msbdf, hn_stepper_gsl_bsimp, hn_stepper_ida;
 
 extern const hn_stepper hn_stepper_hem3, hn_stepper_hem4, hn_stepper_hem4_adaptive,
     hn_stepper_half_explicit_rk4, hn_stepper_rattle;

@@ -188,8 +188,14 @@ static void warn_below_zero(const hn_setting_info *table, int n, const double *s
     }
 }
 
+hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper) {
+    const int own =
+        formulation->also == HN_FORM_ODE || hn_stepper_serves(stepper, formulation->form);
+    return own ? formulation->form : formulation->also;
+}
+
 int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper) {
-    return hn_stepper_serves(stepper, formulation->form);
+    return hn_stepper_serves(stepper, hn_method_form(formulation, stepper));
 }
 
 // names of what fits, as "a, b, c", ending in "..." where room runs out; returns how many there are

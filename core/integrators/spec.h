@@ -24,6 +24,8 @@ HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, h
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]);
 /// The value of a setting by key, of the formulation or else of the integrator; `otherwise` when neither has it.
 double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise);
+/// The form in which this pair takes the constraints: the formulation's own, or else the one it has also.
+hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper);
 /// 1 if the integrator serves what the formulation hands over.
 int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper);
 /// 1 if the step is chosen from tolerances: the integrator is adaptive and no h > 0 fixes it.

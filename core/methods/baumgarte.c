@@ -117,6 +117,7 @@ const hn_formulation hn_formulation_baumgarte = {
         "integrator's stability limit; alpha tied to 1/h with an integrator of order above 1",
     .source = "Baumgarte 1972; Ascher, Chin, Petzold & Reich 1995",
     .needs = "M f phi J gamma",
+    .also = HN_FORM_STABILISED,
     .index = 1,
     .n_settings = 3,
     .settings =

@@ -38,6 +38,7 @@ void hn_cost_add(hn_cost *sum, const hn_cost *part) {
     sum->projections += part->projections;
     sum->energy_removed += part->energy_removed;
     sum->chart_changes += part->chart_changes;
+    sum->rejected += part->rejected;
 }
 
 hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
@@ -51,5 +52,6 @@ hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
         .projections = after->projections - before->projections,
         .energy_removed = after->energy_removed - before->energy_removed,
         .chart_changes = after->chart_changes - before->chart_changes,
+        .rejected = after->rejected - before->rejected,
     };
 }

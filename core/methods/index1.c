@@ -26,6 +26,7 @@ const hn_formulation hn_formulation_index1 = {
     .when_not = "long runs: the loop falls apart and in the end the solution blows up",
     .source = "Brenan, Campbell & Petzold 1996; Ascher & Petzold 1998, ch. 9",
     .needs = "M f J gamma",
+    .also = HN_FORM_INDEX1,
     .index = 1,
     .create = create,
     .destroy = hn_accel_ode_destroy,

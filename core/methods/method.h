@@ -30,6 +30,7 @@ typedef struct hn_cost {
     long long projections;
     double energy_removed; ///< by projection [J]
     long long chart_changes;
+    long long rejected; ///< trials that an integrator with a step control of its own turned down
 } hn_cost;
 
 typedef struct hn_ode {
@@ -51,7 +52,8 @@ typedef enum hn_dae_form {
     HN_FORM_INDEX3,
     HN_FORM_INDEX2,
     HN_FORM_GGL,
-    HN_FORM_INDEX1
+    HN_FORM_INDEX1,
+    HN_FORM_STABILISED ///< INDEX1 with Baumgarte's terms; the formulation's settings are alpha, beta and the rule (0: as given)
 } hn_dae_form;
 
 typedef struct hn_formulation {
@@ -66,6 +68,8 @@ typedef struct hn_formulation {
         *order_note;    ///< orders of q, v and lambda where they are not the integrator's, or NULL
     const char *limits; ///< what it cannot serve, or NULL
     hn_dae_form form;
+    hn_dae_form
+        also; ///< the form for integrators that do not serve `form` (index1: as ODE, or with lambda); HN_FORM_ODE: none
     int index; ///< differential index of the equations that are handed over; 0: no multipliers in them
     int model_error; ///< 1: converges to something else, on purpose
     int keeps_gap;   ///< 1: phi stays at rounding level
@@ -92,9 +96,9 @@ typedef struct hn_formulation {
     const char *(*why)(const void *self); ///< the reason of the last failure in words, or NULL
 } hn_formulation;
 
-/// "ode", "index3", "index2", "ggl", "index1".
+/// "ode", "index3", "index2", "ggl", "index1", "stabilised".
 const char *hn_form_name(hn_dae_form form);
-enum { HN_FORM_COUNT = HN_FORM_INDEX1 + 1 };
+enum { HN_FORM_COUNT = HN_FORM_STABILISED + 1 };
 
 int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);

@@ -20,7 +20,7 @@ static const hn_formulation *const formulations[] = {
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
 
 const char *hn_form_name(hn_dae_form form) {
-    static const char *const names[HN_FORM_COUNT] = {"ode", "index3", "index2", "ggl", "index1"};
+    static const char *const names[HN_FORM_COUNT] = {"ode", "index3", "index2", "ggl", "index1", "stabilised"};
     HN_ASSERT((int)form < HN_FORM_COUNT);
     return names[form];
 }

@@ -218,7 +218,9 @@ static hn_status step_of_its_own(hn_run *run) {
     hn_run_engine *e = &run->main;
     double t_new = run->now.t;
     int changed = 0;
+    const long long rejected = hn_engine_cost(run, e).rejected;
     hn_status status = hn_engine_advance(run, e, run->now.t, HUGE_VAL, &t_new);
+    run->summary.rejected += hn_engine_cost(run, e).rejected - rejected;
     if (status == HN_OK && !state_is_sane(e->ode.n_pos + e->ode.n_vel, e->y_new)) {
         status = HN_ERR_DIVERGED;
     }
@@ -494,7 +496,9 @@ hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag) 
     if (status != HN_OK) {
         return status;
     }
-    status = f->set ? f->set(run->main.formulation, i, value) : HN_ERR_UNSUPPORTED;
+    // an integrator that takes the system as it is has the settings since it was made
+    status = f->set && run->main.formulation ? f->set(run->main.formulation, i, value)
+                                             : HN_ERR_UNSUPPORTED;
     if (status == HN_OK) {
         status = f->set(run->side.formulation, i, value);
     }

@@ -8,7 +8,9 @@
 #include <string.h>
 
 static const hn_dae_stepper *dae_of(const hn_run *run) {
-    return run->spec.formulation->form == HN_FORM_ODE ? NULL : run->spec.stepper->dae;
+    const hn_method_spec *spec = &run->spec;
+    return hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE ? NULL
+                                                                           : spec->stepper->dae;
 }
 
 // y' of the state (q, v) from the saddle system: for a first step size only
@@ -21,8 +23,9 @@ static hn_status slope(void *self, double t, const double *y, double *ydot) {
 
 static hn_status create_dae(hn_run *run, hn_run_engine *e, hn_diag *diag) {
     e->ode = (hn_ode){.n_pos = run->info.nq, .n_vel = run->info.nv, .self = run, .rhs = slope};
-    return dae_of(run)->create(run->sys, run->spec.formulation->form, run->spec.stepper_set,
-                               run->spec.formulation_set, run->arena, &e->stepper, diag);
+    const hn_dae_form form = hn_method_form(run->spec.formulation, run->spec.stepper);
+    return dae_of(run)->create(run->sys, form, run->spec.stepper_set, run->spec.formulation_set,
+                               run->arena, &e->stepper, diag);
 }
 
 hn_status hn_engine_create(hn_run *run, hn_run_engine *e, hn_diag *diag) {
@@ -39,7 +42,7 @@ hn_status hn_engine_create(hn_run *run, hn_run_engine *e, hn_diag *diag) {
                            run->spec.stepper->name, f->name);
     }
     hn_status status = HN_OK;
-    if (f->create) {
+    if (f->create && hn_method_form(f, run->spec.stepper) == f->form) {
         status = f->create(run->sys, run->spec.formulation_set, run->arena, &e->formulation, diag);
     }
     return status == HN_OK && dae_of(run) ? create_dae(run, e, diag) : status;
