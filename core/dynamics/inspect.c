@@ -4,6 +4,7 @@
 #include "dynamics/system_impl.h"
 #include "expr/print.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -147,6 +148,48 @@ static void put_coordinates(hn_strbuf *b, const hn_system *sys) {
         hn_strbuf_reset(&text);
     }
     hn_json_end_array(b);
+}
+
+static void put_limits(hn_strbuf *b, const hn_system *sys) {
+    hn_json_key(b, "limits");
+    hn_json_array(b);
+    for (int i = 0; i < sys->scene->n_coordinates; i++) {
+        const hn_coordinate *c = &sys->scene->coordinates[i];
+        if (c->max == c->min || (!isfinite(c->min) && !isfinite(c->max))) {
+            continue; // both 0 where a scene was not read from a file
+        }
+        hn_json_object(b);
+        hn_json_put_string(b, "name", c->name);
+        if (isfinite(c->min)) {
+            hn_json_put_number(b, "min", c->min);
+        }
+        if (isfinite(c->max)) {
+            hn_json_put_number(b, "max", c->max);
+        }
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
+    int n = 0;
+    for (int i = 0; i < sys->scene->n_coordinates; i++) {
+        n += sys->scene->coordinates[i].actuated != 0;
+    }
+    const char *reading = "fully actuated: as many motors as freedoms";
+    if (n == 0) {
+        reading = "passive: nothing is driven";
+    } else if (n < freedoms) {
+        reading = "under-actuated: fewer motors than freedoms";
+    } else if (n > freedoms) {
+        reading = "over-actuated: more motors than freedoms, so they can work against each other";
+    }
+    hn_json_key(b, "actuation");
+    hn_json_object(b);
+    hn_json_put_int(b, "actuated", n);
+    hn_json_put_int(b, "freedoms", freedoms);
+    hn_json_put_string(b, "reading", reading);
+    hn_json_end_object(b);
 }
 
 static void put_sizes(hn_strbuf *b, const hn_system *sys) {
@@ -353,6 +396,7 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
         put_groups(b, sys);
     }
     put_coordinates(b, sys);
+    put_limits(b, sys);
     put_nonzeros(b, sys, &c);
     put_operations(b, &c);
     hn_json_put_int(b, "graph_nodes", hn_graph_size(sys->g));

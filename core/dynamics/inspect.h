@@ -13,6 +13,7 @@
 ///   "loops"        [{"name", "joint", "why", "rows": [names]}]
 ///   "groups"       [{"base", "base_rotates", "bodies"}]                 (bodies and joints only)
 ///   "coordinates"  [{"name", "rate", "meaning", "scene"}]: the system's own, and the scene's coordinate in terms of them
+///   "limits"       [{"name", "min", "max"}]: scene coordinates with limits; a side without one is left out; told when passed, not forces
 ///   "nonzeros"     {"M", "M_of", "J", "J_of", "L", "fill_in"}: entries not identically zero, of how many; L of the solve
 ///   "operations"   {"M", "f", "phi", "J", "gamma", "together", "solve", "solve_baumgarte"}: one evaluation each
 ///   "tape"         {"instructions", "slots", "additions", "products", "divisions", "sincos"} of the solve without Baumgarte
@@ -21,6 +22,8 @@
 /// Compiles tapes, so it takes as long as a compilation (system.h says who may do that when). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT;
 /// the object is then incomplete.
 HN_MUST_CHECK hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys);
+/// Writes "actuation" {"actuated", "freedoms", "reading"} likewise: motors against the freedoms that assembly found.
+void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms);
 /// The same as an object of its own.
 HN_MUST_CHECK hn_status hn_system_inspect_json(hn_strbuf *b, const hn_system *sys);
 #endif

@@ -26,6 +26,7 @@ hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *d
     hn_json_put_string(b, "title", hn_model_scene(model)->title);
     hn_json_put_string(b, "caption", caption);
     put_start(b, hn_model_assembly(model));
+    hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
     const hn_status status = hn_system_inspect_put(b, hn_model_system(model));
     hn_json_end_object(b);
     return status == HN_OK
