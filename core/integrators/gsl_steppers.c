@@ -22,7 +22,7 @@ enum { SETTING_RTOL, SETTING_ATOL, SETTING_H0, SETTING_HMAX };
 
 typedef struct gsl_stepper {
     const gsl_odeiv2_step_type *type;
-    int start_order; // of the first step after a start
+    int start_order; // power of h in the error of the first step
     int n;
     double rtol, atol, h0, hmax;
     gsl_odeiv2_system system;
@@ -230,11 +230,11 @@ static void *create_rk8pd(int n_pos, int n_vel, hn_arena *arena) {
 }
 
 static void *create_msadams(int n_pos, int n_vel, hn_arena *arena) {
-    return create(gsl_odeiv2_step_msadams, 1, n_pos + n_vel, arena);
+    return create(gsl_odeiv2_step_msadams, 2, n_pos + n_vel, arena);
 }
 
 static void *create_msbdf(int n_pos, int n_vel, hn_arena *arena) {
-    return create(gsl_odeiv2_step_msbdf, 1, n_pos + n_vel, arena);
+    return create(gsl_odeiv2_step_msbdf, 2, n_pos + n_vel, arena);
 }
 
 static void *create_bsimp(int n_pos, int n_vel, hn_arena *arena) {

@@ -1,4 +1,4 @@
-#include "integrators/ida_problem.h"
+#include "integrators/ida_jacobian.h"
 #include "integrators/ida_words.h"
 #include "integrators/registry.h"
 
@@ -20,7 +20,8 @@
 //     suppress=multipliers   the error test looks at q and v alone
 //     loosen=1e6             the Newton test counts the multipliers with an absolute tolerance 1e6 times as large
 //
-// and a start with consistent accelerations. Written out as settings so that their lack can be seen as well.
+// a first step that is not as small as rtol, which is what the library would choose (h0=-1), and a start with consistent
+// accelerations. Written out as settings so that their lack can be seen as well.
 // The library allocates when an instance is made and started, and nothing in a step.
 
 enum {
@@ -30,16 +31,21 @@ enum {
     SETTING_HMAX,
     SETTING_SUPPRESS,
     SETTING_LOOSEN,
-    SETTING_ORDER
+    SETTING_ORDER,
+    SETTING_JACOBIAN
 };
+enum { JACOBIAN_EXACT, JACOBIAN_DIFFERENCES };
 enum { SUPPRESS_NONE, SUPPRESS_MULTIPLIERS, SUPPRESS_SPEEDS };
 #define LOOSEN_HIGH_INDEX 1e6
+#define H0_OF_LIBRARY -1
 #define SAME_STATE 1.0 // of the tolerance: a state changed by less goes on without a new start
 
 typedef struct ida_stepper {
     hn_ida_problem problem;
+    hn_ida_jacobian jacobian; // not made with jacobian=differences
     double rtol, atol, h0, hmax, loosen;
-    int suppress, max_order;
+    double first; // step, 0: the library's choice
+    int suppress, max_order, by_differences;
     SUNContext context;
     void *ida;
     int n; // of the vectors below
@@ -68,6 +74,17 @@ static int give_residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void *
             return 1; // a shorter step may stay where the equations hold
         }
     }
+    return 0;
+}
+
+static int give_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector r, SUNMatrix A,
+                         void *user, N_Vector work1, N_Vector work2, N_Vector work3) {
+    ida_stepper *s = user;
+    (void)r;
+    (void)work1;
+    (void)work2;
+    (void)work3;
+    hn_ida_jacobian_fill(&s->jacobian, t, c, data_of(y), data_of(ydot), SUNDenseMatrix_Data(A));
     return 0;
 }
 
@@ -109,6 +126,7 @@ static void destroy(void *self) {
     if (s->context) {
         SUNContext_Free(&s->context);
     }
+    hn_ida_jacobian_free(&s->jacobian);
     hn_ida_problem_free(&s->problem);
 }
 
@@ -123,6 +141,7 @@ static void take_settings(ida_stepper *s, hn_dae_form form, const double *settin
         s->loosen = form == HN_FORM_INDEX1 || form == HN_FORM_STABILISED ? 1 : LOOSEN_HIGH_INDEX;
     }
     s->max_order = (int)settings[SETTING_ORDER];
+    s->by_differences = settings[SETTING_JACOBIAN] == JACOBIAN_DIFFERENCES;
 }
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
@@ -133,10 +152,16 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
     }
     *self = s;
     take_settings(s, form, settings);
-    const hn_status status =
-        hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
+    hn_status status = hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
     if (status != HN_OK) {
         return status;
+    }
+    if (!s->by_differences) {
+        status = hn_ida_jacobian_init(&s->jacobian, &s->problem, arena);
+    }
+    if (status != HN_OK) {
+        return hn_diag_set(diag, status, NULL, "jacobian=differences needs less", "%s",
+                           hn_status_text(status));
     }
     const size_t room = (size_t)hn_ida_problem_room(&s->problem);
     s->start_y = hn_arena_doubles(arena, room);
@@ -178,9 +203,12 @@ static int configure_ida(ida_stepper *s, double t) {
     flag = flag ? flag : IDASetId(s->ida, s->id);
     flag = flag ? flag : IDASetSuppressAlg(s->ida, s->suppress != SUPPRESS_NONE);
     flag = flag ? flag : IDASetMaxOrd(s->ida, s->max_order);
-    flag = flag ? flag : IDASetInitStep(s->ida, s->h0);
+    flag = flag ? flag : IDASetInitStep(s->ida, s->first);
     flag = flag ? flag : IDASetMaxStep(s->ida, s->hmax);
     flag = flag ? flag : IDASetLinearSolver(s->ida, s->solver, s->matrix);
+    if (!s->by_differences) {
+        flag = flag ? flag : IDASetJacFn(s->ida, give_jacobian);
+    }
     return flag;
 }
 
@@ -219,11 +247,26 @@ static void add_counters(const ida_stepper *s, hn_cost *cost) {
     cost->rejected += errors + failures;
     cost->ops += (double)(residuals + extra) * hn_ida_problem_ops(&s->problem) +
                  (double)setups * lu + (double)iterations * 2 * n * n;
+    if (!s->by_differences) {
+        cost->ops += (double)setups * hn_ida_jacobian_ops(&s->jacobian);
+    }
+}
+
+static hn_status choose_first_step(ida_stepper *s, double t, const double *y) {
+    s->first = s->h0 > 0 ? s->h0 : 0;
+    if (s->h0 != 0) {
+        return HN_OK;
+    }
+    return hn_ida_problem_first_step(&s->problem, t, y, s->rtol, s->atol,
+                                     s->hmax > 0 ? s->hmax : HUGE_VAL, &s->first);
 }
 
 static hn_status start(void *self, double t, const double *y) {
     ida_stepper *s = self;
-    const hn_status status = hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot);
+    hn_status status = choose_first_step(s, t, y);
+    if (status == HN_OK) {
+        status = hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot);
+    }
     if (status != HN_OK) {
         return status;
     }
@@ -324,6 +367,7 @@ static const hn_dae_stepper dae = {
     .why = why,
 };
 
+static const char *const jacobians[] = {"exact", "differences"};
 static const char *const suppressions[] = {"none", "multipliers", "speeds"};
 
 const hn_stepper hn_stepper_ida = {
@@ -339,10 +383,14 @@ const hn_stepper hn_stepper_ida = {
     .adaptive = 1,
     .real_limit = HUGE_VAL,
     .imag_limit = 0, // order 3 and above are unstable next to the imaginary axis
-    .n_settings = 7,
+    .n_settings = 8,
     .settings =
         {
-            HN_SETTINGS_ADAPTIVE,
+            HN_SETTING_TOLERANCES,
+            {"h0", 0, H0_OF_LIBRARY, 100, "s",
+             "first step; 0: where order 1 errs by the tolerance; -1: the library's own choice",
+             NULL, 0, 0},
+            HN_SETTING_LARGEST_STEP,
             {"suppress", SUPPRESS_MULTIPLIERS, 0, 2, "",
              "what the error test leaves out: none, the multipliers, or speeds too", suppressions,
              3, 0},
@@ -350,6 +398,9 @@ const hn_stepper hn_stepper_ida = {
              "absolute tolerance of the multipliers over atol; 0: 1 for index 1, 1e6 above", NULL,
              0, 0},
             {"order", 5, 1, 5, "", "highest order of the formula", NULL, 0, 0},
+            {"jacobian", 0, 0, 1, "",
+             "exact: from the equations; differences: the library's own difference quotients",
+             jacobians, 2, 0},
         },
     .forms = 1u << HN_FORM_INDEX1 | 1u << HN_FORM_STABILISED | 1u << HN_FORM_INDEX2 |
              1u << HN_FORM_GGL | 1u << HN_FORM_INDEX3,

@@ -1,5 +1,6 @@
 #include "integrators/ida_problem.h"
 
+#include "integrators/control.h"
 #include "linalg/dense.h"
 #include "methods/flops.h"
 
@@ -34,8 +35,9 @@ static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
     p->a = hn_arena_doubles(arena, nv);
     p->lambda = hn_arena_doubles(arena, nc);
     p->work = hn_arena_doubles(arena, nv > nc ? nv : nc);
+    p->slope = hn_arena_doubles(arena, 3 * ((size_t)p->nq + nv));
     p->kept = hn_arena_ints(arena, nc);
-    if (!p->a || !p->lambda || !p->work || !p->kept || !hn_qr_init(&p->qr, arena, p->nv, p->nc)) {
+    if (hn_arena_failed(arena) || !hn_qr_init(&p->qr, arena, p->nv, p->nc)) {
         return HN_ERR_MEMORY;
     }
     const hn_accel_opts opts = {.baumgarte = is_stabilised(p), .want_lambda = 1};
@@ -130,6 +132,23 @@ hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
         y[p->nq + p->nv + k] = p->lambda[p->kept[k]];
     }
     return HN_OK;
+}
+
+static hn_status slope(void *self, double t, const double *y, double *ydot) {
+    hn_ida_problem *p = self;
+    hn_accel_info info = {0};
+    hn_system_kinematics(p->sys, y, y + p->nq, ydot);
+    return hn_accel_eval(p->accel, t, y, y + p->nq, p->alpha, p->beta, ydot + p->nq, p->lambda,
+                         &info);
+}
+
+hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state, double rtol,
+                                    double atol, double hmax, double *h) {
+    enum { ERROR_POWER = 2 }; // of h in the error of a step of order 1
+    const size_t n = (size_t)(p->nq + p->nv);
+    const hn_ode ode = {.n_pos = p->nq, .n_vel = p->nv, .self = p, .rhs = slope};
+    return hn_first_step(&ode, t, state, ERROR_POWER, rtol, atol, hmax, p->slope, p->slope + n,
+                         p->slope + 2 * n, h);
 }
 
 // r -= J' x over the kept rows

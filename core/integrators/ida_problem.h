@@ -31,6 +31,7 @@ typedef struct hn_ida_problem {
     hn_accel *accel;
     hn_qr qr;
     double *a, *lambda, *work; ///< nv, nc, max(nv, nc)
+    double *slope;             ///< 3 (nq + nv)
     long long residuals;       ///< evaluated so far
 } hn_ida_problem;
 
@@ -46,6 +47,11 @@ int hn_ida_problem_room(const hn_ida_problem *p);
 /// and nothing known of lambda'. Fails like hn_accel_eval().
 HN_MUST_CHECK hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
                                              double *y, double *ydot);
+/// A first step h at which the formula of order 1 that IDA starts with errs by about the tolerance, from the slopes at a state and
+/// near it. The library's own choice, which makes the first step as small as rtol, loses the multipliers in rounding divided by
+/// h when they stand in constraints on speeds or positions. Fails like hn_accel_eval().
+HN_MUST_CHECK hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state,
+                                                  double rtol, double atol, double hmax, double *h);
 /// r (n).
 void hn_ida_problem_residual(hn_ida_problem *p, double t, const double *y, const double *ydot,
                              double *r);

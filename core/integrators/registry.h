@@ -14,13 +14,16 @@ extern const hn_stepper hn_stepper_hem3, hn_stepper_hem4, hn_stepper_hem4_adapti
 #define HN_SETTING_STEP \
     { "h", 1e-3, 1e-12, 100, "s", "step size", NULL, 0, 0 }
 
-/// The settings of every adaptive one.
-#define HN_SETTINGS_ADAPTIVE                                                                  \
-    {"rtol", 1e-6, 1e-14, 0.1, "", "relative error allowed in a step", NULL, 0, 0},           \
-        {"atol", 0, 0, 1, "", "absolute error allowed in a step; 0: the same number as rtol", \
-         NULL,   0, 0},                                                                       \
-        {"h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0}, {         \
-        "hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0                       \
+/// The settings of adaptive ones; HN_SETTINGS_ADAPTIVE is what they share.
+#define HN_SETTING_TOLERANCES                                                                      \
+    {"rtol", 1e-6, 1e-14, 0.1, "", "relative error allowed in a step", NULL, 0, 0}, {              \
+        "atol", 0, 0, 1, "", "absolute error allowed in a step; 0: the same number as rtol", NULL, \
+            0, 0                                                                                   \
     }
+#define HN_SETTING_FIRST_STEP \
+    { "h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0 }
+#define HN_SETTING_LARGEST_STEP \
+    { "hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0 }
+#define HN_SETTINGS_ADAPTIVE HN_SETTING_TOLERANCES, HN_SETTING_FIRST_STEP, HN_SETTING_LARGEST_STEP
 
 #endif

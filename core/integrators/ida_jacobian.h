@@ -1,0 +1,44 @@
+#ifndef HN_INTEGRATORS_IDA_JACOBIAN_H
+#define HN_INTEGRATORS_IDA_JACOBIAN_H
+// The matrix of IDA's Newton iteration, dF/dy + c dF/dy', for the residual of ida_problem.h, from exact derivatives of the
+// equations of motion:
+//
+//            q                         v               lambda    mu
+//     (1)    c - (G v)_q               -G
+//       mu   c M                       -M                        -J'
+//     (2)    K                         C + c M         -J'
+//     (3)    gamma_q + (J v')_q        gamma_v + c J                       INDEX1
+//            + 2 alpha V + beta^2 J    + 2 alpha J                         STABILISED
+//            V                         J                                   INDEX2, GGL
+//            J                                                             INDEX3, GGL                                  (4)
+//
+// With mu the first block leaves out (M (q' - v) - J' mu)_q: both factors vanish with the error. Where a joint has more
+// coordinates than speeds, derivatives along the speeds are spread over the coordinates by the pseudo-inverse of G, and the
+// direction that changes the length of a quaternion is left out; the iteration converges as before, because no correction goes there.
+
+#include "dynamics/linearise.h"
+#include "integrators/ida_problem.h"
+
+typedef struct hn_ida_jacobian {
+    const hn_ida_problem *problem;
+    hn_linear *terms;
+    hn_linear *turn;             ///< V alone, for (J v')_q = V(v') - V(0); NULL where not needed
+    int offset;                  ///< V(0) is not zero
+    double *G, *Gp;              ///< nq x nv and nv x nq; NULL when nq == nv
+    double *unit, *rate, *still; ///< nq + nv scratch each
+    double *row_terms;           ///< nc x nv: the derivative by q of (3) along the speeds
+    double *row_speeds;          ///< nc x nv: that by v
+    double *lambda;              ///< nc
+    long long count;
+} hn_ida_jacobian;
+
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem,
+                                             hn_arena *arena);
+void hn_ida_jacobian_free(hn_ida_jacobian *j);
+/// Fills A (n x n, column by column).
+void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
+                          const double *ydot, double *A);
+double hn_ida_jacobian_ops(const hn_ida_jacobian *j); ///< arithmetic operations of one
+
+#endif
