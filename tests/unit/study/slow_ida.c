@@ -12,6 +12,7 @@
 //   index2, nothing suppressed at 1e-4: 3335 steps for 3345. Every step is turned down some six times out of seven, and rounding decides.
 //   the same at 1e-6 ends for want of steps: t = 0.06 there, and 0.04 here after 100,000.
 //   ggl: 99 and 296 steps for 96 and 275. There the kinematics had the identity for weight, here the mass matrix.
+//   With nothing suppressed ggl creeps as index2 does; with the identity it gave up at the start (flags -3, -4).
 //   ggl at 1e-10: flag -4 at the start for 795 steps. The library's first step of 1e-12 s divides the rounding of q
 //   by itself, and with this weight that is more than the Newton test lets mu have. Our own first step mends it (last row but one).
 
@@ -43,7 +44,7 @@ static const row rows[] = {
     {"ggl", UNTESTED, 1e-8, HN_ERR_NO_CONVERGENCE, "flag -4", 0, 1e-7, 0, 0, 0, 0},
     {"index2", LOOSE, 1e-8, HN_OK, NULL, 1, 2, 340, 0, 0, 0},
     {"ggl", LOOSE, 1e-8, HN_OK, NULL, 1, 2, 296, 3, 0, 0},
-    {"ggl", TESTED, 1e-6, HN_ERR_NO_CONVERGENCE, "flag -4", 0, 1e-4, 0, 0, 0, 0},
+    {"ggl", TESTED, 1e-6, HN_ERR_BUDGET, "steps were allowed", 0.02, 0.08, 0, 0, 0, 0},
     {"index3", UNTESTED, 1e-4, HN_OK, NULL, 1, 2, 2640, 60, 0, 0},
     {"index3", ",suppress=speeds,loosen=1" LIBRARY, 1e-6, HN_OK, NULL, 1, 2, 79, 0, 2e-3, 1.1},
     // not in the matrix: the first step from the slopes and exact derivatives
