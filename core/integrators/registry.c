@@ -15,6 +15,8 @@ static const hn_stepper *const steppers[] = {
     &hn_stepper_hem4_adaptive,
     &hn_stepper_half_explicit_rk4,
     &hn_stepper_rattle,
+    &hn_stepper_genalpha,
+    &hn_stepper_hht,
     &hn_stepper_ida,
     &hn_stepper_gsl_rk8pd,
     &hn_stepper_gsl_msadams,

@@ -1,0 +1,248 @@
+#include "integrators/newmark.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double KEEP_FACTOR_BELOW = 0.05; // contraction with which an old matrix goes on
+
+static hn_status allocate(hn_newmark *s, hn_arena *arena) {
+    const size_t nv = (size_t)s->base.nv, nc = (size_t)s->base.nc;
+    double **of_nv[] = {&s->a0, &s->past, &s->carry, &s->a1, &s->e, &s->D, &s->v1};
+    double **of_nc[] = {&s->guess, &s->lambda, &s->eta, &s->scaled};
+    for (size_t i = 0; i < sizeof of_nv / sizeof *of_nv; i++) {
+        *of_nv[i] = hn_arena_doubles(arena, nv);
+    }
+    for (size_t i = 0; i < sizeof of_nc / sizeof *of_nc; i++) {
+        *of_nc[i] = hn_arena_doubles(arena, nc);
+    }
+    s->P = hn_arena_doubles(arena, nc * nv);
+    s->factor = hn_arena_doubles(arena, nv * nv);
+    s->x = hn_arena_doubles(arena, nv + 2 * nc);
+    const int n = (int)(nv + (s->stabilised ? 2 : 1) * nc);
+    return hn_square_init(&s->square, arena, n) && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
+}
+
+hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised, hn_arena *arena,
+                          hn_diag *diag) {
+    const unsigned rest = HN_LINEAR_RESIDUAL | HN_LINEAR_PHI | HN_LINEAR_SPEED_GAP;
+    const unsigned matrices =
+        HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | (stabilised ? HN_LINEAR_V : 0);
+    hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    s->stabilised = stabilised;
+    status = hn_linear_create(sys, rest, arena, &s->rest);
+    if (status == HN_OK) {
+        status = hn_linear_create(sys, matrices, arena, &s->matrices);
+    }
+    if (status == HN_OK) {
+        status = allocate(s, arena);
+    }
+    return status == HN_OK ? HN_OK
+                           : hn_diag_set(diag, status, NULL, NULL,
+                                         "the linearised equations cannot be set up: %s",
+                                         hn_status_text(status));
+}
+
+void hn_newmark_destroy(hn_newmark *s) {
+    hn_linear_free(s->rest);
+    hn_linear_free(s->matrices);
+    s->rest = s->matrices = NULL;
+    hn_dae_base_destroy(&s->base);
+}
+
+// P = M0^-1 J0' on the chosen rows, a row of nv for each
+static hn_status prepare_stabiliser(hn_newmark *s) {
+    const hn_dae_base *b = &s->base;
+    const size_t nv = (size_t)b->nv;
+    memcpy(s->factor, b->M, nv * nv * sizeof *s->factor);
+    const hn_status status = hn_cholesky(b->nv, s->factor, b->nv, 0);
+    for (int k = 0; k < b->nr && status == HN_OK; k++) {
+        double *row = s->P + (size_t)k * nv;
+        memcpy(row, b->J + (size_t)b->rows[k] * nv, nv * sizeof *row);
+        hn_cholesky_solve(b->nv, s->factor, b->nv, row);
+    }
+    return status;
+}
+
+// (1), (2) and e from D and eta; q1 and v1
+static void move_state(hn_newmark *s, double h, const double *y, double *q1) {
+    const hn_dae_base *b = &s->base;
+    const double *v0 = y + b->nq, scale = s->beta * h * h;
+    for (int i = 0; i < b->nv; i++) {
+        double left = s->D[i] - h * v0[i] - h * h * (0.5 - s->beta) * s->a0[i];
+        for (int k = 0; k < b->nr && s->stabilised; k++) {
+            left -= s->P[(size_t)k * b->nv + i] * s->eta[k];
+        }
+        s->a1[i] = left / scale;
+        s->v1[i] = v0[i] + h * ((1 - s->gamma) * s->a0[i] + s->gamma * s->a1[i]);
+        s->e[i] = s->weight * s->a1[i] + s->past[i];
+    }
+    memcpy(q1, y, (size_t)b->nq * sizeof *q1);
+    hn_system_move(b->sys, q1, s->D);
+    memset(s->lambda, 0, (size_t)b->nc * sizeof *s->lambda);
+    for (int k = 0; k < b->nr; k++) {
+        s->lambda[b->rows[k]] = s->scaled[k] / scale;
+    }
+}
+
+// x = minus what (3) and (4) leave, scaled as the matrix is
+static void find_residual(hn_newmark *s, double t1, double h, const double *q1) {
+    hn_dae_base *b = &s->base;
+    const int nv = b->nv, nr = b->nr;
+    hn_linear_run(s->rest, t1, q1, s->v1, s->e, s->lambda);
+    b->cost.evals++;
+    const double *R = hn_linear_get(s->rest, HN_LINEAR_RESIDUAL);
+    const double *phi = hn_linear_get(s->rest, HN_LINEAR_PHI);
+    const double *gap = hn_linear_get(s->rest, HN_LINEAR_SPEED_GAP);
+    for (int i = 0; i < nv; i++) {
+        s->x[i] = -s->beta * h * h * (R[i] + s->carry[i]);
+    }
+    for (int k = 0; k < nr; k++) {
+        s->x[nv + k] = -phi[b->rows[k]];
+        if (s->stabilised) {
+            s->x[nv + nr + k] = phi[b->rows[k]] - s->beta * h / s->gamma * gap[b->rows[k]];
+        }
+    }
+}
+
+// Columns D, beta h^2 lambda, eta:
+//
+//     A0 + beta h^2 K          -J'    -A0 P          A0 = weight M + gamma h C
+//     J                         0      0
+//     (beta h / gamma) V        0     -J P           the row of speeds less the row of positions
+static void fill_motion(hn_newmark *s, double h, int n) {
+    const int nv = s->base.nv;
+    const double *M = hn_linear_get(s->matrices, HN_LINEAR_M);
+    const double *K = hn_linear_get(s->matrices, HN_LINEAR_K);
+    const double *C = hn_linear_get(s->matrices, HN_LINEAR_C);
+    double *A = s->square.lu;
+    for (int i = 0; i < nv; i++) {
+        for (int j = 0; j < nv; j++) {
+            const size_t at = (size_t)i * nv + j;
+            s->factor[at] = s->weight * M[at] + s->gamma * h * C[at];
+            A[(size_t)i * n + j] = s->factor[at] + s->beta * h * h * K[at];
+        }
+    }
+}
+
+static void fill_loops(hn_newmark *s, int n) {
+    const hn_dae_base *b = &s->base;
+    const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
+    double *A = s->square.lu;
+    for (int k = 0; k < b->nr; k++) {
+        const double *row = J + (size_t)b->rows[k] * b->nv;
+        for (int i = 0; i < b->nv; i++) {
+            A[(size_t)i * n + b->nv + k] = -row[i];
+            A[(size_t)(b->nv + k) * n + i] = row[i];
+        }
+    }
+}
+
+static void fill_stabiliser(hn_newmark *s, double h, int n) {
+    const hn_dae_base *b = &s->base;
+    const int nv = b->nv, nr = b->nr;
+    const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
+    const double *V = hn_linear_get(s->matrices, HN_LINEAR_V);
+    double *A = s->square.lu;
+    for (int k = 0; k < nr; k++) {
+        const double *P = s->P + (size_t)k * nv;
+        for (int i = 0; i < nv; i++) {
+            A[(size_t)i * n + nv + nr + k] = -hn_dot(nv, s->factor + (size_t)i * nv, P);
+            A[(size_t)(nv + nr + k) * n + i] =
+                s->beta * h / s->gamma * V[(size_t)b->rows[k] * nv + i];
+        }
+        for (int i = 0; i < nr; i++) {
+            const double *row = J + (size_t)b->rows[i] * nv;
+            A[(size_t)(nv + nr + i) * n + nv + nr + k] = -hn_dot(nv, row, P);
+        }
+    }
+}
+
+static hn_status factor_newton(hn_newmark *s, double t1, double h, const double *q1) {
+    hn_dae_base *b = &s->base;
+    const int n = b->nv + (s->stabilised ? 2 : 1) * b->nr;
+    hn_linear_run(s->matrices, t1, q1, s->v1, s->e, s->lambda);
+    memset(s->square.lu, 0, (size_t)n * n * sizeof *s->square.lu);
+    fill_motion(s, h, n);
+    fill_loops(s, n);
+    if (s->stabilised) {
+        fill_stabiliser(s, h, n);
+    }
+    b->cost.factorisations++;
+    b->cost.ops += 2.0 / 3 * n * n * n;
+    return hn_square_factor(&s->square, n);
+}
+
+static void correct(hn_newmark *s) {
+    hn_dae_base *b = &s->base;
+    hn_square_solve(&s->square, s->x);
+    hn_axpy(b->nv, 1, s->x, s->D);
+    hn_axpy(b->nr, 1, s->x + b->nv, s->scaled);
+    if (s->stabilised) {
+        hn_axpy(b->nr, 1, s->x + b->nv + b->nr, s->eta);
+    }
+    b->cost.newton++;
+    b->cost.solves++;
+    b->cost.ops += 2.0 * s->square.n * s->square.n;
+}
+
+static hn_status iterate(hn_newmark *s, double t, double h, const double *y, double *q1) {
+    hn_newton newton = {0};
+    for (;;) {
+        move_state(s, h, y, q1);
+        find_residual(s, t + h, h, q1);
+        if (newton.iterations == 0 || newton.contraction > KEEP_FACTOR_BELOW) {
+            const hn_status status = factor_newton(s, t + h, h, q1);
+            if (status != HN_OK) {
+                return status;
+            }
+        }
+        correct(s);
+        const hn_newton_verdict verdict =
+            hn_newton_look(&newton, hn_dae_newton_size(&s->base, s->x, s->D, y));
+        if (verdict == HN_NEWTON_DIVERGES) {
+            return HN_ERR_NO_CONVERGENCE;
+        }
+        if (verdict == HN_NEWTON_DONE) {
+            move_state(s, h, y, q1);
+            return HN_OK;
+        }
+    }
+}
+
+hn_status hn_newmark_step(hn_newmark *s, double t, double h, const double *y, double *y_new) {
+    hn_dae_base *b = &s->base;
+    const double *v0 = y + b->nq;
+    hn_dae_dynamics(b, t, y, v0);
+    hn_dae_loops(b, t, y);
+    hn_dae_choose_rows(b);
+    if (s->stabilised && prepare_stabiliser(s) != HN_OK) {
+        return hn_dae_fail(b, HN_ERR_NOT_SPD, t, "the stabiliser, which divides by the masses,");
+    }
+    for (int i = 0; i < b->nv; i++) {
+        s->D[i] = h * v0[i] + h * h / 2 * s->a0[i];
+    }
+    for (int k = 0; k < b->nr; k++) {
+        s->scaled[k] = s->beta * h * h * s->guess[b->rows[k]];
+        s->eta[k] = 0;
+    }
+    const hn_status status = iterate(s, t, h, y, y_new);
+    memcpy(y_new + b->nq, s->v1, (size_t)b->nv * sizeof *y_new);
+    return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t + h, "the step");
+}
+
+void hn_newmark_add_cost(const void *self, hn_cost *cost) {
+    const hn_newmark *s = self;
+    hn_dae_base_add_cost(&s->base, cost);
+    cost->ops += (double)hn_linear_count(s->rest) * hn_linear_ops(s->rest) +
+                 (double)hn_linear_count(s->matrices) * hn_linear_ops(s->matrices);
+}
+
+const char *hn_newmark_why(const void *self) {
+    const hn_newmark *s = self;
+    return hn_dae_base_why(&s->base);
+}
