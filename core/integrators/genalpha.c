@@ -19,7 +19,8 @@
 
 enum { SET_RHO = 1, SET_A0 }; // after h
 enum { A0_SHIFTED, A0_CONSISTENT, A0_ZERO };
-static const double SHIFT_STEP = 1e-2; // of h: for the rate of v' at the start, by central differences
+static const double SHIFT_STEP =
+    1e-2; // of h: for the rate of v' at the start, by central differences
 
 // what is carried from step to step
 typedef struct carried {
@@ -133,8 +134,7 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     memcpy(s->n.a0, s->now.a, nv * sizeof *s->n.a0);
     memcpy(s->n.guess, s->now.lambda, nc * sizeof *s->n.guess);
     for (size_t i = 0; i < nv; i++) {
-        s->n.past[i] =
-            (s->alpha_m * s->now.a[i] - s->alpha_f * s->now.vdot[i]) / (1 - s->alpha_f);
+        s->n.past[i] = (s->alpha_m * s->now.a[i] - s->alpha_f * s->now.vdot[i]) / (1 - s->alpha_f);
     }
     status = hn_newmark_step(&s->n, t, h, y, y_new);
     memcpy(s->next.a, s->n.a1, nv * sizeof *s->n.a1);
@@ -173,9 +173,10 @@ static const char *const starts[] = {"shifted", "consistent", "zero"};
 const hn_stepper hn_stepper_genalpha = {
     .name = "genalpha",
     .title = "generalised-alpha",
-    .about = "Order 2 in positions, speeds and multipliers for rho < 1; fast oscillations are "
-             "damped to rho of their size each step, slow ones hardly. At rho = 1 nothing is damped "
-             "and its own multipliers never settle.",
+    .about =
+        "Order 2 in positions, speeds and multipliers for rho < 1; fast oscillations are "
+        "damped to rho of their size each step, slow ones hardly. At rho = 1 nothing is damped "
+        "and its own multipliers never settle.",
     .source = "Chung & Hulbert 1993; Arnold & Bruls 2007",
     .order = 2,
     .stages = 1,

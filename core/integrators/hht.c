@@ -76,8 +76,7 @@ static void find_force(hht *s, double t, const double *y, const double *lambda, 
 static hn_status start(void *self, double t, const double *y) {
     hht *s = self;
     hn_dae_base *b = &s->n.base;
-    const hn_status status =
-        hn_dae_accelerate(b, t, y, y + b->nq, s->now.a, s->now.lambda);
+    const hn_status status = hn_dae_accelerate(b, t, y, y + b->nq, s->now.a, s->now.lambda);
     if (status == HN_OK) {
         find_force(s, t, y, s->now.lambda, s->now.force);
     }
@@ -130,9 +129,10 @@ static const hn_dae_stepper dae = {
 const hn_stepper hn_stepper_hht = {
     .name = "hht",
     .title = "HHT-I3",
-    .about = "Newmark's method with forces of two times: order 2 while the mass matrix is constant, "
-             "as with points in Cartesian coordinates; in angles little more than order 1, which is "
-             "what genalpha's extra variable cures.",
+    .about =
+        "Newmark's method with forces of two times: order 2 while the mass matrix is constant, "
+        "as with points in Cartesian coordinates; in angles little more than order 1, which is "
+        "what genalpha's extra variable cures.",
     .source = "Negrut, Rampalli, Ottarsson & Sajdak 2007; Jay & Negrut 2007",
     .order = 2,
     .stages = 1,

@@ -17,6 +17,7 @@ static const hn_stepper *const steppers[] = {
     &hn_stepper_rattle,
     &hn_stepper_genalpha,
     &hn_stepper_hht,
+    &hn_stepper_trapezoidal,
     &hn_stepper_ida,
     &hn_stepper_gsl_rk8pd,
     &hn_stepper_gsl_msadams,

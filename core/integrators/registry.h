@@ -8,7 +8,8 @@ extern const hn_stepper hn_stepper_euler, hn_stepper_symplectic_euler, hn_steppe
     hn_stepper_gsl_msadams, hn_stepper_gsl_msbdf, hn_stepper_gsl_bsimp, hn_stepper_ida;
 
 extern const hn_stepper hn_stepper_hem3, hn_stepper_hem4, hn_stepper_hem4_adaptive,
-    hn_stepper_half_explicit_rk4, hn_stepper_rattle, hn_stepper_genalpha, hn_stepper_hht;
+    hn_stepper_half_explicit_rk4, hn_stepper_rattle, hn_stepper_genalpha, hn_stepper_trapezoidal,
+    hn_stepper_hht;
 
 /// The one setting of every fixed-step integrator.
 #define HN_SETTING_STEP \

@@ -53,7 +53,8 @@ typedef enum hn_dae_form {
     HN_FORM_INDEX2,
     HN_FORM_GGL,
     HN_FORM_INDEX1,
-    HN_FORM_STABILISED ///< INDEX1 with Baumgarte's terms; the formulation's settings are alpha, beta and the rule (0: as given)
+    HN_FORM_STABILISED, ///< INDEX1 with Baumgarte's terms; the formulation's settings are alpha, beta and the rule (0: as given)
+    HN_FORM_AUGMENTED ///< INDEX3 by an augmented Lagrangian; the formulation's settings are weight (0: chosen) and projections (0: on, 1: off)
 } hn_dae_form;
 
 typedef struct hn_formulation {
@@ -98,7 +99,7 @@ typedef struct hn_formulation {
 
 /// "ode", "index3", "index2", "ggl", "index1", "stabilised".
 const char *hn_form_name(hn_dae_form form);
-enum { HN_FORM_COUNT = HN_FORM_STABILISED + 1 };
+enum { HN_FORM_COUNT = HN_FORM_AUGMENTED + 1 };
 
 int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);

@@ -16,11 +16,13 @@ static const hn_formulation *const formulations[] = {
     &hn_formulation_ggl,
     &hn_formulation_index2,
     &hn_formulation_index3,
+    &hn_formulation_ali3p,
 };
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
 
 const char *hn_form_name(hn_dae_form form) {
-    static const char *const names[HN_FORM_COUNT] = {"ode", "index3", "index2", "ggl", "index1", "stabilised"};
+    static const char *const names[HN_FORM_COUNT] = {"ode",    "index3",     "index2",   "ggl",
+                                                     "index1", "stabilised", "augmented"};
     HN_ASSERT((int)form < HN_FORM_COUNT);
     return names[form];
 }
