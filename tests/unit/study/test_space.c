@@ -1,0 +1,313 @@
+// Mechanisms in space, drives and published problems, as shipped: what closed forms and other people's figures say of them.
+#include "support/near.h"
+#include "support/trial.h"
+
+#include <gsl/gsl_sf_ellint.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SCENE(name) "lessons/03-space-and-drives/scenes/" name ".json"
+static const double PI = 3.14159265358979323846;
+
+static void open_scene(hn_trial *trial, const char *name, const hn_setting *settings, int n) {
+    char path[128];
+    snprintf(path, sizeof path, SCENE("%s"), name);
+    hn_trial_open_with(trial, path, settings, n);
+}
+
+/// Index of a user coordinate, or of its rate, in a sample.
+static int coordinate(const hn_trial *trial, const char *name) {
+    for (int i = 0; i < trial->info.n_user; i++) {
+        const hn_coordinate *c =
+            &trial->scene->coordinates[hn_system_user_coordinate(trial->sys, i)];
+        if (strcmp(c->name, name) == 0 || strcmp(c->rate, name) == 0) {
+            return i;
+        }
+    }
+    fail_msg("no coordinate %s", name);
+    return -1;
+}
+
+static hn_sample at(hn_run *run, double t) {
+    hn_sample s = {0};
+    assert_int_equal(hn_run_advance(run, t), HN_OK);
+    assert_int_equal(hn_run_sample(run, t, &s), HN_OK);
+    return s;
+}
+
+/// p turned by the rotation vector r (Rodrigues).
+static void turn(const double r[3], const double p[3], double out[3]) {
+    double a = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), dot = 0;
+    double k[3] = {r[0] / a, r[1] / a, r[2] / a};
+    double cross[3] = {k[1] * p[2] - k[2] * p[1], k[2] * p[0] - k[0] * p[2],
+                       k[0] * p[1] - k[1] * p[0]};
+    for (int i = 0; i < 3; i++) {
+        dot += k[i] * p[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        out[i] = p[i] * cos(a) + cross[i] * sin(a) + k[i] * dot * (1 - cos(a));
+    }
+}
+
+static void freedoms_and_rank_are_those_of_the_books(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene;
+        int freedoms, rank, rows;
+    } known[] = {
+        {"spinning-block", 6, 0, 0},       {"heavy-top", 3, 0, 0},
+        {"spatial-slider-crank", 1, 3, 3}, {"cardan-shaft", 1, 3, 4},
+        {"oblique-four-bar", 1, 2, 2},     {"car-axis", 2, 2, 2},
+        {"seven-body-squeezer", 1, 6, 6},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        hn_trial trial;
+        open_scene(&trial, known[i].scene, NULL, 0);
+        hn_assembly report;
+        assert_int_equal(hn_assemble(trial.sys, 0, trial.q, trial.v, NULL, NULL, &report, NULL),
+                         HN_OK);
+        assert_int_equal(report.freedoms, known[i].freedoms);
+        assert_int_equal(report.rank, known[i].rank);
+        assert_int_equal(trial.info.nc, known[i].rows);
+        hn_trial_close(&trial);
+    }
+}
+
+// x^2 = l^2 - y^2 - z^2 with (y, z) the tip of the crank
+static void the_spatial_slider_stands_where_its_rod_reaches(void **state) {
+    (void)state;
+    hn_trial trial;
+    open_scene(&trial, "spatial-slider-crank", NULL, 0);
+    const int th = coordinate(&trial, "th"), x = coordinate(&trial, "x");
+    hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+    for (int k = 1; k <= 100; k++) {
+        const hn_sample s = at(run, 0.02 * k);
+        double y = 0.12 + 0.08 * cos(s.q[th]), z = -0.1 + 0.08 * sin(s.q[th]);
+        assert_near(s.q[x], sqrt(0.09 - y * y - z * z), 1e-13); // gaps of rounding
+        assert_near(s.energy_change, 0, 1e-7);                  // of 0.8 J, by RK4 at 28 rad/s
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+// forks in one plane: even; turned by a right angle: from cos^2 be to 1/cos^2 be, both twice a turn
+static void a_cardan_shaft_undoes_or_doubles_its_unevenness(void **state) {
+    (void)state;
+    for (int crossed = 0; crossed <= 1; crossed++) {
+        const hn_setting twist = {"twist", crossed ? PI / 2 : 0};
+        hn_trial trial;
+        open_scene(&trial, "cardan-shaft", &twist, 1);
+        const int th1 = coordinate(&trial, "th1"), th3 = coordinate(&trial, "th3");
+        hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+        double least = HUGE_VAL, most = 0;
+        for (int k = 1; k <= 2000; k++) {
+            const hn_sample s = at(run, 1e-3 * k);
+            least = fmin(least, s.v[th3] / s.v[th1]);
+            most = fmax(most, s.v[th3] / s.v[th1]);
+            if (!crossed) {
+                assert_near(s.q[th3], s.q[th1], 1e-12);
+            }
+        }
+        const double c2 = cos(0.6) * cos(0.6);
+        // an extreme is met within half a step, 0.005 rad, of a parabola
+        assert_near(least, crossed ? c2 : 1, 1e-4);
+        assert_near(most, crossed ? 1 / c2 : 1, 1e-4);
+        hn_run_free(run);
+        hn_trial_close(&trial);
+    }
+}
+
+// A W^2 cos - C s W + m g l = 0 about the foot (Lagrange)
+static void a_heavy_top_precesses_steadily_at_the_lower_root(void **state) {
+    (void)state;
+    const hn_setting steady = {"p", 1};
+    const double C = 0.0025, A = 0.00625, s0 = 120, mgl = 0.5 * 9.81 * 0.1, tilt = 0.6;
+    const double W =
+        (C * s0 - sqrt(C * C * s0 * s0 - 4 * A * mgl * cos(tilt))) / (2 * A * cos(tilt));
+    hn_trial trial;
+    open_scene(&trial, "heavy-top", &steady, 1);
+    hn_run *run = hn_trial_run(&trial, "index1@dop853:rtol=1e-11");
+    assert_int_equal(coordinate(&trial, "rx"), 0);
+    for (int k = 1; k <= 20; k++) {
+        const hn_sample s = at(run, 0.05 * k);
+        const double stem[3] = {0, 1, 0};
+        double tip[3];
+        turn(s.q, stem, tip);
+        assert_near(tip[1], cos(tilt), 1e-9);
+        assert_near(remainder(atan2(-tip[2], tip[0]) - W * s.t, 2 * PI), 0, 1e-8);
+        assert_near(s.v[1], s0, 1e-9);
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+// Without precession the foot's top nods, and the angular momentum about the vertical and about the stem stay.
+static void a_heavy_top_let_go_nods_between_two_heights(void **state) {
+    (void)state;
+    hn_trial trial;
+    open_scene(&trial, "heavy-top", NULL, 0);
+    hn_run *run = hn_trial_run(&trial, "index1@dop853:rtol=1e-11");
+    const double stem[3] = {0, 1, 0}, A = 0.00625, C = 0.0025;
+    double low = 1, high = -1;
+    for (int k = 1; k <= 400; k++) {
+        const hn_sample s = at(run, 1e-3 * k);
+        double tip[3], momentum[3] = {A * s.v[0], C * s.v[1], A * s.v[2]}, in_space[3];
+        turn(s.q, stem, tip);
+        turn(s.q, momentum, in_space);
+        low = fmin(low, tip[1]);
+        high = fmax(high, tip[1]);
+        assert_near(in_space[1], C * 120 * cos(0.6), 1e-11);
+    }
+    // the lower turning point u of (A W')^2 ...: A (1 - u^2) m g l 2 (u0 - u) = (C s)^2 (u0 - u)^2
+    const double u0 = cos(0.6), mgl = 0.4905, b = C * C * 120 * 120 / (2 * A * mgl);
+    const double u = b / 2 - sqrt(b * b / 4 - b * u0 + 1);
+    assert_near(high, u0, 1e-5); // nearest sample to a smooth end
+    assert_near(low, u, 1e-5);
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+// Euler's free body (Landau and Lifshitz, section 37): between two zeros of wy, 2 K(k)/p
+static void a_spinning_block_turns_over_as_an_elliptic_function(void **state) {
+    (void)state;
+    hn_trial trial;
+    open_scene(&trial, "spinning-block", NULL, 0);
+    const double I1 = 0.1 / 12, I2 = 0.37 / 12, I3 = 0.45 / 12;
+    const double w1 = 0.05, w2 = 5, w3 = 0.05;
+    const double E2 = I1 * w1 * w1 + I2 * w2 * w2 + I3 * w3 * w3;
+    const double L2 = I1 * I1 * w1 * w1 + I2 * I2 * w2 * w2 + I3 * I3 * w3 * w3;
+    assert_true(L2 > E2 * I2); // round the axis of the largest moment
+    const double p = sqrt((I3 - I2) * (L2 - E2 * I1) / (I1 * I2 * I3));
+    const double k2 = (I2 - I1) * (E2 * I3 - L2) / ((I3 - I2) * (L2 - E2 * I1));
+    const double half = 2 * gsl_sf_ellint_Kcomp(sqrt(k2), GSL_PREC_DOUBLE) / p;
+    const int wy = coordinate(&trial, "wy");
+    hn_run *run = hn_trial_run(&trial, "index1@dop853:rtol=1e-12");
+    double crossed[8], before = 5;
+    int n = 0;
+    for (int k = 1; k <= 20000 && n < 5; k++) {
+        const hn_sample s = at(run, 1e-3 * k);
+        if (s.v[wy] * before < 0) {
+            crossed[n++] = s.t - 1e-3 * s.v[wy] / (s.v[wy] - before);
+        }
+        before = s.v[wy];
+    }
+    assert_int_equal(n, 5);
+    for (int i = 1; i < 5; i++) {
+        assert_near(crossed[i] - crossed[i - 1], half,
+                    1e-6); // a chord of 1 ms of a sine-like curve
+    }
+    assert_near(crossed[0], 2.244, 1e-3); // as the scene says: 2.24 s, then every 3.73 s
+    assert_near(half, 3.728, 1e-3);
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+static void an_oblique_four_bar_without_gravity_moves_as_one_in_the_plane(void **state) {
+    (void)state;
+    const hn_setting flat[] = {{"al", 0}, {"be", 0}, {"g", 0}},
+                     oblique[] = {{"al", 0.9}, {"be", -1.1}, {"g", 0}};
+    hn_trial one, two;
+    open_scene(&one, "oblique-four-bar", flat, 3);
+    open_scene(&two, "oblique-four-bar", oblique, 3);
+    hn_run *a = hn_trial_run(&one, "projection@rk4:h=1e-3"),
+           *b = hn_trial_run(&two, "projection@rk4:h=1e-3");
+    for (int k = 1; k <= 20; k++) {
+        const hn_sample s = at(a, 0.1 * k), r = at(b, 0.1 * k);
+        for (int i = 0; i < one.info.n_user; i++) {
+            assert_near(s.q[i], r.q[i], 1e-11); // rounding grown over 2000 steps
+            assert_near(s.v[i], r.v[i], 1e-10);
+        }
+    }
+    hn_run_free(a);
+    hn_run_free(b);
+    hn_trial_close(&one);
+    hn_trial_close(&two);
+}
+
+static void the_car_axis_ends_where_the_test_set_says(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double value;
+    } end[] = {{"xl", 0.0493455784275402819938},
+               {"yl", 0.496989460230171153861},
+               {"xr", 1.04174252488542151681},
+               {"yr", 0.373911027265361256927}};
+    hn_trial trial;
+    open_scene(&trial, "car-axis", NULL, 0);
+    hn_run *run = hn_trial_run(&trial, "projection@dop853:rtol=1e-12");
+    const hn_sample s = at(run, 3);
+    for (int i = 0; i < 4; i++) {
+        assert_near(s.q[coordinate(&trial, end[i].name)], end[i].value, 1e-10); // 1e-12 times 50
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+static void the_squeezer_has_twelve_digits_at_its_end(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double value;
+    } end[] = {{"beta", 15.8107711951537},    {"Theta", -15.7563710584118},
+               {"gamma", 0.0408222401196458}, {"Phi", -0.534730116342080},
+               {"delta", 0.524409965879954},  {"Omega", 0.534730116342080},
+               {"epsilon", 1.04808074104194}};
+    hn_trial trial;
+    open_scene(&trial, "seven-body-squeezer", NULL, 0);
+    hn_run *run = hn_trial_run(&trial, "projection@dop853:rtol=1e-12");
+    const hn_sample s = at(run, 0.03);
+    for (int i = 0; i < 7; i++) {
+        const double size = fmax(1, fabs(end[i].value));
+        assert_near(s.q[coordinate(&trial, end[i].name)] / size, end[i].value / size, 1e-12);
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of them.
+static void every_setting_in_the_ranges_closes_the_loops(void **state) {
+    (void)state;
+    static const char *const scenes[] = {
+        "spinning-block",   "heavy-top", "spatial-slider-crank", "cardan-shaft",
+        "oblique-four-bar", "car-axis",  "seven-body-squeezer"};
+    unsigned seed = 7;
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        hn_trial plain;
+        open_scene(&plain, scenes[i], NULL, 0);
+        const hn_scene *scene = plain.scene;
+        for (int trial_number = 0; trial_number < 40 + 2 * scene->n_params; trial_number++) {
+            hn_setting settings[20];
+            int n = 0;
+            for (int k = 0; k < scene->n_params; k++) {
+                const hn_param *p = &scene->params[k];
+                seed = seed * 1664525u + 1013904223u;
+                int end = trial_number < 40 ? (int)(seed >> 30 & 1) : trial_number & 1;
+                if (p->max < HUGE_VAL && (trial_number < 40 || k == (trial_number - 40) / 2)) {
+                    settings[n++] = (hn_setting){p->name, end ? p->max : p->min};
+                }
+            }
+            hn_trial corner;
+            open_scene(&corner, scenes[i], settings, n);
+            hn_trial_close(&corner);
+        }
+        hn_trial_close(&plain);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(freedoms_and_rank_are_those_of_the_books),
+        cmocka_unit_test(the_spatial_slider_stands_where_its_rod_reaches),
+        cmocka_unit_test(a_cardan_shaft_undoes_or_doubles_its_unevenness),
+        cmocka_unit_test(a_heavy_top_precesses_steadily_at_the_lower_root),
+        cmocka_unit_test(a_heavy_top_let_go_nods_between_two_heights),
+        cmocka_unit_test(a_spinning_block_turns_over_as_an_elliptic_function),
+        cmocka_unit_test(an_oblique_four_bar_without_gravity_moves_as_one_in_the_plane),
+        cmocka_unit_test(the_car_axis_ends_where_the_test_set_says),
+        cmocka_unit_test(the_squeezer_has_twelve_digits_at_its_end),
+        cmocka_unit_test(every_setting_in_the_ranges_closes_the_loops),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
