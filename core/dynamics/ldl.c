@@ -12,6 +12,7 @@ typedef struct work {
     hn_arena *arena;
     char *gone;    ///< per unknown
     char *massive; ///< coordinates whose own entry of W is not zero
+    char *shared;  ///< coordinates that touch the rows of several loops: see SHARED_ROWS
     int *partner;  ///< per unknown: the other half of its pair, -1: alone
     int *degree;   ///< live neighbours; -1: not eligible now
     hn_ex *ref;    ///< per unknown: reference of its pivot
@@ -25,6 +26,11 @@ typedef struct work {
 /// than to solve, without bound, so it is left to the dense solve.
 enum { MAX_UPDATES = 50000 };
 
+/// A coordinate that touches more rows than one spatial loop has is shared by legs (a platform's). Rows need not wait for it: what
+/// each leg has of its own gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with every
+/// other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard sees it.
+enum { SHARED_ROWS = 6 };
+
 // setting up -------------------------------------------------------------------------------------------------------
 
 static void fill(work *w, const hn_ldl_input *in) {
@@ -36,6 +42,9 @@ static void fill(work *w, const hn_ldl_input *in) {
     }
     for (int k = 0; k < in->J->n; k++) {
         hn_symmat_set(w->K, in->nv + in->J->at[k].row, in->J->at[k].col, in->J->at[k].e);
+    }
+    for (int k = 0; k < in->J->n; k++) { // counted in `degree` before its proper use
+        w->shared[in->J->at[k].col] = ++w->degree[in->J->at[k].col] > SHARED_ROWS;
     }
     for (int i = 0; i < in->nv; i++) {
         w->ref[i] = hn_symmat_get(w->K, i, i);
@@ -91,7 +100,7 @@ static int list_live(work *w, int i, int *blocked) {
             }
             w->marked[j] = 1;
             w->live[n++] = j;
-            *blocked |= j < w->out->nv && w->massive[j];
+            *blocked |= j < w->out->nv && w->massive[j] && !w->shared[j];
         }
     }
     for (int k = 0; k < n; k++) {
@@ -219,6 +228,18 @@ static void reduce(work *w, const int pair[2], int first_row, int n, int counts)
     }
 }
 
+/// What the shared coordinates that are still to come would have added to a multiplier's sum: a pivot is small or not against all of it.
+static void add_shared(work *w, int i, int n) {
+    for (int k = 0; k < n && i >= w->out->nv; k++) {
+        const int j = w->live[k];
+        if (j < w->out->nv && w->massive[j]) {
+            const hn_ex J = hn_symmat_get(w->K, i, j);
+            const hn_ex part = hn_div(w->g, hn_mul(w->g, J, J), w->ref[j]);
+            w->ref[i] = hn_sub(w->g, w->ref[i], part);
+        }
+    }
+}
+
 static hn_status eliminate(work *w, int i) {
     hn_ldl *out = w->out;
     int pair[2] = {i, w->partner[i]}, blocked;
@@ -226,6 +247,10 @@ static hn_status eliminate(work *w, int i) {
     hn_ex *inverse = out->Dinv[out->n_blocks];
     if (!reserve_rows(w, n)) {
         return HN_ERR_MEMORY;
+    }
+    add_shared(w, pair[0], n);
+    if (pair[1] >= 0) {
+        add_shared(w, pair[1], n);
     }
     if (!invert(w, pair, inverse)) {
         out->available = 0;
@@ -274,6 +299,7 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     out->guard = hn_arena_get(w->arena, n * sizeof *out->guard);
     w->gone = hn_arena_get(w->arena, n);
     w->massive = hn_arena_get(w->arena, n);
+    w->shared = hn_arena_get(w->arena, n);
     w->marked = hn_arena_get(w->arena, n);
     w->partner = hn_arena_ints(w->arena, n);
     w->degree = hn_arena_ints(w->arena, n);

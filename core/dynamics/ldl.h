@@ -4,11 +4,11 @@
 // built. Unknowns: 0 .. nv-1 accelerations, nv .. nv+nc-1 multipliers (negative).
 //
 // Order: minimum degree under the rule that a multiplier is never eliminated before every massive coordinate it touches (its
-// pivot, zero at first, is then minus a sum of squares), and a massless coordinate only once a multiplier gave it a pivot.
+// pivot, zero at first, is then minus a sum of squares), except those that the legs of a platform share, and a massless coordinate only once a multiplier gave it a pivot.
 // Pivots are 1 x 1, or two multipliers of the same pattern taken together as 2 x 2.
 //
 // No pivoting by size happens at run time, so every pivot comes with a reference: a coordinate's own entry of W; for a
-// multiplier the sum that the coordinates alone contributed. A pivot small against its reference is lost digits.
+// multiplier the sum that the coordinates alone contribute, shared ones included. A pivot small against its reference is lost digits.
 
 #include "base/arena.h"
 #include "dynamics/entries.h"
