@@ -125,10 +125,15 @@ static void update_degree(work *w, int i) {
     }
 }
 
+/// Least degree; shared coordinates only when nothing else is left.
 static int choose(const work *w) {
     int best = -1;
     for (int i = 0; i < w->out->n; i++) {
-        if (!w->gone[i] && w->degree[i] >= 0 && (best < 0 || w->degree[i] < w->degree[best])) {
+        if (w->gone[i] || w->degree[i] < 0) {
+            continue;
+        }
+        if (best < 0 || w->shared[i] < w->shared[best] ||
+            (w->shared[i] == w->shared[best] && w->degree[i] < w->degree[best])) {
             best = i;
         }
     }
