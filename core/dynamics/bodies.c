@@ -99,43 +99,57 @@ static void express_user_coordinates(hn_system *sys) {
 // loops and points -------------------------------------------------------------------------------------------------
 
 static void name_loops(hn_system *sys) {
-    for (int k = 0; k < sys->n_loops; k++) {
+    for (int k = 0; k < sys->tree.n_cut; k++) {
         const hn_joint *joint = &sys->scene->joints[sys->tree.cut[k]];
-        sys->loops[k].joint = sys->tree.cut[k];
-        sys->loops[k].name = joint->name;
-        sys->loops[k].why =
-            joint->cut ? "the scene asks for it" : "both its bodies hang on the tree already";
+        sys->loops[k] = (hn_loop){.joint = sys->tree.cut[k],
+                                  .name = joint->name,
+                                  .constraint = -1,
+                                  .tear = k,
+                                  .why = joint->cut ? "the scene asks for it"
+                                                    : "both its bodies hang on the tree already"};
     }
+    hn_constraints_name_loops(sys);
+}
+
+static void put_point(hn_system *sys, int at, hn_vec3 p) {
+    for (int i = 0; i < 3; i++) {
+        sys->points[3 * at + i] = p.x[i];
+    }
+}
+
+static hn_status trace_point(hn_mech *m, int at, int body, const hn_quantity *place) {
+    int link = hn_tree_link(m->tree, body);
+    hn_vec3 arm;
+    hn_status status = hn_mech_arm_of(m, link, place, &arm);
+    if (status == HN_OK) {
+        put_point(m->sys, at, hn_mech_world(m, link, arm));
+    }
+    return status;
 }
 
 static hn_status trace_points(hn_mech *m) {
     hn_system *sys = m->sys;
     const hn_scene *scene = sys->scene;
+    hn_status status = HN_OK;
     int n = 0;
-    for (int k = 0; k < scene->n_points + 2 * sys->n_loops; k++) {
-        int body = HN_GROUND;
-        const hn_quantity *at;
-        if (k < scene->n_points) {
-            body = scene->points[k].body;
-            at = scene->points[k].at;
-        } else {
-            int half = (k - scene->n_points) % 2;
-            const hn_joint *joint = &scene->joints[sys->tree.cut[(k - scene->n_points) / 2]];
-            body = half ? joint->child : joint->parent;
-            at = half ? joint->child_at : joint->parent_at;
-        }
-        int link = hn_tree_link(m->tree, body);
-        hn_vec3 arm;
-        hn_status status = hn_mech_arm_of(m, link, at, &arm);
-        if (status != HN_OK) {
-            return status;
-        }
-        hn_vec3 p = hn_mech_world(m, link, arm);
-        for (int i = 0; i < 3; i++) {
-            sys->points[n++] = p.x[i];
+    for (; n < scene->n_points && status == HN_OK; n++) {
+        status = trace_point(m, n, scene->points[n].body, scene->points[n].at);
+    }
+    for (int k = 0; k < sys->tree.n_cut && status == HN_OK; k++) {
+        const hn_joint *joint = &scene->joints[sys->tree.cut[k]];
+        status = trace_point(m, n++, joint->parent, joint->parent_at);
+        if (status == HN_OK) {
+            status = trace_point(m, n++, joint->child, joint->child_at);
         }
     }
-    return HN_OK;
+    for (int k = 0; k < scene->n_constraints && status == HN_OK; k++) {
+        hn_vec3 foot;
+        if (hn_constraint_has_points(&scene->constraints[k])) {
+            status = hn_mech_constraint_foot(m, &scene->constraints[k], &foot);
+            put_point(sys, n++, status == HN_OK ? foot : hn_vec3_zero());
+        }
+    }
+    return status;
 }
 
 // loads ------------------------------------------------------------------------------------------------------------
@@ -198,6 +212,32 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     return HN_OK;
 }
 
+/// How the rates turn the body of a point, in world axes.
+static hn_status spin_of_body(void *self, int p, hn_span *out) {
+    hn_mech *m = self;
+    hn_relative rel;
+    hn_status status = get_span(m, p, -1, &rel);
+    if (status != HN_OK) {
+        return status;
+    }
+    size_t cap = (size_t)rel.a.n + 1;
+    out->n = 0;
+    out->coordinate = hn_arena_ints(m->sys->arena, cap);
+    out->coefficient = hn_arena_get(m->sys->arena, cap * sizeof *out->coefficient);
+    if (!out->coordinate || !out->coefficient) {
+        return HN_ERR_MEMORY;
+    }
+    hn_mat3 to_world = hn_mat3_num(rel.to_world);
+    for (int k = 0; k < rel.a.n; k++) {
+        const hn_lever *lever = &rel.a.levers[k];
+        if (lever->open) {
+            out->coordinate[out->n] = lever->coordinate;
+            out->coefficient[out->n++] = hn_mat3_apply(m->g, &to_world, lever->axis);
+        }
+    }
+    return HN_OK;
+}
+
 // the whole ----------------------------------------------------------------------------------------------------------
 
 static hn_status make_mech(hn_system *sys, hn_mech *m) {
@@ -215,7 +255,12 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
 }
 
 /// Entries that M and J may have: beyond that the equations outgrow any tape, and writing them down would take minutes.
-enum { MAX_MASS_ENTRIES = 60000, MAX_CLOSURE_ENTRIES = 300000, ROWS_PER_JOINT = 6 };
+enum {
+    MAX_MASS_ENTRIES = 60000,
+    MAX_CLOSURE_ENTRIES = 300000,
+    ROWS_PER_JOINT = 6,
+    ROWS_PER_CONSTRAINT = 2
+};
 
 /// The mass matrix couples each body to all that carry it; a closure row touches every body on its two paths.
 static hn_status check_size(const hn_mech *m) {
@@ -259,7 +304,10 @@ static hn_status trace_terms(hn_mech *m) {
     hn_mech_trace_energy(m);
     status = hn_mech_trace_loops(m);
     if (status == HN_OK) {
-        hn_geometry geometry = {.self = m, .span = span_of_points};
+        status = hn_mech_trace_constraints(m);
+    }
+    if (status == HN_OK) {
+        hn_geometry geometry = {.self = m, .span = span_of_points, .spin = spin_of_body};
         status = hn_loads_compile(m->sys, &geometry);
     }
     return status == HN_OK ? trace_points(m) : status;
@@ -281,19 +329,28 @@ static hn_status list_balls(hn_system *sys) {
     return HN_OK;
 }
 
+/// Constraints that have a point where they should be.
+static int count_feet(const hn_scene *scene) {
+    int n = 0;
+    for (int i = 0; i < scene->n_constraints; i++) {
+        n += hn_constraint_has_points(&scene->constraints[i]);
+    }
+    return n;
+}
+
 hn_status hn_bodies_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
-    hn_mech m;
-    if (scene->n_constraints > 0) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, scene->constraints[0].pointer, NULL,
-                            "constraints beside the joints cannot be compiled");
+    hn_mech *m = hn_arena_get(sys->arena, sizeof *m);
+    if (!m) {
+        return HN_ERR_MEMORY;
     }
     hn_status status =
         hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
     if (status == HN_OK) {
-        int n_cut = sys->tree.n_cut;
+        const int n_cut = sys->tree.n_cut, more = scene->n_constraints;
         status = hn_system_allocate(sys, sys->tree.n_positions, sys->tree.n_coordinates,
-                                    ROWS_PER_JOINT * n_cut, n_cut, scene->n_points + 2 * n_cut);
+                                    ROWS_PER_JOINT * n_cut + ROWS_PER_CONSTRAINT * more,
+                                    n_cut + more, scene->n_points + 2 * n_cut + count_feet(scene));
     }
     if (status == HN_OK) {
         status = list_balls(sys);
@@ -304,10 +361,12 @@ hn_status hn_bodies_compile(hn_system *sys) {
     if (status == HN_OK) {
         express_user_coordinates(sys);
         name_loops(sys);
-        status = make_mech(sys, &m);
+        status = make_mech(sys, m);
+        sys->mech = m;
     }
     if (status == HN_OK) {
-        status = trace_terms(&m);
+        status = trace_terms(m);
     }
-    return status == HN_OK ? hn_system_make_drawing(sys, sys->n_loops) : status;
+    return status == HN_OK ? hn_system_make_drawing(sys, sys->tree.n_cut + count_feet(scene))
+                           : status;
 }

@@ -17,7 +17,25 @@ static int half_joint_point(const hn_system *sys, int loop, int half) {
     return scene->n_points + 2 * loop + half;
 }
 
-/// Bodies and joints: points of the scene, then the two half-joints of every cut joint. Lagrangian: the scene's own tears.
+/// The pair of points that part when a loop of bodies does not close; coordinates that part have none.
+static void name_tear(const hn_system *sys, int k, int (*tears)[2], const char **names) {
+    const hn_loop *loop = &sys->loops[k];
+    if (loop->tear < 0) {
+        return;
+    }
+    names[loop->tear] = loop->name;
+    if (loop->constraint >= 0) {
+        tears[loop->tear][0] = sys->scene->constraints[loop->constraint].p;
+        tears[loop->tear][1] = sys->scene->n_points + sys->tree.n_cut + loop->tear;
+        return;
+    }
+    for (int half = 0; half < 2; half++) {
+        tears[loop->tear][half] = half_joint_point(sys, k, half);
+    }
+}
+
+/// Bodies and joints: points of the scene, then the two half-joints of every cut joint, then where the points of constraints should
+/// be. Lagrangian: the scene's own tears.
 hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     const hn_scene *scene = sys->scene;
     size_t n = (size_t)n_tears + 1;
@@ -31,14 +49,13 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     for (int i = 0; i < scene->n_points; i++) {
         labels[i] = scene->points[i].name;
     }
-    for (int i = 0; i < n_tears; i++) {
-        for (int half = 0; half < 2; half++) {
-            tears[i][half] =
-                scene->is_lagrangian ? scene->tears[i][half] : half_joint_point(sys, i, half);
-        }
-        names[i] = scene->is_lagrangian
-                       ? "loop"
-                       : sys->loops[i].name; // formulas do not say which tear is theirs
+    for (int i = 0; i < n_tears && scene->is_lagrangian; i++) {
+        tears[i][0] = scene->tears[i][0];
+        tears[i][1] = scene->tears[i][1];
+        names[i] = "loop"; // formulas do not say which tear is theirs
+    }
+    for (int k = 0; k < sys->n_loops && !scene->is_lagrangian; k++) {
+        name_tear(sys, k, tears, names);
     }
     sys->drawing = (hn_drawing){.n_points = sys->info.n_points,
                                 .labels = labels,

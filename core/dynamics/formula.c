@@ -6,9 +6,10 @@
 
 typedef struct scope {
     hn_system *sys;
-    int with_state;      ///< coordinates, rates and t may appear
-    const char *refused; ///< a name that exists but has no expression here
-    int refused_ball;    ///< because it is an entry of an orientation
+    int with_state;         ///< coordinates, rates and t may appear
+    const hn_ex *positions; ///< of the scene coordinates
+    const char *refused;    ///< a name that exists but has no expression here
+    int refused_ball;       ///< because it is an entry of an orientation
 } scope;
 
 static int find_state(scope *s, const char *name, hn_ex *out) {
@@ -30,7 +31,7 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
             *out = hn_num(0);
             return 1;
         }
-        *out = is_position ? sys->user_q[i] : sys->user_v[i];
+        *out = is_position ? s->positions[i] : sys->user_v[i];
         return 1;
     }
     return 0;
@@ -48,11 +49,16 @@ static int find_name(void *user, const char *name, hn_ex *out) {
 }
 
 hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out) {
+    return hn_system_quantity_of(sys, quantity, sys->user_q, out);
+}
+
+hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, const hn_ex *positions,
+                                hn_ex *out) {
     *out = hn_num(quantity->value);
     if (!quantity->formula || (!quantity->varies && !sys->opts.symbolic_params)) {
         return HN_OK;
     }
-    scope s = {.sys = sys, .with_state = quantity->varies};
+    scope s = {.sys = sys, .with_state = quantity->varies, .positions = positions};
     hn_parse_opts opts = {.lookup = find_name, .user = &s};
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);

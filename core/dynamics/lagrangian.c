@@ -156,8 +156,11 @@ static hn_status add_constraint(hn_system *sys, int i) {
 static hn_status trace_constraints(hn_system *sys) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
     for (int i = 0; i < l->n_constraints; i++) {
-        sys->loops[i] = (hn_loop){
-            .name = l->constraint_names[i], .joint = -1, .why = "a constraint of the scene"};
+        sys->loops[i] = (hn_loop){.constraint = -1,
+                                  .tear = -1,
+                                  .name = l->constraint_names[i],
+                                  .joint = -1,
+                                  .why = "a constraint of the scene"};
         hn_status status = add_constraint(sys, i);
         if (status != HN_OK) {
             return status;

@@ -117,4 +117,24 @@ hn_vec3 hn_lever_coefficient(hn_graph *g, const hn_lever *lever);
 /// Closure rows of every cut joint, and the coordinates of cut joints.
 HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
 HN_MUST_CHECK hn_status hn_mech_cut_coordinates(hn_mech *m);
+
+/// The angle of link b against link a about an axis of a, as a difference of two absolute angles.
+typedef struct hn_turn {
+    double sign;
+    int speed[2];      ///< system speeds of a and b, -1: does not turn
+    hn_ex angle, rate; ///< sign (theta_b - theta_a + constant), sign (theta_b' - theta_a')
+} hn_turn;
+/// Directions in body axes; the angle is 0 where ref_b lies on ref_a, seen along the axis. Returns 0 if the links do not turn about
+/// parallel axes along this one, or a ref lies along it.
+int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
+                          const double ref_b[3], hn_turn *out);
+
+// constraints beside the joints (constraints.c) ----------------------------------------------------------------------
+
+int hn_constraint_has_points(const hn_constraint *k);
+/// Loops behind those of the cut joints.
+void hn_constraints_name_loops(hn_system *sys);
+HN_MUST_CHECK hn_status hn_mech_trace_constraints(hn_mech *m);
+/// Where point p of a constraint with points should be, in the world: it lies there when the constraint holds.
+HN_MUST_CHECK hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *out);
 #endif

@@ -74,6 +74,9 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->params = get_exprs(sys, (size_t)sys->scene->n_params);
     sys->user_q = get_exprs(sys, nu);
     sys->user_v = get_exprs(sys, nu);
+    sys->user_gamma = get_exprs(sys, nu);
+    sys->load_values =
+        hn_arena_get(sys->arena, ((size_t)sys->scene->n_loads + 1) * sizeof *sys->load_values);
     sys->user_known = hn_arena_get(sys->arena, nu);
     sys->q_symbols = hn_arena_ints(sys->arena, (size_t)nq);
     sys->v_symbols = hn_arena_ints(sys->arena, n);
@@ -114,7 +117,10 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     sys->phi[i] = row->phi;
     sys->phi_t[i] = row->phi_t;
     sys->gamma[i] = row->gamma;
-    sys->rows[i] = (hn_row){row->name, row->loop, row->is_length};
+    sys->rows[i] = (hn_row){.name = row->name, .loop = row->loop, .is_length = row->is_length};
+    if (row->wrench) {
+        sys->rows[i].wrench = *row->wrench;
+    }
     for (int k = 0; k < row->n_J; k++) {
         hn_entries_add(&sys->J, i, row->J[k].col, row->J[k].e);
     }
@@ -165,7 +171,8 @@ static hn_status finish(hn_system *sys) {
     size_t n = (size_t)sys->nv, m = (size_t)sys->nc;
     sys->M_dense = get_exprs(sys, n * n);
     sys->J_dense = get_exprs(sys, m * n);
-    if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || hn_graph_failed(sys->g)) {
+    if (hn_arena_failed(sys->arena) || sys->M.failed || sys->J.failed || sys->efforts.failed ||
+        hn_graph_failed(sys->g)) {
         return HN_ERR_MEMORY;
     }
     hn_entries_sort(&sys->M);
@@ -270,6 +277,7 @@ void hn_system_free(hn_system *sys) {
     }
     hn_entries_reset(&sys->M);
     hn_entries_reset(&sys->J);
+    hn_entries_reset(&sys->efforts);
     hn_graph_free(sys->g);
     hn_arena_free(sys->arena);
     free(sys);

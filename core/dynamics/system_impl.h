@@ -8,17 +8,33 @@
 #include "dynamics/tree.h"
 #include "dynamics/vec3.h"
 
+/// What the multiplier of a row does, per unit of it, in the frame of its closure (closure.h): `force` on end b at its point, the
+/// opposite on end a at its own; the moments on the two bodies beside that. `turn` takes the axes E of b's link to that frame.
+typedef struct hn_row_wrench {
+    hn_vec3 force, moment_a, moment_b;
+    hn_mat3 turn;
+} hn_row_wrench;
+
 typedef struct hn_row {
     const char *name;
     int loop;
     int is_length;
+    hn_row_wrench wrench; ///< bodies only; zero for gears and formulas, which act along coordinates
 } hn_row;
 
 typedef struct hn_loop {
     const char *name;
     int joint;       ///< scene joint, -1: a tear or formula
     const char *why; ///< why this joint was cut, for telling; static text
+    int constraint;  ///< scene constraint beside the joints, -1: none
+    int tear;        ///< its pair of points in the drawing, -1: none
 } hn_loop;
+
+/// What a load gives, for telling its wrenches: a force [N] or moment [N m] in world axes; a spring between points: force over length in
+/// x[0]; along a coordinate: force or torque in x[0].
+typedef struct hn_load_value {
+    hn_ex x[3];
+} hn_load_value;
 
 /// Four entries of q from `position` and three speeds from `speed`: see tree.h.
 typedef struct hn_ball {
@@ -47,6 +63,7 @@ struct hn_system {
     int t_symbol, alpha_symbol, beta_symbol;
     hn_ex *params;          ///< per scene parameter: a number, or its symbol
     hn_ex *user_q, *user_v; ///< per SCENE coordinate; a cut joint's is derived
+    hn_ex *user_gamma;      ///< its acceleration at zero u-dot
     char *user_known;       ///< per scene coordinate: HN_KNOWN_...
 
     // terms
@@ -61,10 +78,16 @@ struct hn_system {
     hn_loop *loops;
     double length;
     hn_drawing drawing;
+    const struct hn_mech *mech; ///< bodies: the trace, kept for reactions
+    hn_load_value *load_values; ///< per load
+    hn_entries efforts;         ///< row, scene coordinate: d phi / dx of gears and formulas
 };
 
 /// The expression of a quantity: its number, or its formula in parameters and, where it varies, the state.
 HN_MUST_CHECK hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out);
+/// The same with these expressions for the scene's coordinates (by index) instead of their own.
+HN_MUST_CHECK hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity,
+                                              const hn_ex *positions, hn_ex *out);
 /// Three at once.
 HN_MUST_CHECK hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out);
 /// A closure row: kept, dropped when it vanishes identically, or refused when it is a constant that is not zero. `J`
@@ -75,7 +98,8 @@ typedef struct hn_new_row {
     hn_ex phi, phi_t, gamma;
     const hn_entry *J;
     int n_J;
-    const char *pointer; ///< of the joint or formula
+    const char *pointer;         ///< of the joint or formula
+    const hn_row_wrench *wrench; ///< NULL: none
 } hn_new_row;
 HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row);
 
@@ -96,6 +120,8 @@ typedef struct hn_span {
 typedef struct hn_geometry {
     void *self;
     hn_status (*span)(void *self, int p, int q, hn_span *out);
+    /// How the rates turn the body of point p, in world axes (delta is not used); NULL where there are no bodies.
+    hn_status (*spin)(void *self, int p, hn_span *out);
 } hn_geometry;
 /// Loads of either kind, by virtual work: adds to f, springs also to potential.
 HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
