@@ -1,7 +1,7 @@
 #include "integrators/implicit_ode.h"
 
 #include "integrators/control.h"
-#include "integrators/newton.h"
+#include "integrators/stages.h"
 #include "linalg/dense.h"
 #include "linalg/lu.h"
 
@@ -12,7 +12,7 @@
 #define NEWTON_SHARE 0.01 // of the tolerance: what Newton's method may leave
 
 typedef struct implicit_ode {
-    hn_newton nw;
+    hn_stages nw;
     const hn_ode *ode; // during a step
     int n;
     double rtol, atol;
@@ -100,7 +100,7 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
     s->pivot[0] = hn_arena_ints(arena, w);
     s->pivot[1] = hn_arena_ints(arena, w);
     s->guess = hn_arena_doubles(arena, (size_t)col->stages * w);
-    const hn_status status = hn_newton_init(&s->nw, col, &eq, arena);
+    const hn_status status = hn_stages_init(&s->nw, col, &eq, arena);
     return status == HN_OK && !hn_arena_failed(arena) ? s : NULL;
 }
 
@@ -214,11 +214,11 @@ hn_status hn_implicit_ode_step(void *self, const hn_ode *ode, double t, double h
     }
     set_scale(s, ode);
     guess_stages(s, h);
-    status = hn_newton_solve(&s->nw, t, h);
+    status = hn_stages_solve(&s->nw, t, h);
     if (status != HN_OK) {
         return status;
     }
-    hn_newton_end(&s->nw, y_new);
+    hn_stages_end(&s->nw, y_new);
     hn_axpy(s->n, 1, y, y_new);
     s->h = h;
     return err && s->nw.col.has_error && s->rtol > 0 ? estimate_error(s, t, h, y_new, err) : HN_OK;
@@ -236,7 +236,7 @@ void hn_implicit_ode_accepted(void *self, int changed) {
 
 void hn_implicit_ode_dense(void *self, double theta, double *y) {
     implicit_ode *s = self;
-    hn_newton_dense(&s->nw, theta, y);
+    hn_stages_dense(&s->nw, theta, y);
     hn_axpy(s->n, 1, s->y0, y);
 }
 

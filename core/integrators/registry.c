@@ -23,6 +23,12 @@ static const hn_stepper *const steppers[] = {
     &hn_stepper_gsl_msadams,
     &hn_stepper_gsl_msbdf,
     &hn_stepper_gsl_bsimp,
+    &hn_stepper_implicit_euler,
+    &hn_stepper_midpoint,
+    &hn_stepper_gauss2,
+    &hn_stepper_gauss3,
+    &hn_stepper_radau3,
+    &hn_stepper_radau5,
 };
 enum { N_STEPPERS = sizeof steppers / sizeof steppers[0] };
 

@@ -11,6 +11,9 @@ extern const hn_stepper hn_stepper_hem3, hn_stepper_hem4, hn_stepper_hem4_adapti
     hn_stepper_half_explicit_rk4, hn_stepper_rattle, hn_stepper_genalpha, hn_stepper_trapezoidal,
     hn_stepper_hht;
 
+extern const hn_stepper hn_stepper_implicit_euler, hn_stepper_midpoint, hn_stepper_gauss2,
+    hn_stepper_gauss3, hn_stepper_radau3, hn_stepper_radau5;
+
 /// The one setting of every fixed-step integrator.
 #define HN_SETTING_STEP \
     { "h", 1e-3, 1e-12, 100, "s", "step size", NULL, 0, 0 }

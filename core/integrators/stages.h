@@ -1,5 +1,5 @@
-#ifndef HN_INTEGRATORS_NEWTON_H
-#define HN_INTEGRATORS_NEWTON_H
+#ifndef HN_INTEGRATORS_STAGES_H
+#define HN_INTEGRATORS_STAGES_H
 // The stages of a collocation method by simplified Newton iteration, whatever the equations are:
 //
 //     R(t + c_i h, Z_i, Z'_i, L_i) = 0,   Z'_i = 1/h sum_j (A^-1)_ij Z_j,   i = 1 .. stages                        (1)
@@ -13,7 +13,7 @@
 #include "base/status.h"
 #include "integrators/implicit_tableau.h"
 
-enum { HN_NEWTON_WHY = 200 };
+enum { HN_STAGES_WHY = 200 };
 
 /// A vector in the basis of (1): real, or a complex one as two parts.
 typedef struct hn_parts {
@@ -34,7 +34,7 @@ typedef struct hn_stage_equations {
     void (*solve)(void *self, hn_parts r);
 } hn_stage_equations;
 
-typedef struct hn_newton {
+typedef struct hn_stages {
     hn_collocation col;
     hn_stage_equations eq;
     int n;             ///< n_diff + n_alg
@@ -44,17 +44,17 @@ typedef struct hn_newton {
     double *scale;     ///< n_diff: sizes that corrections are measured by, set by the caller
     double tol;        ///< corrections at or below are negligible; 0: go on to rounding
     long long iterations, factorisations, solves, residuals;
-    char why[HN_NEWTON_WHY];
-} hn_newton;
+    char why[HN_STAGES_WHY];
+} hn_stages;
 
 /// Memory for the arrays. Fails with HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_newton_init(hn_newton *nw, const hn_collocation *col,
+HN_MUST_CHECK hn_status hn_stages_init(hn_stages *nw, const hn_collocation *col,
                                        const hn_stage_equations *eq, hn_arena *arena);
 /// Solves (1) for a step of size h from t. Fails: HN_ERR_NO_CONVERGENCE, HN_ERR_SINGULAR, HN_ERR_DIVERGED, or what the
 /// residual says; `why` then tells in words. Allocates nothing.
-HN_MUST_CHECK hn_status hn_newton_solve(hn_newton *nw, double t, double h);
+HN_MUST_CHECK hn_status hn_stages_solve(hn_stages *nw, double t, double h);
 /// y1 - y0 of the part that is differentiated (n_diff), and the same at t + theta h.
-void hn_newton_end(const hn_newton *nw, double *z);
-void hn_newton_dense(const hn_newton *nw, double theta, double *z);
+void hn_stages_end(const hn_stages *nw, double *z);
+void hn_stages_dense(const hn_stages *nw, double theta, double *z);
 
 #endif

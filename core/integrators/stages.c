@@ -1,4 +1,4 @@
-#include "integrators/newton.h"
+#include "integrators/stages.h"
 
 #include "linalg/dense.h"
 
@@ -12,10 +12,10 @@ enum { MOST_TO_TOLERANCE = 10, MOST_TO_ROUNDING = 40 };
 #define STALLED 0.3
 #define HOPELESS 2 // corrections that grow by this twice in a row
 
-hn_status hn_newton_init(hn_newton *nw, const hn_collocation *col, const hn_stage_equations *eq,
+hn_status hn_stages_init(hn_stages *nw, const hn_collocation *col, const hn_stage_equations *eq,
                          hn_arena *arena) {
     const size_t s = (size_t)col->stages, n = (size_t)(eq->n_diff + eq->n_alg);
-    *nw = (hn_newton){.col = *col, .eq = *eq, .n = (int)n};
+    *nw = (hn_stages){.col = *col, .eq = *eq, .n = (int)n};
     nw->u = hn_arena_doubles(arena, s * n);
     nw->rate = hn_arena_doubles(arena, s * (size_t)eq->n_diff);
     nw->r = hn_arena_doubles(arena, s * n);
@@ -29,7 +29,7 @@ static double *stage_of(double *u, int i, int n) {
 }
 
 // out_i = sum_j W_ij in_j over stages
-static void combine(const hn_newton *nw, double (*W)[HN_IMPLICIT_STAGES], const double *in,
+static void combine(const hn_stages *nw, double (*W)[HN_IMPLICIT_STAGES], const double *in,
                     double *out) {
     const int s = nw->col.stages, n = nw->n;
     for (int i = 0; i < s; i++) {
@@ -43,7 +43,7 @@ static void combine(const hn_newton *nw, double (*W)[HN_IMPLICIT_STAGES], const 
     }
 }
 
-static void find_rates(hn_newton *nw, double h) {
+static void find_rates(hn_stages *nw, double h) {
     const int s = nw->col.stages, n = nw->n, nd = nw->eq.n_diff;
     for (int i = 0; i < s; i++) {
         for (int k = 0; k < nd; k++) {
@@ -56,7 +56,7 @@ static void find_rates(hn_newton *nw, double h) {
     }
 }
 
-static hn_status factor(hn_newton *nw, double t, double h) {
+static hn_status factor(hn_stages *nw, double t, double h) {
     const hn_collocation *col = &nw->col;
     hn_status status = HN_OK;
     if (col->n_real) {
@@ -73,7 +73,7 @@ static hn_status factor(hn_newton *nw, double t, double h) {
     return status;
 }
 
-static hn_status residuals(hn_newton *nw, double t, double h) {
+static hn_status residuals(hn_stages *nw, double t, double h) {
     find_rates(nw, h);
     for (int i = 0; i < nw->col.stages; i++) {
         const hn_status status =
@@ -89,7 +89,7 @@ static hn_status residuals(hn_newton *nw, double t, double h) {
 }
 
 // u += correction; returns its size
-static double correct(hn_newton *nw) {
+static double correct(hn_stages *nw) {
     const int s = nw->col.stages, n = nw->n, nd = nw->eq.n_diff;
     combine(nw, nw->col.T_inverse, nw->r, nw->parts);
     for (int block = 0; block < nw->col.n_real + nw->col.n_pairs; block++) {
@@ -113,7 +113,7 @@ static double correct(hn_newton *nw) {
     return worst;
 }
 
-static hn_status give_up(hn_newton *nw, double t, double h, int n, double ratio) {
+static hn_status give_up(hn_stages *nw, double t, double h, int n, double ratio) {
     if (ratio < 1) {
         snprintf(nw->why, sizeof nw->why,
                  "Newton's method at t = %.6g s: after %d iterations each correction is still %.2g "
@@ -128,7 +128,7 @@ static hn_status give_up(hn_newton *nw, double t, double h, int n, double ratio)
 }
 
 // 1 when what is left is below the tolerance, or is rounding
-static int is_done(const hn_newton *nw, double size, double ratio) {
+static int is_done(const hn_stages *nw, double size, double ratio) {
     if (size <= ROUNDING) {
         return 1;
     }
@@ -138,7 +138,7 @@ static int is_done(const hn_newton *nw, double size, double ratio) {
     return nw->tol <= 0 && ratio > STALLED && size <= NEAR_ROUNDING;
 }
 
-hn_status hn_newton_solve(hn_newton *nw, double t, double h) {
+hn_status hn_stages_solve(hn_stages *nw, double t, double h) {
     const int most = nw->tol > 0 ? MOST_TO_TOLERANCE : MOST_TO_ROUNDING;
     double last = 0, ratio = HUGE_VAL;
     int grown = 0;
@@ -168,7 +168,7 @@ hn_status hn_newton_solve(hn_newton *nw, double t, double h) {
     return status == HN_OK ? give_up(nw, t, h, most, ratio) : status;
 }
 
-static void weigh(const hn_newton *nw, const double *w, double *z) {
+static void weigh(const hn_stages *nw, const double *w, double *z) {
     for (int k = 0; k < nw->eq.n_diff; k++) {
         double sum = 0;
         for (int i = 0; i < nw->col.stages; i++) {
@@ -178,11 +178,11 @@ static void weigh(const hn_newton *nw, const double *w, double *z) {
     }
 }
 
-void hn_newton_end(const hn_newton *nw, double *z) {
+void hn_stages_end(const hn_stages *nw, double *z) {
     weigh(nw, nw->col.end, z);
 }
 
-void hn_newton_dense(const hn_newton *nw, double theta, double *z) {
+void hn_stages_dense(const hn_stages *nw, double theta, double *z) {
     double w[HN_IMPLICIT_STAGES];
     hn_collocation_dense(&nw->col, theta, w);
     weigh(nw, w, z);
