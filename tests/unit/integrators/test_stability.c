@@ -50,11 +50,15 @@ static int is_stepped_by_the_caller(const hn_stepper *s) {
     return s->create && s->step;
 }
 
+static int is_explicit(const hn_stepper *s) {
+    return is_stepped_by_the_caller(s) && isfinite(s->real_limit);
+}
+
 static void cards_carry_the_limits_of_the_stability_polynomials(void **state) {
     (void)state;
     int served = 0;
     for (int k = 0; k < hn_stepper_count(); k++) {
-        served += is_stepped_by_the_caller(hn_stepper_at(k));
+        served += is_explicit(hn_stepper_at(k));
     }
     assert_int_equal(served, N_TABLE);
     for (int k = 0; k < N_TABLE; k++) {
@@ -69,7 +73,7 @@ static void a_critically_damped_gap_decays_below_the_real_limit_and_grows_beyond
     (void)state;
     for (int k = 0; k < hn_stepper_count(); k++) {
         const hn_stepper *s = hn_stepper_at(k);
-        if (!is_stepped_by_the_caller(s)) {
+        if (!is_explicit(s)) {
             continue; // the others have tests of their own
         }
         const double below = 0.99 * s->real_limit, beyond = 1.01 * s->real_limit;
@@ -83,7 +87,7 @@ an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond(vo
     (void)state;
     for (int k = 0; k < hn_stepper_count(); k++) {
         const hn_stepper *s = hn_stepper_at(k);
-        if (!is_stepped_by_the_caller(s)) {
+        if (!is_explicit(s)) {
             continue; // the others have tests of their own
         }
         const int n = 1000000; // dopri5 grows by 1e-5 a step only just beyond its limit
@@ -93,6 +97,30 @@ an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond(vo
         }
         assert_true(size_after(s, 0, 0.98 * s->imag_limit, n) < 20);
         assert_true(size_after(s, 0, 1.05 * s->imag_limit, n) > 1e3);
+    }
+}
+
+// R(infinity) is 0 for Radau IIA, 1 or -1 for Gauss: what a stiff mode does, however large the step
+static void methods_without_a_limit_damp_a_stiff_oscillation_or_let_it_ring(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int damps;
+    } rows[] = {{"implicit-euler", 1}, {"radau3", 1}, {"radau5", 1},
+                {"midpoint", 0},       {"gauss2", 0}, {"gauss3", 0}};
+    int served = 0;
+    for (int k = 0; k < hn_stepper_count(); k++) {
+        served += is_stepped_by_the_caller(hn_stepper_at(k)) && !is_explicit(hn_stepper_at(k));
+    }
+    assert_int_equal(served, sizeof rows / sizeof rows[0]);
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+        const hn_stepper *s = hn_stepper_find(rows[k].name);
+        const double b = 1e3, size = size_after(s, 0, b, 1000);
+        if (rows[k].damps) {
+            assert_true(size < 1e-10);
+        } else { // x^2 + (x'/b)^2 stays 1: of (x, x') between 1 and b
+            assert_in_range((long)(1e6 * size), 999999, (long)(1.001e6 * b));
+        }
     }
 }
 
@@ -116,6 +144,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(
             an_undamped_oscillation_is_bounded_below_the_imaginary_limit_and_grows_beyond, setup,
             teardown),
+        cmocka_unit_test_setup_teardown(
+            methods_without_a_limit_damp_a_stiff_oscillation_or_let_it_ring, setup, teardown),
         cmocka_unit_test_setup_teardown(explicit_euler_grows_by_the_exact_factor, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
