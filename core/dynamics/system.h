@@ -7,8 +7,10 @@
 //
 // Coordinates. The compiler chooses its own: along consecutive parallel revolute axes it uses absolute angles and
 // rates (M gets sparse, see the tape sizes), everywhere else the scene's. Everything below dynamics' callers is in SYSTEM
-// coordinates q (nq), v (nv); people see the scene's USER coordinates; the constant linear map between them is
-// hn_system_to_user() and hn_system_from_user(). nq == nv unless a joint needs more parameters than freedoms.
+// coordinates q (nq), v (nv); people see the scene's USER coordinates (nv of them); the constant linear map between them is
+// hn_system_to_user() and hn_system_from_user(). nq == nv but for orientations (spherical and free joints): there q has a unit
+// quaternion of four entries, users see its rotation vector (axis times angle, no longer than pi), and the rates of both are
+// the angular velocity.
 //
 // The system is constant after compilation: threads may share it, except hn_eval_create() (which adds nodes to the
 // graph): create evaluators from one thread at a time.
@@ -35,7 +37,7 @@ const hn_scene *hn_system_scene(const hn_system *sys);
 typedef struct hn_system_info {
     int nq, nv,
         nc;      ///< sizes in system coordinates; nc rows left after identically zero rows are gone
-    int n_user;  ///< scene coordinates that carry freedom (tree joints), same number as nq for now
+    int n_user;  ///< scene coordinates that carry freedom (tree joints), as many as nv
     int n_loops; ///< joints (or tears) that close a loop
     int n_points; ///< world points for drawing
     int rows_before,
@@ -63,7 +65,7 @@ int hn_system_tree_joint(const hn_system *sys, int body);
 /// 1 if the joint was cut to close a loop.
 int hn_system_joint_is_cut(const hn_system *sys, int joint);
 
-// user <-> system, constant linear maps: positions, and rates or accelerations (the same map without offset)
+// user <-> system, constant linear maps but for orientations: positions, and rates or accelerations (without offset)
 void hn_system_to_user(const hn_system *sys, const double *q, double *user_q);
 void hn_system_from_user(const hn_system *sys, const double *user_q, double *q);
 void hn_system_rates_to_user(const hn_system *sys, const double *v, double *user_v);

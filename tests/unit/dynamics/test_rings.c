@@ -1,88 +1,16 @@
 // Spatial linkages of one loop: whichever joint is cut, however the whole is turned in space, the mechanism is the same.
-// Every body's frame is the world's at the start, so that all joints stand at zero and the ring is closed there.
 #include "support/near.h"
 
-#include "support/mechanism.h"
 #include "support/model.h"
+#include "support/ring.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { TEXT = 6000, MAX_RING = 6 };
-
-typedef struct ring {
-    const char *name;
-    int n; ///< joints; bodies are one fewer
-    const char *types[MAX_RING];
-    int freedoms;
-} ring;
-
-// the first joint is the crank; freedoms are the joints' less six (spatial mobility), where no leg spins about itself
-static const ring RINGS[] = {
-    {"RSCR", 4, {"revolute", "spherical", "cylindrical", "revolute"}, 1},
-    {"RUSR", 4, {"revolute", "universal", "spherical", "revolute"}, 1},
-    {"RCCC", 4, {"revolute", "cylindrical", "cylindrical", "cylindrical"}, 1},
-    {"REUR", 4, {"revolute", "planar", "universal", "revolute"}, 1},
-    {"RUSP", 4, {"revolute", "universal", "spherical", "prismatic"}, 1},
-    {"RSFCR", 5, {"revolute", "spherical", "fixed", "cylindrical", "revolute"}, 1},
-    {"RRSU", 4, {"revolute", "revolute", "spherical", "universal"}, 1},
-    {"RSSR", 4, {"revolute", "spherical", "spherical", "revolute"}, 2}, // the coupler spins
-};
-enum { N_RINGS = sizeof RINGS / sizeof *RINGS };
-
-static void add(char *text, const char *more) {
-    assert_true(strlen(text) + strlen(more) < TEXT);
-    strcat(text, more);
-}
-
-/// Joint j between body j - 1 and body j (the ground at both ends), at corners of a skew polygon with skew axes.
-static void add_joint(char *text, const ring *r, int j, int cut) {
-    static const double at[MAX_RING][3] = {{0, 0, 0},     {0.3, 0.8, 0.2},   {1.7, 1.1, 0.6},
-                                           {2.1, 0.2, 0}, {1.1, -0.4, -0.3}, {0.2, 0.2, 0.2}};
-    static const double axis[MAX_RING][3] = {{0.1, 0.2, 1},  {0.9, -0.2, 0.4}, {0.2, 1, 0.3},
-                                             {-0.3, 0.4, 1}, {1, 0.2, -0.5},   {0, 1, 1}};
-    char more[600], parent[32] = "ground", child[32] = "ground";
-    if (j > 0) {
-        snprintf(parent, sizeof parent, "b%d", j - 1);
-    }
-    if (j < r->n - 1) {
-        snprintf(child, sizeof child, "b%d", j);
-    }
-    const double *p = at[j], *z = axis[j];
-    char second[120] = "";
-    if (strcmp(r->types[j], "universal") == 0) {
-        snprintf(second, sizeof second, ",\"axis2\":[%.17g,%.17g,0]", z[1], -z[0]);
-    }
-    snprintf(more, sizeof more,
-             "%s{\"name\":\"J%d\",\"type\":\"%s\",\"axis\":[%.17g,%.17g,%.17g]%s,"
-             "\"parent\":{\"body\":\"%s\",\"at\":[%.17g,%.17g,%.17g]},"
-             "\"child\":{\"body\":\"%s\",\"at\":[%.17g,%.17g,%.17g]}%s}",
-             j ? "," : "", j, r->types[j], z[0], z[1], z[2], second, parent, p[0], p[1], p[2],
-             child, p[0], p[1], p[2], j == cut ? ",\"cut\":true" : "");
-    add(text, more);
-}
-
-static void write_ring(char text[TEXT], const ring *r, int cut) {
-    strcpy(text, "{\"holonom\":1,\"name\":\"ring\",\"gravity\":[1,-9,3],\"bodies\":[");
-    for (int b = 0; b < r->n - 1; b++) {
-        char more[300];
-        snprintf(more, sizeof more,
-                 "%s{\"name\":\"b%d\",\"mass\":%g,\"com\":[%g,0.3,%g],\"inertia\":{\"xx\":0.3,"
-                 "\"yy\":0.4,\"zz\":0.5,\"xy\":0.03,\"yz\":-0.05}}",
-                 b ? "," : "", b, 1 + 0.4 * b, 0.3 + 0.5 * b, 0.1 * b);
-        add(text, more);
-    }
-    add(text, "],\"joints\":[");
-    for (int j = 0; j < r->n; j++) {
-        add_joint(text, r, j, cut);
-    }
-    add(text, "],\"start\":{\"positions\":{\"J0\":0},\"rates\":{\"J0\":1.3}}}");
-}
-
 static void open_ring(hn_model *m, const ring *r, int cut) {
-    char text[TEXT];
-    write_ring(text, r, cut);
+    char text[RING_TEXT];
+    ring_write(text, r, cut);
     hn_model_open_text(m, text, NULL);
     if (m->status != HN_OK) {
         fail_msg("%s, cut at %d: %s", r->name, cut, m->diags.item[0].message);
@@ -100,15 +28,15 @@ static void observe(const hn_model *m, double out[2]) {
 
 static void whichever_joint_is_cut_the_crank_accelerates_alike(void **state) {
     (void)state;
-    for (int k = 0; k < N_RINGS; k++) {
+    for (int k = 0; k < ring_count(); k++) {
         double first[2] = {0, 0}, now[2];
-        for (int cut = 1; cut < RINGS[k].n; cut++) {
+        for (int cut = 1; cut < ring_at(k)->n; cut++) {
             hn_model m;
-            open_ring(&m, &RINGS[k], cut);
-            assert_int_equal(m.assembly.freedoms, RINGS[k].freedoms);
+            open_ring(&m, ring_at(k), cut);
+            assert_int_equal(m.assembly.freedoms, ring_at(k)->freedoms);
             assert_int_equal(m.assembly.redundant, 0);
             observe(&m, now);
-            if (RINGS[k].freedoms >
+            if (ring_at(k)->freedoms >
                 1) { // how fast it spins at the start is then a matter of coordinates
                 hn_model_close(&m);
                 continue;
@@ -162,11 +90,11 @@ static void turn_scene(hn_scene *s, const double R[3][3], const double shift[3])
 
 static void a_mechanism_turned_in_space_as_a_whole_moves_alike(void **state) {
     (void)state;
-    for (int k = 0; k < N_RINGS; k++) {
-        char text[TEXT];
+    for (int k = 0; k < ring_count(); k++) {
+        char text[RING_TEXT];
         hn_model plain;
-        open_ring(&plain, &RINGS[k], RINGS[k].n / 2);
-        write_ring(text, &RINGS[k], RINGS[k].n / 2);
+        open_ring(&plain, ring_at(k), ring_at(k)->n / 2);
+        ring_write(text, ring_at(k), ring_at(k)->n / 2);
         hn_scene *scene = NULL;
         hn_system *sys = NULL;
         hn_diags diags = {0};
@@ -194,9 +122,60 @@ static void a_mechanism_turned_in_space_as_a_whole_moves_alike(void **state) {
     }
 }
 
+// planar loops ----------------------------------------------------------------------------------------------------
+
+/// A four-bar of revolutes about one skew axis, closed by a joint of this type about the same axis.
+static void write_planar(char text[RING_TEXT], const char *closing) {
+    static const double z[3] = {0.36, 0.48, 0.8}, x[3] = {0.8, -0.6, 0}, y[3] = {0.48, 0.64, -0.6};
+    static const double at[4][2] = {{0, 0}, {0.3, 0.9}, {2, 1.6}, {2.2, 0.1}};
+    size_t used = (size_t)snprintf(
+        text, RING_TEXT,
+        "{\"holonom\":1,\"name\":\"planar\",\"gravity\":[1,-9,3],\"bodies\":[{\"name\":\"b0\","
+        "\"mass\":1,\"inertia\":{\"xx\":1,\"yy\":1,\"zz\":1}},{\"name\":\"b1\",\"mass\":2,"
+        "\"inertia\":{\"xx\":1,\"yy\":1,\"zz\":1}},{\"name\":\"b2\",\"mass\":3,\"inertia\":"
+        "{\"xx\":1,\"yy\":1,\"zz\":1}}],\"joints\":[");
+    static const char *const bodies[5] = {"ground", "b0", "b1", "b2", "ground"};
+    for (int j = 0; j < 4; j++) {
+        double p[3];
+        for (int i = 0; i < 3; i++) {
+            p[i] = at[j][0] * x[i] + at[j][1] * y[i];
+        }
+        const int last = j == 3, universal = last && strcmp(closing, "universal") == 0;
+        used += (size_t)snprintf(
+            text + used, RING_TEXT - used,
+            "%s{\"name\":\"J%d\",\"type\":\"%s\",\"axis\":[%.17g,%.17g,%.17g],\"%s\":[%.17g,%.17g,"
+            "%.17g],\"parent\":{\"body\":\"%s\",\"at\":[%.17g,%.17g,%.17g]},\"child\":{\"body\":"
+            "\"%s\",\"at\":[%.17g,%.17g,%.17g]}%s}",
+            j ? "," : "", j, last ? closing : "revolute", z[0], z[1], z[2],
+            universal ? "axis2" : "ref", x[0], x[1], x[2], bodies[j], p[0], p[1], p[2],
+            bodies[j + 1], p[0], p[1], p[2], last ? ",\"cut\":true" : "");
+    }
+    snprintf(text + used, RING_TEXT - used, "]}");
+}
+
+static void a_planar_loop_keeps_the_rows_of_its_plane_whatever_closes_it(void **state) {
+    static const struct {
+        const char *type;
+        int rows;
+    } cases[] = {{"revolute", 2}, {"spherical", 2}, {"universal", 2}, {"cylindrical", 2},
+                 {"planar", 0},   {"prismatic", 3}, {"fixed", 3}};
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[RING_TEXT];
+        hn_model m;
+        write_planar(text, cases[k].type);
+        hn_model_open_text(&m, text, NULL);
+        assert_int_equal(m.status, HN_OK);
+        assert_int_equal(m.info.nc, cases[k].rows);
+        assert_int_equal(m.assembly.freedoms, 3 - cases[k].rows);
+        hn_model_close(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whichever_joint_is_cut_the_crank_accelerates_alike),
+        cmocka_unit_test(a_planar_loop_keeps_the_rows_of_its_plane_whatever_closes_it),
         cmocka_unit_test(a_mechanism_turned_in_space_as_a_whole_moves_alike),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
