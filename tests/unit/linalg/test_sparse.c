@@ -119,7 +119,7 @@ static void a_singular_matrix_is_refused_and_so_is_one_that_is_not_finite(void *
     (void)state;
     static const int row[] = {0, 0, 1, 1}, col[] = {0, 1, 0, 1};
     static const double twice[] = {1, 2, 2, 4};
-    const double broken[] = {1, 2, NAN, 4};
+    const double broken[] = {1, 2, nan(""), 4};
     hn_arena *arena = hn_arena_create(0);
     hn_sparse_lu *lu = hn_sparse_lu_create(arena, 2, 4);
     hn_sparse_lu_set_pattern(lu, 2, 4, row, col);
