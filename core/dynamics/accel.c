@@ -1,10 +1,20 @@
 #include "dynamics/eval.h"
+#include "dynamics/factor.h"
 #include "dynamics/inputs.h"
 #include "dynamics/ldl.h"
-#include "linalg/saddle.h"
+#include "linalg/dense.h"
+#include "linalg/kkt.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+const char *const hn_solver_names[HN_SOLVER_COUNT] = {
+#define HN_SOLVER_NAME(code, name) name,
+    HN_SOLVER_LIST(HN_SOLVER_NAME)
+#undef HN_SOLVER_NAME
+};
 
 // Rows that depend on others on the closed set come apart where the loops stand open: there J and gamma are off by about the gap
 // over the length (and the velocity gap over the speed), a bit more in a loop of short links. What is not larger tells nothing.
@@ -23,9 +33,17 @@ struct hn_accel {
     int n_out, n_guards;
     // behind it
     hn_eval *terms;
-    hn_saddle_ws *saddle;
+    int n_M, n_J;
+    const int *M_row, *M_col, *J_row, *J_col;
+    hn_kkt *kkt;
     double *gamma, *dense_a, *dense_lambda;
-    long long count, fallbacks;
+    // refinement of what the tape's order gives
+    hn_factor *factor;
+    double *rest, *step; ///< nv + nc each
+    hn_sum2 *sum;        ///< nv + nc
+    long long count, fallbacks, refinements;
+    double ops;
+    char refusal[160];
 };
 
 // compiling --------------------------------------------------------------------------------------------------------
@@ -102,18 +120,28 @@ static hn_status compile_tape(hn_accel *s, hn_system *sys, hn_arena *arena) {
 static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     const unsigned terms =
         HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | HN_TERM_PHI | HN_TERM_PHI_T;
-    s->saddle = hn_saddle_ws_create(arena, s->nv, s->nc);
+    s->kkt = hn_kkt_create(arena, s->nv, s->nc);
+    s->rest = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
+    s->step = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
+    s->sum = hn_arena_get(arena, ((size_t)s->nv + (size_t)s->nc + 1) * sizeof *s->sum);
     s->gamma = hn_arena_doubles(arena, (size_t)s->nc);
     s->dense_a = hn_arena_doubles(arena, (size_t)s->nv);
     s->dense_lambda = hn_arena_doubles(arena, (size_t)s->nc);
-    if (!s->saddle || hn_arena_failed(arena)) {
+    if (!s->kkt || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
-    return hn_eval_create(sys, terms, arena, &s->terms);
+    hn_status status = hn_eval_create(sys, terms, arena, &s->terms);
+    if (status != HN_OK) {
+        return status;
+    }
+    s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
+    s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
+    return s->available ? hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor) : HN_OK;
 }
 
 static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
-    hn_status status = compile_tape(s, sys, arena);
+    const int by_tape = s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL;
+    hn_status status = by_tape ? compile_tape(s, sys, arena) : HN_OK;
     if (status == HN_OK && !s->available) {
         status = hn_inputs_create(sys, arena, &s->in);
     }
@@ -145,7 +173,9 @@ void hn_accel_free(hn_accel *s) {
     if (s) {
         hn_inputs_free(&s->in);
         hn_eval_free(s->terms);
+        hn_factor_free(s->factor);
         s->terms = NULL;
+        s->factor = NULL;
     }
 }
 
@@ -199,49 +229,104 @@ static double stabilise(hn_accel *s, const double *v, double alpha, double beta)
     const double *J = hn_eval_get(s->terms, HN_TERM_J), *phi = hn_eval_get(s->terms, HN_TERM_PHI);
     const double *phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T);
     const double length = hn_system_length(s->sys);
-    double gap = 0, rates = 0, sizes = 0;
+    double gap = 0, rates = 0, sizes = 0, *rate = s->rest, *size = s->step;
+    for (int i = 0; i < s->nc; i++) {
+        rate[i] = phi_t[i];
+        size[i] = fabs(phi_t[i]);
+    }
+    for (int k = 0; k < s->n_J; k++) {
+        const int i = s->J_row[k], j = s->J_col[k];
+        const double part = J[(size_t)i * (size_t)s->nv + (size_t)j] * v[j];
+        rate[i] += part;
+        size[i] = fmax(size[i], fabs(part));
+    }
     for (int i = 0; i < s->nc; i++) {
         const double unit = hn_system_row_is_length(s->sys, i) ? length : 1;
-        double rate = phi_t[i], size = fabs(phi_t[i]);
-        for (int j = 0; j < s->nv; j++) {
-            const double part = J[(size_t)i * (size_t)s->nv + (size_t)j] * v[j];
-            rate += part;
-            size = fmax(size, fabs(part));
-        }
         gap = fmax(gap, fabs(phi[i]) / unit);
-        rates = fmax(rates, fabs(rate) / unit);
-        sizes = fmax(sizes, size / unit);
+        rates = fmax(rates, fabs(rate[i]) / unit);
+        sizes = fmax(sizes, size[i] / unit);
         if (s->opts.baumgarte) {
-            s->gamma[i] += 2 * alpha * rate + beta * beta * phi[i];
+            s->gamma[i] += 2 * alpha * rate[i] + beta * beta * phi[i];
         }
     }
     return fmax(gap, sizes > 0 ? rates / sizes : 0);
 }
 
-static hn_status solve_dense(hn_accel *s, double alpha, double beta, double *a, double *lambda,
-                             hn_accel_info *info) {
-    s->fallbacks++;
-    if (!all_finite(s->in.x, s->in.n)) {
-        return HN_ERR_DIVERGED;
-    }
-    const double *q = s->in.x, *v = q + s->in.nq;
-    hn_eval_run(s->terms, v[s->nv], q, v);
+/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the blur of stabilise().
+static double eval_terms(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                         double beta) {
+    hn_eval_run(s->terms, t, q, v);
+    s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
-    const double blur = fmin(BLUR * stabilise(s, v, alpha, beta), BLUR_MAX);
-    hn_saddle_opts opts = hn_saddle_opts_default();
-    opts.row_floor = blur > opts.rank_tol ? ROW_FLOOR : 0;
-    opts.rank_tol = fmax(opts.rank_tol, blur);
-    opts.residual_tol = fmax(opts.residual_tol, blur);
-    hn_saddle_info dense;
-    hn_status status =
-        hn_saddle_solve(s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
-                        hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F),
-                        s->gamma, s->dense_a, s->dense_lambda, &dense, &opts, s->saddle);
+    return stabilise(s, v, alpha, beta);
+}
+
+// refinement ---------------------------------------------------------------------------------------------------------
+
+static void subtract(hn_accel *s, int row, double entry, double x) {
+    hn_sum2_add_product(&s->sum[row], -entry, x);
+}
+
+/// rest = [f; -gamma] - K [a; -lambda] in twice the working precision, entry by entry.
+static void find_rest(hn_accel *s, const double *a, const double *lambda) {
+    const double *M = hn_eval_get(s->terms, HN_TERM_M), *J = hn_eval_get(s->terms, HN_TERM_J);
+    const double *f = hn_eval_get(s->terms, HN_TERM_F);
+    const size_t nv = (size_t)s->nv;
+    for (int i = 0; i < s->nv + s->nc; i++) {
+        s->sum[i] = (hn_sum2){i < s->nv ? f[i] : -s->gamma[i - s->nv], 0};
+    }
+    for (int k = 0; k < s->n_M; k++) {
+        const int i = s->M_row[k], j = s->M_col[k];
+        const double m = M[(size_t)i * nv + (size_t)j];
+        subtract(s, i, m, a[j]);
+        if (i != j) {
+            subtract(s, j, m, a[i]);
+        }
+    }
+    for (int k = 0; k < s->n_J; k++) {
+        const int i = s->J_row[k], j = s->J_col[k];
+        const double e = J[(size_t)i * nv + (size_t)j];
+        subtract(s, j, -e, lambda[i]);
+        subtract(s, s->nv + i, e, a[j]);
+    }
+    for (int i = 0; i < s->nv + s->nc; i++) {
+        s->rest[i] = hn_sum2_value(&s->sum[i]);
+    }
+}
+
+/// The sparse factor's own solution, corrected while the corrections halve. Fails where the factor does.
+static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a, double *lambda,
+                               hn_accel_info *info) {
+    enum { MAX_CORRECTIONS = 4 };
+    double *step_a = s->step, *step_l = s->step + s->nv, last = HUGE_VAL;
+    const hn_status status = hn_factor_update(s->factor, t, q, NULL);
+    s->ops += hn_factor_get_info(s->factor).update_ops;
     if (status != HN_OK) {
         return status;
     }
-    info->rank = dense.rank;
-    info->residual = dense.residual;
+    memset(s->dense_a, 0, (size_t)s->nv * sizeof *s->dense_a);
+    memset(s->dense_lambda, 0, (size_t)s->nc * sizeof *s->dense_lambda);
+    for (int turn = 0; turn <= MAX_CORRECTIONS; turn++) {
+        find_rest(s, s->dense_a, s->dense_lambda);
+        hn_factor_solve(s->factor, s->rest, s->rest + s->nv, step_a, step_l);
+        s->ops += hn_factor_get_info(s->factor).solve_ops + 34.0 * (s->n_M + s->n_J);
+        const double size = hn_norm_max(s->nv, s->dense_a);
+        const double moved = hn_norm_max(s->nv, step_a);
+        if (!isfinite(moved) || !(moved < 0.5 * last)) {
+            break;
+        }
+        hn_axpy(s->nv, 1, step_a, s->dense_a);
+        hn_axpy(s->nc, 1, step_l, s->dense_lambda);
+        info->refinements = turn;
+        last = moved;
+        if (turn > 0 && moved <= DBL_EPSILON * size) {
+            break;
+        }
+    }
+    if (!hn_all_finite(s->nv, s->dense_a) || !hn_all_finite(s->nc, s->dense_lambda)) {
+        return HN_ERR_SINGULAR;
+    }
+    s->refinements++;
     memcpy(a, s->dense_a, (size_t)s->nv * sizeof *a);
     if (lambda) {
         memcpy(lambda, s->dense_lambda, (size_t)s->nc * sizeof *lambda);
@@ -249,23 +334,147 @@ static hn_status solve_dense(hn_accel *s, double alpha, double beta, double *a, 
     return HN_OK;
 }
 
+// the dense ways -----------------------------------------------------------------------------------------------------
+
+static hn_kkt_way way_of(hn_solver solver) {
+    switch (solver) {
+    case HN_SOLVER_DENSE:
+        return HN_KKT_DENSE;
+    case HN_SOLVER_RANGE_SPACE:
+        return HN_KKT_RANGE_SPACE;
+    case HN_SOLVER_NULL_SPACE:
+        return HN_KKT_NULL_SPACE;
+    case HN_SOLVER_PROXIMAL:
+        return HN_KKT_PROXIMAL;
+    default:
+        return HN_KKT_LEAST_NORM;
+    }
+}
+
+static const char *name_of_speed(const hn_accel *s, int i) {
+    const int at = hn_system_position_of(s->sys, i);
+    if (at < 0 || at >= hn_system_get_info(s->sys).n_user) {
+        return "a ball's turning";
+    }
+    return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, at)].name;
+}
+
+static void refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
+    const char *name = hn_solver_names[solver];
+    if (massless >= 0) {
+        snprintf(s->refusal, sizeof s->refusal,
+                 "solver=%s needs M^-1, and %s moves no mass; solver=auto serves this", name,
+                 name_of_speed(s, massless));
+    } else if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO &&
+               solver != HN_SOLVER_LEAST_NORM) {
+        snprintf(s->refusal, sizeof s->refusal,
+                 "solver=%s needs closure rows that do not depend on each other; solver=auto, "
+                 "proximal or least-norm serve this",
+                 name);
+    }
+}
+
+static double dense_ops(const hn_accel *s) {
+    const double n = s->nv, c = s->nc;
+    return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
+}
+
+static hn_kkt_opts dense_opts(double blur, int want_cond) {
+    hn_kkt_opts opts = hn_kkt_opts_default();
+    opts.row_floor = blur > opts.rank_tol ? ROW_FLOOR : 0;
+    opts.rank_tol = fmax(opts.rank_tol, blur);
+    opts.residual_tol = fmax(opts.residual_tol, blur);
+    opts.want_cond = want_cond;
+    return opts;
+}
+
+static hn_status solve_dense(hn_accel *s, hn_solver solver, double blur, double *a, double *lambda,
+                             hn_accel_info *info) {
+    const hn_kkt_opts opts = dense_opts(blur, 0);
+    hn_kkt_info dense;
+    const hn_status status =
+        hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
+                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
+                     s->dense_a, s->dense_lambda, &dense, &opts);
+    s->ops += dense_ops(s);
+    info->massless = dense.massless;
+    if (status != HN_OK) {
+        refuse(s, solver, status, dense.massless);
+        return status;
+    }
+    info->solver = solver;
+    info->rank = dense.rank;
+    info->residual = dense.residual;
+    info->refinements = dense.refinements;
+    memcpy(a, s->dense_a, (size_t)s->nv * sizeof *a);
+    if (lambda) {
+        memcpy(lambda, s->dense_lambda, (size_t)s->nc * sizeof *lambda);
+    }
+    return HN_OK;
+}
+
+/// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs correcting (*doubtful).
+static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
+                               int *doubtful) {
+    if (!s->available) {
+        return HN_ERR_SINGULAR;
+    }
+    hn_tape_run(s->in.tape, s->in.x);
+    s->ops += hn_tape_get_info(s->in.tape).ops;
+    info->pivot_ratio = worst_pivot(s);
+    info->solver = HN_SOLVER_LDL;
+    *doubtful = info->pivot_ratio >= HN_PIVOT_GUARD && info->pivot_ratio < HN_PIVOT_DOUBT;
+    const int good = info->pivot_ratio >= HN_PIVOT_DOUBT && take_answer(s, a, lambda);
+    return good ? HN_OK : HN_ERR_SINGULAR;
+}
+
 hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
                         double beta, double *a, double *lambda, hn_accel_info *info) {
     HN_ASSERT(!lambda || s->opts.want_lambda);
     hn_accel_info own;
+    const hn_solver solver = s->opts.solver;
+    int doubtful = 0;
     info = info ? info : &own;
     s->count++;
+    s->refusal[0] = '\0';
     hn_inputs_set(&s->in, t, q, v, alpha, beta);
-    *info = (hn_accel_info){.fallback = 1, .rank = s->nc, .pivot_ratio = 0, .residual = 0};
-    if (s->available) {
-        hn_tape_run(s->in.tape, s->in.x);
-        info->pivot_ratio = worst_pivot(s);
-        if (info->pivot_ratio >= HN_PIVOT_GUARD && take_answer(s, a, lambda)) {
-            info->fallback = 0;
-            return HN_OK;
-        }
+    *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1};
+    hn_status status = solve_by_tape(s, a, lambda, info, &doubtful);
+    if (status == HN_OK) {
+        return HN_OK;
     }
-    return solve_dense(s, alpha, beta, a, lambda, info);
+    if (!all_finite(s->in.x, s->in.n)) {
+        s->fallbacks++;
+        return HN_ERR_DIVERGED;
+    }
+    const double blur = fmin(BLUR * eval_terms(s, t, q, v, alpha, beta), BLUR_MAX);
+    if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
+        return HN_OK;
+    }
+    if (solver == HN_SOLVER_LDL) {
+        refuse(s, solver, HN_ERR_SINGULAR, -1);
+        return HN_ERR_SINGULAR;
+    }
+    info->fallback = solver == HN_SOLVER_AUTO;
+    s->fallbacks += info->fallback;
+    return solve_dense(s, solver == HN_SOLVER_AUTO ? HN_SOLVER_LEAST_NORM : solver, blur, a, lambda,
+                       info);
+}
+
+hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
+                             double *condition) {
+    hn_kkt_info dense = {0};
+    hn_inputs_set(&s->in, t, q, v, 0, 0);
+    if (!all_finite(s->in.x, s->in.n)) {
+        return HN_ERR_DIVERGED;
+    }
+    const hn_kkt_opts opts = dense_opts(fmin(BLUR * eval_terms(s, t, q, v, 0, 0), BLUR_MAX), 1);
+    const hn_status status =
+        hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
+                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
+                     s->dense_a, s->dense_lambda, &dense, &opts);
+    *condition = status == HN_OK ? dense.cond : 0;
+    return status;
 }
 
 hn_tape_info hn_accel_tape_info(const hn_accel *s) {
@@ -278,4 +487,16 @@ long long hn_accel_count(const hn_accel *s) {
 
 long long hn_accel_fallbacks(const hn_accel *s) {
     return s->fallbacks;
+}
+
+long long hn_accel_refinements(const hn_accel *s) {
+    return s->refinements;
+}
+
+double hn_accel_ops(const hn_accel *s) {
+    return s->ops;
+}
+
+const char *hn_accel_refusal(const hn_accel *s) {
+    return s->refusal[0] ? s->refusal : NULL;
 }

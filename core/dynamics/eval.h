@@ -36,24 +36,48 @@ hn_tape_info hn_eval_info(const hn_eval *e);
 long long hn_eval_count(const hn_eval *e); ///< runs so far
 
 // --- accelerations and multipliers -------------------------------------------------------------------------
+/// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor where its pivots have lost digits
+/// (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where a pivot is lost altogether. The others serve alone and
+/// refuse what they cannot serve; linalg/kkt.h says what that is.
+#define HN_SOLVER_LIST(X)                   \
+    X(HN_SOLVER_AUTO, "auto")               \
+    X(HN_SOLVER_LDL, "ldl")                 \
+    X(HN_SOLVER_DENSE, "dense")             \
+    X(HN_SOLVER_RANGE_SPACE, "range-space") \
+    X(HN_SOLVER_NULL_SPACE, "null-space")   \
+    X(HN_SOLVER_PROXIMAL, "proximal")       \
+    X(HN_SOLVER_LEAST_NORM, "least-norm")
+typedef enum hn_solver {
+#define HN_SOLVER_ENUM(code, name) code,
+    HN_SOLVER_LIST(HN_SOLVER_ENUM)
+#undef HN_SOLVER_ENUM
+        HN_SOLVER_COUNT
+} hn_solver;
+extern const char *const hn_solver_names[HN_SOLVER_COUNT];
+
 /// K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],  K = [M J'; J 0]. A sparse symbolic LDL' whose order is
 /// chosen at compile time is part of the tape; its pivots are guarded at run time; when a pivot is lost, or a value is
 /// not finite, the dense rank-revealing solve of linalg/saddle.h with iterative refinement answers instead and says so.
 typedef struct hn_accel hn_accel;
 
 typedef struct hn_accel_opts {
-    int baumgarte;   ///< phi and J v enter, alpha and beta become inputs
-    int want_lambda; ///< leave out what only multipliers need otherwise
+    int baumgarte;    ///< phi and J v enter, alpha and beta become inputs
+    int want_lambda;  ///< leave out what only multipliers need otherwise
+    hn_solver solver; ///< 0: automatic
 } hn_accel_opts;
 
 typedef struct hn_accel_info {
-    int fallback; ///< 1: the dense solve answered
+    int fallback;     ///< 1: the dense solve answered in place of the tape
+    hn_solver solver; ///< who answered: the tape counts as ldl
+    int refinements;  ///< corrections of the answer that were kept
+    int massless;     ///< the range space refused: the speed without mass; else -1
     int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
     double
         pivot_ratio; ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
+#define HN_PIVOT_DOUBT 5e-2
 
 HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
                                         hn_arena *arena, hn_accel **out);
@@ -63,8 +87,17 @@ void hn_accel_free(hn_accel *s);
 HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
                                       double alpha, double beta, double *a, double *lambda,
                                       hn_accel_info *info);
+/// 1-norm condition estimate of the equilibrated K (rows that depend on others left out) at a state; digits left are about
+/// 15.6 - log10 of it. Fails as the least-norm solve does. Allocates nothing.
+HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
+                                           double *condition);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 long long hn_accel_count(const hn_accel *s);
-long long hn_accel_fallbacks(const hn_accel *s);
+long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's
+long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor
+/// Arithmetic operations so far, tape and linear algebra.
+double hn_accel_ops(const hn_accel *s);
+/// What the chosen solver cannot serve, in words, after it failed; NULL when there is nothing to say beyond the status.
+const char *hn_accel_refusal(const hn_accel *s);
 
 #endif

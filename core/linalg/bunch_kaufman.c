@@ -18,12 +18,12 @@ static void exchange(double *x, double *y) {
     *y = keep;
 }
 
-// rows and columns k and p of the part that is left, and the rows of L before it
-static void swap(double *A, int n, int k, int p) {
-    for (int j = 0; j < n && k != p; j++) {
+// rows and columns k and p of what is left from `first` on; L so far stays, the solve exchanges as it goes
+static void swap(double *A, int n, int first, int k, int p) {
+    for (int j = first; j < n && k != p; j++) {
         exchange(at(A, n, k, j), at(A, n, p, j));
     }
-    for (int i = k; i < n && k != p; i++) {
+    for (int i = first; i < n && k != p; i++) {
         exchange(at(A, n, i, k), at(A, n, i, p));
     }
 }
@@ -101,7 +101,7 @@ hn_status hn_bunch_kaufman(int n, double *A, int *pivot, double tol, int *negati
             return HN_ERR_SINGULAR;
         }
         const int size = choose(A, n, k, &p);
-        swap(A, n, k + size - 1, p);
+        swap(A, n, k, k + size - 1, p);
         if (size == 1) {
             pivot[k] = p;
             below += entry(A, n, k, k) < 0;

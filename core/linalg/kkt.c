@@ -8,12 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-// of the equilibrated matrix, whose entries are about 1
-static const double PIVOT_TOL = 1e-12;
+// of the equilibrated matrix, whose entries are about 1 (within a factor of four)
+static const double PIVOT_TOL = 1e-13;
 static const double MASSLESS = 1e-14; // of the largest mass
-// the shift of the proximal matrix against J M^-1 J', which is about 1 after scaling: small enough for two or three turns
-static const double PROXIMAL_SHIFT = 1e-6;
-enum { MAX_TURNS = 40 };
+// The shift of the proximal matrix against J M^-1 J', which is about 1 after scaling: a turn gains shift / eigenvalue. The first
+// serves in two or three turns; where light and heavy bodies meet, eigenvalues are small too and a smaller one is taken, at the
+// price of rounding / shift in multipliers that make no force.
+static const double PROXIMAL_SHIFTS[] = {1e-6, 1e-9, 1e-12};
+static const double PROXIMAL_TOL = 1e-14; // of the accelerations: what the last turn may still move
+enum { MAX_TURNS = 12, N_SHIFTS = 3 };
 
 struct hn_kkt {
     int nv_max, nc_max, nv, nc, n;
@@ -25,6 +28,8 @@ struct hn_kkt {
     double *S; // nc x nc: range space
     double *scale;            // n: D, then R
     int *pivot;               // n
+    double shift;             // proximal
+    double moved;             // the last correction against the solution
     double *b, *x, *r, *step; // n
 };
 
@@ -55,6 +60,11 @@ hn_kkt *hn_kkt_create(hn_arena *arena, int nv, int nc) {
 
 // --- equilibration ------------------------------------------------------------------------------------------------
 
+/// The power of two next below 1 / size: scaling with it rounds nothing, so that refinement meets the very system it was given.
+static double reciprocal(double size) {
+    return ldexp(1, -ilogb(size));
+}
+
 /// D = diag(M)^-1/2; a massless coordinate by what the rows see of it. Returns a massless coordinate, -1: none, -2: M is negative.
 static int scale_coordinates(hn_kkt *k, const double *M, const double *J) {
     double heaviest = 0;
@@ -72,7 +82,7 @@ static int scale_coordinates(hn_kkt *k, const double *M, const double *J) {
             seen = fmax(seen, fabs(J[(size_t)i * (size_t)k->nv + (size_t)j]));
         }
         const int light = !(m > MASSLESS * heaviest);
-        k->scale[j] = light ? (seen > 0 ? 1 / seen : 1) : 1 / sqrt(m);
+        k->scale[j] = light ? (seen > 0 ? reciprocal(seen) : 1) : reciprocal(sqrt(m));
         massless = light ? j : massless;
     }
     return massless;
@@ -85,7 +95,7 @@ static void scale_rows(hn_kkt *k, const double *J) {
             const double e = J[(size_t)i * (size_t)k->nv + (size_t)j] * k->scale[j];
             sum += e * e;
         }
-        k->scale[k->nv + i] = sum > 0 ? 1 / sqrt(sum) : 1;
+        k->scale[k->nv + i] = sum > 0 ? reciprocal(sqrt(sum)) : 1;
     }
 }
 
@@ -142,7 +152,7 @@ static hn_status factor(hn_kkt *k) {
     case HN_KKT_DENSE:
         return factor_symmetric(k, 0);
     case HN_KKT_PROXIMAL:
-        return factor_symmetric(k, PROXIMAL_SHIFT);
+        return factor_symmetric(k, k->shift);
     default:
         return factor_range(k);
     }
@@ -170,21 +180,16 @@ static void solve(hn_kkt *k, double *x) {
 
 // --- refinement and condition ------------------------------------------------------------------------------------------
 
-/// r = b - K x in twice the precision; returns the largest residual relative to the size of its row.
-static double find_residual(hn_kkt *k) {
+/// r = b - K x in twice the precision.
+static void find_residual(hn_kkt *k) {
     const size_t n = (size_t)k->n;
-    double worst = 0;
     for (size_t i = 0; i < n; i++) {
         hn_sum2 sum = {k->b[i], 0};
-        double size = fabs(k->b[i]);
         for (size_t j = 0; j < n; j++) {
             hn_sum2_add_product(&sum, -k->K[i * n + j], k->x[j]);
-            size += fabs(k->K[i * n + j] * k->x[j]);
         }
         k->r[i] = hn_sum2_value(&sum);
-        worst = fmax(worst, size > 0 ? fabs(k->r[i]) / size : 0);
     }
-    return worst;
 }
 
 /// Corrections x += F^-1 (b - K x) while they halve. With the proximal F this is the proximal iteration itself.
@@ -192,13 +197,13 @@ static int refine(hn_kkt *k, int max) {
     double last = HUGE_VAL;
     int kept = 0;
     while (kept < max) {
-        (void)find_residual(k);
+        find_residual(k);
         memcpy(k->step, k->r, (size_t)k->n * sizeof *k->step);
         solve(k, k->step);
-        const double size = hn_norm_max(k->n, k->x), step = hn_norm_max(k->n, k->step);
-        const double step_a = hn_norm_max(k->nv, k->step);
         // contradictory rows make multipliers grow for ever; the accelerations settle
-        const double moved = k->way == HN_KKT_PROXIMAL ? step_a : step;
+        const int judged = k->way == HN_KKT_PROXIMAL ? k->nv : k->n;
+        const double size = hn_norm_max(judged, k->x), moved = hn_norm_max(judged, k->step);
+        k->moved = size > 0 ? moved / size : 0;
         if (!(moved > 2 * DBL_EPSILON * size) || !(moved < 0.5 * last)) {
             break;
         }
@@ -295,6 +300,28 @@ static void give_back(const hn_kkt *k, const double *J, const double *gamma, dou
     }
 }
 
+static hn_status solve_once(hn_kkt *k, int max_refine, hn_kkt_info *info) {
+    const hn_status status = factor(k);
+    if (status == HN_OK) {
+        memcpy(k->x, k->b, (size_t)k->n * sizeof *k->x);
+        solve(k, k->x);
+        info->refinements += refine(k, max_refine);
+    }
+    return status;
+}
+
+static hn_status solve_proximal(hn_kkt *k, hn_kkt_info *info) {
+    hn_status status = HN_ERR_NO_CONVERGENCE;
+    for (int i = 0; i < N_SHIFTS; i++) {
+        k->shift = PROXIMAL_SHIFTS[i];
+        status = solve_once(k, MAX_TURNS, info);
+        if (status != HN_OK || k->moved <= PROXIMAL_TOL) {
+            return status;
+        }
+    }
+    return HN_ERR_NO_CONVERGENCE;
+}
+
 static hn_status solve_equilibrated(hn_kkt *k, const double *M, const double *J, const double *f,
                                     const double *gamma, double *a, double *lambda,
                                     hn_kkt_info *info) {
@@ -308,25 +335,19 @@ static hn_status solve_equilibrated(hn_kkt *k, const double *M, const double *J,
     }
     scale_rows(k, J);
     fill(k, M, J);
-    const hn_status status = factor(k);
-    if (status != HN_OK) {
-        return status;
-    }
     for (int i = 0; i < k->n; i++) {
         k->b[i] = k->scale[i] * (i < k->nv ? f[i] : -gamma[i - k->nv]);
     }
-    memcpy(k->x, k->b, (size_t)k->n * sizeof *k->x);
-    solve(k, k->x);
-    const int proximal = k->way == HN_KKT_PROXIMAL;
-    info->refinements = refine(k, proximal ? MAX_TURNS : k->opts.max_refine);
+    const hn_status status = k->way == HN_KKT_PROXIMAL ? solve_proximal(k, info)
+                                                       : solve_once(k, k->opts.max_refine, info);
+    if (status != HN_OK) {
+        return status;
+    }
     if (k->opts.want_cond) {
         info->cond = estimate_condition(k);
     }
     if (!hn_all_finite(k->n, k->x)) {
         return HN_ERR_SINGULAR;
-    }
-    if (proximal && info->refinements == MAX_TURNS) {
-        return HN_ERR_NO_CONVERGENCE;
     }
     give_back(k, J, gamma, a, lambda, info);
     return HN_OK;

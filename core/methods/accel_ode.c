@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte, hn_arena *arena,
-                            hn_diag *diag) {
+hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
+                            hn_solver solver, hn_arena *arena, hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
-    const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 0};
+    const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 0, .solver = solver};
     ode->sys = sys;
     ode->nq = info.nq;
     ode->nv = info.nv;
@@ -28,8 +28,9 @@ void hn_accel_ode_destroy(void *self) {
 }
 
 static void tell_failure(hn_accel_ode *ode, hn_status status, double t) {
+    const char *refusal = hn_accel_refusal(ode->accel);
     snprintf(ode->why, sizeof ode->why, "accelerations at t = %.6g s: %s", t,
-             hn_status_text(status));
+             refusal ? refusal : hn_status_text(status));
 }
 
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) {
@@ -94,8 +95,8 @@ void hn_accel_ode_add_cost(const void *self, hn_cost *cost) {
     cost->factorisations += evals;
     cost->solves += evals;
     cost->fallbacks += dense;
-    cost->ops += (double)evals * hn_accel_tape_info(ode->accel).ops +
-                 (double)dense * hn_flops_saddle(ode->nv, ode->nc);
+    cost->refinements += hn_accel_refinements(ode->accel);
+    cost->ops += hn_accel_ops(ode->accel);
 }
 
 const char *hn_accel_ode_why(const void *self) {

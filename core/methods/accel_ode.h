@@ -9,7 +9,7 @@
 #include "dynamics/eval.h"
 #include "methods/method.h"
 
-enum { HN_WHY_TEXT = 200 };
+enum { HN_WHY_TEXT = 240 };
 
 typedef struct hn_accel_ode {
     const hn_system *sys;
@@ -21,7 +21,15 @@ typedef struct hn_accel_ode {
 } hn_accel_ode;
 
 HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
-                                          hn_arena *arena, hn_diag *diag);
+                                          hn_solver solver, hn_arena *arena, hn_diag *diag);
+/// The setting "solver" of the formulations that use this; the value is an hn_solver.
+#define HN_ACCEL_ODE_SOLVER_SETTING                                                             \
+    {                                                                                           \
+        "solver", 0, 0, HN_SOLVER_COUNT - 1, "",                                                \
+            "who solves for the accelerations; auto: the tape, refined or least-norm where it " \
+            "must be",                                                                          \
+            hn_solver_names, HN_SOLVER_COUNT, 0                                                 \
+    }
 void hn_accel_ode_destroy(void *self);
 void hn_accel_ode_get(void *self, hn_ode *out);
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot);

@@ -10,7 +10,7 @@
 // rms of the largest rate. Tying alpha to 1/h alone would bring any integrator down to order 2, because inner stages
 // leave a gap of O(h^2) that alpha^2 then multiplies.
 
-enum { SET_ALPHA, SET_BETA, SET_RULE };
+enum { SET_ALPHA, SET_BETA, SET_RULE, SET_SOLVER };
 enum { RULE_GIVEN, RULE_AUTO };
 #define AUTO_RATE 1.3
 #define AUTO_STEP 0.1
@@ -45,7 +45,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i)];
         b->rate_scale[i] = c->kind == HN_LENGTH ? 1 / hn_system_length(sys) : 1;
     }
-    return hn_accel_ode_init(&b->ode, sys, 1, arena, diag);
+    return hn_accel_ode_init(&b->ode, sys, 1, (hn_solver)settings[SET_SOLVER], arena, diag);
 }
 
 static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
@@ -87,6 +87,9 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
 
 static hn_status set(void *self, int setting, double value) {
     baumgarte *b = self;
+    if (setting == SET_SOLVER) {
+        return HN_ERR_UNSUPPORTED; // compiled in
+    }
     if (setting == SET_RULE) {
         b->rule = (int)value;
     } else if (b->rule == RULE_AUTO) {
@@ -119,13 +122,14 @@ const hn_formulation hn_formulation_baumgarte = {
     .needs = "M f phi J gamma",
     .also = HN_FORM_STABILISED,
     .index = 1,
-    .n_settings = 3,
+    .n_settings = 4,
     .settings =
         {
             {"alpha", 5, -1e6, 1e6, "1/s", "damping of the gap", NULL, 0, 1},
             {"beta", 5, -1e6, 1e6, "1/s", "natural rate of the gap", NULL, 0, 1},
             {"rule", 0, 0, 1, "",
              "given: alpha and beta as set; auto: min(1.3 x rms rate, 0.1 / step)", rules, 2, 0},
+            HN_ACCEL_ODE_SOLVER_SETTING,
         },
     .create = create,
     .destroy = hn_accel_ode_destroy,

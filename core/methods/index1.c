@@ -3,13 +3,12 @@
 
 static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
                         hn_diag *diag) {
-    (void)settings;
     hn_accel_ode *ode = hn_arena_get(arena, sizeof *ode);
     if (!ode) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = ode;
-    return hn_accel_ode_init(ode, sys, 0, arena, diag);
+    return hn_accel_ode_init(ode, sys, 0, (hn_solver)settings[0], arena, diag);
 }
 
 const hn_formulation hn_formulation_index1 = {
@@ -27,6 +26,8 @@ const hn_formulation hn_formulation_index1 = {
     .source = "Brenan, Campbell & Petzold 1996; Ascher & Petzold 1998, ch. 9",
     .needs = "M f J gamma",
     .also = HN_FORM_INDEX1,
+    .n_settings = 1,
+    .settings = {HN_ACCEL_ODE_SOLVER_SETTING},
     .index = 1,
     .create = create,
     .destroy = hn_accel_ode_destroy,

@@ -25,8 +25,9 @@ typedef struct hn_setting_info {
 typedef struct hn_cost {
     long long evals; ///< right-hand sides
     long long factorisations, solves, newton;
-    double ops;          ///< arithmetic operations, tape plus linear algebra
-    long long fallbacks; ///< dense solves in place of the tape's
+    double ops;            ///< arithmetic operations, tape plus linear algebra
+    long long fallbacks;   ///< dense solves in place of the tape's
+    long long refinements; ///< answers of the tape corrected because pivots were small
     long long projections;
     double energy_removed; ///< by projection [J]
     long long chart_changes;

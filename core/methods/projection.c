@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { SET_WEIGHT, SET_WHAT };
+enum { SET_WEIGHT, SET_WHAT, SET_SOLVER };
 enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
 // of the characteristic length: rounding level times sqrt(rows), and what is accepted where rounding is coarser
 #define GAP_TOL 3e-16
@@ -25,7 +25,8 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = p;
     p->what = (int)settings[SET_WHAT];
-    hn_status status = hn_accel_ode_init(&p->ode, sys, 0, arena, diag);
+    hn_status status =
+        hn_accel_ode_init(&p->ode, sys, 0, (hn_solver)settings[SET_SOLVER], arena, diag);
     if (status != HN_OK || p->ode.nc == 0) {
         return status;
     }
@@ -116,12 +117,13 @@ const hn_formulation hn_formulation_projection = {
     .needs = "M f phi J gamma",
     .index = 1,
     .keeps_gap = 1,
-    .n_settings = 2,
+    .n_settings = 3,
     .settings =
         {
             {"weight", 0, 0, 1, "", "what nearest means: kinetic energy, or plain squares", weights,
              2, 0},
             {"what", 0, 0, 2, "", "which part of the state is projected", whats, 3, 0},
+            HN_ACCEL_ODE_SOLVER_SETTING,
         },
     .create = create,
     .destroy = destroy,
