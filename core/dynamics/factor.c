@@ -48,10 +48,32 @@ static void list_values(hn_factor *f, hn_ex *outputs) {
     }
 }
 
-static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
+static void take_diagonal(const hn_system *sys, hn_entries *W) {
+    for (int i = 0; i < sys->nv; i++) {
+        hn_ex mass = hn_num(1);
+        for (int k = 0; k < sys->M.n; k++) {
+            const hn_entry *m = &sys->M.at[k];
+            mass = m->row == i && m->col == i ? m->e : mass;
+        }
+        hn_entries_add(W, i, i, mass);
+    }
+}
+
+static hn_status build_ldl(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
+    hn_entries diagonal = {0};
     const hn_entries *W = weight == HN_FACTOR_MASS ? &sys->M : NULL;
+    if (weight == HN_FACTOR_DIAGONAL) {
+        take_diagonal(sys, &diagonal);
+        W = &diagonal;
+    }
     const hn_ldl_input in = {sys->nv, sys->nc, W, &sys->J, HN_ACCEL_PAIRS};
-    hn_status status = hn_ldl_build(sys->g, &in, arena, &f->ldl);
+    hn_status status = diagonal.failed ? HN_ERR_MEMORY : hn_ldl_build(sys->g, &in, arena, &f->ldl);
+    hn_entries_reset(&diagonal);
+    return status;
+}
+
+static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
+    hn_status status = build_ldl(f, sys, weight, arena);
     f->info.available = f->ldl.available;
     if (status != HN_OK || !f->ldl.available) {
         return status;

@@ -2,7 +2,7 @@
 #define HN_DYNAMICS_FACTOR_H
 // The factor of the saddle-point matrix as numbers, for methods that solve with it more than once:
 //
-//     K = [W J'; J 0] = L D L',   W = M(q) or the identity                                             (1)
+//     K = [W J'; J 0] = L D L',   W = M(q), its diagonal, or the identity                                             (1)
 //
 // A tape gives the entries of L and D^-1; the order and the pattern were fixed when the system was compiled, so the cost
 // grows with the entries of L (linearly for a chain of loops). No pivoting: every pivot is guarded at run time.
@@ -13,7 +13,12 @@
 
 typedef struct hn_factor hn_factor;
 
-typedef enum hn_factor_weight { HN_FACTOR_MASS, HN_FACTOR_IDENTITY } hn_factor_weight;
+/// Diagonal: M_jj, and 1 where that vanishes identically (a massless coordinate keeps its own unit).
+typedef enum hn_factor_weight {
+    HN_FACTOR_MASS,
+    HN_FACTOR_IDENTITY,
+    HN_FACTOR_DIAGONAL
+} hn_factor_weight;
 
 typedef struct hn_factor_info {
     int available; ///< 0: no static order exists for this system; hn_factor_update() always says HN_ERR_SINGULAR

@@ -23,6 +23,11 @@ double hn_flops_product(int m, int k, int n) {
     return 2.0 * m * k * n;
 }
 
+double hn_flops_saddle(int nv, int nc) {
+    const double n = nv, c = nc, residual = 2 * (n * n + 2 * n * c);
+    return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 2 * residual;
+}
+
 void hn_cost_add(hn_cost *sum, const hn_cost *part) {
     sum->evals += part->evals;
     sum->factorisations += part->factorisations;

@@ -10,6 +10,8 @@ double hn_flops_qr_solve(int m, int n); ///< Q' b and R^-1
 double hn_flops_cholesky(int n);
 double hn_flops_cholesky_solve(int n);
 double hn_flops_product(int m, int k, int n); ///< (m x k) (k x n)
+/// the dense rank-revealing solve of linalg/saddle.h, one refinement
+double hn_flops_saddle(int nv, int nc);
 
 /// sum += part, field by field.
 void hn_cost_add(hn_cost *sum, const hn_cost *part);

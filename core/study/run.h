@@ -29,7 +29,11 @@ typedef enum hn_run_state {
     X(HN_INCIDENT_PROJECTION_FAILED, "projection-failed") \
     X(HN_INCIDENT_DIVERGED, "diverged")                   \
     X(HN_INCIDENT_STEP_UNDERFLOW, "step-underflow")       \
-    X(HN_INCIDENT_BUDGET, "budget")
+    X(HN_INCIDENT_BUDGET, "budget")                       \
+    X(HN_INCIDENT_RANK_AHEAD, "rank-ahead")               \
+    X(HN_INCIDENT_ILL_CONDITIONED, "ill-conditioned")     \
+    X(HN_INCIDENT_MULTIPLIERS, "multipliers-grow")        \
+    X(HN_INCIDENT_SOLVER, "solver-fallback")
 
 typedef enum hn_incident_code {
 #define HN_INCIDENT_ENUM(code, name) code,
@@ -44,7 +48,7 @@ typedef struct hn_incident {
     double t;
     const char *quantity; ///< "gap", "pivot ratio": static text
     double value, limit;
-    char message[160]; ///< this run, in one clause with numbers and units
+    char message[400]; ///< this run, in one clause with numbers and units
     char remedy
         [3]
         [96]; ///< up to three things to try; a method spelling or "h=0.005" where it can be clicked; "" ends
@@ -55,6 +59,11 @@ enum { HN_RUN_MAX_INCIDENTS = 64 };
 #define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is told as near-singular
 #define HN_RUN_WARN_ENERGY \
     1e-2 ///< energy change in one step / (T + range of V), conservative scenes only
+#define HN_RUN_WARN_CONDITION \
+    1e8 ///< of the equilibrated K: half the digits of the multipliers are gone
+#define HN_RUN_LOST_CONDITION 1e13  ///< no digit is left
+#define HN_RUN_WARN_MULTIPLIERS 1e3 ///< growth against the largest seen away from singular poses
+#define HN_RUN_WARN_TURN 0.5 ///< [rad] between the direction of motion and its smooth continuation
 #define HN_RUN_WARN_MODE \
     0.1 ///< change of the assembly-mode value that a jump to the other branch makes at least
 

@@ -3,6 +3,7 @@
 // The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time) and run_watch.c (incidents).
 
 #include "dynamics/eval.h"
+#include "dynamics/radar.h"
 #include "integrators/control.h"
 #include "study/run.h"
 
@@ -19,6 +20,24 @@ typedef struct hn_run_state_at {
     double *q, *v; ///< system coordinates
 } hn_run_state_at;
 
+/// The direction of motion, in speeds scaled by the masses and of unit length.
+typedef struct hn_run_heading {
+    double t;
+    double *e; ///< nv
+} hn_run_heading;
+
+/// What the watch knows of singular poses on the way.
+typedef struct hn_run_ahead {
+    hn_radar *radar;
+    hn_radar_info info;              ///< the last look
+    double largest;                  ///< sigma_min so far
+    hn_run_heading older, last, now; ///< the first two away from singular poses
+    int n_headings;
+    double multiplier;   ///< largest |lambda| away from singular poses
+    long long fallbacks; ///< of the method, as told so far
+    int passing;         ///< 1 + number of the incident that told the pose being passed, 0: none
+} hn_run_ahead;
+
 /// What the watch knows of the last state it saw.
 typedef struct hn_run_watch_state {
     int every;
@@ -27,6 +46,7 @@ typedef struct hn_run_watch_state {
     hn_accel *accel;
     hn_mode_watch *mode;
     double *a, *lambda, *speed_gap;
+    hn_run_ahead ahead;
     double *row_size; ///< nc: largest length of each row of J so far
     double start_energy, last_energy, v_min, v_max;
     double last_mode;
@@ -97,6 +117,30 @@ void hn_run_watch_free(hn_run *run);
 void hn_run_watch_start(hn_run *run);
 /// Looks at the state the run has reached.
 void hn_run_watch_look(hn_run *run);
+/// Shortest row of J against the largest that row has been, at the state last measured.
+double hn_run_shortest_row(const hn_run *run);
+/// Tells when a condition begins to hold, not at every step while it does; `hn_run_over` when it ceases. NULL: known already, or
+/// no room left.
+hn_incident *hn_run_tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
+                         double limit, const char *format, ...) HN_PRINTF(6, 7);
+void hn_run_over(hn_run *run, hn_incident_code code);
+typedef char hn_remedy[96];
+/// Another formulation with its defaults, the integrator as it is; a smaller step or tolerance of the same method.
+void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy out);
+void hn_run_remedy_finer(const hn_run *run, double factor, hn_remedy out);
+/// What goes through singular poses: projection with a fixed step like the present one.
+void hn_run_remedy_robust(const hn_run *run, hn_remedy out);
+
+// singular poses, run_ahead.c ------------------------------------------------------------------------------------
+HN_MUST_CHECK hn_status hn_run_ahead_create(hn_run *run);
+void hn_run_ahead_free(hn_run *run);
+void hn_run_ahead_start(hn_run *run);
+/// Looks at the state the run has reached; `lambda` (nc) NULL where there is none.
+void hn_run_ahead_look(hn_run *run, const double *lambda);
+/// 1 when the present state is close to a singular pose.
+int hn_run_is_near_singular(const hn_run *run);
+/// Adds to the message of incident i what waits at the pose: rows, bodies, freedoms, branches.
+void hn_run_describe_pose(hn_run *run, hn_incident *i);
 /// Tells a failure as an incident.
 void hn_run_tell_failure(hn_run *run, hn_status status);
 void hn_run_tell_charts(hn_run *run, long long changes);

@@ -19,21 +19,18 @@ const char *hn_incident_name(hn_incident_code code) {
 
 // --- remedies ---------------------------------------------------------------------------------------------
 
-typedef char remedy_text[96];
-
 enum {
     MAX_TOLD = 5
 }; // of one kind, so that a condition that comes and goes leaves room for others
 
 // another formulation with its defaults, the integrator as it is where it serves that too
-static void with_formulation(const hn_run *run, const char *name, const char *settings,
-                             remedy_text out) {
+void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy out) {
     hn_method_spec spec = run->spec;
     char text[HN_SPEC_MAX];
     spec.formulation = hn_formulation_find(name);
     HN_ASSERT(spec.formulation);
     if (!hn_method_fits(spec.formulation, spec.stepper)) {
-        snprintf(out, sizeof(remedy_text), "%s%s@dopri5:rtol=1e-8", name, settings);
+        snprintf(out, sizeof(hn_remedy), "%s@dopri5:rtol=1e-8", name);
         return;
     }
     for (int i = 0; i < spec.formulation->n_settings; i++) {
@@ -41,13 +38,12 @@ static void with_formulation(const hn_run *run, const char *name, const char *se
     }
     hn_method_format(&spec, text);
     const char *at = strchr(text, '@');
-    snprintf(out, sizeof(remedy_text), "%s%s%s", name, settings, at);
+    snprintf(out, sizeof(hn_remedy), "%s%s", name, at);
 }
 
-// a smaller step or tolerance of the same method, as "h=0.005"
-static void with_finer_steps(const hn_run *run, double factor, remedy_text out) {
+void hn_run_remedy_finer(const hn_run *run, double factor, hn_remedy out) {
     const char *key = run->adaptive ? "rtol" : "h";
-    snprintf(out, sizeof(remedy_text), "%s=%.4g", key,
+    snprintf(out, sizeof(hn_remedy), "%s=%.4g", key,
              hn_method_setting(&run->spec, key, 0) * factor);
 }
 
@@ -55,13 +51,25 @@ static int is_formulation(const hn_run *run, const char *name) {
     return strcmp(run->spec.formulation->name, name) == 0;
 }
 
+void hn_run_remedy_robust(const hn_run *run, hn_remedy out) {
+    const double longest =
+        0.01; // [s]: survives the flat poses of the ladder for every h up to twice this
+    const double mean =
+        run->summary.steps > 0 ? (run->now.t - run->opts.t0) / (double)run->summary.steps : longest;
+    const double fixed = hn_method_setting(&run->spec, "h", 0);
+    const double h = fixed > 0 ? fixed : fmin(fmax(mean, 1e-4), longest);
+    const int fits = hn_method_fits(hn_formulation_find("projection"), run->spec.stepper);
+    const char *stepper = fixed > 0 && fits ? run->spec.stepper->name : "rk4";
+    if (is_formulation(run, "projection") && fixed > 0) {
+        snprintf(out, sizeof(hn_remedy), "projection@rk4:h=%.4g", 0.7 * h); // lands elsewhere
+    } else {
+        snprintf(out, sizeof(hn_remedy), "projection@%s:h=%.4g", stepper, h);
+    }
+}
+
 // --- telling ----------------------------------------------------------------------------------------------
 
-static hn_incident *tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
-                         double limit, const char *format, ...) HN_PRINTF(6, 7);
-
-// Told when a condition begins to hold, not at every step while it does. NULL: known already, or no room left.
-static hn_incident *tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
+hn_incident *hn_run_tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
                          double limit, const char *format, ...) {
     const unsigned bit = 1u << code;
     if (run->watch.active & bit || run->watch.told[code] == MAX_TOLD ||
@@ -80,7 +88,7 @@ static hn_incident *tell(hn_run *run, hn_incident_code code, const char *quantit
     return i;
 }
 
-static void over(hn_run *run, hn_incident_code code) {
+void hn_run_over(hn_run *run, hn_incident_code code) {
     run->watch.active &= ~(1u << code);
 }
 
@@ -117,13 +125,14 @@ hn_status hn_run_watch_create(hn_run *run) {
     if (status == HN_OK) {
         status = hn_mode_watch_create(run->sys, run->arena, &w->mode);
     }
-    return status;
+    return status == HN_OK ? hn_run_ahead_create(run) : status;
 }
 
 void hn_run_watch_free(hn_run *run) {
     hn_eval_free(run->watch.eval);
     hn_accel_free(run->watch.accel);
     hn_mode_watch_free(run->watch.mode);
+    hn_run_ahead_free(run);
 }
 
 void hn_run_measure(hn_run *run, double t, const double *q, const double *v, double *gap,
@@ -149,18 +158,18 @@ hn_status hn_run_accelerations(hn_run *run, double t, const double *q, const dou
 static void look_at_gap(hn_run *run, double gap) {
     const double limit = run->opts.warn_gap * run->length;
     if (!(gap > limit)) {
-        over(run, HN_INCIDENT_GAP_OPEN);
+        hn_run_over(run, HN_INCIDENT_GAP_OPEN);
         return;
     }
-    hn_incident *i = tell(run, HN_INCIDENT_GAP_OPEN, "gap", gap, limit,
-                          "the loop gap is %.3g m and stands above %.3g m", gap, limit);
+    hn_incident *i = hn_run_tell(run, HN_INCIDENT_GAP_OPEN, "gap", gap, limit,
+                                 "the loop gap is %.3g m and stands above %.3g m", gap, limit);
     if (!i) {
         return;
     }
-    with_formulation(run, "projection", "", i->remedy[0]);
-    with_finer_steps(run, 0.5, i->remedy[1]);
+    hn_run_remedy_formulation(run, "projection", i->remedy[0]);
+    hn_run_remedy_finer(run, 0.5, i->remedy[1]);
     if (is_formulation(run, "index1")) {
-        with_formulation(run, "baumgarte", "", i->remedy[2]);
+        hn_run_remedy_formulation(run, "baumgarte", i->remedy[2]);
     }
 }
 
@@ -172,33 +181,40 @@ static void look_at_energy(hn_run *run, double kinetic, double potential) {
     w->last_energy = energy;
     const double limit = HN_RUN_WARN_ENERGY * (kinetic + (w->v_max - w->v_min)) * w->every;
     if (!w->conservative || !(fabs(change) > limit) || limit == 0) {
-        over(run, HN_INCIDENT_ENERGY_JUMP);
+        hn_run_over(run, HN_INCIDENT_ENERGY_JUMP);
         return;
     }
     hn_incident *i =
-        tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
-             "the energy changed by %.3g J in one step, more than %.3g J", change, limit);
+        hn_run_tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
+                    "the energy changed by %.3g J in one step, more than %.3g J", change, limit);
     if (!i) {
         return;
     }
-    with_finer_steps(run, 0.25, i->remedy[0]);
+    hn_run_remedy_finer(run, 0.25, i->remedy[0]);
     if (run->spec.formulation->model_error) {
-        with_formulation(run, "nullspace", "", i->remedy[1]);
+        hn_run_remedy_formulation(run, "nullspace", i->remedy[1]);
     }
 }
 
-// Shortest row of J against the largest that row has been. Where all links of a loop lie on one line a whole row dies away:
-// the pivots of K, each measured against its own row, do not see that.
-static double shortest_row(hn_run *run) {
+// Where all links of a loop lie on one line a whole row dies away: the pivots of K, each measured against its own row, do not
+// see that.
+double hn_run_shortest_row(const hn_run *run) {
     const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
     double least = 1;
     for (int i = 0; i < run->info.nc; i++) {
         const double size = hn_norm2(run->info.nv, J + (size_t)i * (size_t)run->info.nv);
-        double *largest = &run->watch.row_size[i];
-        *largest = fmax(*largest, size);
-        least = fmin(least, *largest > 0 ? size / *largest : 1);
+        const double largest = fmax(run->watch.row_size[i], size);
+        least = fmin(least, largest > 0 ? size / largest : 1);
     }
     return least;
+}
+
+static void measure_rows(hn_run *run) {
+    const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
+    for (int i = 0; i < run->info.nc; i++) {
+        const double size = hn_norm2(run->info.nv, J + (size_t)i * (size_t)run->info.nv);
+        run->watch.row_size[i] = fmax(run->watch.row_size[i], size);
+    }
 }
 
 static void look_at_rank(hn_run *run, int at_start) {
@@ -209,50 +225,52 @@ static void look_at_rank(hn_run *run, int at_start) {
     }
     const hn_status status =
         hn_run_accelerations(run, run->now.t, run->now.q, run->now.v, w->a, w->lambda, &info);
+    hn_run_ahead_look(run, status == HN_OK ? w->lambda : NULL);
     if (at_start) {
         w->start_rank = status == HN_OK ? info.rank : run->info.nc;
     }
     if (status == HN_OK && info.rank < (at_start ? run->info.nc : w->start_rank)) {
         hn_incident *i =
-            tell(run, HN_INCIDENT_RANK_LOSS, "rank of J", info.rank, run->info.nc,
-                 at_start ? "%d of %d closure rows depend on the others: the motion is "
-                            "unique, single multipliers are not"
-                          : "%d of %d closure rows depend on the others in this pose: "
-                            "branches may cross here",
-                 run->info.nc - info.rank, run->info.nc);
+            hn_run_tell(run, HN_INCIDENT_RANK_LOSS, "rank of J", info.rank, run->info.nc,
+                        at_start ? "%d of %d closure rows depend on the others: the motion is "
+                                   "unique, single multipliers are not"
+                                 : "%d of %d closure rows depend on the others in this pose: "
+                                   "branches may cross here",
+                        run->info.nc - info.rank, run->info.nc);
         if (i && !at_start) {
-            with_formulation(run, "projection", "", i->remedy[0]);
+            hn_run_remedy_robust(run, i->remedy[0]);
+            hn_run_describe_pose(run, i);
         }
     } else if (!at_start && status == HN_OK) {
-        over(run, HN_INCIDENT_RANK_LOSS);
+        hn_run_over(run, HN_INCIDENT_RANK_LOSS);
     }
-    const double row = shortest_row(run),
+    measure_rows(run);
+    const double row = hn_run_shortest_row(run),
                  pivot = row * row * info.pivot_ratio; // J M^-1 J': squared
     const int near = status != HN_OK || pivot < HN_RUN_WARN_PIVOT;
     if (!near || info.rank < run->info.nc) {
-        over(run, HN_INCIDENT_NEAR_SINGULAR);
+        hn_run_over(run, HN_INCIDENT_NEAR_SINGULAR);
         return;
     }
     hn_incident *i =
-        tell(run, HN_INCIDENT_NEAR_SINGULAR, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
-             "the closure rows are nearly dependent: pivot ratio %.2g, told below %.0e", pivot,
-             HN_RUN_WARN_PIVOT);
+        hn_run_tell(run, HN_INCIDENT_NEAR_SINGULAR, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
+                    "the closure rows are nearly dependent: pivot ratio %.2g, told below %.0e",
+                    pivot, HN_RUN_WARN_PIVOT);
     if (i) {
-        with_finer_steps(run, 0.25, i->remedy[0]);
-        if (!is_formulation(run, "projection")) {
-            with_formulation(run, "projection", "", i->remedy[1]);
-        }
+        hn_run_remedy_robust(run, i->remedy[0]);
+        hn_run_remedy_finer(run, 0.25, i->remedy[1]);
+        hn_run_describe_pose(run, i);
     }
 }
 
 // How much of the last step's motion its speeds do not explain: 0 for smooth motion, about 1 or more for a jump.
 static double unexplained_motion(const hn_run *run) {
     const double half = 0.5 * (run->now.t - run->before.t);
-    double moved = 0, rest = 0;
-    for (int i = 0; i < run->info.nv && run->info.nv == run->info.nq; i++) {
-        const double step = run->now.q[i] - run->before.q[i];
-        moved = fmax(moved, fabs(step));
-        rest = fmax(rest, fabs(step - half * (run->now.v[i] + run->before.v[i])));
+    double moved = 0, rest = 0, *step = run->watch.a;
+    hn_system_difference(run->sys, run->before.q, run->now.q, step);
+    for (int i = 0; i < run->info.nv; i++) {
+        moved = fmax(moved, fabs(step[i]));
+        rest = fmax(rest, fabs(step[i] - half * (run->now.v[i] + run->before.v[i])));
     }
     return moved > 0 ? rest / moved : 0;
 }
@@ -264,16 +282,16 @@ static void look_at_mode(hn_run *run) {
     const double jump = fabs(mode - w->last_mode), limit = HN_RUN_WARN_MODE;
     const int flipped = mode * w->last_mode < 0 && jump > limit && unexplained_motion(run) > 0.5;
     if (flipped) {
-        hn_incident *i =
-            tell(run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", mode, limit,
-                 "the loop went from one assembly mode to the other in one step (%.2g to %.2g)",
-                 w->last_mode, mode);
+        hn_incident *i = hn_run_tell(
+            run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", mode, limit,
+            "the loop went from one assembly mode to the other in one step (%.2g to %.2g)",
+            w->last_mode, mode);
         if (i) {
-            with_finer_steps(run, 0.25, i->remedy[0]);
-            with_formulation(run, "projection", "", i->remedy[1]);
+            hn_run_remedy_finer(run, 0.25, i->remedy[0]);
+            hn_run_remedy_formulation(run, "projection", i->remedy[1]);
         }
     } else {
-        over(run, HN_INCIDENT_BRANCH_FLIP);
+        hn_run_over(run, HN_INCIDENT_BRANCH_FLIP);
     }
     w->last_mode = mode;
 }
@@ -285,6 +303,7 @@ void hn_run_watch_start(hn_run *run) {
     memset(w->told, 0, sizeof w->told);
     memset(w->row_size, 0, (size_t)run->info.nc * sizeof *w->row_size);
     w->since = 0;
+    hn_run_ahead_start(run);
     hn_run_measure(run, run->now.t, run->now.q, run->now.v, &gap, &speed_gap, &kinetic, &potential);
     w->start_energy = w->last_energy = kinetic + potential;
     w->v_min = w->v_max = potential;
@@ -315,9 +334,9 @@ void hn_run_tell_charts(hn_run *run, long long changes) {
     if (changes == 0) {
         return;
     }
-    over(run, HN_INCIDENT_CHART_CHANGE);
-    tell(run, HN_INCIDENT_CHART_CHANGE, "chart changes", (double)changes, 0,
-         "other coordinates became the independent ones; the motion goes on unchanged");
+    hn_run_over(run, HN_INCIDENT_CHART_CHANGE);
+    hn_run_tell(run, HN_INCIDENT_CHART_CHANGE, "chart changes", (double)changes, 0,
+                "other coordinates became the independent ones; the motion goes on unchanged");
 }
 
 // The faster rate at which the method itself pulls the gap to zero, 0 where it does not: of s^2 + 2 damping s + rate^2 the
@@ -339,15 +358,15 @@ void hn_run_tell_step_limit(hn_run *run) {
     const double h = hn_method_setting(&run->spec, "h", 0);
     const double limit = run->spec.stepper->real_limit;
     const double rate = pulling_rate(run);
-    over(run, HN_INCIDENT_STEP_LIMIT);
+    hn_run_over(run, HN_INCIDENT_STEP_LIMIT);
     if (!(rate * h > limit)) {
         return;
     }
     hn_incident *i =
-        tell(run, HN_INCIDENT_STEP_LIMIT, "alpha h", rate * h, limit,
-             "the stabilisation is too fast for the step: rate x h = %.3g, %s is stable "
-             "up to %.3g",
-             rate * h, run->spec.stepper->name, limit);
+        hn_run_tell(run, HN_INCIDENT_STEP_LIMIT, "alpha h", rate * h, limit,
+                    "the stabilisation is too fast for the step: rate x h = %.3g, %s is stable "
+                    "up to %.3g",
+                    rate * h, run->spec.stepper->name, limit);
     if (!i) {
         return;
     }
@@ -384,26 +403,30 @@ static hn_incident_code code_of(hn_status status) {
 static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident *i) {
     switch (code) {
     case HN_INCIDENT_CHART_LOST:
-        with_formulation(run, is_formulation(run, "partitioning") ? "projection" : "partitioning",
-                         "", i->remedy[0]);
-        with_finer_steps(run, 0.25, i->remedy[1]);
+        if (hn_run_is_near_singular(run)) {
+            hn_run_remedy_robust(run, i->remedy[0]);
+            break;
+        }
+        hn_run_remedy_formulation(
+            run, is_formulation(run, "partitioning") ? "projection" : "partitioning", i->remedy[0]);
+        hn_run_remedy_finer(run, 0.25, i->remedy[1]);
         break;
     case HN_INCIDENT_BUDGET:
-        with_finer_steps(run, 10, i->remedy[0]);
+        hn_run_remedy_finer(run, 10, i->remedy[0]);
         break;
     case HN_INCIDENT_RANK_LOSS:
-        with_formulation(run, is_formulation(run, "projection") ? "index1" : "projection", "",
-                         i->remedy[0]);
-        with_finer_steps(run, 0.5, i->remedy[1]);
+        hn_run_remedy_formulation(run, is_formulation(run, "projection") ? "index1" : "projection",
+                                  i->remedy[0]);
+        hn_run_remedy_finer(run, 0.5, i->remedy[1]);
         break;
     case HN_INCIDENT_STEP_UNDERFLOW:
-        with_formulation(run, "projection", "", i->remedy[0]);
-        with_finer_steps(run, 100, i->remedy[1]);
+        hn_run_remedy_robust(run, i->remedy[0]);
+        hn_run_remedy_finer(run, 100, i->remedy[1]);
         break;
     default:
-        with_finer_steps(run, 0.25, i->remedy[0]);
+        hn_run_remedy_finer(run, 0.25, i->remedy[0]);
         if (!is_formulation(run, "projection")) {
-            with_formulation(run, "projection", "", i->remedy[1]);
+            hn_run_remedy_formulation(run, "projection", i->remedy[1]);
         }
         break;
     }
@@ -415,9 +438,9 @@ void hn_run_tell_failure(hn_run *run, hn_status status) {
     if (run->n_incidents == HN_RUN_MAX_INCIDENTS) {
         run->n_incidents--;
     }
-    over(run, code);
+    hn_run_over(run, code);
     run->watch.told[code] = 0;
-    hn_incident *i = tell(run, code, "t", run->now.t, 0, "%s", run->summary.reason);
+    hn_incident *i = hn_run_tell(run, code, "t", run->now.t, 0, "%s", run->summary.reason);
     if (i) {
         remedies_of_failure(run, code, i);
     }
