@@ -221,17 +221,35 @@ static const shape_row *row_of(hn_shape_kind kind, int order, int ground) {
     return NULL;
 }
 
-/// How far a shape's middle lies towards the viewer; a pin stands out from its bar.
-static double depth_of(const pen *p, const hn_shape *shape, int order) {
+/// How far a shape's middle lies towards the viewer.
+static double middle_depth(const pen *p, const hn_shape *shape) {
     const int ends[2] = {shape->p,
                          shape->kind == HN_SHAPE_POLYGON || shape->q < 0 ? shape->p : shape->q};
-    double depth = order == N_ORDERS - 1 ? p->s->bar / p->s->scale : 0;
+    double depth = 0;
     for (int e = 0; e < 2; e++) {
         for (int i = 0; i < 3; i++) {
             depth += 0.5 * p->s->look.toward[i] * p->points[3 * ends[e] + i];
         }
     }
     return depth;
+}
+
+static int same_place(const pen *p, int a, int b) {
+    const double *x = p->points + 3 * a, *y = p->points + 3 * b;
+    return fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) < 1e-3 * p->s->scale_bar;
+}
+
+/// A pin is seen before every bar that it holds.
+static double pin_depth(const pen *p, const hn_drawing *d, const hn_shape *pin) {
+    double depth = middle_depth(p, pin);
+    for (int i = 0; i < d->n_shapes; i++) {
+        const hn_shape *bar = &d->shapes[i];
+        if (bar->kind == HN_SHAPE_BAR &&
+            (same_place(p, bar->p, pin->p) || same_place(p, bar->q, pin->p))) {
+            depth = fmax(depth, middle_depth(p, bar));
+        }
+    }
+    return depth + 1e-3 * p->s->scale_bar;
 }
 
 /// Shell sort: stable enough, in place, and a drawing has hundreds of shapes, not millions.
@@ -257,7 +275,8 @@ static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
     for (int i = 0; i < d->n_shapes; i++) {
         for (int order = 0; order < N_ORDERS; order++) {
             if (row_of(d->shapes[i].kind, order, ground)) {
-                p->s->depth[n] = depth_of(p, &d->shapes[i], order);
+                p->s->depth[n] = order == N_ORDERS - 1 ? pin_depth(p, d, &d->shapes[i])
+                                                       : middle_depth(p, &d->shapes[i]);
                 p->s->shapes[n++] = i * N_ORDERS + order;
             }
         }

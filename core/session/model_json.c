@@ -36,6 +36,25 @@ static void put_scene_head(hn_strbuf *b, const hn_model *model) {
     put_params(b, scene);
 }
 
+static const char *kind_name(hn_unit_kind kind) {
+    return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
+}
+
+/// What a script needs before it runs the scene: suggested times, the length that errors are measured by, kinds of coordinates.
+static void put_measures(hn_strbuf *b, const hn_model *model) {
+    const hn_scene *scene = hn_model_scene(model);
+    const hn_system *sys = hn_model_system(model);
+    hn_json_put_number(b, "duration", scene->duration);
+    hn_json_put_number(b, "step", scene->step);
+    hn_json_put_number(b, "length", hn_system_length(sys));
+    hn_json_key(b, "coordinate_kinds");
+    hn_json_array(b);
+    for (int i = 0; i < hn_system_get_info(sys).n_user; i++) {
+        hn_json_string(b, kind_name(scene->coordinates[hn_system_user_coordinate(sys, i)].kind));
+    }
+    hn_json_end_array(b);
+}
+
 static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id) {
     hn_model *model = NULL;
     hn_diags diags = {0};
@@ -43,6 +62,7 @@ static void put_one_scene(hn_strbuf *b, const hn_library *lib, const char *id) {
     hn_json_object(b);
     if (hn_model_load(lib, &source, &model, &diags) == HN_OK) {
         put_scene_head(b, model);
+        put_measures(b, model);
     } else {
         hn_json_put_string(b, "id", id);
         hn_json_key(b, "errors");
@@ -61,10 +81,6 @@ void hn_scenes_json(hn_strbuf *b, const hn_library *lib) {
     }
     hn_json_end_array(b);
     hn_json_end_object(b);
-}
-
-static const char *kind_name(hn_unit_kind kind) {
-    return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
 }
 
 /// Coordinates that carry freedom, with the assembled start in user coordinates.
