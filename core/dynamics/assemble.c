@@ -175,7 +175,8 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
         report->moved = fmax(report->moved, hn_assemble_moved(s, i));
     }
     if (status == HN_ERR_UNREACHABLE && !closed) {
-        report->worst_loop = find_worst_loop(s);
+        const int flipped = hn_assemble_flipped(s);
+        report->worst_loop = flipped >= 0 ? flipped : find_worst_loop(s);
         hn_assemble_explain(s, report->worst_loop);
     } else if (status == HN_ERR_DIVERGED) {
         hn_diags_add(s->diags, status, NULL, NULL,

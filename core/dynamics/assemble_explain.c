@@ -170,6 +170,45 @@ static void joint_position(const hn_assembler *s, int joint_index, int body, dou
     }
 }
 
+// --- loops closed the wrong way round --------------------------------------------------------------------------
+
+static void world_direction(const hn_assembler *s, int body, const double v[3], double out[3]) {
+    const pose at = find_pose(s, body);
+    rotate(at.R, v, out);
+}
+
+/// Whether directions of the two halves that should agree are opposed. Joints that leave an orientation free have none.
+static int is_opposed(const hn_assembler *s, const hn_joint *joint) {
+    double a[3], b[3];
+    if (joint->type == HN_JOINT_SPHERICAL || joint->type == HN_JOINT_UNIVERSAL) {
+        return 0;
+    }
+    world_direction(s, joint->parent, joint->parent_axis, a);
+    world_direction(s, joint->child, joint->child_axis, b);
+    int opposed = hn_dot(3, a, b) < 0;
+    if (joint->type == HN_JOINT_PRISMATIC || joint->type == HN_JOINT_FIXED) {
+        world_direction(s, joint->parent, joint->parent_ref, a);
+        world_direction(s, joint->child, joint->child_ref, b);
+        opposed |= hn_dot(3, a, b) < 0;
+    }
+    return opposed;
+}
+
+int hn_assemble_flipped(const hn_assembler *s) {
+    for (int i = 0; i < s->nc && !s->scene->is_lagrangian; i++) {
+        const int loop = hn_system_row_loop(s->sys, i), joint = hn_system_loop_joint(s->sys, loop);
+        if (joint < 0 || hn_system_row_is_length(s->sys, i) ||
+            (i > 0 && hn_system_row_loop(s->sys, i - 1) == loop &&
+             !hn_system_row_is_length(s->sys, i - 1))) {
+            continue; // once per loop, at its first row that is an angle
+        }
+        if (is_opposed(s, &s->scene->joints[joint])) {
+            return loop;
+        }
+    }
+    return -1;
+}
+
 // --- the ring of a loop --------------------------------------------------------------------------------------
 
 static int tree_parent(const hn_assembler *s, int body) {
@@ -418,6 +457,13 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
     const char *with = pins[0] ? " with " : "", *held = pins[0] ? " held" : "",
                *pointer = first_pin_pointer(s);
     double gap = hn_assemble_gap(s, loop);
+    if (hn_assemble_flipped(s) == loop) {
+        hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer,
+                     "check the axes of its joints, or start from another guess",
+                     "loop %s was only found closed with the axes of its halves opposed%s%s%s",
+                     hn_system_loop_name(s->sys, loop), with, pins, held);
+        return;
+    }
     if (s->scene->is_lagrangian) {
         hn_diags_add(
             s->diags, HN_ERR_UNREACHABLE, pointer, hint,

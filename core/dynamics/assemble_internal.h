@@ -58,6 +58,9 @@ double hn_assemble_moved(const hn_assembler *s, int i);
 void hn_assemble_user_row(const hn_assembler *s, int row, double *out);
 /// Euclidean norm of the unscaled phi, over all rows (loop < 0) or those of one loop.
 double hn_assemble_gap(const hn_assembler *s, int loop);
+/// The first loop that is closed at s->x the wrong way round, or -1: its rows hold as well with the axis (or the reference direction) of
+/// one half opposed to the other's, which is another mechanism. Loops whose axes cannot tilt are taken as they are.
+int hn_assemble_flipped(const hn_assembler *s);
 /// Says why loop `loop` stays open at s->x.
 void hn_assemble_explain(hn_assembler *s, int loop);
 

@@ -17,7 +17,13 @@ static const double STATIONARY = 1e-10; // |J' r| / (|J| |r|): a minimum that do
 static const double ANGLE_CAP = 0.5;    // largest step [rad]
 static const double LENGTH_CAP = 0.2;   // largest step of a length, in characteristic lengths
 static const double RANK_TOL = 1e-9;
-enum { MAX_ITERATIONS = 100, MAX_HOMOTOPY_STEPS = 60, MAX_CORRECTIONS = 8, RANDOM_STARTS = 8 };
+enum {
+    MAX_ITERATIONS = 100,
+    MAX_HOMOTOPY_STEPS = 60,
+    MAX_CORRECTIONS = 8,
+    RANDOM_STARTS = 8,
+    FLIPPED_STARTS = 40
+};
 
 /// Scratch of the search, all in scaled free coordinates z.
 struct hn_assemble_search {
@@ -327,8 +333,10 @@ double hn_assemble_random(uint64_t *seed) {
 static int try_random_starts(search *w) {
     hn_assembler *s = w->s;
     uint64_t seed = 20;
-    for (int k = 1; k <= RANDOM_STARTS; k++) {
-        double spread = 2.0 * k / RANDOM_STARTS; // 2 rad, or two characteristic lengths, at most
+    int starts = RANDOM_STARTS;
+    for (int k = 1; k <= starts; k++) {
+        // 2 rad, or two characteristic lengths, at most; half a turn where it closes, but the wrong way round
+        double spread = fmin(2.0 * k / RANDOM_STARTS, starts > RANDOM_STARTS ? M_PI : 2);
         memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < w->n; i++) {
             w->delta[s->free[i]] = spread * s->reach[s->free[i]] * hn_assemble_random(&seed);
@@ -336,9 +344,10 @@ static int try_random_starts(search *w) {
         hn_assemble_move(s, s->x, w->delta);
         int closed = descend(w, CLOSED, MAX_ITERATIONS);
         keep_best(w);
-        if (closed) {
+        if (closed && hn_assemble_flipped(s) < 0) {
             return 1;
         }
+        starts = closed ? FLIPPED_STARTS : starts;
     }
     return 0;
 }
@@ -349,7 +358,7 @@ hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out) {
 }
 
 int hn_assemble_descend(hn_assemble_search *w) {
-    return descend(w, CLOSED, MAX_ITERATIONS);
+    return descend(w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(w->s) < 0;
 }
 
 hn_status hn_assemble_position(hn_assembler *s) {
@@ -358,7 +367,7 @@ hn_status hn_assemble_position(hn_assembler *s) {
     if (!hn_assemble_evaluate(s)) {
         return HN_ERR_DIVERGED;
     }
-    if (s->size <= ROUNDING * sqrt(s->nc)) {
+    if (s->size <= ROUNDING * sqrt(s->nc) && hn_assemble_flipped(s) < 0) {
         return HN_OK;
     }
     search w;
@@ -366,14 +375,15 @@ hn_status hn_assemble_position(hn_assembler *s) {
         return HN_ERR_MEMORY;
     }
     int was_closed = s->size <= CLOSED;
-    if (descend(&w, CLOSED, MAX_ITERATIONS)) {
+    if (descend(&w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(s) < 0) {
         s->route = was_closed ? "already closed" : (w.damped ? "levenberg-marquardt" : "newton");
         return HN_OK;
     }
     keep_best(&w);
 
     s->route = "homotopy";
-    int closed = follow_homotopy(&w) && descend(&w, CLOSED, MAX_ITERATIONS);
+    int closed =
+        follow_homotopy(&w) && descend(&w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(s) < 0;
     keep_best(&w);
     if (!closed) {
         s->route = "multi-start";

@@ -172,10 +172,30 @@ static void a_planar_loop_keeps_the_rows_of_its_plane_whatever_closes_it(void **
     }
 }
 
+/// Turned by half a revolution the rows of a fixed joint hold as well, and the guess stands next to that pose.
+static void a_loop_is_not_closed_the_wrong_way_round(void **state) {
+    static const char text[] =
+        "{\"holonom\":1,\"name\":\"twice held\",\"bodies\":[{\"name\":\"b\",\"mass\":1,"
+        "\"inertia\":{\"xx\":1,\"yy\":1,\"zz\":1}}],\"joints\":[{\"name\":\"S\",\"type\":"
+        "\"spherical\",\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"b\"}},{\"name\":"
+        "\"W\",\"type\":\"fixed\",\"cut\":true,\"parent\":{\"body\":\"ground\"},\"child\":"
+        "{\"body\":\"b\"}}],\"start\":{\"positions\":{\"S_rx\":{\"guess\":3},\"S_ry\":{\"guess\":"
+        "0.05},\"S_rz\":{\"guess\":0}}}}";
+    static const double none[3] = {0, 0, 0};
+    hn_model m;
+    (void)state;
+    hn_model_open_text(&m, text, NULL);
+    assert_int_equal(m.status, HN_OK);
+    assert_int_equal(m.assembly.freedoms, 0);
+    assert_all_near(m.user_q, none, 3, 1e-12);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whichever_joint_is_cut_the_crank_accelerates_alike),
         cmocka_unit_test(a_planar_loop_keeps_the_rows_of_its_plane_whatever_closes_it),
+        cmocka_unit_test(a_loop_is_not_closed_the_wrong_way_round),
         cmocka_unit_test(a_mechanism_turned_in_space_as_a_whole_moves_alike),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
