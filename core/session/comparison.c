@@ -195,7 +195,7 @@ static void advance_entry(hn_comparison *c, entry *e, double t) {
     double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
     double cpu = hn_run_get_summary(e->run).cpu_seconds;
     for (long long n = 1; hn_run_time(e->run) < target * (1 - 1e-14); n++) {
-        if (hn_run_step(e->run) != HN_OK) {
+        if (hn_run_step_towards(e->run, target) != HN_OK) {
             return;
         }
         if (n % STEPS_BETWEEN_CLOCKS == 0 &&

@@ -121,7 +121,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
 /// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
 static hn_status step_to(hn_run *run, double t, const hn_run_request *r) {
     for (int n = 1; hn_run_time(run) < t * (1 - 1e-14); n++) {
-        hn_status status = hn_run_step(run);
+        hn_status status = hn_run_step_towards(run, t);
         if (status != HN_OK) {
             return status;
         }

@@ -157,7 +157,9 @@ static double try_adaptive(hn_run *run, double h, double rtol, double atol, int 
     const int n = e->ode.n_pos + e->ode.n_vel;
     const double err = hn_error_norm(n, e->err, e->y, e->y_new, rtol, atol);
     if (err <= 1) {
-        *status = hn_engine_finish(run, e);
+        // a step that nobody looks into is spared the slopes that only dense output needs
+        run->has_dense = run->now.t + h >= run->t_asked - LANDING * h;
+        *status = run->has_dense ? hn_engine_finish(run, e) : HN_OK;
         if (*status == HN_OK) {
             *status = hn_engine_mend(run, e, run->now.t + h, e->y_new, changed);
         }
@@ -245,8 +247,9 @@ static hn_status step_once(hn_run *run) {
         return HN_ERR_BUDGET;
     }
     const long long charts = hn_engine_cost(run, &run->main).chart_changes;
+    run->has_dense = 1;
     const hn_status status = take_one(run);
-    run->dense_valid = status == HN_OK && hn_engine_has_dense(run) &&
+    run->dense_valid = status == HN_OK && hn_engine_has_dense(run) && run->has_dense &&
                        hn_engine_cost(run, &run->main).chart_changes == charts;
     return status;
 }
@@ -258,10 +261,11 @@ static int watch_is_due(hn_run *run) {
     return ++run->watch.since >= run->watch.every;
 }
 
-// Steps until t >= t_end, or exactly one when `one` is set.
+// Steps until t >= t_end, or exactly one when `one` is set; t_end is then where the run is going.
 static hn_status step_until(hn_run *run, double t_end, int one) {
     hn_status status = HN_OK;
     int ticking = 0;
+    run->t_asked = t_end;
     do {
         const double slack = run->adaptive ? 0 : LANDING * run->h_next;
         if (!one && run->now.t >= t_end - slack) {
@@ -299,12 +303,16 @@ hn_status hn_run_advance(hn_run *run, double t_end) {
     return status;
 }
 
-hn_status hn_run_step(hn_run *run) {
+hn_status hn_run_step_towards(hn_run *run, double t_look) {
     if (run->summary.state == HN_RUN_FAILED) {
         return run->summary.status;
     }
     run->summary.state = HN_RUN_RUNNING;
-    return step_until(run, run->now.t, 1);
+    return step_until(run, t_look, 1);
+}
+
+hn_status hn_run_step(hn_run *run) {
+    return hn_run_step_towards(run, run->now.t);
 }
 
 // --- life -------------------------------------------------------------------------------------------------

@@ -120,6 +120,9 @@ void hn_run_free(hn_run *run);
 hn_status hn_run_advance(hn_run *run, double t_end);
 /// Exactly one accepted step.
 hn_status hn_run_step(hn_run *run);
+/// The same on the way to t_look: only the step that reaches it will be sampled inside, so the others are spared what serves
+/// dense output alone. A sample inside such a step is a side step.
+hn_status hn_run_step_towards(hn_run *run, double t_look);
 double hn_run_time(const hn_run *run);
 /// The sample at time t, where t is the present time or lies within the last step (dense output where the integrator has it, else a
 /// side step of the same integrator from that step's start, which leaves the run as it was) or ahead of the present time by

@@ -67,6 +67,8 @@ struct hn_run {
     hn_run_engine main, side;
     hn_run_state_at start, now, before;
     int has_step;    ///< `before` is the start of the last step
+    double t_asked;  ///< the step that reaches this time is the one that may be looked into
+    int has_dense;   ///< what dense output needs was evaluated in the last step
     int dense_valid; ///< the stepper's dense output belongs to the chart that is still in use
     double h, h_next;
     int trouble; ///< trials that failed lately, see step_adaptive

@@ -347,6 +347,40 @@ static void an_adaptive_run_holds_its_tolerance_and_counts_rejections(void **sta
     hn_trial_close(&fast);
 }
 
+static void a_step_that_nobody_looks_into_is_spared_the_slopes_of_dense_output(void **state) {
+    (void)state;
+    hn_trial fb0;
+    hn_trial_open(&fb0, HN_TRIAL_LESSON "fb0-lagrangian.json");
+    hn_run *run = hn_trial_run(&fb0, "index1@dop853:rtol=1e-8");
+    assert_int_equal(hn_run_advance(run, 2), HN_OK);
+    const hn_run_summary s = hn_run_get_summary(run);
+    // two for the first step size, 12 stages a step, 11 a rejected trial, four more slopes in the last step
+    assert_int_equal(s.cost.evals, 2 + 12 * s.steps + 11 * s.rejected + 4);
+    hn_run_free(run);
+    hn_trial_close(&fb0);
+}
+
+static void a_look_into_a_step_on_the_way_is_as_good_as_one_into_the_last(void **state) {
+    (void)state;
+    hn_trial fb0;
+    hn_sample far, near;
+    hn_trial_open(&fb0, HN_TRIAL_LESSON "fb0-lagrangian.json");
+    hn_run *on_the_way = hn_trial_run(&fb0, "index1@dop853:rtol=1e-8");
+    hn_run *last = hn_trial_run(&fb0, "index1@dop853:rtol=1e-8");
+    for (int i = 0; i < 10; i++) {
+        assert_int_equal(hn_run_step_towards(on_the_way, 100), HN_OK);
+        assert_int_equal(hn_run_step(last), HN_OK);
+    }
+    const double t = hn_run_time(last);
+    assert_near(hn_run_time(on_the_way), t, 0); // the same steps
+    assert_int_equal(hn_run_sample(on_the_way, t - 0.005, &far), HN_OK);
+    assert_int_equal(hn_run_sample(last, t - 0.005, &near), HN_OK);
+    assert_all_near(far.q, near.q, fb0.info.n_user, 1e-8); // the tolerance of a step
+    hn_run_free(on_the_way);
+    hn_run_free(last);
+    hn_trial_close(&fb0);
+}
+
 static void memory_that_runs_out_while_a_run_is_made_is_told_and_given_back(void **state) {
     (void)state;
     static const char *const spellings[] = {"partitioning@dopri5", "projection@rk4"};
@@ -403,6 +437,8 @@ int main(void) {
                                         close_trial),
         cmocka_unit_test_setup_teardown(settings_of_baumgarte_change_while_it_runs, open_fb0,
                                         close_trial),
+        cmocka_unit_test(a_step_that_nobody_looks_into_is_spared_the_slopes_of_dense_output),
+        cmocka_unit_test(a_look_into_a_step_on_the_way_is_as_good_as_one_into_the_last),
         cmocka_unit_test(memory_that_runs_out_while_a_run_is_made_is_told_and_given_back),
         cmocka_unit_test_setup_teardown(an_adaptive_run_holds_its_tolerance_and_counts_rejections,
                                         open_fb0, close_trial),
