@@ -215,11 +215,11 @@ static void loops_do_no_work(probe *p, const double *a) {
     check_near(p, "the power of the loops' forces", power / (1 + size), 0, 1e-11);
 }
 
-/// Speeds after one step of RK4 from the state, a tenth of what the scene suggests and no more than 0.1 ms.
+/// Speeds after one step of RK4 from the state, a twentieth of what the scene suggests and no more than 50 us.
 static void speeds_after_a_step(probe *p, const char *formulation, double *user_v) {
     char method[64];
     snprintf(method, sizeof method, "%s@rk4:h=%.3g", formulation,
-             fmin(1e-4, hn_model_scene(p->model)->step / 10));
+             fmin(5e-5, hn_model_scene(p->model)->step / 20));
     hn_method_spec spec = {0};
     hn_diag diag = {0};
     hn_run *run = NULL;

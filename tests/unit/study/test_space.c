@@ -2,6 +2,9 @@
 #include "support/near.h"
 #include "support/trial.h"
 
+#include "dynamics/eval.h"
+#include "linalg/svd.h"
+
 #include <gsl/gsl_sf_ellint.h>
 #include <math.h>
 #include <stdio.h>
@@ -59,7 +62,10 @@ static void freedoms_and_rank_are_those_of_the_books(void **state) {
         {"spinning-block", 6, 0, 0},       {"heavy-top", 3, 0, 0},
         {"spatial-slider-crank", 1, 3, 3}, {"cardan-shaft", 1, 3, 4},
         {"oblique-four-bar", 1, 2, 2},     {"car-axis", 2, 2, 2},
-        {"seven-body-squeezer", 1, 6, 6},
+        {"seven-body-squeezer", 1, 6, 6},  {"stewart-6-6", 6, 18, 18},
+        {"stewart-6-3", 6, 18, 18},        {"delta-robot", 3, 6, 6},
+        {"driven-crank", 1, 3, 3},         {"planetary-gear", 1, 4, 6},
+        {"rolling-wheel", 2, 2, 2},
     };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         hn_trial trial;
@@ -266,12 +272,199 @@ static void the_squeezer_has_twelve_digits_at_its_end(void **state) {
     hn_trial_close(&trial);
 }
 
+// robots --------------------------------------------------------------------------------------------------
+
+/// The largest distance of a platform from its circle of radius rc, and of its height from h, from t = 1 on.
+static void follow_circle(const char *scene, double w, double h, const char *const names[3],
+                          double *off, double *low) {
+    hn_trial trial;
+    open_scene(&trial, scene, NULL, 0);
+    const int x = coordinate(&trial, names[0]), y = coordinate(&trial, names[1]),
+              z = coordinate(&trial, names[2]);
+    hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+    *off = *low = 0;
+    for (int k = 50; k <= 200; k++) {
+        const hn_sample s = at(run, 0.02 * k);
+        *off = fmax(*off, hypot(s.q[x] - 0.1 * cos(w * s.t), s.q[z] - 0.1 * sin(w * s.t)));
+        *low = fmax(*low, fabs(s.q[y] - h));
+        assert_true(s.gap < 1e-13);
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+static void platforms_follow_their_circles_as_closely_as_told(void **state) {
+    (void)state;
+    static const char *const pose[] = {"X", "Y", "Z"}, *const place[] = {"x", "y", "z"};
+    double off, low;
+    follow_circle("stewart-6-6", 3, 0.7, pose, &off, &low);
+    assert_true(off < 0.004 && low > 0.0019 && low < 0.0022);
+    follow_circle("stewart-6-3", 3, 0.7, pose, &off, &low);
+    assert_true(off < 0.002 && low > 0.0019 && low < 0.0022);
+    follow_circle("delta-robot", 5, -0.5, place, &off, &low);
+    assert_true(off < 0.0004 && low > 0.0008 && low < 0.001);
+}
+
+static void platforms_without_gains_fall_and_keep_their_energy(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"stewart-6-6", "stewart-6-3", "delta-robot"},
+                             *const height[] = {"Y", "Y", "y"};
+    const hn_setting loose[] = {{"kp", 0}, {"kd", 0}};
+    for (int i = 0; i < 3; i++) {
+        hn_trial trial;
+        open_scene(&trial, scenes[i], loose, 2);
+        const int y = coordinate(&trial, height[i]);
+        hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+        const double y0 = at(run, 0).q[y];
+        const hn_sample s = at(run, 0.1);
+        // legs that fall along change little of g t^2 / 2
+        assert_near(y0 - s.q[y], 9.81 * 0.01 / 2, 0.01);
+        assert_near(at(run, 0.3).energy_change, 0, 1e-5); // of 100 J, by RK4
+        hn_run_free(run);
+        hn_trial_close(&trial);
+    }
+}
+
+// three parallelograms forbid every rotation, in flight as under the drives
+static void a_delta_platform_does_not_turn(void **state) {
+    (void)state;
+    for (int loose = 0; loose <= 1; loose++) {
+        const hn_setting gains[] = {{"kp", 0}, {"kd", 0}};
+        hn_trial trial;
+        open_scene(&trial, "delta-robot", gains, loose ? 2 : 0);
+        const int turns[] = {coordinate(&trial, "rx"), coordinate(&trial, "ry"),
+                             coordinate(&trial, "rz")};
+        const int x = coordinate(&trial, "x"), y = coordinate(&trial, "y");
+        hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+        double way = 0;
+        for (int k = 1; k <= 50; k++) {
+            const hn_sample s = at(run, 0.02 * k);
+            way = fmax(way, hypot(s.q[x] - 0.1, s.q[y] + 0.5));
+            for (int i = 0; i < 3; i++) {
+                assert_near(s.q[turns[i]], 0, 1e-12);
+            }
+        }
+        assert_true(way > 0.1); // it did move
+        hn_run_free(run);
+        hn_trial_close(&trial);
+    }
+}
+
+/// Least singular value of the six rods' rows at a yaw [degrees], rows per metre of the platform's six speeds.
+static double rods_sigma(double degrees) {
+    const hn_setting yaw = {"yaw", degrees * PI / 180};
+    hn_scene *scene;
+    hn_system *sys;
+    hn_diags diags = {0};
+    hn_eval *eval;
+    double sigma[6], q[8], v[8] = {0};
+    assert_int_equal(hn_scene_load_file("tests/scenes/stewart-rods.json", &yaw, 1, &scene, &diags),
+                     HN_OK);
+    assert_int_equal(hn_system_compile(scene, NULL, &sys, &diags), HN_OK);
+    hn_arena *arena = hn_arena_create(0);
+    hn_assembly report;
+    assert_int_equal(hn_assemble(sys, 0, q, v, NULL, NULL, &report, &diags), HN_OK);
+    assert_int_equal(hn_eval_create(sys, HN_TERM_J, arena, &eval), HN_OK);
+    hn_eval_run(eval, 0, q, v);
+    assert_int_equal(hn_singular_values(6, 6, hn_eval_get(eval, HN_TERM_J), sigma, arena), HN_OK);
+    assert_int_equal(report.rank, degrees == 90 ? 5 : 6);
+    hn_eval_free(eval);
+    hn_arena_free(arena);
+    hn_system_free(sys);
+    hn_scene_free(scene);
+    return sigma[5];
+}
+
+// Fichter 1986: half-angles of 15 and 45 degrees lose rank at a yaw of 90 degrees, linearly in the angle
+static void a_platform_on_six_rods_comes_loose_at_a_yaw_of_ninety_degrees(void **state) {
+    (void)state;
+    const double s60 = rods_sigma(60), s89 = rods_sigma(89), close = rods_sigma(89.9);
+    assert_true(rods_sigma(0) > s60 && s60 > 10 * s89);
+    assert_near(close / s89, 0.1, 0.001); // curvature over one degree
+    assert_true(rods_sigma(90) < 1e-14);
+}
+
+// drives, wheels, teeth -------------------------------------------------------------------------------------
+
+// what the energy gains is the drive's work less what friction takes (Simpson's rule over samples)
+static void the_torque_of_a_given_motion_does_the_work_that_the_energy_gains(void **state) {
+    (void)state;
+    enum { N = 2000 };
+    const double w = 3, friction = 0.02, h = 1e-3;
+    hn_trial trial;
+    open_scene(&trial, "driven-crank", NULL, 0);
+    const int th1 = coordinate(&trial, "th1"), wp = coordinate(&trial, "wp");
+    const int drive = trial.info.nc - 1;
+    assert_string_equal(hn_system_row_name(trial.sys, drive), "drive");
+    hn_run *run = hn_trial_run(&trial, "projection@rk4:h=5e-4");
+    double work = 0;
+    for (int k = 0; k <= N; k++) {
+        const hn_sample s = at(run, h * k);
+        const double weight = h / 3 * (k == 0 || k == N ? 1 : k % 2 ? 4 : 2);
+        work += weight * (s.lambda[drive] * w - friction * s.v[wp] * s.v[wp]);
+        assert_near(s.q[th1], w * s.t, 1e-13);
+        if (k == N) {
+            assert_true(fabs(s.energy_change) > 0.1);
+            assert_near(s.energy_change, work, 1e-8); // h^4 and the method's own error
+        }
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+// one freedom: I ws' = T(t) - b n^2 ws, n = rs/(rs + rr), with T from 0 to T0 in half a second, then constant
+static void a_planetary_gear_turns_as_its_table_of_torque_says(void **state) {
+    (void)state;
+    const double rs = 0.2, rp = 0.15, rr = 0.5, ms = 1, mp = 0.5, Ic = 0.05, T0 = 2, b = 1;
+    const double n = rs / (rs + rr), spin = n * (1 - rr / rp); // of a planet, in space
+    const double I = ms * rs * rs / 2 + (Ic + 3 * mp * (rs + rp) * (rs + rp)) * n * n +
+                     3 * mp * rp * rp / 2 * spin * spin;
+    const double c = b * n * n / I;
+    hn_trial trial;
+    open_scene(&trial, "planetary-gear", NULL, 0);
+    const int ws = coordinate(&trial, "ws"), wc = coordinate(&trial, "wc");
+    hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+    hn_sample s = at(run, 0.5);
+    const double first = T0 / (0.5 * I) * (0.5 / c - (1 - exp(-0.5 * c)) / (c * c));
+    assert_near(s.v[ws], first, 1e-10); // (c h)^4
+    assert_near(s.v[wc], n * s.v[ws], 1e-13);
+    s = at(run, 1.5);
+    assert_near(s.v[ws], T0 / (c * I) + (first - T0 / (c * I)) * exp(-c), 1e-10);
+    assert_int_equal(s.rank, 4);
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
+// at rest with the pendulum upright: a = (m + mp) g sin al / (m (1 + k) + mp sin^2 al), and all of it without slip
+static void a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theory(void **state) {
+    (void)state;
+    const double al = 0.168, R = 0.4, m = 2, mp = 1, g = 9.81;
+    hn_trial trial;
+    open_scene(&trial, "rolling-wheel", NULL, 0);
+    const int x = coordinate(&trial, "x"), y = coordinate(&trial, "y"),
+              th = coordinate(&trial, "th");
+    hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
+    hn_sample s = at(run, 0);
+    assert_near(s.a[x] / cos(al), (m + mp) * g * sin(al) / (2 * m + mp * sin(al) * sin(al)), 1e-13);
+    for (int k = 1; k <= 30; k++) {
+        s = at(run, 0.1 * k);
+        const double way = (s.q[x] - R * sin(al)) / cos(al);
+        assert_near(way, -R * s.q[th], 1e-13); // right is clockwise
+        assert_near(s.q[x] * sin(al) + s.q[y] * cos(al), R, 1e-14);
+        assert_near(s.energy_change, 0, 1e-11); // of 60 J: smooth, by RK4
+    }
+    hn_run_free(run);
+    hn_trial_close(&trial);
+}
+
 /// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of them.
 static void every_setting_in_the_ranges_closes_the_loops(void **state) {
     (void)state;
     static const char *const scenes[] = {
-        "spinning-block",   "heavy-top", "spatial-slider-crank", "cardan-shaft",
-        "oblique-four-bar", "car-axis",  "seven-body-squeezer"};
+        "spinning-block",   "heavy-top",   "spatial-slider-crank", "cardan-shaft",
+        "oblique-four-bar", "car-axis",    "seven-body-squeezer",  "stewart-6-6",
+        "stewart-6-3",      "delta-robot", "driven-crank",         "planetary-gear",
+        "rolling-wheel"};
     unsigned seed = 7;
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         hn_trial plain;
@@ -307,6 +500,13 @@ int main(void) {
         cmocka_unit_test(an_oblique_four_bar_without_gravity_moves_as_one_in_the_plane),
         cmocka_unit_test(the_car_axis_ends_where_the_test_set_says),
         cmocka_unit_test(the_squeezer_has_twelve_digits_at_its_end),
+        cmocka_unit_test(platforms_follow_their_circles_as_closely_as_told),
+        cmocka_unit_test(platforms_without_gains_fall_and_keep_their_energy),
+        cmocka_unit_test(a_delta_platform_does_not_turn),
+        cmocka_unit_test(a_platform_on_six_rods_comes_loose_at_a_yaw_of_ninety_degrees),
+        cmocka_unit_test(the_torque_of_a_given_motion_does_the_work_that_the_energy_gains),
+        cmocka_unit_test(a_planetary_gear_turns_as_its_table_of_torque_says),
+        cmocka_unit_test(a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theory),
         cmocka_unit_test(every_setting_in_the_ranges_closes_the_loops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
