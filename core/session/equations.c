@@ -36,11 +36,35 @@ static const char *symbol_name(const hn_system *sys, int symbol) {
     return hn_graph_symbol_name(hn_system_graph(sys), symbol);
 }
 
+/// Entry i of q's speeds belongs to an orientation: which quaternion, whose entries stand in a row.
+static void put_orientation(hn_strbuf *b, const hn_system *sys, int i) {
+    hn_system_exprs x = hn_system_get_exprs(sys);
+    int at = 0, part = 0; // of q; of the orientation
+    for (int j = 0; j < i; j++) {
+        if (hn_system_position_of(sys, j) >= 0) {
+            at++;
+        } else {
+            part = (part + 1) % 3;
+            at += part == 0 ? 4 : 0;
+        }
+    }
+    static const char axes[3] = {'x', 'y', 'z'};
+    hn_strbuf_printf(b, "%c of the rotation vector of the unit quaternion (", axes[part]);
+    for (int k = 0; k < 4; k++) {
+        hn_strbuf_printf(b, "%s%s", k ? ", " : "", symbol_name(sys, x.q_symbols[at + k]));
+    }
+    hn_strbuf_add(b, ")");
+}
+
 /// "th2 = q2 - q1" for each scene coordinate that is not a system coordinate itself.
 static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *unit, double *image) {
     hn_system_info info = hn_system_get_info(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     int first = 1;
+    if (hn_system_position_of(sys, i) < 0) {
+        put_orientation(b, sys, i);
+        return;
+    }
     for (int j = 0; j < info.nv; j++) {
         memset(unit, 0, (size_t)info.nv * sizeof *unit);
         unit[j] = 1;
@@ -52,7 +76,7 @@ static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *un
             if (fabs(c) != 1) {
                 hn_strbuf_printf(b, "%.15g*", fabs(c));
             }
-            hn_strbuf_add(b, symbol_name(sys, x.q_symbols[j]));
+            hn_strbuf_add(b, symbol_name(sys, x.q_symbols[hn_system_position_of(sys, j)]));
             first = 0;
         }
     }
