@@ -26,7 +26,7 @@ typedef struct work {
 /// than to solve, without bound, so it is left to the dense solve.
 enum { MAX_UPDATES = 50000 };
 
-/// A coordinate that touches more rows than one spatial loop has is shared by legs (a platform's). Rows need not wait for it: what
+/// A coordinate that touches as many rows as a spatial loop has at most, where there are loops to spare, is shared by legs (a platform's). Rows need not wait for it: what
 /// each leg has of its own gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with every
 /// other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard sees it.
 enum { SHARED_ROWS = 6 };
@@ -44,7 +44,8 @@ static void fill(work *w, const hn_ldl_input *in) {
         hn_symmat_set(w->K, in->nv + in->J->at[k].row, in->J->at[k].col, in->J->at[k].e);
     }
     for (int k = 0; k < in->J->n; k++) { // counted in `degree` before its proper use
-        w->shared[in->J->at[k].col] = ++w->degree[in->J->at[k].col] > SHARED_ROWS;
+        w->shared[in->J->at[k].col] =
+            ++w->degree[in->J->at[k].col] >= SHARED_ROWS && in->nc >= 2 * SHARED_ROWS;
     }
     for (int i = 0; i < in->nv; i++) {
         w->ref[i] = hn_symmat_get(w->K, i, i);

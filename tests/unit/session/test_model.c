@@ -183,6 +183,22 @@ static void a_state_with_an_unknown_name_is_refused_with_a_hint(void **state) {
     hn_model_free(model);
 }
 
+static void equations_say_which_quaternion_an_orientation_is(void **state) {
+    (void)state;
+    hn_model *model = load(&(hn_model_source){.name = "stewart-6-6"});
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    assert_int_equal(hn_model_equations(&b, model, HN_EQUATIONS_TEXT, &diags), HN_OK);
+    // coordinates behind the platform's orientation keep their own symbols, one entry of q further on than of v
+    assert_non_null(strstr(hn_strbuf_text(&b),
+                           "y of the rotation vector of the unit quaternion (e0_platform, "
+                           "e1_platform, e2_platform, e3_platform)"));
+    assert_non_null(strstr(hn_strbuf_text(&b), "\nb1 = b1\n"));
+    hn_strbuf_reset(&b);
+    hn_model_free(model);
+}
+
 static void equations_keep_the_names_of_parameters(void **state) {
     (void)state;
     hn_model *model = load(&(hn_model_source){.name = "fb0"});
@@ -256,6 +272,7 @@ int main(void) {
         cmocka_unit_test(every_shipped_scene_loads_and_describes_itself),
         cmocka_unit_test(terms_balance_in_the_coordinates_of_the_scene),
         cmocka_unit_test(a_state_with_an_unknown_name_is_refused_with_a_hint),
+        cmocka_unit_test(equations_say_which_quaternion_an_orientation_is),
         cmocka_unit_test(equations_keep_the_names_of_parameters),
         cmocka_unit_test(a_picture_is_a_png_and_says_what_it_shows),
         cmocka_unit_test(a_parameter_changes_the_mechanism),
