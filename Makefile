@@ -17,17 +17,18 @@ PREFIX ?= /usr/local
 PORT   ?= 8080
 
 # ---- layers: each names what it may include, lowest last; tests link the same list ----------------------------
-LAYERS := base linalg expr scene dynamics methods integrators study render session server
+LAYERS := base linalg expr scene import dynamics methods integrators study render session server
 NEEDS_base        :=
 NEEDS_linalg      := base
 NEEDS_expr        := base
 NEEDS_scene       := expr base
+NEEDS_import      := scene expr base
 NEEDS_dynamics    := scene expr linalg base
 NEEDS_methods     := dynamics $(NEEDS_dynamics)
 NEEDS_integrators := methods $(NEEDS_methods)
 NEEDS_study       := integrators $(NEEDS_integrators)
 NEEDS_render      := dynamics $(NEEDS_dynamics)
-NEEDS_session     := render study $(NEEDS_study)
+NEEDS_session     := import render study $(NEEDS_study)
 NEEDS_server      := session $(NEEDS_session)
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
@@ -48,9 +49,9 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-
             -Wmissing-prototypes -Wconversion -Wno-sign-conversion
 # no fast-math and no fused multiply-add: a build must give the same bits everywhere
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
-CPPFLAGS := -D_DEFAULT_SOURCE -MMD -MP
+CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
-LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lOSMesa -lpng -lm
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lOSMesa -lpng -lxml2 -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)
@@ -142,7 +143,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libosmesa6-dev libpng-dev \
-                 ca-certificates node:nodejs npm:npm
+                 libxml2-dev ca-certificates node:nodejs npm:npm
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
@@ -283,7 +284,7 @@ check-layers:
 
 check-headers:
 	@for h in $(HEADERS); do \
-	    echo 'extern int not_empty;' | $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -Icore -Iserver -Itests \
+	    echo 'extern int not_empty;' | $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -Icore -Iserver -Itests \
 	        -fsyntax-only -include $$h -x c - || { echo "$$h does not compile alone"; exit 1; }; done
 
 check-format:

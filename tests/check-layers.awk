@@ -13,11 +13,12 @@ BEGIN {
     }
     # a library is seen by these layers alone
     only["microhttpd"] = " server "
-    only["cjson"] = " scene session server "
+    only["cjson"] = " scene import session server "
     only["GL"] = " render "
     only["png"] = " render "
     only["gsl"] = " linalg integrators study "
     only["ncurses"] = " server "
+    only["libxml2"] = " import "
 }
 
 function fault(text) {
@@ -32,6 +33,7 @@ function library_of(header) {
     if (header ~ /^png/) return "png"
     if (header ~ /^gsl\//) return "gsl"
     if (header ~ /^n?curses/) return "ncurses"
+    if (header ~ /^libxml\//) return "libxml2"
     return ""
 }
 

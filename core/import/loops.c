@@ -1,0 +1,119 @@
+// The loop file: what closes the loops of a URDF, which is a tree. JSON of ours:
+//   {"holonom_loops": 1, "joints": [..], "constraints": [..], "gravity": [x, y, z]}
+// Joints and constraints are written as in a scene (scene.schema.json); bodies are links by name, places and directions
+// in the frames of the links. Each joint is marked as cut.
+#include "import/build.h"
+
+#include "base/json_text.h"
+
+#include <cjson/cJSON.h>
+#include <string.h>
+
+enum { MAX_DEPTH = 32, MAX_ENTRIES = 4000 };
+
+static int fault(hn_build *b, const char *pointer, const char *hint, const char *message) {
+    b->status = HN_ERR_INPUT;
+    (void)hn_diags_add(b->diags, HN_ERR_INPUT, pointer, hint, "loop file: %s", message);
+    return 0;
+}
+
+static int add_entry(hn_build *b, hn_im_texts *list, const cJSON *entry) {
+    char *text = cJSON_PrintUnformatted(entry);
+    hn_strbuf o;
+    hn_strbuf_init(&o);
+    hn_strbuf_add(&o, text ? text : "");
+    o.failed |= !text;
+    cJSON_free(text);
+    return hn_im_add_text(b, list, &o);
+}
+
+static int add_joint(hn_build *b, cJSON *entry) {
+    const cJSON *cut = cJSON_GetObjectItemCaseSensitive(entry, "cut");
+    if (!cut && !cJSON_AddTrueToObject(entry, "cut")) {
+        return hn_im_out_of_memory(b);
+    }
+    if (cut && !cJSON_IsTrue(cut)) {
+        return fault(b, "/joints", "leave 'cut' out",
+                     "a joint of this file closes a loop, so it is cut");
+    }
+    b->n_closing++;
+    return add_entry(b, &b->closing, entry);
+}
+
+/// The entries of a list under `key`; joints are marked.
+static int read_list(hn_build *b, const cJSON *root, const char *key) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, key);
+    int joints = strcmp(key, "joints") == 0;
+    if (list && !cJSON_IsArray(list)) {
+        return fault(b, joints ? "/joints" : "/constraints", NULL, "expected a list");
+    }
+    if (cJSON_GetArraySize(list) > MAX_ENTRIES) {
+        return fault(b, joints ? "/joints" : "/constraints", NULL, "more than 4000 entries");
+    }
+    for (cJSON *c = list ? list->child : NULL; c; c = c->next) {
+        if (!cJSON_IsObject(c)) {
+            return fault(b, joints ? "/joints" : "/constraints", NULL,
+                         "expected objects in the list");
+        }
+        b->n_closing += !joints;
+        if (!(joints ? add_joint(b, c) : add_entry(b, &b->constraints, c))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int read_gravity(hn_build *b, const cJSON *root) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "gravity");
+    if (!list) {
+        return 1;
+    }
+    int good = cJSON_IsArray(list) && cJSON_GetArraySize(list) == 3, k = 0;
+    for (const cJSON *c = good ? list->child : NULL; c; c = c->next) {
+        good &= cJSON_IsNumber(c);
+        b->gravity[k++] = c->valuedouble;
+    }
+    return good || fault(b, "/gravity", "as in [0, 0, -9.81]", "expected three numbers");
+}
+
+static int read_document(hn_build *b, const cJSON *root) {
+    static const char *const fields[] = {"holonom_loops", "about", "joints", "constraints",
+                                         "gravity"};
+    enum { N_FIELDS = sizeof fields / sizeof *fields };
+    if (!cJSON_IsObject(root)) {
+        return fault(b, "", "as in {\"holonom_loops\": 1, \"joints\": [..]}", "expected an object");
+    }
+    for (const cJSON *c = root->child; c; c = c->next) {
+        int known = 0;
+        for (int k = 0; k < N_FIELDS; k++) {
+            known |= strcmp(c->string, fields[k]) == 0;
+        }
+        if (!known) {
+            const char *near = hn_nearest_name(c->string, fields, N_FIELDS);
+            return fault(b, hn_im_text(b, "/%.60s", c->string),
+                         near ? hn_im_text(b, "did you mean '%s'?", near) : NULL, "unknown field");
+        }
+    }
+    const cJSON *version = cJSON_GetObjectItemCaseSensitive(root, "holonom_loops");
+    if (!cJSON_IsNumber(version) || version->valuedouble != 1) {
+        return fault(b, "/holonom_loops", "\"holonom_loops\": 1", "the version of this form is 1");
+    }
+    return read_list(b, root, "joints") && read_list(b, root, "constraints") &&
+           read_gravity(b, root);
+}
+
+int hn_im_read_loops(hn_build *b, const char *text, size_t n) {
+    hn_diag diag = {0};
+    b->n_own_constraints = b->constraints.n;
+    if (n > HN_IMPORT_MAX_BYTES) {
+        return fault(b, "", NULL, "too many bytes");
+    }
+    if (hn_json_text_check(text, n, MAX_DEPTH, &diag) != HN_OK) {
+        return fault(b, "", diag.hint, diag.message);
+    }
+    cJSON *root = cJSON_ParseWithLength(text, n);
+    int good = root ? read_document(b, root) : hn_im_out_of_memory(b);
+    cJSON_Delete(root);
+    b->guess |= b->n_closing > 0;
+    return good;
+}
