@@ -13,7 +13,6 @@ static int is_zero(const double *x, int n) {
     return 1;
 }
 
-/// A place or direction, unless it is what is meant when nothing stands there.
 static void put_vector(hn_strbuf *o, const char *key, const double x[3]) {
     hn_json_put_numbers(o, key, x, 3);
 }
@@ -95,7 +94,7 @@ static void write_names(const hn_im_joint *j, hn_strbuf *o) {
     }
 }
 
-/// A fixed or ball joint whose two triads are the same needs no directions of its own in the child.
+/// Directions in the child stand there only where their numbers differ from the parent's.
 static void write_joint(const hn_build *b, const hn_im_joint *j, hn_strbuf *o) {
     hn_json_object(o);
     hn_json_put_string(o, "name", j->name);
@@ -197,35 +196,32 @@ static void break_line(hn_strbuf *out, int depth) {
     hn_strbuf_printf(out, "\n%*s", 2 * depth, "");
 }
 
-/// Lines where the first two levels open, close and go on; what is deeper stays in its line.
+/// Lines where the first two levels open, close and go on; lists of numbers and what is deeper stay in their line.
 static void lay_out(const char *json, hn_strbuf *out) {
     enum { LEVELS = 2 };
-    int depth = 0, in_string = 0;
+    int depth = 0, in_string = 0,
+        numbers = 0; // numbers: the depth of the list of numbers that is open
     for (const char *c = json; *c; c++) {
-        if (in_string) {
-            hn_strbuf_add_n(out, c, 1);
-            if (*c == '\\' && c[1]) {
-                hn_strbuf_add_n(out, ++c, 1);
-            } else if (*c == '"') {
-                in_string = 0;
-            }
-            continue;
-        }
-        in_string = *c == '"';
-        int opens = *c == '{' || *c == '[', closes = *c == '}' || *c == ']';
-        int empty = opens && (c[1] == '}' || c[1] == ']');
-        if (closes && depth-- <= LEVELS && c[-1] != '{' && c[-1] != '[') {
+        const int opens = !in_string && (*c == '{' || *c == '[');
+        const int closes = !in_string && (*c == '}' || *c == ']');
+        numbers = opens && !numbers && (c[1] == '-' || (c[1] >= '0' && c[1] <= '9')) ? depth + 1
+                                                                                     : numbers;
+        if (closes && depth-- <= LEVELS && !numbers && c[-1] != '{' && c[-1] != '[') {
             break_line(out, depth);
         }
         hn_strbuf_add_n(out, c, 1);
-        if (*c == ':' || (*c == ',' && depth > LEVELS)) {
+        if (in_string && *c == '\\' && c[1]) {
+            hn_strbuf_add_n(out, ++c, 1);
+        } else if (*c == '"') {
+            in_string = !in_string;
+        } else if (!in_string && (*c == ':' || (*c == ',' && (depth > LEVELS || numbers)))) {
             hn_strbuf_add(out, " ");
-        } else if (*c == ',') {
+        } else if (!in_string && *c == ',') {
+            break_line(out, depth);
+        } else if (opens && ++depth <= LEVELS && !numbers && c[1] != '}' && c[1] != ']') {
             break_line(out, depth);
         }
-        if (opens && ++depth <= LEVELS && !empty) {
-            break_line(out, depth);
-        }
+        numbers = closes && depth < numbers ? 0 : numbers;
     }
     hn_strbuf_add(out, "\n");
 }

@@ -34,7 +34,7 @@ typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme, *view;
+    const char *method, *format, *out, *host, *theme, *view, *loops, *key;
     double time, every, t, port, width, height, seed, frame_dt;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
     int json, open, help, raw_lambda;
@@ -99,5 +99,6 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_import(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_serve(const hn_library *lib, const hn_args *args);
 #endif
