@@ -14,6 +14,9 @@ static const char *const FILES[] = {
     "lessons/01-closed-loops/scenes/fb0-lagrangian.json",
     "lessons/01-closed-loops/scenes/five-bar.json",
     "lessons/01-closed-loops/scenes/n-four-bar.json",
+    "lessons/03-space-and-drives/scenes/delta-robot.json",
+    "lessons/03-space-and-drives/scenes/planetary-gear.json",
+    "lessons/03-space-and-drives/scenes/rolling-wheel.json",
 };
 enum { N_FILES = sizeof FILES / sizeof FILES[0] };
 
@@ -112,7 +115,7 @@ static void memory_that_runs_out_anywhere_is_told_and_nothing_leaks(void **state
     cJSON_Hooks hooks = {malloc, free};
     (void)state;
     cJSON_InitHooks(&hooks);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < N_FILES; k++) {
         size_t n;
         char *text = slurp(FILES[k], &n);
         long live = hn_alloc_live(), fault = 0;
