@@ -30,6 +30,10 @@ static int tell_syntax(hn_build *b, const xmlParserCtxt *parser) {
     char text[300];
     (void)snprintf(text, sizeof text, "%s", e->message ? e->message : "not XML");
     text[strcspn(text, "\n")] = '\0';
+    if (strncmp(text, "Excessive depth", 15) == 0) {
+        // the parser's own bound, which names an option of the library
+        (void)snprintf(text, sizeof text, "elements are nested far too deep");
+    }
     b->status = HN_ERR_INPUT;
     (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, NULL, "line %d, column %d: %s",
                        e->line > 0 ? e->line : 1, e->int2 > 0 ? e->int2 : 1, text);

@@ -69,7 +69,7 @@ class Import(unittest.TestCase):
         for text, says in ((b"", "line 1"), (b"<html/>", "<mujoco>"), (b"<mujoco><worldbody>", "line 1, column"),
                            (b"<mujoco>" + b" " * (5 << 20), "more than 4194304 bytes"),
                            (b"<!DOCTYPE a [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]><mujoco model='&b;'/>", "document type"),
-                           (b"<mujoco>" + b"<body>" * 100000, "line 1")):
+                           (b"<mujoco>" + b"<body>" * 100000, "nested far too deep")):
             result = call("import", "-", stdin=text)
             self.assertEqual((result.returncode, result.stdout), (INPUT, b""), text[:60])
             self.assertIn(says, result.stderr.decode())

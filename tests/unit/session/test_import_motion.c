@@ -145,11 +145,34 @@ static void a_four_bar_closed_by_connect_moves_as_our_own(void **state) {
     imported_close(&y);
 }
 
+/// Freedoms counted by hand: Stewart 6 + 6*3 - 6*3; leg 8 speeds, 3 rows of the ball, 1 of the coupling.
+static void spatial_loops_close_where_the_file_is_drawn(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int speeds, rows, freedoms;
+    } expected[] = {{"stewart.xml", 24, 18, 6}, {"leg.xml", 8, 4, 4}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        hn_imported x;
+        hn_model m;
+        imported_open_file(&x, expected[i].name, NULL, NULL);
+        open_import(&m, &x);
+        assert_int_equal(m.info.nv, expected[i].speeds);
+        assert_int_equal(m.info.nc, expected[i].rows);
+        assert_int_equal(m.assembly.freedoms, expected[i].freedoms);
+        // drawn closed to rounding: nothing has to move
+        assert_near(m.assembly.moved, 0, 1e-14);
+        hn_model_close(&m);
+        imported_close(&x);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_double_pendulum_has_the_accelerations_of_its_lagrangian),
         cmocka_unit_test(urdf_and_mjcf_of_one_mechanism_move_alike),
         cmocka_unit_test(a_four_bar_closed_by_connect_moves_as_our_own),
+        cmocka_unit_test(spatial_loops_close_where_the_file_is_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
