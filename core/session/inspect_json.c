@@ -12,6 +12,8 @@ static void put_start(hn_strbuf *b, const hn_assembly *a) {
     hn_json_put_number(b, "sigma_min", a->sigma_min);
     hn_json_put_number(b, "sigma_max", a->sigma_max);
     hn_json_put_string(b, "assembly_mode", a->mode_name);
+    hn_json_put_string(b, "assembly_modes",
+                       a->modes); // one sign per loop, as a scene asks for them
     hn_json_put_number(b, "gap", a->gap);
     hn_json_put_number(b, "velocity_gap", a->velocity_gap);
     hn_json_put_number(b, "energy", a->energy);

@@ -58,6 +58,10 @@ static void four_bar_has_three_speeds_two_rows_one_freedom(void **state) {
     assert_true(number(sizes, "speeds") == 3);
     assert_true(number(sizes, "rows") == 2);
     const cJSON *start = cJSON_GetObjectItemCaseSensitive(d, "start");
+    const cJSON *modes = cJSON_GetObjectItemCaseSensitive(start, "assembly_modes");
+    assert_string_equal(modes->valuestring, "+");
+    const cJSON *motors = cJSON_GetObjectItemCaseSensitive(d, "actuation");
+    assert_true(number(motors, "freedoms") == 1);
     assert_true(number(start, "rank") == 2);
     assert_true(number(start, "freedoms") == 1);
     // the ground and three bodies; three of five closure rows say nothing in a plane
