@@ -7,10 +7,14 @@
 #include "integrators/stages.h"
 #include "linalg/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#define ROUNDING 1e-14 // of the scale: corrections at or below are rounding
+#define NEARLY_DEPENDENT \
+    1e-3 // pivot of a row below which the pose that chooses rows has to be closed first
 #define NEWTON_SHARE 0.01 // of the tolerance: what Newton's method may leave
 #define CLOSED \
     1e-15 // of the length: the end of an adaptive step is closed as far as rounding allows
@@ -128,6 +132,12 @@ static hn_status factor(void *self, int which, double re, double im) {
     return hn_implicit_linear_factor(&s->lin, which, re, im);
 }
 
+static hn_status relinearise(void *self, double t, const double *u, const double *rate) {
+    implicit_dae *s = self;
+    place(s, u, 1);
+    return hn_implicit_linear_at(&s->lin, t, s->q, s->v, rate + s->nv, u + 2 * s->nv);
+}
+
 static void solve(void *self, hn_parts r) {
     implicit_dae *s = self;
     hn_implicit_linear_solve(&s->lin, r);
@@ -169,7 +179,7 @@ static hn_status create_terms(implicit_dae *s, hn_arena *arena) {
     if (status == HN_OK) {
         status = hn_accel_create(s->sys, &accel, arena, &s->accel);
     }
-    if (status == HN_OK && s->opts.rtol > 0) {
+    if (status == HN_OK && (s->opts.rtol > 0 || s->form == HN_FORM_INDEX2)) {
         status = hn_projector_create(s->sys, HN_WEIGHT_MASS, arena, &s->projector);
     }
     if (status == HN_OK) {
@@ -196,6 +206,7 @@ hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form, const h
                                        .n_alg = (form == HN_FORM_GGL ? 2 : 1) * info.nc,
                                        .residual = residual,
                                        .factor = factor,
+                                       .relinearise = relinearise,
                                        .solve = solve};
         *self = s;
         status = allocate(s, col, arena);
@@ -242,9 +253,11 @@ hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
 
 // --- one step ---------------------------------------------------------------------------------------------
 
-static void set_scale(implicit_dae *s) {
+static void set_scale(implicit_dae *s, double h) {
     const double size_q = 1 + hn_norm_max(s->nq, s->q0), size_v = 1 + hn_norm_max(s->nv, s->v0);
     double *scale = s->st.scale;
+    // phi cannot be closed better than its own rounding, which stands divided by h in the speeds
+    s->st.floor = s->opts.rtol > 0 ? 0 : ROUNDING + 2 * DBL_EPSILON * size_q / (h * size_v);
     for (int i = 0; i < s->nv; i++) {
         const int at = hn_system_position_of(s->sys, i);
         const double q = at >= 0 ? fabs(s->q0[at]) : 1;
@@ -348,7 +361,7 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
 
 static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     hn_status status = HN_OK;
-    if (!s->projector || s->nc == 0) {
+    if (!(s->opts.rtol > 0) || s->nc == 0) {
         return HN_OK;
     }
     if (wants_phi(s->form)) {
@@ -364,9 +377,23 @@ static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     return status;
 }
 
+// Index 2 lets the gap open, and rows that depend on others do so only at a closed pose: where a row is in doubt the pose
+// is closed for the choice, and for that alone.
+static void choose_rows(implicit_dae *s, double t) {
+    const double pivot = hn_implicit_linear_choose(&s->lin, t, s->q0, s->v0);
+    if (s->form != HN_FORM_INDEX2 || pivot > NEARLY_DEPENDENT) {
+        return;
+    }
+    memcpy(s->q, s->q0, (size_t)s->nq * sizeof *s->q);
+    if (hn_project_position(s->projector, t, s->q, CLOSED, NULL) == HN_OK) {
+        hn_implicit_linear_choose(&s->lin, t, s->q, s->v0);
+    }
+}
+
 static hn_status begin(implicit_dae *s, double t, const double *y) {
     memcpy(s->q0, y, (size_t)s->nq * sizeof *y);
     memcpy(s->v0, y + s->nq, (size_t)s->nv * sizeof *y);
+    choose_rows(s, t);
     const hn_status status =
         hn_implicit_linear_at(&s->lin, t, s->q0, s->v0, s->a_start, s->lambda_start);
     if (status != HN_OK) {
@@ -390,7 +417,7 @@ hn_status hn_implicit_dae_step(void *self, double t, double h, const double *y, 
     if (status != HN_OK) {
         return status;
     }
-    set_scale(s);
+    set_scale(s, h);
     guess_stages(s, h);
     status = hn_stages_solve(&s->st, t, h);
     if (status != HN_OK) {

@@ -63,9 +63,11 @@ void hn_implicit_linear_free(hn_implicit_linear *l) {
     l->terms = NULL;
 }
 
-// rows that stand on their own, by pivoted QR of J' with rows of length 1
-static void choose_rows(hn_implicit_linear *l) {
+// by pivoted QR of J' with rows of length 1
+double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *q,
+                                 const double *v) {
     const int nv = l->nv, nc = l->nc;
+    hn_linear_run(l->terms, t, q, v, NULL, NULL);
     for (int i = 0; i < nc; i++) {
         const double *row = l->J + (size_t)i * (size_t)nv;
         const double size = hn_norm2(nv, row);
@@ -79,6 +81,7 @@ static void choose_rows(hn_implicit_linear *l) {
     for (int k = 0; k < l->n_kept; k++) {
         l->kept[k] = l->qr.perm[k];
     }
+    return hn_qr_pivot_ratio(&l->qr);
 }
 
 // Y = M^-1 J', S = J Y of the kept rows
@@ -138,7 +141,6 @@ hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q
     if (!hn_all_finite(l->nv * l->nv, l->M) || !hn_all_finite(l->nv * l->nc, l->J)) {
         return HN_ERR_DIVERGED;
     }
-    choose_rows(l);
     if (!has_stabiliser(l)) {
         return HN_OK;
     }

@@ -40,7 +40,10 @@ typedef struct hn_implicit_linear {
 HN_MUST_CHECK hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys,
                                                 hn_dae_form form, hn_arena *arena);
 void hn_implicit_linear_free(hn_implicit_linear *l);
-/// Evaluates the terms, chooses the rows. Fails with HN_ERR_SINGULAR where the mass matrix does (GGL only), HN_ERR_DIVERGED.
+/// Chooses the rows that stand on their own at a pose: to be called where the loops are closed, because rows that depend on others
+/// do so only there. Returns the smallest pivot that was kept, of the largest.
+double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *q, const double *v);
+/// Evaluates the terms with the rows chosen before. Fails with HN_ERR_SINGULAR where the mass matrix does (GGL only), HN_ERR_DIVERGED.
 HN_MUST_CHECK hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q,
                                               const double *v, const double *a,
                                               const double *lambda);

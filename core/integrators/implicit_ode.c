@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#define ROUNDING 1e-14    // of the scale: corrections at or below are rounding
 #define NEWTON_SHARE 0.01 // of the tolerance: what Newton's method may leave
 
 typedef struct implicit_ode {
@@ -16,8 +17,8 @@ typedef struct implicit_ode {
     const hn_ode *ode; // during a step
     int n;
     double rtol, atol;
-    double *y0, *slope0, *stage;     // n
-    double *jacobian, *real, *scale; // n x n, n x n, n
+    double *y0, *slope0, *stage, *base, *column; // n
+    double *jacobian, *real, *scale;             // n x n, n x n, n
     hn_complex *complex_matrix, *packed;
     int *pivot[2];
     double *guess;     // stages x n: Z of the last accepted step
@@ -80,6 +81,42 @@ static void solve(void *self, hn_parts r) {
     }
 }
 
+// columns of dF/dy at y by one-sided differences from `base`, its F
+static hn_status differences(implicit_ode *s, const hn_ode *ode, double t, double *y,
+                             const double *base) {
+    const int n = s->n;
+    double *column = s->column;
+    for (int j = 0; j < n; j++) {
+        const double keep = y[j], step = sqrt(DBL_EPSILON) * fmax(1e-3, fabs(keep));
+        y[j] = keep + step;
+        const double exact = y[j] - keep;
+        const hn_status status = ode->rhs(ode->self, t, y, column);
+        y[j] = keep;
+        if (status != HN_OK) {
+            return status;
+        }
+        for (int i = 0; i < n; i++) {
+            s->jacobian[i * n + j] = (column[i] - base[i]) / exact;
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status find_jacobian(implicit_ode *s, double t, double *y, const double *base) {
+    return s->ode->jacobian ? s->ode->jacobian(s->ode->self, t, y, s->jacobian)
+                            : differences(s, s->ode, t, y, base);
+}
+
+static hn_status relinearise(void *self, double t, const double *u, const double *rate) {
+    implicit_ode *s = self;
+    (void)rate;
+    for (int i = 0; i < s->n; i++) {
+        s->stage[i] = s->y0[i] + u[i];
+    }
+    const hn_status status = s->ode->rhs(s->ode->self, t, s->stage, s->base);
+    return status == HN_OK ? find_jacobian(s, t, s->stage, s->base) : status;
+}
+
 void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) {
     const size_t w = (size_t)n;
     implicit_ode *s = hn_arena_get(arena, sizeof *s);
@@ -87,11 +124,17 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
         return NULL;
     }
     *s = (implicit_ode){.n = n};
-    const hn_stage_equations eq = {
-        .self = s, .n_diff = n, .residual = residual, .factor = factor, .solve = solve};
+    const hn_stage_equations eq = {.self = s,
+                                   .n_diff = n,
+                                   .residual = residual,
+                                   .factor = factor,
+                                   .solve = solve,
+                                   .relinearise = relinearise};
     s->y0 = hn_arena_doubles(arena, w);
     s->slope0 = hn_arena_doubles(arena, w);
     s->stage = hn_arena_doubles(arena, w);
+    s->base = hn_arena_doubles(arena, w);
+    s->column = hn_arena_doubles(arena, w);
     s->jacobian = hn_arena_doubles(arena, w * w);
     s->real = hn_arena_doubles(arena, w * w);
     s->scale = hn_arena_doubles(arena, w);
@@ -109,27 +152,6 @@ void hn_implicit_ode_set_tolerance(void *self, double rtol, double atol) {
     s->rtol = rtol;
     s->atol = atol > 0 ? atol : rtol;
     s->nw.tol = rtol > 0 ? NEWTON_SHARE : 0;
-}
-
-// columns of dF/dy by one-sided differences; the base value is in slope0
-static hn_status differences(implicit_ode *s, double t) {
-    const int n = s->n;
-    double *column = s->nw.r;
-    memcpy(s->stage, s->y0, (size_t)n * sizeof *s->stage);
-    for (int j = 0; j < n; j++) {
-        const double step = sqrt(DBL_EPSILON) * fmax(1e-3, fabs(s->y0[j]));
-        const double moved = s->y0[j] + step, exact = moved - s->y0[j];
-        s->stage[j] = moved;
-        const hn_status status = s->ode->rhs(s->ode->self, t, s->stage, column);
-        if (status != HN_OK) {
-            return status;
-        }
-        s->stage[j] = s->y0[j];
-        for (int i = 0; i < n; i++) {
-            s->jacobian[i * n + j] = (column[i] - s->slope0[i]) / exact;
-        }
-    }
-    return HN_OK;
 }
 
 static void set_scale(implicit_ode *s, const hn_ode *ode) {
@@ -207,12 +229,13 @@ hn_status hn_implicit_ode_step(void *self, const hn_ode *ode, double t, double h
     memcpy(s->y0, y, (size_t)s->n * sizeof *y);
     hn_status status = ode->rhs(ode->self, t, y, s->slope0);
     if (status == HN_OK) {
-        status = ode->jacobian ? ode->jacobian(ode->self, t, y, s->jacobian) : differences(s, t);
+        status = find_jacobian(s, t, s->y0, s->slope0);
     }
     if (status != HN_OK) {
         return status;
     }
     set_scale(s, ode);
+    s->nw.floor = s->rtol > 0 ? 0 : ROUNDING;
     guess_stages(s, h);
     status = hn_stages_solve(&s->nw, t, h);
     if (status != HN_OK) {

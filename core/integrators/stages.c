@@ -6,10 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_TO_TOLERANCE = 10, MOST_TO_ROUNDING = 40 };
-#define ROUNDING 1e-14     // of the scale: corrections at or below are rounding
-#define NEAR_ROUNDING 1e-9 // corrections below, that no longer shrink, are what rounding leaves
-#define STALLED 0.3
+enum { MOST_TO_TOLERANCE = 10, MOST_TO_ROUNDING = 40, MOST_RELINEARISED = 6 };
+// Corrections that no longer shrink are rounding when they are below this, else a reason to take the derivatives anew.
+#define NEAR_ROUNDING 1e-9
+#define STALLED 0.7
+#define SLOW 0.3
 #define HOPELESS 2 // corrections that grow by this twice in a row
 
 hn_status hn_stages_init(hn_stages *nw, const hn_collocation *col, const hn_stage_equations *eq,
@@ -127,21 +128,49 @@ static hn_status give_up(hn_stages *nw, double t, double h, int n, double ratio)
     return HN_ERR_NO_CONVERGENCE;
 }
 
+/// What an iteration has seen so far.
+typedef struct progress {
+    double size, ratio; ///< of the last correction, and against the one before
+    int stalled, grown, relinearised;
+} progress;
+
 // 1 when what is left is below the tolerance, or is rounding
-static int is_done(const hn_stages *nw, double size, double ratio) {
-    if (size <= ROUNDING) {
+static int is_done(const hn_stages *nw, const progress *p) {
+    if (p->size <= nw->floor) {
         return 1;
     }
-    if (nw->tol > 0 && ratio < 1) {
-        return ratio / (1 - ratio) * size <= nw->tol;
+    if (nw->tol > 0) {
+        return p->ratio < 1 && p->ratio / (1 - p->ratio) * p->size <= nw->tol;
     }
-    return nw->tol <= 0 && ratio > STALLED && size <= NEAR_ROUNDING;
+    return p->stalled >= 2 && p->size <= NEAR_ROUNDING;
+}
+
+static void look(progress *p, double size, int first) {
+    p->ratio = first ? HUGE_VAL : size / p->size;
+    p->size = size;
+    p->stalled = !first && p->ratio > STALLED ? p->stalled + 1 : 0;
+    p->grown = !first && p->ratio >= HOPELESS ? p->grown + 1 : 0;
+}
+
+// on the way to rounding a slow iteration gets derivatives at the last stage it has
+static hn_status help(hn_stages *nw, double t, double h, progress *p) {
+    const int last = nw->col.stages - 1;
+    if (nw->tol > 0 || !nw->eq.relinearise || !(p->ratio > SLOW) || isinf(p->ratio) ||
+        p->size <= NEAR_ROUNDING || p->relinearised == MOST_RELINEARISED) {
+        return HN_OK;
+    }
+    p->relinearised++;
+    p->grown = 0;
+    find_rates(nw, h);
+    const hn_status status =
+        nw->eq.relinearise(nw->eq.self, t + nw->col.c[last] * h, stage_of(nw->u, last, nw->n),
+                           nw->rate + last * nw->eq.n_diff);
+    return status == HN_OK ? factor(nw, t, h) : status;
 }
 
 hn_status hn_stages_solve(hn_stages *nw, double t, double h) {
     const int most = nw->tol > 0 ? MOST_TO_TOLERANCE : MOST_TO_ROUNDING;
-    double last = 0, ratio = HUGE_VAL;
-    int grown = 0;
+    progress p = {0};
     nw->why[0] = '\0';
     hn_status status = factor(nw, t, h);
     for (int k = 1; status == HN_OK && k <= most; k++) {
@@ -149,23 +178,21 @@ hn_status hn_stages_solve(hn_stages *nw, double t, double h) {
         if (status != HN_OK) {
             return status;
         }
-        const double size = correct(nw);
+        look(&p, correct(nw), k == 1);
         nw->iterations++;
-        if (!isfinite(size)) {
+        if (!isfinite(p.size)) {
             return give_up(nw, t, h, k, HUGE_VAL);
         }
-        ratio = k > 1 ? size / last : size <= ROUNDING ? 0 : HUGE_VAL;
-        if (is_done(nw, size, ratio)) {
+        if (is_done(nw, &p)) {
             find_rates(nw, h);
             return HN_OK;
         }
-        grown = k > 1 && ratio >= HOPELESS ? grown + 1 : 0;
-        if (grown == 2) {
+        status = help(nw, t, h, &p);
+        if (p.grown == 2) {
             break;
         }
-        last = size;
     }
-    return status == HN_OK ? give_up(nw, t, h, most, ratio) : status;
+    return status == HN_OK ? give_up(nw, t, h, most, p.ratio) : status;
 }
 
 static void weigh(const hn_stages *nw, const double *w, double *z) {

@@ -30,6 +30,8 @@ typedef struct hn_stage_equations {
                           double *r);
     /// Factors dR with s = (re, im) in the place of d/dt; which = 0: real, 1: complex. Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED.
     hn_status (*factor)(void *self, int which, double re, double im);
+    /// Takes the derivatives anew at a stage's u and Z' instead of the start of the step; NULL: not possible.
+    hn_status (*relinearise)(void *self, double t, const double *u, const double *rate);
     /// r <- the correction u with dR u = -r.
     void (*solve)(void *self, hn_parts r);
 } hn_stage_equations;
@@ -43,6 +45,7 @@ typedef struct hn_stages {
     double *r, *parts; ///< stages x n scratch
     double *scale;     ///< n_diff: sizes that corrections are measured by, set by the caller
     double tol;        ///< corrections at or below are negligible; 0: go on to rounding
+    double floor;      ///< of the scale: what rounding of the equations leaves in a correction
     long long iterations, factorisations, solves, residuals;
     char why[HN_STAGES_WHY];
 } hn_stages;
