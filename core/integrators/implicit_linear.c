@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#define ROW_FLOOR \
+    1e-3 // of the longest row: a shorter one is dying away and stays as short against the others
 #define RANK_TOL 1e-10 // of the largest row, all brought to length 1
 
 static int has_stabiliser(const hn_implicit_linear *l) {
@@ -68,9 +70,14 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
                                  const double *v) {
     const int nv = l->nv, nc = l->nc;
     hn_linear_run(l->terms, t, q, v, NULL, NULL);
+    double longest = 0;
+    for (int i = 0; i < nc; i++) {
+        l->unit[i] = hn_norm2(nv, l->J + (size_t)i * (size_t)nv);
+        longest = fmax(longest, l->unit[i]);
+    }
     for (int i = 0; i < nc; i++) {
         const double *row = l->J + (size_t)i * (size_t)nv;
-        const double size = hn_norm2(nv, row);
+        const double size = fmax(l->unit[i], ROW_FLOOR * longest);
         l->unit[i] = size > 0 ? 1 / size : 0;
         for (int j = 0; j < nv; j++) {
             l->qr.a[i * nv + j] = row[j] * l->unit[i];
