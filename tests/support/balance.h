@@ -1,0 +1,21 @@
+#ifndef HN_SUPPORT_BALANCE_H
+#define HN_SUPPORT_BALANCE_H
+// Newton and Euler for every body of a scene with the wrenches of its joints, from poses alone: bodies are placed joint by joint
+// from the scene's own coordinates, and their accelerations are differences of those poses.
+
+#include "dynamics/reactions.h"
+
+typedef struct balance {
+    double force, moment;                 ///< largest residual over all bodies [N], [N m]
+    double largest_force, largest_moment; ///< of what went in
+    double on_ground[3];     ///< sum of the forces of joints and constraints on the ground [N]
+    double momentum_rate[3]; ///< of all bodies [N]
+    double weight[3];
+    double power; ///< of all joint and constraint wrenches together [W]
+} balance;
+
+/// At a state with its accelerations (system coordinates). Loads: springs between points and constant forces are added; a force or
+/// moment with a formula fails the test.
+balance balance_of(const hn_system *sys, const double *q, const double *v, const double *a,
+                   const hn_wrench *joints, const hn_wrench *constraints);
+#endif
