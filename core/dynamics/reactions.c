@@ -289,10 +289,13 @@ static void read_body(hn_reactions *r, int body, const double *a) {
     apply_inertia(r, body, w, spin);
     apply_inertia(r, body, al, turned);
     b->inertial = (hn_reaction_wrench){0};
+    b->force = b->moment = 0;
     hn_reaction_add_scaled(b->inertial.n, 1, turned);
     hn_reaction_add_cross(b->inertial.n, 1, w, spin);
     for (int i = 0; i < 3; i++) {
         b->inertial.f[i] = mass * (acc[i] - r->scene->gravity[i].value);
+        b->force = fmax(b->force, mass * (fabs(acc[i]) + fabs(r->scene->gravity[i].value)));
+        b->moment = fmax(b->moment, fabs(turned[i]) + fabs(b->inertial.n[i] - turned[i]));
     }
 }
 

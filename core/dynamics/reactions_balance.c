@@ -210,6 +210,10 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
 /// The hn_reaction_wrench of each tree joint along its own freedoms against what is put in there.
 double hn_reaction_calc_defect(const hn_reactions *r) {
     double off[2] = {0, 0}, size[2] = {0, 0};
+    for (int b = 0; b < r->n_bodies; b++) {
+        size[1] = fmax(size[1], r->bodies[b].force);
+        size[0] = fmax(size[0], r->bodies[b].moment);
+    }
     for (int j = 0; j < r->scene->n_joints; j++) {
         const hn_joint *joint = &r->scene->joints[j];
         for (int i = 0; i < 3; i++) {

@@ -22,7 +22,8 @@ typedef struct hn_reaction_body {
     int n;           ///< levers
     int *coordinate; ///< n
     double to_world[3][3];
-    double R[3][3], x[3];        ///< axes to world; centre of mass
+    double R[3][3], x[3]; ///< axes to world; centre of mass
+    double force, moment; ///< sizes of what its inertia and weight consist of: these may cancel
     hn_reaction_wrench inertial; ///< what must act on it
     hn_reaction_wrench rest;     ///< the same less what does, without its tree joint
 } hn_reaction_body;

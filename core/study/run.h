@@ -33,7 +33,8 @@ typedef enum hn_run_state {
     X(HN_INCIDENT_RANK_AHEAD, "rank-ahead")               \
     X(HN_INCIDENT_ILL_CONDITIONED, "ill-conditioned")     \
     X(HN_INCIDENT_MULTIPLIERS, "multipliers-grow")        \
-    X(HN_INCIDENT_SOLVER, "solver-fallback")
+    X(HN_INCIDENT_SOLVER, "solver-fallback")              \
+    X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")
 
 typedef enum hn_incident_code {
 #define HN_INCIDENT_ENUM(code, name) code,
@@ -115,6 +116,8 @@ HN_MUST_CHECK hn_status hn_run_create(const hn_system *sys, const hn_method_spec
                                       const double *q, const double *v, const hn_run_opts *opts,
                                       hn_run **out, hn_diag *diag);
 void hn_run_free(hn_run *run);
+/// Where a load given as a table has a corner a step ends and the integrator starts anew; a fixed-step run then goes on with a
+/// shorter step to its next grid point, so that these stay at t0 + n h.
 /// Steps until t >= t_end: a fixed-step run lands on its own grid (t0 + n h); an adaptive run steps past and interpolates. Returns HN_OK or the
 /// failure, which is also kept in the summary. Calling again after a failure returns the same failure.
 hn_status hn_run_advance(hn_run *run, double t_end);

@@ -3,6 +3,7 @@
 // The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time) and run_watch.c (incidents).
 
 #include "dynamics/eval.h"
+#include "dynamics/limits.h"
 #include "dynamics/radar.h"
 #include "integrators/control.h"
 #include "study/run.h"
@@ -52,6 +53,9 @@ typedef struct hn_run_watch_state {
     double last_mode;
     int start_rank;
     int conservative;
+    hn_limits *limits;           ///< coordinates with limits
+    char *beyond;                ///< per limit: it is passed at present
+    double *limited;             ///< their values
     int told[HN_INCIDENT_COUNT]; ///< so far, by kind
     unsigned active; ///< a bit per incident that holds at present: told once, not each step
 } hn_run_watch_state;
@@ -71,7 +75,10 @@ struct hn_run {
     int has_dense;   ///< what dense output needs was evaluated in the last step
     int dense_valid; ///< the stepper's dense output belongs to the chart that is still in use
     double h, h_next;
-    int trouble; ///< trials that failed lately, see step_adaptive
+    long long grid; ///< fixed steps: grid points passed, t0 + grid h
+    double corner;  ///< next corner of a load, HUGE_VAL: none
+    int restart;    ///< an integrator that paces itself forgets what was before a corner
+    int trouble;    ///< trials that failed lately, see step_adaptive
     hn_step_control control;
     hn_run_summary summary;
     hn_cost cost_mark;
@@ -115,6 +122,10 @@ const char *hn_engine_why(const hn_run *run, const hn_run_engine *e);
 /// Memory and evaluators of the watch.
 HN_MUST_CHECK hn_status hn_run_watch_create(hn_run *run);
 void hn_run_watch_free(hn_run *run);
+/// Size of a step towards a corner: it ends a few roundings before.
+double hn_run_step_short_of(double from, double to);
+/// Tells coordinates that have left their limits since the last look.
+void hn_run_look_at_limits(hn_run *run);
 /// Forgets the past and looks at the start.
 void hn_run_watch_start(hn_run *run);
 /// Looks at the state the run has reached.

@@ -45,6 +45,22 @@ static hn_status side_step(hn_run *run, const hn_run_state_at *from, double t) {
     return status == HN_OK ? finish_side(run, t, e->y_new) : status;
 }
 
+// the same from the present state, stopping at corners of loads on the way as the run will
+static hn_status side_steps_ahead(hn_run *run, double t) {
+    hn_run_state_at from = run->now;
+    double corner = run->corner;
+    while (corner < t) {
+        const double end = from.t + hn_run_step_short_of(from.t, corner);
+        const hn_status status = side_step(run, &from, end);
+        if (status != HN_OK) {
+            return status;
+        }
+        from = (hn_run_state_at){corner, run->at_q, run->at_v};
+        corner = hn_system_next_corner(run->sys, corner);
+    }
+    return side_step(run, &from, t);
+}
+
 // dense output of the last step, then closed like any other state
 static hn_status interpolate(hn_run *run, double t) {
     hn_run_engine *e = &run->main;
@@ -81,7 +97,7 @@ static hn_status locate(hn_run *run, double t) {
     }
     const int ahead_allowed =
         !run->adaptive && t < run->now.t + h && run->summary.state != HN_RUN_FAILED;
-    return ahead_allowed ? side_step(run, &run->now, t) : HN_ERR_INPUT;
+    return ahead_allowed ? side_steps_ahead(run, t) : HN_ERR_INPUT;
 }
 
 static void fill_forces(hn_run *run, double t, hn_sample *out) {

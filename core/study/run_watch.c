@@ -115,10 +115,16 @@ hn_status hn_run_watch_create(hn_run *run) {
     w->speed_gap = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     w->row_size = hn_arena_doubles(run->arena, (size_t)run->info.nc);
     w->conservative = is_conservative(run->sys);
+    const size_t n = (size_t)hn_system_scene(run->sys)->n_coordinates + 1;
+    w->beyond = hn_arena_get(run->arena, n);
+    w->limited = hn_arena_doubles(run->arena, n);
     if (hn_arena_failed(run->arena)) {
         return HN_ERR_MEMORY;
     }
     hn_status status = hn_eval_create(run->sys, terms, run->arena, &w->eval);
+    if (status == HN_OK) {
+        status = hn_limits_create(run->sys, run->arena, &w->limits);
+    }
     if (status == HN_OK) {
         status = hn_accel_create(run->sys, &opts, run->arena, &w->accel);
     }
@@ -132,6 +138,7 @@ void hn_run_watch_free(hn_run *run) {
     hn_eval_free(run->watch.eval);
     hn_accel_free(run->watch.accel);
     hn_mode_watch_free(run->watch.mode);
+    hn_limits_free(run->watch.limits);
     hn_run_ahead_free(run);
 }
 
@@ -311,6 +318,8 @@ void hn_run_watch_start(hn_run *run) {
     run->summary.worst_gap = gap;
     run->summary.worst_velocity_gap = speed_gap;
     look_at_rank(run, 1);
+    memset(w->beyond, 0, (size_t)hn_limits_count(w->limits));
+    hn_run_look_at_limits(run);
 }
 
 void hn_run_watch_look(hn_run *run) {
@@ -326,6 +335,7 @@ void hn_run_watch_look(hn_run *run) {
     look_at_energy(run, kinetic, potential);
     look_at_rank(run, 0);
     look_at_mode(run);
+    hn_run_look_at_limits(run);
 }
 
 // --- what the run itself tells ----------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 #include "support/balance.h"
 
+#include "expr/parse.h"
 #include "support/near.h"
 
 #include <math.h>
@@ -7,8 +8,6 @@
 #include <string.h>
 
 enum { TIMES = 5 };
-static const double H =
-    1e-3; // differences of order 4: 1e-12 of the motion's scale, rounding 1e-16 / H^2
 
 typedef struct pose {
     double R[3][3], x[3]; ///< body axes to world; origin
@@ -190,18 +189,18 @@ static void world_point(const pose *poses, int body, const hn_quantity *at, doub
     }
 }
 
-/// First and second derivative of five values H apart.
-static double first(const double f[TIMES]) {
-    return (f[0] - 8 * f[1] + 8 * f[3] - f[4]) / (12 * H);
+/// First and second derivative of five values h apart.
+static double first(const double f[TIMES], double h) {
+    return (f[0] - 8 * f[1] + 8 * f[3] - f[4]) / (12 * h);
 }
 
-static double second(const double f[TIMES]) {
-    return (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (12 * H * H);
+static double second(const double f[TIMES], double h) {
+    return (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (12 * h * h);
 }
 
 /// Acceleration of the centre of mass, angular velocity and acceleration from R' R' and R'' R': their skew parts.
-static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int body, double acc[3],
-                          double w[3], double al[3], double v[3]) {
+static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int body, double h,
+                          double acc[3], double w[3], double al[3], double v[3]) {
     double f[TIMES], x[TIMES][3], D[3][3], A[3][3], W[3][3], L[3][3], T[3][3];
     for (int k = 0; k < TIMES; k++) {
         world_point(poses[k], body, scene->bodies[body].com, x[k]);
@@ -210,14 +209,14 @@ static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int b
         for (int k = 0; k < TIMES; k++) {
             f[k] = x[k][i];
         }
-        acc[i] = second(f);
-        v[i] = first(f);
+        acc[i] = second(f, h);
+        v[i] = first(f, h);
         for (int j = 0; j < 3; j++) {
             for (int k = 0; k < TIMES; k++) {
                 f[k] = poses[k][body].R[i][j];
             }
-            D[i][j] = first(f);
-            A[i][j] = second(f);
+            D[i][j] = first(f, h);
+            A[i][j] = second(f, h);
             T[j][i] = poses[TIMES / 2][body].R[i][j];
         }
     }
@@ -230,8 +229,52 @@ static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int b
     }
 }
 
+/// What a formula of a load may name, by value.
+typedef struct names {
+    const hn_system *sys;
+    double t;
+    const double *user_q, *user_v;
+} names;
+
+static int find_value(void *self, const char *name, hn_ex *out) {
+    const names *s = self;
+    const hn_scene *scene = hn_system_scene(s->sys);
+    for (int i = 0; i < scene->n_params; i++) {
+        if (strcmp(scene->params[i].name, name) == 0) {
+            *out = hn_num(scene->params[i].value);
+            return 1;
+        }
+    }
+    for (int i = 0; i < hn_system_get_info(s->sys).n_user; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(s->sys, i)];
+        if (strcmp(c->name, name) == 0 || strcmp(c->rate, name) == 0) {
+            *out = hn_num(strcmp(c->name, name) == 0 ? s->user_q[i] : s->user_v[i]);
+            return 1;
+        }
+    }
+    *out = hn_num(s->t);
+    return strcmp(name, "t") == 0;
+}
+
+static double value_of(const names *s, const hn_quantity *quantity) {
+    if (!quantity->varies) {
+        return quantity->value;
+    }
+    hn_graph *g = hn_graph_create();
+    hn_parse_opts opts = {.lookup = find_value, .user = (void *)s};
+    hn_diag diag = {0};
+    hn_ex e;
+    double value = 0;
+    if (hn_parse(g, quantity->formula, &opts, &e, &diag) != HN_OK || !hn_is_number(e, &value)) {
+        fail_msg("%s: %s", quantity->formula, diag.message);
+    }
+    hn_graph_free(g);
+    return value;
+}
+
 typedef struct sums {
     const hn_scene *scene;
+    const names *names;
     const pose *poses;
     double (*x)[3], (*f)[3],
         (*n)[3]; ///< centre of mass, force, moment about it; per body, the ground last
@@ -287,8 +330,8 @@ static void act_spring(sums *s, const hn_load *load, pose *const poses[TIMES]) {
     world_point(poses[TIMES / 2], p->body, p->at, a);
     world_point(poses[TIMES / 2], q->body, q->at, b);
     const double l = length[TIMES / 2];
-    const double tension =
-        load->stiffness.value * (l - load->rest.value) + load->damping.value * first(length);
+    const double tension = load->stiffness.value * (l - load->rest.value) +
+                           load->damping.value * first(length, s->out->step);
     for (int i = 0; i < 3; i++) {
         pull[i] = tension * (b[i] - a[i]) / l;
     }
@@ -308,8 +351,7 @@ static void act_loads(sums *s, pose *const poses[TIMES]) {
             static const double none[3] = {0, 0, 0};
             world_point(s->poses, p->body, p->at, place);
             for (int i = 0; i < 3; i++) {
-                assert_false(load->value[i].varies);
-                value[i] = load->value[i].value;
+                value[i] = value_of(s->names, &load->value[i]);
             }
             act(s, p->body, 1, is_force ? value : none, place, is_force ? NULL : value);
         }
@@ -347,19 +389,29 @@ static void compare(sums *s, int body, const double acc[3], const double w[3], c
     }
 }
 
-balance balance_of(const hn_system *sys, const double *q, const double *v, const double *a,
-                   const hn_wrench *joints, const hn_wrench *constraints) {
+balance balance_of(const hn_system *sys, double t, const double *q, const double *v,
+                   const double *a, const hn_wrench *joints, const hn_wrench *constraints) {
     const hn_scene *scene = hn_system_scene(sys);
     const size_t n = (size_t)scene->n_bodies;
     balance out = {0};
+    double fastest = 0;
+    for (int i = 0; i < hn_system_get_info(sys).nv; i++) {
+        fastest = fmax(fastest, fabs(v[i]));
+    }
+    out.step = 1e-3 / (1 + 0.1 * fastest);
+    double *user = calloc(2 * (size_t)hn_system_get_info(sys).n_user + 1, sizeof *user);
+    double *rates = user + hn_system_get_info(sys).n_user;
+    hn_system_to_user(sys, q, user);
+    hn_system_rates_to_user(sys, v, rates);
+    const names known = {sys, t, user, rates};
     pose *poses[TIMES];
-    sums s = {.scene = scene, .out = &out};
+    sums s = {.scene = scene, .out = &out, .names = &known};
     s.x = calloc(n + 1, sizeof *s.x);
     s.f = calloc(n + 1, sizeof *s.f);
     s.n = calloc(n + 1, sizeof *s.n);
     for (int k = 0; k < TIMES; k++) {
         poses[k] = calloc(n, sizeof *poses[k]);
-        place_all(sys, q, v, a, (k - TIMES / 2) * H, poses[k]);
+        place_all(sys, q, v, a, (k - TIMES / 2) * out.step, poses[k]);
     }
     s.poses = poses[TIMES / 2];
     for (size_t b = 0; b < n; b++) {
@@ -373,7 +425,7 @@ balance balance_of(const hn_system *sys, const double *q, const double *v, const
     act_loads(&s, poses);
     for (size_t b = 0; b < n; b++) {
         double acc[3], w[3], al[3], speed[3];
-        differentiate(scene, poses, (int)b, acc, w, al, speed);
+        differentiate(scene, poses, (int)b, out.step, acc, w, al, speed);
         compare(&s, (int)b, acc, w, al);
         out.power += dot(wrench_f[b], speed) + dot(wrench_n[b], w);
     }
@@ -382,6 +434,7 @@ balance balance_of(const hn_system *sys, const double *q, const double *v, const
     }
     free(wrench_f);
     free(wrench_n);
+    free(user);
     free(s.x);
     free(s.f);
     free(s.n);

@@ -11,11 +11,13 @@ typedef struct balance {
     double on_ground[3];     ///< sum of the forces of joints and constraints on the ground [N]
     double momentum_rate[3]; ///< of all bodies [N]
     double weight[3];
+    double
+        step; ///< of the differences [s]: they leave (speed step)^4 of accelerations, and rounding over step^2
     double power; ///< of all joint and constraint wrenches together [W]
 } balance;
 
-/// At a state with its accelerations (system coordinates). Loads: springs between points and constant forces are added; a force or
-/// moment with a formula fails the test.
-balance balance_of(const hn_system *sys, const double *q, const double *v, const double *a,
-                   const hn_wrench *joints, const hn_wrench *constraints);
+/// At a state with its accelerations (system coordinates). Springs between points, forces and moments on bodies are worked out from
+/// the scene; what acts along coordinates is in the wrenches.
+balance balance_of(const hn_system *sys, double t, const double *q, const double *v,
+                   const double *a, const hn_wrench *joints, const hn_wrench *constraints);
 #endif

@@ -41,7 +41,7 @@ static void solve(const hn_system *sys, hn_arena *arena, double t, const double 
 
 static void check_balance(const char *what, unsigned seed, const hn_system *sys, const double *q,
                           const double *v, const carried *c) {
-    const balance b = balance_of(sys, q, v, c->a, c->joints, c->constraints);
+    const balance b = balance_of(sys, 0, q, v, c->a, c->joints, c->constraints);
     const double size = 1 + b.largest_force + b.largest_moment;
     // differences lose 1e-16 / H^2 of lengths times masses
     if (!(b.force <= 1e-7 * size && b.moment <= 1e-7 * size)) {

@@ -5,9 +5,11 @@
 #include "base/arena.h"
 #include "dynamics/eval.h"
 #include "dynamics/project.h"
+#include "dynamics/reactions.h"
 #include "linalg/saddle.h"
 #include "session/model.h"
 #include "study/run.h"
+#include "support/balance.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -248,6 +250,31 @@ static void two_formulations_step_alike(probe *p) {
 }
 
 /// The sparse factor of the whole system (or what stands in for it) and the dense null space of the rows.
+/// Newton and Euler for each body, from differences of poses, with what its joints and constraints carry.
+static void every_body_is_in_balance(probe *p, const double *a, const double *lambda) {
+    const hn_scene *scene = hn_model_scene(p->model);
+    hn_reactions *r = NULL;
+    if (scene->is_lagrangian) {
+        return;
+    }
+    assert_int_equal(hn_reactions_create(p->sys, p->arena, &r, NULL), HN_OK);
+    hn_wrench *joints = hn_arena_get(p->arena, ((size_t)scene->n_joints + 1) * sizeof *joints);
+    hn_wrench *more = hn_arena_get(p->arena, ((size_t)scene->n_constraints + 1) * sizeof *more);
+    assert_int_equal(hn_reactions_eval(r, p->t, p->q, p->v, a, lambda, joints, more), HN_OK);
+    const balance b = balance_of(p->sys, p->t, p->q, p->v, a, joints, more);
+    // differences leave some roundings of places over step^2, and (speed step)^4 / 90
+    const double arm = fmax(1, hn_system_length(p->sys));
+    double mass = 0;
+    for (int k = 0; k < scene->n_bodies; k++) {
+        mass += scene->bodies[k].mass.value;
+    }
+    const double tol = 1e-14 / (b.step * b.step) * mass * arm + 1e-6 * b.largest_force;
+    check_near(p, "a force that is missing", b.force, 0, tol);
+    check_near(p, "a moment that is missing", b.moment, 0, tol * arm + 1e-6 * b.largest_moment);
+    check_near(p, "the work along freedoms", hn_reactions_defect(r), 0, 1e-9);
+    hn_reactions_free(r);
+}
+
 static void accelerations_from_tape_and_from_the_null_space_agree(probe *p, double *a) {
     const int nv = p->info.nv, nc = p->info.nc;
     const hn_accel_opts opts = {.want_lambda = 1};
@@ -255,6 +282,7 @@ static void accelerations_from_tape_and_from_the_null_space_agree(probe *p, doub
     assert_int_equal(hn_accel_create(p->sys, &opts, p->arena, &accel), HN_OK);
     double *lambda = copy(p, NULL, nc), *dense = copy(p, NULL, nv);
     assert_int_equal(hn_accel_eval(accel, p->t, p->q, p->v, 0, 0, a, lambda, NULL), HN_OK);
+    every_body_is_in_balance(p, a, lambda);
     hn_saddle_ws *ws = hn_saddle_ws_create(p->arena, nv, nc);
     hn_saddle_info info;
     term(p, HN_TERM_M, p->t, p->q, p->v);
