@@ -1,3 +1,4 @@
+#include "integrators/compensated.h"
 #include "integrators/explicit_rk.h"
 #include "integrators/registry.h"
 
@@ -14,9 +15,10 @@ const hn_stepper hn_stepper_euler = {
     .stages = 1,
     .real_limit = 2,
     .imag_limit = 0,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_settings = 2,
+    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
     .create = create,
+    .configure = hn_explicit_rk_configure,
     .step = hn_explicit_rk_step,
     .accepted = hn_explicit_rk_accepted,
 };

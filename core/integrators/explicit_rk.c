@@ -1,5 +1,7 @@
 #include "integrators/explicit_rk.h"
 
+#include "integrators/compensated.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -14,6 +16,7 @@ typedef struct explicit_rk {
     double *y1;    // n, its end
     double *dense[MAX_DENSE_TERMS];
     double t, h;
+    hn_compensated sum;
     int has_first; // k[0] belongs to the point the next step starts from
     int has_last;  // the slope at y1 is known
 } explicit_rk;
@@ -38,7 +41,12 @@ void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
         rk->y0 = hn_arena_doubles(arena, (size_t)n);
         rk->y1 = hn_arena_doubles(arena, (size_t)n);
     }
-    return hn_arena_failed(arena) ? NULL : rk;
+    return hn_compensated_init(&rk->sum, n, arena) && !hn_arena_failed(arena) ? rk : NULL;
+}
+
+void hn_explicit_rk_configure(void *self, const double *settings) {
+    explicit_rk *rk = self;
+    hn_compensated_switch(&rk->sum, settings[HN_SUM_SETTING] != 0);
 }
 
 // out = base + h sum_{i < n_terms} w_i k_i
@@ -102,7 +110,8 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
     if (tab->fsal) {
         memcpy(y_new, rk->stage, (size_t)rk->n * sizeof *y_new);
     } else {
-        combine(rk, tab->b, tab->stages, y, h, y_new);
+        combine(rk, tab->b, tab->stages, NULL, h, rk->stage);
+        hn_compensated_add(&rk->sum, 0, rk->n, y, rk->stage, y_new);
     }
     if (err && tab->e) {
         estimate_error(rk, h, err);
@@ -159,6 +168,7 @@ void hn_explicit_rk_accepted(void *self, int changed) {
         rk->k[last] = rk->k[0];
         rk->k[0] = k;
     }
+    hn_compensated_accepted(&rk->sum, changed);
     rk->has_first = keep;
     rk->has_last = 0;
     rk->h = 0;

@@ -1,3 +1,4 @@
+#include "integrators/compensated.h"
 #include "integrators/registry.h"
 
 #include <string.h>
@@ -11,6 +12,7 @@ typedef struct symplectic_euler {
     int n_pos, n_vel;
     double *slope; // n_pos + n_vel
     double *mixed; // old positions, new speeds
+    hn_compensated sum;
 } symplectic_euler;
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {
@@ -22,7 +24,13 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
     se->n_vel = n_vel;
     se->slope = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
     se->mixed = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
-    return hn_arena_failed(arena) ? NULL : se;
+    return hn_compensated_init(&se->sum, n_pos + n_vel, arena) && !hn_arena_failed(arena) ? se
+                                                                                          : NULL;
+}
+
+static void configure(void *self, const double *settings) {
+    symplectic_euler *se = self;
+    hn_compensated_switch(&se->sum, settings[HN_SUM_SETTING] != 0);
 }
 
 static hn_status step(void *self, const hn_ode *ode, double t, double h, const double *y,
@@ -33,24 +41,27 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
     if (status != HN_OK) {
         return status;
     }
-    memcpy(se->mixed, y, (size_t)se->n_pos * sizeof *y);
-    for (int i = se->n_pos; i < se->n_pos + se->n_vel; i++) {
-        se->mixed[i] = y_new[i] = y[i] + h * se->slope[i];
+    const int n_pos = se->n_pos, n_vel = se->n_vel;
+    for (int i = 0; i < n_vel; i++) {
+        se->slope[n_pos + i] *= h;
     }
+    hn_compensated_add(&se->sum, n_pos, n_vel, y, se->slope + n_pos, y_new);
+    memcpy(se->mixed, y, (size_t)n_pos * sizeof *y);
+    memcpy(se->mixed + n_pos, y_new + n_pos, (size_t)n_vel * sizeof *y);
     status = ode->kinematics(ode->self, t, se->mixed, se->slope);
     if (status != HN_OK) {
         return status;
     }
-    for (int i = 0; i < se->n_pos; i++) {
-        y_new[i] = y[i] + h * se->slope[i];
+    for (int i = 0; i < n_pos; i++) {
+        se->slope[i] *= h;
     }
+    hn_compensated_add(&se->sum, 0, n_pos, y, se->slope, y_new);
     return HN_OK;
 }
 
 static void accepted(void *self, int changed) {
-    // nothing is carried from step to step
-    (void)self;
-    (void)changed;
+    symplectic_euler *se = self;
+    hn_compensated_accepted(&se->sum, changed);
 }
 
 const hn_stepper hn_stepper_symplectic_euler = {
@@ -65,9 +76,10 @@ const hn_stepper hn_stepper_symplectic_euler = {
     .partitioned = 1,
     .real_limit = 0.8284271247461903, // of x'' + 2 a x' + a^2 x = 0: a h < 2 (sqrt 2 - 1)
     .imag_limit = 2,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_settings = 2,
+    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
     .create = create,
+    .configure = configure,
     .step = step,
     .accepted = accepted,
 };

@@ -1,3 +1,4 @@
+#include "integrators/compensated.h"
 #include "integrators/registry.h"
 
 #include <string.h>
@@ -17,6 +18,7 @@ typedef struct verlet {
     double *slope; // n_pos + n_vel
     double *mixed; // n_pos + n_vel: a state to evaluate at
     double *half;  // n_vel: v' - v = h/2 a
+    hn_compensated sum;
 } verlet;
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {
@@ -29,7 +31,12 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
     s->slope = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
     s->mixed = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
     s->half = hn_arena_doubles(arena, (size_t)n_vel);
-    return hn_arena_failed(arena) ? NULL : s;
+    return hn_compensated_init(&s->sum, n_pos + n_vel, arena) && !hn_arena_failed(arena) ? s : NULL;
+}
+
+static void configure(void *self, const double *settings) {
+    verlet *s = self;
+    hn_compensated_switch(&s->sum, settings[HN_SUM_SETTING] != 0);
 }
 
 // the middle line of (1): new positions from s->slope = y' at y and the kicked speeds in s->half
@@ -42,10 +49,14 @@ static hn_status drift(verlet *s, const hn_ode *ode, double t, double h, const d
         s->mixed[s->n_pos + i] = y[s->n_pos + i] + s->half[i];
     }
     const hn_status status = ode->kinematics(ode->self, t + h / 2, s->mixed, s->slope);
-    for (int i = 0; status == HN_OK && i < s->n_pos; i++) {
-        y_new[i] = y[i] + h * s->slope[i];
+    if (status != HN_OK) {
+        return status;
     }
-    return status;
+    for (int i = 0; i < s->n_pos; i++) {
+        s->slope[i] *= h;
+    }
+    hn_compensated_add(&s->sum, 0, s->n_pos, y, s->slope, y_new);
+    return HN_OK;
 }
 
 static hn_status step(void *self, const hn_ode *ode, double t, double h, const double *y,
@@ -73,15 +84,15 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
         return status;
     }
     for (int i = 0; i < n_vel; i++) {
-        y_new[n_pos + i] = y[n_pos + i] + s->half[i] + h / 2 * s->slope[n_pos + i];
+        s->half[i] += h / 2 * s->slope[n_pos + i];
     }
+    hn_compensated_add(&s->sum, n_pos, n_vel, y, s->half, y_new);
     return HN_OK;
 }
 
 static void accepted(void *self, int changed) {
-    // nothing is carried from step to step
-    (void)self;
-    (void)changed;
+    verlet *s = self;
+    hn_compensated_accepted(&s->sum, changed);
 }
 
 const hn_stepper hn_stepper_verlet = {
@@ -96,9 +107,10 @@ const hn_stepper hn_stepper_verlet = {
     .partitioned = 1,
     .real_limit = 1.0, // of x'' + 2 a x' + a^2 x = 0: a h < 1
     .imag_limit = 2,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_settings = 2,
+    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
     .create = create,
+    .configure = configure,
     .step = step,
     .accepted = accepted,
 };
