@@ -352,11 +352,10 @@ static hn_kkt_way way_of(hn_solver solver) {
 }
 
 static const char *name_of_speed(const hn_accel *s, int i) {
-    const int at = hn_system_position_of(s->sys, i);
-    if (at < 0 || at >= hn_system_get_info(s->sys).n_user) {
-        return "a ball's turning";
+    if (i >= hn_system_get_info(s->sys).n_user) {
+        return "a speed";
     }
-    return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, at)].name;
+    return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, i)].name;
 }
 
 static void refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {

@@ -36,7 +36,7 @@ struct hn_radar {
     hn_qr qr;          // nv x nc: (R J D)'
     double *no_speed;
     int first, start_rank, wait;
-    double largest; // sigma_min so far
+    double largest, strongest; // sigma_min and sigma_max so far
     double t[ANCHORS], square[ANCHORS];
     int n_anchors;
     hn_radar_info last;
@@ -91,7 +91,7 @@ void hn_radar_free(hn_radar *r) {
 void hn_radar_reset(hn_radar *r) {
     r->first = 1;
     r->wait = r->n_anchors = 0;
-    r->largest = 0;
+    r->largest = r->strongest = 0;
     r->start_rank = r->nc;
     memset(r->r, 0, (size_t)r->nc * sizeof *r->r);
     for (int i = 0; i < r->nc; i++) {
@@ -240,6 +240,9 @@ void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) 
         // a loop that is redundant everywhere is looked at less often when it is large
         r->wait = (int)(2.0 * r->nv * r->nc * r->nc / DENSE_BUDGET);
     }
+    // where all rows die away together the largest value dies with the smallest
+    r->strongest = fmax(r->strongest, info->sigma_max);
+    info->sigma_max = r->strongest;
     info->ratio = info->sigma_max > 0 ? info->sigma_min / info->sigma_max : 0;
     info->lost = info->ratio < LOST;
     r->largest = fmax(r->largest, info->sigma_min);
@@ -288,7 +291,11 @@ static hn_branches count_branches(hn_radar *r, double t, const double *q, const 
     return disc > 0 ? HN_BRANCHES_CROSS : HN_BRANCHES_NONE;
 }
 
-/// The least combination of rows, by inverse iteration with R11 and R12 of the pivoted QR: w in r->y.
+static double diagonal(const hn_radar *r, int k) {
+    return fabs(r->qr.a[(size_t)k * (size_t)r->nv + (size_t)k]);
+}
+
+/// The rows with the largest parts in the combination in y.
 static void find_lost_rows(hn_radar *r, hn_radar_pose *pose) {
     for (int k = 0; k < 4 && k < r->nc; k++) {
         int best = -1;
@@ -324,16 +331,19 @@ static void vanishing_combination(hn_radar *r) {
 }
 
 void hn_radar_pose_at(hn_radar *r, double t, const double *q, hn_radar_pose *pose) {
-    const double ratio = fmax(r->last.ratio, RANK_TOL);
+    const double lost = TOGETHER * fmax(r->last.sigma_min, RANK_TOL);
     *pose = (hn_radar_pose){.mobility_before = r->nv - r->start_rank,
                             .mobility = r->nv - r->start_rank};
-    if (r->nc == 0 || ratio * TOGETHER > 0.5) {
+    if (r->nc == 0 || lost > 0.5 * r->last.sigma_max) {
         return;
     }
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
     fill_qr(r);
-    hn_qr_factor(&r->qr, r->nv, r->nc, TOGETHER * ratio);
+    hn_qr_factor(&r->qr, r->nv, r->nc, 0);
+    while (r->qr.rank > 0 && diagonal(r, r->qr.rank - 1) <= lost) {
+        r->qr.rank--;
+    }
     pose->mobility = r->nv - r->qr.rank;
     if (r->qr.rank == r->nc) {
         return;

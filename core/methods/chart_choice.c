@@ -4,6 +4,7 @@
 #include "methods/flops.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // Which columns of J are dependent. Volumes are products of the diagonal of R, kept as logarithms: a mechanism with
@@ -51,12 +52,11 @@ enum { TURN_BALL, TURN_PASSIVE, TURN_ACTUATED, N_TURNS };
 
 static int turn_of(const hn_chart *chart, int j) {
     const hn_scene *scene = hn_system_scene(chart->sys);
-    const int at = chart->at[j];
-    if (at < 0) {
+    if (chart->at[j] < 0) {
         return TURN_BALL;
     }
-    const int known = at < hn_system_get_info(chart->sys).n_user;
-    return known && scene->coordinates[hn_system_user_coordinate(chart->sys, at)].actuated
+    const int known = j < hn_system_get_info(chart->sys).n_user;
+    return known && scene->coordinates[hn_system_user_coordinate(chart->sys, j)].actuated
                ? TURN_ACTUATED
                : TURN_PASSIVE;
 }
@@ -150,11 +150,19 @@ static int serves(const hn_chart *chart) {
     return 1;
 }
 
-static hn_status fail_ball(hn_chart *chart, double t, const double *q) {
-    return hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, q,
-                         "no chart: the turning of a spherical or free joint would have to be an "
-                         "independent coordinate, and it has no coordinate of its own; use "
-                         "nullspace or projection");
+static hn_status fail_ball(hn_chart *chart, double t) {
+    const hn_scene *scene = hn_system_scene(chart->sys);
+    int j = 0;
+    while (j < chart->r && chart->at[chart->ind[j]] >= 0) {
+        j++;
+    }
+    const hn_coordinate *c =
+        &scene->coordinates[hn_system_user_coordinate(chart->sys, chart->ind[j])];
+    snprintf(chart->why, sizeof chart->why,
+             "no chart at t = %.6g s: the turning of %s would have to be an independent "
+             "coordinate, and a ball has none of its own; nullspace and projection serve this",
+             t, c->joint >= 0 ? scene->joints[c->joint].name : c->name);
+    return HN_ERR_UNSUPPORTED;
 }
 
 static void eval_here(hn_chart *chart, double t, const double *q) {
@@ -271,7 +279,7 @@ static hn_status choose_first(hn_chart *chart, double t, const double *q, int fi
     }
     begin(chart);
     chart->pivot_start = 0;
-    return serves(chart) ? HN_OK : fail_ball(chart, t, q);
+    return serves(chart) ? HN_OK : fail_ball(chart, t);
 }
 
 hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first) {

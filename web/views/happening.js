@@ -21,6 +21,10 @@ const NAMES = {
   diverged: "diverged",
   "step-underflow": "the step became too small",
   budget: "took too long",
+  "rank-ahead": "a singular pose lies ahead",
+  "ill-conditioned": "digits of the forces are lost",
+  "multipliers-grow": "the forces in the loop grow without bound",
+  "solver-fallback": "the fast solve gave way to the careful one",
 };
 const RULES = {
   "near-singular":
@@ -44,6 +48,14 @@ const RULES = {
   diverged: "An explicit step beyond its stability limit multiplies errors at every step.",
   "step-underflow": "The tolerance cannot be met at any step the arithmetic can still tell apart.",
   budget: "One frame may take a bounded time, so that the other methods are not held up.",
+  "rank-ahead":
+    "The smallest singular value of the scaled J falls to zero like a straight line before a pose where rows depend on each other.",
+  "ill-conditioned":
+    "Each factor of ten in the condition number of the saddle-point matrix costs one digit of the forces, and some of the accelerations.",
+  "multipliers-grow":
+    "Near a singular pose small accelerations of the gap need large forces, one over the smallest singular value.",
+  "solver-fallback":
+    "The order of elimination was fixed beforehand. Where one of its pivots vanishes, a rank-revealing solve answers instead.",
 };
 
 /**

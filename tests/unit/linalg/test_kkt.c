@@ -76,15 +76,15 @@ static void solve_reference(const four_bar *b, double a[NV]) {
     const int n = NV + b->nc;
     for (int i = 0; i < NV; i++) {
         for (int j = 0; j < NV; j++) {
-            K[i][j] = b->M[i * NV + j];
+            K[i][j] = (quad)b->M[i * NV + j];
         }
         for (int j = 0; j < b->nc; j++) {
-            K[i][NV + j] = K[NV + j][i] = b->J[j * NV + i];
+            K[i][NV + j] = K[NV + j][i] = (quad)b->J[j * NV + i];
         }
-        K[i][MAX_N] = b->f[i];
+        K[i][MAX_N] = (quad)b->f[i];
     }
     for (int j = 0; j < b->nc; j++) {
-        K[NV + j][MAX_N] = -b->gamma[j];
+        K[NV + j][MAX_N] = -(quad)b->gamma[j];
     }
     for (int k = 0; k < n; k++) {
         int p = k;
