@@ -2,6 +2,7 @@
 #include "dynamics/factor.h"
 #include "dynamics/inputs.h"
 #include "dynamics/ldl.h"
+#include "dynamics/row_groups.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"
 
@@ -24,13 +25,16 @@ static const double BLUR_MAX =
 static const double ROW_FLOOR =
     0.05; // a shorter row (of the longest) is mostly blur if stretched to unit length
 
+static const double ROW_RESIDUAL = 1e-2; // what rows that have all but vanished may disagree
+
 struct hn_accel {
     int nv, nc;
     const hn_system *sys;
     hn_accel_opts opts;
     int available; ///< a static order exists
     hn_inputs in;  ///< outputs: a, lambda if wanted, then pivot and reference of each guard
-    int n_out, n_guards;
+    int n_out, n_guards, n_rows; ///< then the squared length of each row
+    hn_row_groups rows;
     // behind it
     hn_eval *terms;
     int n_M, n_J;
@@ -74,7 +78,7 @@ static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
 
 /// Outputs of the tape: a, lambda, guards. Returns owned, or NULL.
 static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
-    hn_ex *outputs = malloc((3 * (size_t)ldl->n + 1) * sizeof *outputs);
+    hn_ex *outputs = malloc((4 * (size_t)ldl->n + 1) * sizeof *outputs);
     if (!outputs) {
         return NULL;
     }
@@ -87,7 +91,9 @@ static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const
         outputs[n++] = ldl->guard[k][1];
     }
     s->n_guards = ldl->n_guards;
-    s->n_out = n;
+    s->n_rows = sys->nc;
+    memcpy(outputs + n, ldl->row_ref, (size_t)s->n_rows * sizeof *outputs);
+    s->n_out = n + s->n_rows;
     return outputs;
 }
 
@@ -136,7 +142,11 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     }
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
     s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
-    return s->available ? hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor) : HN_OK;
+    if (!s->available) {
+        return HN_OK;
+    }
+    status = hn_row_groups_init(sys, arena, &s->rows);
+    return status == HN_OK ? hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor) : status;
 }
 
 static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
@@ -184,7 +194,7 @@ void hn_accel_free(hn_accel *s) {
 /// Smallest pivot relative to its reference; NaN counts as lost.
 static double worst_pivot(const hn_accel *s) {
     const double *x = s->in.x;
-    const uint16_t *slots = s->in.slots + s->n_out - 2 * s->n_guards;
+    const uint16_t *slots = s->in.slots + s->n_out - s->n_rows - 2 * s->n_guards;
     double worst = 1;
     for (int k = 0; k < s->n_guards; k++) {
         double ratio = fabs(x[slots[2 * k]]) / fabs(x[slots[2 * k + 1]]);
@@ -199,7 +209,7 @@ static double worst_pivot(const hn_accel *s) {
 static int take_answer(const hn_accel *s, double *a, double *lambda) {
     const double *x = s->in.x;
     const uint16_t *slots = s->in.slots;
-    int n = s->n_out - 2 * s->n_guards;
+    int n = s->n_out - s->n_rows - 2 * s->n_guards;
     double zero = 0;
     for (int k = 0; k < n; k++) {
         zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
@@ -389,7 +399,13 @@ static hn_kkt_opts dense_opts(double blur, int want_cond) {
 
 static hn_status solve_dense(hn_accel *s, hn_solver solver, double blur, double *a, double *lambda,
                              hn_accel_info *info) {
-    const hn_kkt_opts opts = dense_opts(blur, 0);
+    hn_kkt_opts opts = dense_opts(blur, 0);
+    if (info->row_ratio < HN_ROW_LOST) {
+        // what speeds and pose leave of such a row is rounding and the error of the step
+        opts.row_floor = 1;
+        opts.rank_tol = fmax(opts.rank_tol, HN_ROW_RANK_TOL);
+        opts.residual_tol = fmax(opts.residual_tol, ROW_RESIDUAL);
+    }
     hn_kkt_info dense;
     const hn_status status =
         hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
@@ -421,7 +437,11 @@ static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_
     hn_tape_run(s->in.tape, s->in.x);
     s->ops += hn_tape_get_info(s->in.tape).ops;
     info->pivot_ratio = worst_pivot(s);
+    info->row_ratio = hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
     info->solver = HN_SOLVER_LDL;
+    if (info->row_ratio < HN_ROW_LOST) {
+        return HN_ERR_SINGULAR;
+    }
     *doubtful = info->pivot_ratio >= HN_PIVOT_GUARD && info->pivot_ratio < HN_PIVOT_DOUBT;
     const int good = info->pivot_ratio >= HN_PIVOT_DOUBT && take_answer(s, a, lambda);
     return good ? HN_OK : HN_ERR_SINGULAR;
@@ -437,7 +457,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     s->count++;
     s->refusal[0] = '\0';
     hn_inputs_set(&s->in, t, q, v, alpha, beta);
-    *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1};
+    *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1, .row_ratio = 1};
     hn_status status = solve_by_tape(s, a, lambda, info, &doubtful);
     if (status == HN_OK) {
         return HN_OK;

@@ -37,7 +37,7 @@ long long hn_eval_count(const hn_eval *e); ///< runs so far
 
 // --- accelerations and multipliers -------------------------------------------------------------------------
 /// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor where its pivots have lost digits
-/// (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where a pivot is lost altogether. The others serve alone and
+/// (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where a pivot is lost altogether, or a row of J has all but vanished. The others serve alone and
 /// refuse what they cannot serve; linalg/kkt.h says what that is.
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \
@@ -74,6 +74,8 @@ typedef struct hn_accel_info {
     int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
     double
         pivot_ratio; ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    double
+        row_ratio; ///< shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8

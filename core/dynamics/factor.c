@@ -2,6 +2,7 @@
 #include "dynamics/eval.h"
 #include "dynamics/inputs.h"
 #include "dynamics/ldl.h"
+#include "dynamics/row_groups.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,9 @@ struct hn_factor {
     double (*Dinv)[3];
     double **target;     ///< where tape output k goes
     int n_values, n_out; ///< outputs that are values; then pivot and reference of each guard
-    double *x;           ///< right-hand side and solution
+    hn_row_groups rows;
+    double row_ratio;
+    double *x; ///< right-hand side and solution
     hn_factor_info info;
     int ready;
 };
@@ -46,6 +49,7 @@ static void list_values(hn_factor *f, hn_ex *outputs) {
         outputs[f->n_out++] = ldl->guard[k][0];
         outputs[f->n_out++] = ldl->guard[k][1];
     }
+    memcpy(outputs + f->n_out, ldl->row_ref, (size_t)ldl->nc * sizeof *outputs);
 }
 
 static void take_diagonal(const hn_system *sys, hn_entries *W) {
@@ -86,14 +90,18 @@ static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn
     f->Dinv = hn_arena_get(arena, (size_t)ldl->n_blocks * sizeof *f->Dinv);
     f->target = hn_arena_get(arena, n_cap * sizeof *f->target);
     f->x = hn_arena_doubles(arena, (size_t)ldl->n);
-    hn_ex *outputs = malloc((n_cap + 2 * (size_t)ldl->n_guards + 1) * sizeof *outputs);
+    hn_ex *outputs =
+        malloc((n_cap + 2 * (size_t)ldl->n_guards + (size_t)ldl->nc + 1) * sizeof *outputs);
     if (!outputs || hn_arena_failed(arena)) {
         free(outputs);
         return HN_ERR_MEMORY;
     }
     list_values(f, outputs);
-    status = hn_inputs_compile(sys, outputs, f->n_out, arena, &f->in);
+    status = hn_inputs_compile(sys, outputs, f->n_out + ldl->nc, arena, &f->in);
     free(outputs);
+    if (status == HN_OK) {
+        status = hn_row_groups_init(sys, arena, &f->rows);
+    }
     if (status == HN_OK) {
         f->info.update_ops = hn_tape_get_info(f->in.tape).ops;
     }
@@ -130,6 +138,7 @@ hn_factor_info hn_factor_get_info(const hn_factor *f) {
 hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivot_ratio) {
     double worst = 1;
     f->ready = 0;
+    f->row_ratio = 1;
     if (!f->info.available) {
         if (pivot_ratio) {
             *pivot_ratio = 0;
@@ -156,8 +165,13 @@ hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivo
     if (pivot_ratio) {
         *pivot_ratio = worst;
     }
+    f->row_ratio = hn_row_groups_ratio(&f->rows, x, slots + f->n_out);
     f->ready = worst >= HN_PIVOT_GUARD;
     return f->ready ? HN_OK : HN_ERR_SINGULAR;
+}
+
+double hn_factor_row_ratio(const hn_factor *f) {
+    return f->info.available ? f->row_ratio : 1;
 }
 
 static void forward(const hn_factor *f, double *x) {

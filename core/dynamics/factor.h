@@ -39,6 +39,9 @@ hn_factor_info hn_factor_get_info(const hn_factor *f);
 HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q,
                                          double *pivot_ratio);
 
+/// Where the last update was: the shortest row of J against the longest of its loop, squared lengths (dynamics/row_groups.h).
+double hn_factor_row_ratio(const hn_factor *f);
+
 /// Solves K [x; -y] = [r1; r2] with the last successful factor: x (nv), y (nc); y may be NULL. The right-hand side and the
 /// solution may be the same arrays. r1 or r2 may be NULL, which means zero. Allocates nothing.
 ///   acceleration: r1 = f, r2 = -gamma gives a, lambda. Projection: r1 = NULL, r2 = -phi gives dq = x with J dq = -phi

@@ -271,6 +271,9 @@ static hn_status eliminate(work *w, int i) {
     for (int p = 0; p < 2 && pair[p] >= 0; p++) {
         out->unknown[at++] = pair[p];
         w->gone[pair[p]] = 1;
+        if (pair[p] >= out->nv) {
+            out->row_ref[pair[p] - out->nv] = w->ref[pair[p]];
+        }
     }
     for (int k = 0; k < n; k++) {
         int row = w->live[k];
@@ -303,6 +306,7 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     out->column = hn_arena_ints(w->arena, n + 1);
     out->Dinv = hn_arena_get(w->arena, n * sizeof *out->Dinv);
     out->guard = hn_arena_get(w->arena, n * sizeof *out->guard);
+    out->row_ref = hn_arena_get(w->arena, ((size_t)nc + 1) * sizeof *out->row_ref);
     w->gone = hn_arena_get(w->arena, n);
     w->massive = hn_arena_get(w->arena, n);
     w->shared = hn_arena_get(w->arena, n);

@@ -25,6 +25,8 @@ typedef struct hn_ldl {
     hn_ex (*Dinv)[3]; ///< per block: inverse entries 11, 12, 22 (1 x 1: the first)
     int nnz;          ///< entries of L below the diagonal blocks
     int n_guards;
+    hn_ex *
+        row_ref; ///< nc: the sum that the coordinates alone contributed to a multiplier's pivot, its row's length squared
     hn_ex (*guard)[2]; ///< pivot, reference; constant ones were checked here and left out
 } hn_ldl;
 

@@ -2,6 +2,7 @@
 
 #include "dynamics/eval.h"
 #include "dynamics/factor.h"
+#include "dynamics/row_groups.h"
 #include "expr/tape.h"
 #include "linalg/dense.h"
 #include "linalg/saddle.h"
@@ -191,8 +192,9 @@ static double dense_solve_ops(const hn_projector *p) {
 
 static hn_status factor_dense(hn_projector *p, double t, const double *q) {
     hn_saddle_opts opts = hn_saddle_opts_default();
-    opts.rank_tol = PROJECTOR_RANK_TOL;
-    opts.row_floor = PROJECTOR_ROW_FLOOR;
+    const int row_lost = hn_factor_row_ratio(p->factor) < HN_ROW_GUARD;
+    opts.rank_tol = row_lost ? HN_ROW_RANK_TOL : PROJECTOR_RANK_TOL;
+    opts.row_floor = row_lost ? 1 : PROJECTOR_ROW_FLOOR;
     opts.residual_tol = HUGE_VAL; // rows that cannot all be met are met as well as can be
     hn_eval_run(p->terms, t, q, p->zero);
     const double *W = p->weight == HN_WEIGHT_MASS ? hn_eval_get(p->terms, HN_TERM_M) : p->unit;
@@ -215,6 +217,9 @@ static hn_status make_factor(hn_projector *p, double t, const double *q, int for
     if (!force_dense) {
         status = hn_factor_update(p->factor, t, q, NULL);
         p->ops += hn_factor_get_info(p->factor).update_ops;
+        if (status == HN_OK && hn_factor_row_ratio(p->factor) < HN_ROW_GUARD) {
+            status = HN_ERR_SINGULAR; // a row that has all but vanished closes nothing
+        }
         p->dense = 0;
         p->rank = p->nc;
     }

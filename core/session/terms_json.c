@@ -177,6 +177,15 @@ static double velocity_gap(const terms *w) {
     return sum;
 }
 
+/// 1-norm condition of the equilibrated K, and the decimal digits it leaves.
+static void put_condition(hn_strbuf *b, const terms *w) {
+    double kappa = 0;
+    if (hn_accel_condition(w->accel, w->t, w->q, w->v, &kappa) == HN_OK && kappa > 0) {
+        hn_json_put_number(b, "condition", kappa);
+        hn_json_put_number(b, "digits_left", fmax(0, 15.6 - log10(kappa)));
+    }
+}
+
 static void put_solution(hn_strbuf *b, const terms *w) {
     hn_json_put_string(b, "status", hn_status_name(w->accel_status));
     if (w->accel_status == HN_OK) {
@@ -184,7 +193,11 @@ static void put_solution(hn_strbuf *b, const terms *w) {
         hn_json_put_numbers(b, "lambda", w->lambda, (size_t)w->info.nc);
         hn_json_put_int(b, "rank", w->accel_info.rank);
         hn_json_put_number(b, "pivot_ratio", w->accel_info.pivot_ratio);
+        hn_json_put_number(b, "row_ratio", w->accel_info.row_ratio);
         hn_json_put_bool(b, "dense_fallback", w->accel_info.fallback);
+        hn_json_put_string(b, "solver", hn_solver_names[w->accel_info.solver]);
+        hn_json_put_int(b, "refinements", w->accel_info.refinements);
+        put_condition(b, w);
     } else {
         hn_json_put_string(b, "reason", hn_status_text(w->accel_status));
     }

@@ -89,7 +89,8 @@ typedef struct hn_sample {
     const double *points;                             ///< 3 n_points
     double gap, velocity_gap;                         ///< ||phi||, ||J v + phi_t||
     double kinetic, potential, energy, energy_change; ///< change: since the start
-    double pivot_ratio;                               ///< see hn_accel_info
+    double
+        pivot_ratio; ///< see hn_accel_info, times the square of the shortest row of J against the largest it has been
     int rank;
 } hn_sample;
 

@@ -145,6 +145,8 @@ hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
     fill_forces(run, t, out);
     hn_run_measure(run, t, run->at_q, run->at_v, &out->gap, &out->velocity_gap, &out->kinetic,
                    &out->potential);
+    const double row = hn_run_shortest_row(run); // as the watch sees it: J M^-1 J' has it squared
+    out->pivot_ratio *= row * row;
     out->energy = out->kinetic + out->potential;
     out->energy_change = out->energy - run->watch.start_energy;
     hn_eval_run(run->points, t, run->at_q, run->at_v);
