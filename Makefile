@@ -203,13 +203,14 @@ help:
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
 	@echo 'make survival     the ladder of four-bars through its flat poses: which step sizes survive, kept in tests/survival/results.txt'
 	@echo 'make steps        steps and evaluations of adaptive integrators beside GSL and IDA, kept in tests/reference/steps.txt'
+	@echo 'make orders       orders of every formulation with every fixed-step integrator, beside theory, kept in tests/orders/results.txt'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference steps survival run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -243,6 +244,12 @@ steps: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/reference/steps.py $(PROGRAM) >build/steps.txt || { cat build/steps.txt; exit 1; }
 	@cp build/steps.txt tests/reference/steps.txt && cat tests/reference/steps.txt
+
+# likewise, and every order within 0.2 of theory or with its reason
+orders: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/orders/table.py $(PROGRAM) >build/orders.txt || { cat build/orders.txt; exit 1; }
+	@cp build/orders.txt tests/orders/results.txt && cat tests/orders/results.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone

@@ -9,6 +9,9 @@
 
 // pivots of J' with unit rows below this belong to rows that follow from the others; at a closed pose those are at rounding
 static const double DEPENDENT_ROW = 1e-8;
+// where positions have drifted dependent rows part; then a rank above the one seen at closed poses takes stronger rows
+static const double CLOSED = 1e-12; // of the mechanism's length
+static const double STRONG_ROW = 1e-3;
 
 hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena, hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
@@ -83,6 +86,21 @@ static void sort_rows(int n, int *rows) {
     }
 }
 
+// rows to keep of those in the factor
+static int count_rows(hn_dae_base *b) {
+    const hn_qr *qr = &b->qr;
+    int rank = qr->rank;
+    if (hn_norm_max(b->nc, b->phi) <= CLOSED * b->length) {
+        b->rank_seen = rank > b->rank_seen ? rank : b->rank_seen;
+        return rank;
+    }
+    while (rank > b->rank_seen &&
+           fabs(qr->a[(size_t)(rank - 1) * qr->m + rank - 1]) < STRONG_ROW * fabs(qr->a[0])) {
+        rank--;
+    }
+    return rank;
+}
+
 void hn_dae_choose_rows(hn_dae_base *b) {
     const int nv = b->nv, nc = b->nc;
     for (int i = 0; i < nc; i++) {
@@ -93,7 +111,7 @@ void hn_dae_choose_rows(hn_dae_base *b) {
         }
     }
     hn_qr_factor(&b->qr, nv, nc, DEPENDENT_ROW);
-    b->nr = b->qr.rank;
+    b->nr = count_rows(b);
     memcpy(b->rows, b->qr.perm, (size_t)b->nr * sizeof *b->rows);
     sort_rows(b->nr, b->rows);
     b->cost.ops += hn_flops_qr(nv, nc);

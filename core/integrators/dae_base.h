@@ -22,9 +22,10 @@ typedef struct hn_dae_base {
     hn_eval *dyn;  ///< M, f
     hn_eval *loop; ///< phi, phi_t, J
     const double *M, *f, *phi, *phi_t,
-        *J;    ///< the terms last evaluated; NULL where there are no rows
-    int nr;    ///< rows that count, see hn_dae_choose_rows()
-    int *rows; ///< their numbers
+        *J;        ///< the terms last evaluated; NULL where there are no rows
+    int nr;        ///< rows that count, see hn_dae_choose_rows()
+    int rank_seen; ///< largest rank met at a closed pose
+    int *rows;     ///< their numbers
     hn_qr qr;
     hn_cost cost; ///< what the evaluators do not count themselves
     char why[HN_DAE_WHY_TEXT];
