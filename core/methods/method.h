@@ -58,6 +58,21 @@ typedef enum hn_dae_form {
     HN_FORM_AUGMENTED ///< INDEX3 by an augmented Lagrangian; the formulation's settings are weight (0: chosen) and projections (0: on, 1: off)
 } hn_dae_form;
 
+/// One step of the integrator, for a formulation that makes its step out of several of them.
+typedef struct hn_step_call {
+    void *stepper;
+    const hn_ode *ode;
+    hn_status (*step)(void *stepper, const hn_ode *ode, double t, double h, const double *y,
+                      double *y_new, double *err);
+    void (*accepted)(void *stepper, int changed);
+} hn_step_call;
+/// The step from (t, y), which need not be where the last one began.
+static inline hn_status hn_step_call_make(const hn_step_call *call, double t, double h,
+                                          const double *y, double *y_new, double *err) {
+    call->accepted(call->stepper, 1); // slopes kept for a repeated trial belong to another y
+    return call->step(call->stepper, call->ode, t, h, y, y_new, err);
+}
+
 typedef struct hn_formulation {
     const char *name;       ///< as spelled: "baumgarte"
     const char *title;      ///< "Baumgarte stabilisation"
@@ -89,6 +104,9 @@ typedef struct hn_formulation {
     /// forgets everything met before; get_state changes nothing that a later right-hand side could see.
     hn_status (*set_state)(void *self, double t, const double *q, const double *v, double *y);
     hn_status (*get_state)(void *self, double t, const double *y, double *q, double *v);
+    /// Makes a step by means of the integrator's own (symmetric projection). NULL: the integrator's step is the step.
+    hn_status (*around_step)(void *self, const hn_step_call *base, double t, double h,
+                             const double *y, double *y_new, double *err);
     /// Mends y in place at the end of an accepted step. *changed = 1 if y moved or its meaning changed (FSAL, history and
     /// dense output are then stale). NULL: nothing to do.
     hn_status (*after_step)(void *self, double t, double *y, int *changed);

@@ -17,6 +17,8 @@ static const hn_formulation *const formulations[] = {
     &hn_formulation_index2,
     &hn_formulation_index3,
     &hn_formulation_ali3p,
+    &hn_formulation_symmetric_projection,
+    &hn_formulation_nullspace_solver,
 };
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
 

@@ -41,6 +41,12 @@ hn_status hn_engine_create(hn_run *run, hn_run_engine *e, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s does not serve %s",
                            run->spec.stepper->name, f->name);
     }
+    if (f->around_step && run->spec.stepper->advance) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take midpoint or rk4",
+                           "%s makes its step out of several of the integrator's, and %s chooses "
+                           "its steps itself",
+                           f->name, run->spec.stepper->name);
+    }
     hn_status status = HN_OK;
     if (f->create && hn_method_form(f, run->spec.stepper) == f->form) {
         status = f->create(run->sys, run->spec.formulation_set, run->arena, &e->formulation, diag);
@@ -92,8 +98,14 @@ hn_status hn_engine_start(hn_run *run, hn_run_engine *e, double t, const double 
 
 hn_status hn_engine_step(hn_run *run, hn_run_engine *e, double t, double h) {
     const hn_dae_stepper *dae = dae_of(run);
+    const hn_stepper *stepper = run->spec.stepper;
+    if (!dae && run->spec.formulation->around_step) {
+        const hn_step_call call = {e->stepper, &e->ode, stepper->step, stepper->accepted};
+        return run->spec.formulation->around_step(e->formulation, &call, t, h, e->y, e->y_new,
+                                                  e->err);
+    }
     return dae ? dae->step(e->stepper, t, h, e->y, e->y_new, e->err)
-               : run->spec.stepper->step(e->stepper, &e->ode, t, h, e->y, e->y_new, e->err);
+               : stepper->step(e->stepper, &e->ode, t, h, e->y, e->y_new, e->err);
 }
 
 int hn_engine_paces_itself(const hn_run *run) {
