@@ -1,52 +1,21 @@
-#include "linalg/saddle.h"
-#include "methods/dense_ode.h"
-#include "methods/flops.h"
+#include "methods/accel_ode.h"
 #include "methods/registry.h"
-
-#include <stdio.h>
 
 // J N = 0:  a = N z + c,  (N' M N) z = N' (f - M c),  c = -J^+ gamma, at the state (q, v) as it stands.        (1)
 //
-// N is an orthonormal basis by pivoted QR, found anew each time (linalg/saddle.h). It may turn or change sign from one
-// evaluation to the next: only a is used, which no choice of N changes.
-
-typedef struct nullspace_solver {
-    hn_dense_ode ode; // first: see dense_ode.h
-    hn_saddle_ws *ws;
-} nullspace_solver;
-
-static hn_status accelerate(void *self, double t, const double *v, double *a) {
-    nullspace_solver *s = self;
-    hn_dense_ode *ode = &s->ode;
-    (void)v;
-    const hn_status status = hn_saddle_solve(ode->nv, ode->nc, ode->M, ode->J, ode->f, ode->gamma,
-                                             a, NULL, NULL, NULL, s->ws);
-    ode->cost.factorisations++;
-    ode->cost.solves++;
-    ode->cost.ops += hn_flops_saddle(ode->nv, ode->nc);
-    if (status != HN_OK) {
-        snprintf(ode->why, sizeof ode->why, "accelerations at t = %.6g s: %s", t,
-                 hn_status_text(status));
-    }
-    return status;
-}
+// N is an orthonormal basis by pivoted QR, found anew each time (linalg/saddle.h). It may turn or change sign from one evaluation to the next:
+// only a is used, which no choice of N changes. The same as index1 with its solver set to least-norm, under the name that textbooks
+// give it.
 
 static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
                         hn_diag *diag) {
     (void)settings;
-    const hn_system_info info = hn_system_get_info(sys);
-    nullspace_solver *s = hn_arena_get(arena, sizeof *s);
-    if (!s) {
+    hn_accel_ode *ode = hn_arena_get(arena, sizeof *ode);
+    if (!ode) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    *self = s;
-    s->ode.accelerate = accelerate;
-    const hn_status status = hn_dense_ode_init(&s->ode, sys, 0, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
-    s->ws = hn_saddle_ws_create(arena, info.nv, info.nc);
-    return s->ws ? HN_OK : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    *self = ode;
+    return hn_accel_ode_init(ode, sys, 0, HN_SOLVER_LEAST_NORM, arena, diag);
 }
 
 const hn_formulation hn_formulation_nullspace_solver = {
@@ -63,10 +32,10 @@ const hn_formulation hn_formulation_nullspace_solver = {
     .needs = "M f J gamma",
     .index = 1,
     .create = create,
-    .destroy = hn_dense_ode_destroy,
-    .ode = hn_dense_ode_get,
-    .set_state = hn_dense_ode_set_state,
-    .get_state = hn_dense_ode_get_state,
-    .add_cost = hn_dense_ode_add_cost,
-    .why = hn_dense_ode_why,
+    .destroy = hn_accel_ode_destroy,
+    .ode = hn_accel_ode_get,
+    .set_state = hn_accel_ode_set_state,
+    .get_state = hn_accel_ode_get_state,
+    .add_cost = hn_accel_ode_add_cost,
+    .why = hn_accel_ode_why,
 };

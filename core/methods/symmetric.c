@@ -46,7 +46,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         return fail_memory(diag);
     }
     *self = s;
-    hn_status status = hn_accel_ode_init(&s->ode, sys, 0, arena, diag);
+    hn_status status = hn_accel_ode_init(&s->ode, sys, 0, HN_SOLVER_AUTO, arena, diag);
     if (status != HN_OK) {
         return status;
     }
@@ -186,6 +186,18 @@ static hn_status begin(symmetric *s, double t, const double *y) {
     return hn_saddle_factor(nv, nc, s->M, s->J, NULL, &opts, s->saddle);
 }
 
+// what the noise of the integrator's own iteration leaves of (2), taken off at the end alone
+static hn_status polish(symmetric *s, double *y) {
+    hn_status status = hn_saddle_apply(s->zero, s->phi, s->N1_mu, s->x, NULL, s->saddle);
+    if (status == HN_OK) {
+        status = hn_saddle_apply(s->zero, s->rate, s->push, s->x, NULL, s->saddle);
+    }
+    if (status == HN_OK) {
+        move(s, y, s->N1_mu, s->push);
+    }
+    return status;
+}
+
 static hn_status around_step(void *self, const hn_step_call *base, double t, double h,
                              const double *y, double *y_new, double *err) {
     symmetric *s = self;
@@ -200,7 +212,7 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
         status = turn(s, base, t, h, y, y_new, s->q1, &worst, err);
         if (status == HN_OK && (worst <= 1 || (worst > last / 2 && worst <= COARSE))) {
             s->ode.cost.projections++;
-            return HN_OK;
+            return worst > 1 ? polish(s, y_new) : HN_OK;
         }
         if (status == HN_OK) {
             status = correct(s);

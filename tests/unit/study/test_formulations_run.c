@@ -213,7 +213,11 @@ static void operations_are_counted_and_follow_the_evaluations(void **state) {
         assert_int_equal(hn_run_advance(run, 1), HN_OK);
         const hn_run_summary s = hn_run_get_summary(run);
         assert_int_equal(s.steps, 100);
-        assert_int_equal(s.cost.evals, 400);
+        if (hn_formulation_at(i)->around_step) { // several of the integrator's steps in each
+            assert_true(s.cost.evals > 400 && s.cost.evals % 4 == 0);
+        } else {
+            assert_int_equal(s.cost.evals, 400);
+        }
         assert_true(s.cost.ops / (double)s.cost.evals > 80);
         assert_true(s.cost.ops / (double)s.cost.evals < 400);
         assert_true(s.cost.factorisations >= 400);
