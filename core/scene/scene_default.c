@@ -220,6 +220,27 @@ static void draw_plane(hn_reader *r, const hn_constraint *c) {
     draw_guide(r, c, line, n, c->value.value);
 }
 
+/// The line that a wheel rolls on, as a bar beneath it as long as three turns to each side of its point.
+static void draw_road(hn_reader *r, const hn_constraint *c) {
+    const hn_point line = r->scene->points[c->q];
+    double radius = c->value.value, width = radius / 20;
+    int end[2];
+    for (int i = 0; i < 2; i++) {
+        hn_quantity at[3];
+        for (int k = 0; k < 3; k++) {
+            at[k] = (hn_quantity){.value = line.at[k].value - width / 2 * c->up[k] +
+                                           (i ? 20 : -20) * radius * c->direction[k]};
+        }
+        end[i] = hn_rd_place(r, line.body, at);
+    }
+    hn_shape *bar = end[0] >= 0 && end[1] >= 0
+                        ? hn_rd_add_shape(r, HN_SHAPE_BAR, end[0], end[1], line.body)
+                        : NULL;
+    if (bar) {
+        bar->width = width;
+    }
+}
+
 /// The wheel's rim about its centre, a spoke that shows how it turns, and the line it rolls on.
 static void draw_wheel(hn_reader *r, const hn_constraint *c) {
     enum { CORNERS = 32 };
@@ -243,8 +264,8 @@ static void draw_wheel(hn_reader *r, const hn_constraint *c) {
     if (rim) {
         rim->n = CORNERS;
         hn_rd_add_shape(r, HN_SHAPE_BAR, c->p, first, centre.body);
+        draw_road(r, c);
     }
-    draw_guide(r, c, c->direction, c->direction, 0);
 }
 
 static void (*const DRAW_CONSTRAINT[])(hn_reader *, const hn_constraint *) = {
