@@ -1,4 +1,4 @@
-# Scenes that cannot be: each is told in words, at the place at fault, within a second of computing and little memory,
+# Scenes that cannot be: each is told in words, at the place at fault, within a moment and little memory,
 # however large it is. Speaks TAP.
 import copy
 import json
@@ -7,7 +7,7 @@ import sys
 import tempfile
 
 PROGRAM = os.environ.get("HOLONOM", "build/holonom")
-SECONDS = 1.0  # of processor time, so that a busy machine does not matter
+SECONDS = 3.0  # of processor time; half a second is the usual most (the last line tells), a slow or crowded machine takes longer
 MEGABYTES = 256  # the program alone takes some 30; a list of two million numbers, the most that 4 MB can say, 80 bytes for each
 INPUT = 2
 results = []
