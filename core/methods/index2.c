@@ -15,6 +15,7 @@ const hn_formulation hn_formulation_index2 = {
         "Brenan, Campbell & Petzold 1996; Hairer & Wanner 1996, VII.1; Hairer, Lubich & Roche 1989",
     .needs = "M f J and derivatives",
     .order_note = "radau5: q 5, v 5, its own multipliers 3; midpoint: 2, 2, 1",
+    .limits = "redundant rows: once the gap is open they contradict each other",
     .form = HN_FORM_INDEX2,
     .index = 2,
 };

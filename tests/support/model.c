@@ -53,7 +53,8 @@ static void compile_and_assemble(hn_model *m) {
 
 void hn_model_open(hn_model *m, const char *name, const char *settings) {
     static const char *const folders[] = {"lessons/01-closed-loops/scenes", "tests/scenes",
-                                          "tests/reference"};
+                                          "tests/reference", "lessons/02-mechanisms/scenes",
+                                          "lessons/03-space-and-drives/scenes"};
     char path[256], names[256];
     hn_setting set[MAX_SETTINGS];
     memset(m, 0, sizeof *m);

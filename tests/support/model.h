@@ -18,7 +18,7 @@ typedef struct hn_model {
     hn_status status; ///< of the assembly
 } hn_model;
 
-/// Scenes of the first lesson ("fb0"), of the tests ("fb0-redundant") and of published problems ("andrews"), by name.
+/// Scenes of the lessons ("fb0"), of the tests ("fb0-redundant") and of published problems ("andrews"), by name.
 /// `settings` is NULL or "l1=1.2 m2=3". The assembly may fail: see status.
 void hn_model_open(hn_model *m, const char *name, const char *settings);
 /// From JSON text.

@@ -12,8 +12,9 @@
 
 enum { MAX = 40, ALL = (1 << HN_LINEAR_COUNT) - 1 };
 
-static const char *const scenes[] = {"fb0",        "fb0-lagrangian", "fb0-redundant",
-                                     "fb0-tilted", "andrews",        "caraxis"};
+static const char *const scenes[] = {
+    "fb0",     "fb0-lagrangian",       "fb0-redundant", "fb0-tilted",    "andrews",
+    "caraxis", "spatial-slider-crank", "heavy-top",     "spinning-block"};
 enum { N_SCENES = sizeof scenes / sizeof scenes[0] };
 
 typedef struct bench {
