@@ -15,7 +15,6 @@
 #define ROUNDING 1e-14 // of the scale: corrections at or below are rounding
 #define NEARLY_DEPENDENT \
     1e-3 // pivot of a row below which the pose that chooses rows has to be closed first
-#define NEWTON_SHARE 0.01 // of the tolerance: what Newton's method may leave
 #define CLOSED \
     1e-15 // of the length: the end of an adaptive step is closed as far as rounding allows
 
@@ -24,6 +23,7 @@ typedef struct implicit_dae {
     hn_dae_form form;
     hn_implicit_dae_opts opts;
     int nq, nv, nc;
+    double weight; // of the error estimate
     hn_stages st;
     hn_implicit_linear lin;
     hn_linear *at_stage; // R, phi, J v + phi_t
@@ -214,7 +214,8 @@ hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form, const h
             status = hn_stages_init(&s->st, col, &eq, arena);
         }
         if (status == HN_OK) {
-            s->st.tol = opts->rtol > 0 ? NEWTON_SHARE : 0;
+            s->weight = opts->rtol > 0 ? hn_collocation_estimate_weight(opts->rtol) : 1;
+            s->st.tol = opts->rtol > 0 ? hn_collocation_newton_share(opts->rtol) : 0;
             status = create_terms(s, arena);
         }
     }
@@ -262,8 +263,9 @@ static void set_scale(implicit_dae *s, double h) {
         const int at = hn_system_position_of(s->sys, i);
         const double q = at >= 0 ? fabs(s->q0[at]) : 1;
         const int chosen = s->opts.rtol > 0;
-        scale[i] = chosen ? s->opts.atol + s->opts.rtol * q : size_q;
-        scale[s->nv + i] = chosen ? s->opts.atol + s->opts.rtol * fabs(s->v0[i]) : size_v;
+        scale[i] = chosen ? (s->opts.atol + s->opts.rtol * q) / s->weight : size_q;
+        scale[s->nv + i] =
+            chosen ? (s->opts.atol + s->opts.rtol * fabs(s->v0[i])) / s->weight : size_v;
     }
 }
 
@@ -333,8 +335,11 @@ static void filter_error(implicit_dae *s, const double *v, const double *force, 
 static void put_error(implicit_dae *s, double h, double *err) {
     const double *r = s->st.parts, factor_v = s->form == HN_FORM_INDEX3 ? fmin(h, 1) : 1;
     hn_system_kinematics(s->sys, s->q0, r, err);
+    for (int i = 0; i < s->nq; i++) {
+        err[i] *= s->weight;
+    }
     for (int i = 0; i < s->nv; i++) {
-        err[s->nq + i] = factor_v * r[s->nv + i];
+        err[s->nq + i] = s->weight * factor_v * r[s->nv + i];
     }
 }
 

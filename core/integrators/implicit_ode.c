@@ -9,14 +9,13 @@
 #include <math.h>
 #include <string.h>
 
-#define ROUNDING 1e-14    // of the scale: corrections at or below are rounding
-#define NEWTON_SHARE 0.01 // of the tolerance: what Newton's method may leave
+#define ROUNDING 1e-14 // of the scale: corrections at or below are rounding
 
 typedef struct implicit_ode {
     hn_stages nw;
     const hn_ode *ode; // during a step
     int n;
-    double rtol, atol;
+    double rtol, atol, weight;                   // weight: of the error estimate
     double *y0, *slope0, *stage, *base, *column; // n
     double *jacobian, *real, *scale;             // n x n, n x n, n
     hn_complex *complex_matrix, *packed;
@@ -151,14 +150,15 @@ void hn_implicit_ode_set_tolerance(void *self, double rtol, double atol) {
     implicit_ode *s = self;
     s->rtol = rtol;
     s->atol = atol > 0 ? atol : rtol;
-    s->nw.tol = rtol > 0 ? NEWTON_SHARE : 0;
+    s->weight = rtol > 0 ? hn_collocation_estimate_weight(rtol) : 1;
+    s->nw.tol = rtol > 0 ? hn_collocation_newton_share(rtol) : 0;
 }
 
 static void set_scale(implicit_ode *s, const hn_ode *ode) {
     const double size_pos = 1 + hn_norm_max(ode->n_pos, s->y0);
     const double size_vel = 1 + hn_norm_max(ode->n_vel, s->y0 + ode->n_pos);
     for (int i = 0; i < s->n; i++) {
-        s->nw.scale[i] = s->rtol > 0      ? s->atol + s->rtol * fabs(s->y0[i])
+        s->nw.scale[i] = s->rtol > 0      ? (s->atol + s->rtol * fabs(s->y0[i])) / s->weight
                          : i < ode->n_pos ? size_pos
                                           : size_vel;
     }
@@ -205,11 +205,14 @@ static hn_status estimate_error(implicit_ode *s, double t, double h, const doubl
             err[k] = -(slope[k] + weighted[k]);
         }
         solve(s, (hn_parts){1, {err, NULL}});
+        for (int k = 0; k < n; k++) {
+            err[k] *= s->weight;
+        }
         if (pass == 1 || hn_error_norm(n, err, s->y0, y_new, s->rtol, s->atol) < 1) {
             return HN_OK;
         }
         for (int k = 0; k < n; k++) {
-            s->stage[k] = s->y0[k] + err[k];
+            s->stage[k] = s->y0[k] + err[k] / s->weight;
         }
         const hn_status status = s->ode->rhs(s->ode->self, t, s->stage, s->nw.r);
         if (status != HN_OK) {

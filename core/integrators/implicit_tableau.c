@@ -43,6 +43,14 @@ static void invert(int n, double (*A)[S], double (*out)[S]) {
     }
 }
 
+double hn_collocation_estimate_weight(double rtol) {
+    return fmin(1, 10 * cbrt(rtol));
+}
+
+double hn_collocation_newton_share(double rtol) {
+    return fmin(0.03, sqrt(rtol / hn_collocation_estimate_weight(rtol)));
+}
+
 void hn_collocation_basis(const hn_collocation *col, double x, double *l) {
     for (int j = 0; j < col->stages; j++) {
         l[j] = 1;

@@ -18,6 +18,14 @@ class Catalogue(driver.ServerCase):
         self.assertEqual(answer.type, "application/json")
         return answer.json()
 
+    def test_methods_say_which_pairs_fit(self):
+        methods = self.get("/api/v1/methods")
+        serves = {i["name"]: set(i["serves"]) for i in methods["integrators"]}
+        for f in methods["formulations"]:
+            self.assertEqual(set(f["integrators"]), {name for name, served in serves.items() if f["name"] in served})
+        self.assertNotIn("index3", serves["rk4"])
+        self.assertIn("index3", serves["radau5"])
+
     def test_health_says_ok(self):
         self.assertEqual(self.get("/healthz")["status"], "ok")
         self.assertEqual(self.get("/api/v1/healthz")["status"], "ok")
@@ -115,6 +123,11 @@ class Stateless(driver.ServerCase):
         self.assertEqual(run["samples"]["t"], [0, 0.25, 0.5, 0.75, 1])
         self.assertEqual(len(run["samples"]["q"]), 5)
         self.assertLess(max(run["samples"]["gap"]), 1e-10)
+
+    def test_a_run_gives_raw_multipliers_when_asked_for(self):
+        body = {"scene": "four-bar", "method": "index2@midpoint:h=0.01", "time": 0.1, "every": 0.05}
+        self.assertNotIn("raw_lambda", self.post("runs", body).json()["samples"])
+        self.assertEqual(len(self.post("runs", {**body, "raw_lambda": True}).json()["samples"]["raw_lambda"]), 3)
 
     def test_a_run_gives_the_same_bits_twice(self):
         body = {"scene": "four-bar", "method": METHODS[0], "time": 0.5, "at": [0.1, 0.5]}

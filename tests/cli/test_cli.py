@@ -72,6 +72,28 @@ class CommandLine(unittest.TestCase):
         moved = strict(self.assert_exit(call("terms", "pendulum", "--json", "--q", name + "=0.5", "--t", "2"), DONE))
         self.assertEqual((moved["q"][0], moved["t"]), (0.5, 2))
 
+    def test_raw_multipliers_come_when_asked_for_and_where_there_are_some(self):
+        words = ("run", "four-bar", "--method", "ggl@radau5:h=0.01", "--time", "0.1", "--every", "0.05")
+        plain = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]
+        self.assertNotIn("raw_lambda", plain)
+        raw = strict(self.assert_exit(call(*words, "--raw-lambda", "--json"), DONE))["samples"]
+        self.assertEqual(raw["q"], plain["q"])
+        self.assertEqual(raw["raw_lambda"][0], [None, None])
+        for found, recomputed in zip(raw["raw_lambda"][1:], raw["lambda"][1:]):
+            self.assertAlmostEqual(found[0], recomputed[0], delta=0.01)
+        head = self.assert_exit(call(*words, "--raw-lambda"), DONE).splitlines()[0]
+        self.assertEqual(head.count("raw lambda"), 2)
+        words = ("run", "four-bar", "--method", RK4, "--time", "0.1", "--raw-lambda", "--json")
+        self.assertNotIn("raw_lambda", strict(self.assert_exit(call(*words), DONE))["samples"])
+
+    def test_a_pair_that_does_not_fit_is_refused_with_what_fits(self):
+        result = call("run", "four-bar", "--method", "index3@rk4")
+        said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("index3 hands over a differential-algebraic system", said)
+        self.assertIn("radau5", said)
+        self.assertIn("rk4 serves index1", said)
+
     def test_a_run_is_csv_by_default_and_the_same_numbers_in_every_form(self):
         words = ("run", "four-bar", "--method", RK4, "--time", "1", "--every", "0.1")
         rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))

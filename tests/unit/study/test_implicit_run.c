@@ -322,7 +322,7 @@ static void raw_multipliers_come_only_when_asked_for_and_also_between_steps(void
     assert_true(hn_run_time(run) > 1);
     assert_int_equal(hn_run_sample(run, 1, &s), HN_OK);
     assert_non_null(s.raw_lambda);
-    assert_all_near(s.raw_lambda, at.lambda, (size_t)trial.info.nc, 1e-3); // order 3 of 5
+    assert_all_near(s.raw_lambda, at.lambda, (size_t)trial.info.nc, 1e-2); // order 3 of 5
     assert_all_near(s.q, at.q, 3, 1e-6);
     hn_run_free(run);
     run = raw_run(&trial, "index1@rk4:h=0.01");
