@@ -16,6 +16,16 @@ static void methods_json(hn_strbuf *b, const hn_library *lib) {
 
 enum { MAX_TABLES = 2, MAX_COLUMNS = 5 };
 
+/// What a card says below its title: the word in front, and the member it is read from.
+static const struct {
+    const char *head, *key;
+} CARD[] = {
+    {"idea", "rule"},   {"about", "about"},       {"index", "index"},   {"needs", "needs"},
+    {"order", "order"}, {"order", "order_note"},  {"the gap", "drift"}, {"limits", "limits"},
+    {"when", "when"},   {"when not", "when_not"}, {"source", "source"},
+};
+enum { N_CARD = sizeof CARD / sizeof *CARD };
+
 /// One thing that can be listed: its document, and the tables a person sees of it.
 static const struct {
     const char *name;
@@ -37,9 +47,10 @@ static const struct {
     {"methods",
      methods_json,
      {{"formulations",
-       4,
+       5,
        {{"formulation", "name", NULL},
         {"title", "title", NULL},
+        {"index", "index", ""},
         {"the gap", "drift", NULL},
         {"needs", "needs", NULL}}},
       {"integrators",
@@ -58,6 +69,31 @@ static const struct {
        {{"problem", "id", NULL}, {"title", "title", NULL}, {"points", "points", ""}}}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
+
+static void put_card(hn_strbuf *b, const cJSON *item) {
+    hn_strbuf_printf(b, "\n%s: %s\n", hn_document_text(item, "name"),
+                     hn_document_text(item, "title"));
+    for (int i = 0; i < N_CARD; i++) {
+        const cJSON *said = hn_document_get(item, CARD[i].key);
+        if (cJSON_IsNumber(said)) {
+            hn_strbuf_printf(b, "  %-9s ", CARD[i].head);
+            hn_document_put_number(b, said);
+            hn_strbuf_add(b, "\n");
+        } else if (*hn_document_text(item, CARD[i].key)) {
+            hn_strbuf_printf(b, "  %-9s %s\n", CARD[i].head, hn_document_text(item, CARD[i].key));
+        }
+    }
+}
+
+/// A card for each thing that has one, below the tables.
+static void put_cards(hn_strbuf *b, const cJSON *array) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, array) {
+        if (hn_document_get(item, "source")) {
+            put_card(b, item);
+        }
+    }
+}
 
 static hn_exit tell_unknown(const hn_args *args, const char *name) {
     const char *names[N_LISTS];
@@ -105,6 +141,9 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
         hn_strbuf_add(&text, i ? "\n" : "");
         hn_document_list(&text, array, LISTS[which].tables[i].columns, LISTS[which].tables[i].n);
         put_faults(&text, array);
+    }
+    for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
+        put_cards(&text, hn_document_get(document, LISTS[which].tables[i].member));
     }
     text.failed |= document == NULL;
     cJSON_Delete(document);
