@@ -20,6 +20,19 @@ hn_view hn_view_space(void) {
     return hn_view_look(35 * DEGREE, 22 * DEGREE);
 }
 
+static void stand_up(double v[3]) {
+    const double y = v[1];
+    v[1] = -v[2];
+    v[2] = y;
+}
+
+hn_view hn_view_z_up(hn_view view) {
+    stand_up(view.right);
+    stand_up(view.up);
+    stand_up(view.toward);
+    return view;
+}
+
 void hn_view_project(const hn_view *view, const double world[3], double out[2]) {
     out[0] = out[1] = 0;
     for (int i = 0; i < 3; i++) {

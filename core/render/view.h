@@ -1,7 +1,7 @@
 #ifndef HN_RENDER_VIEW_H
 #define HN_RENDER_VIEW_H
 // Where one looks from: a parallel view of the world on a plane. Plane mechanisms are seen from the front (world x right, y up);
-// mechanisms in space a little from the right and from above, with y still upwards.
+// mechanisms in space a little from the right and from above. Upwards is y, or z for those whose gravity pulls along -z.
 
 #include "base/diag.h"
 
@@ -17,7 +17,9 @@ hn_view hn_view_front(void);
 hn_view hn_view_space(void);
 /// out: right and up components [m].
 void hn_view_project(const hn_view *view, const double world[3], double out[2]);
-/// "front", "side", "top", "space", or azimuth and elevation in degrees: "35,22". HN_ERR_INPUT with the reason in diag.
+/// The same view of a world whose z is upwards: its x stays to the right, its y goes away from the viewer.
+hn_view hn_view_z_up(hn_view view);
+/// "front", "side", "top", "space", or azimuth and elevation in degrees: "35,22"; y upwards. HN_ERR_INPUT with the reason in diag.
 HN_MUST_CHECK hn_status hn_view_parse(const char *text, hn_view *out, hn_diag *diag);
 
 #endif

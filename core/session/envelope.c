@@ -27,13 +27,16 @@ static char is_direction_only(const hn_drawing *d, int point) {
     return directs && !d->labels[point];
 }
 
-/// What every point that is drawn has been through: in the world, from the front and in the view for space.
+enum { FRONT, SPACE, FRONT_Z_UP, SPACE_Z_UP, VIEWS };
+
+/// What every point that is drawn has been through: in the world, from the front and in the view for space, for either
+/// direction upwards.
 typedef struct reach {
     double low[3], high[3];
     double direction[HN_ENVELOPE_EXTREMES][3], farthest[HN_ENVELOPE_EXTREMES];
     double extremes[HN_ENVELOPE_EXTREMES][3];
-    hn_view views[2];
-    double boxes[2][4];
+    hn_view views[VIEWS];
+    double boxes[VIEWS][4];
 } reach;
 
 /// Directions spread evenly over the sphere, each a golden angle further round than the one before.
@@ -60,15 +63,17 @@ static void grow_extremes(reach *r, const double p[3]) {
 }
 
 static void begin_reach(reach *r, const hn_view *look) {
-    r->views[0] = look ? *look : hn_view_front();
-    r->views[1] = look ? *look : hn_view_space();
+    r->views[FRONT] = look ? *look : hn_view_front();
+    r->views[SPACE] = look ? *look : hn_view_space();
+    r->views[FRONT_Z_UP] = hn_view_z_up(r->views[FRONT]);
+    r->views[SPACE_Z_UP] = hn_view_z_up(r->views[SPACE]);
     memset(r->extremes, 0, sizeof r->extremes);
     spread_directions(r);
     for (int k = 0; k < 3; k++) {
         r->low[k] = HUGE_VAL;
         r->high[k] = -HUGE_VAL;
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < VIEWS; i++) {
         r->boxes[i][0] = r->boxes[i][1] = HUGE_VAL;
         r->boxes[i][2] = r->boxes[i][3] = -HUGE_VAL;
     }
@@ -85,7 +90,7 @@ static void grow(reach *r, const double *points, const char *skipped, int n) {
             r->low[k] = fmin(r->low[k], p[k]);
             r->high[k] = fmax(r->high[k], p[k]);
         }
-        for (int i_view = 0; i_view < 2; i_view++) {
+        for (int i_view = 0; i_view < VIEWS; i_view++) {
             double seen[2];
             hn_view_project(&r->views[i_view], p, seen);
             for (int k = 0; k < 2; k++) {
@@ -137,7 +142,13 @@ hn_status hn_model_points(const hn_model *model, const double *q, double *points
     return status;
 }
 
-static void read_reach(const reach *r, hn_envelope *out) {
+static int pulls_along_z(const hn_scene *scene) {
+    const double x = scene->gravity[0].value, y = scene->gravity[1].value,
+                 z = scene->gravity[2].value;
+    return z < 0 && fabs(z) > 10 * hypot(x, y);
+}
+
+static void read_reach(const reach *r, const hn_scene *scene, hn_envelope *out) {
     double size = 0;
     for (int k = 0; k < 3; k++) {
         out->low[k] = isfinite(r->low[k]) ? r->low[k] : 0;
@@ -145,10 +156,14 @@ static void read_reach(const reach *r, hn_envelope *out) {
         size = fmax(size, out->high[k] - out->low[k]);
     }
     memcpy(out->extremes, r->extremes, sizeof out->extremes);
-    out->spatial = out->high[2] - out->low[2] > FLAT * size;
-    out->look = r->views[out->spatial];
+    const int flat_in_z = !(out->high[2] - out->low[2] > FLAT * size);
+    const int flat_in_y = !(out->high[1] - out->low[1] > FLAT * size);
+    out->z_up = pulls_along_z(scene) && !flat_in_z;
+    out->spatial = out->z_up ? !flat_in_y : !flat_in_z;
+    const int view = 2 * out->z_up + out->spatial;
+    out->look = r->views[view];
     for (int k = 0; k < 4; k++) {
-        const double x = r->boxes[out->spatial][k];
+        const double x = r->boxes[view][k];
         out->box[k] = isfinite(x) ? x : 0;
     }
 }
@@ -168,6 +183,6 @@ void hn_model_envelope(const hn_model *model, const hn_view *look, hn_envelope *
         grow(&r, points, skipped, n);
         grow_by_motion(&r, skipped, model);
     }
-    read_reach(&r, out);
+    read_reach(&r, hn_model_scene(model), out);
     hn_arena_free(arena);
 }

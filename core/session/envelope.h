@@ -15,13 +15,14 @@ typedef struct hn_envelope {
     double extremes
         [HN_ENVELOPE_EXTREMES]
         [3]; ///< the points reached farthest out in as many directions [m]: a view from anywhere is fitted to them
-    int spatial; ///< something leaves the plane z = const
+    int spatial; ///< something leaves the plane that one looks at from the front
+    int z_up;    ///< gravity pulls along -z, and the mechanism does not lie flat in z = const
     hn_view
         look; ///< as asked for; else the front, or for a spatial mechanism a view from the side and above
     double box[4]; ///< in that view [m]: right and up at least, right and up at most
 } hn_envelope;
 
-/// Around the start and the motion of the next seconds (bounded work). `look` NULL: the view that fits. A scene without points
+/// Around the start and the motion of the next seconds (bounded work). `look`, y upwards, is turned where z is; NULL: the view that fits. A scene without points
 /// gives zeros.
 void hn_model_envelope(const hn_model *model, const hn_view *look, hn_envelope *out);
 

@@ -167,6 +167,7 @@ static void put_points(hn_strbuf *b, const hn_model *model) {
             hn_json_key(b, "view");
             hn_json_object(b);
             hn_json_put_bool(b, "spatial", e.spatial);
+            hn_json_put_string(b, "vertical", e.z_up ? "z" : "y");
             hn_json_put_numbers(b, "right", e.look.right, 3);
             hn_json_put_numbers(b, "up", e.look.up, 3);
             hn_json_end_object(b);

@@ -303,6 +303,11 @@ test("a mechanism in space is seen without distortion, from where one asked to",
   const look = lookFrom(0.6, 0.4);
   const [azimuth, elevation] = anglesOf(look);
   assert.ok(Math.abs(azimuth - 0.6) < 1e-12 && Math.abs(elevation - 0.4) < 1e-12);
+  for (const vertical of ["y", "z"]) {
+    const [a, e] = anglesOf(lookFrom(0.6, 0.4, vertical), vertical);
+    assert.ok(Math.abs(a - 0.6) < 1e-12 && Math.abs(e - 0.4) < 1e-12);
+  }
+  assert.equal(lookFrom(0, 0, "z").up[2], 1);
   const points = [-1, -1, -2, 1, 2, 2, 0, 3, -1, 2, 0, 1];
   const camera = createCamera(seenBox(points, look), 500, 300, look);
   for (let i = 0; i < 4; i++) {

@@ -7,7 +7,7 @@
  * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: {p: number, q: number, name: string}[]}} Drawing
  * @typedef {{id: string, title: string, about: string, look_for: string, caption: string, parameters: Parameter[], n: number, m: number,
  *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], envelope: number[], extremes?: number[],
- *   view: {spatial: boolean, right: number[], up: number[]}, methods: string[],
+ *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]}, methods: string[],
  *   duration: number, step: number}} Scene
  * @typedef {{slot: number, short: string, label: string, rule: string, drift: string, model_error: boolean, keeps_gap: boolean, order: number,
  *   spelling: string, formulation: string, integrator: string, title: string}} Method

@@ -9,9 +9,9 @@ const TURN = 0.008; // [rad/px]
 const TRIAD = { size: 72, length: 22 }; // [px]
 /** @type {[string, (scene: any) => import("../state/look.js").Look][]} */
 const NAMED = [
-  ["front", () => FRONT],
-  ["side", () => lookFrom(Math.PI / 2, 0)],
-  ["top", () => lookFrom(0, Math.PI / 2)],
+  ["front", (scene) => lookFrom(0, 0, scene?.view?.vertical)],
+  ["side", (scene) => lookFrom(Math.PI / 2, 0, scene?.view?.vertical)],
+  ["top", (scene) => lookFrom(0, Math.PI / 2, scene?.view?.vertical)],
   ["space", (scene) => scene?.view ?? FRONT],
 ];
 
@@ -23,6 +23,7 @@ const NAMED = [
 export function createLook(el, store, actions) {
   const data = store.data;
   const stage = /** @type {HTMLElement} */ (el.querySelector(".stage"));
+  const vertical = () => data.scene?.view?.vertical;
   const isSpatial = () => Boolean(data.scene?.view?.spatial);
   const buttons = NAMED.map(([name, make]) =>
     h(
@@ -57,7 +58,7 @@ export function createLook(el, store, actions) {
   /** @param {PointerEvent} event */
   function grab(event) {
     if (isSpatial() && event.button === 0) {
-      drag = { x: event.clientX, y: event.clientY, angles: anglesOf(lookOf(data)) };
+      drag = { x: event.clientX, y: event.clientY, angles: anglesOf(lookOf(data), vertical()) };
       stage.setPointerCapture(event.pointerId);
     }
   }
@@ -69,7 +70,11 @@ export function createLook(el, store, actions) {
       const elevation = drag.angles[1] + TURN * (event.clientY - drag.y);
       const steepest = Math.PI / 2;
       actions.setView({
-        look: lookFrom(azimuth, Math.max(-steepest, Math.min(steepest, elevation))),
+        look: lookFrom(
+          azimuth,
+          Math.max(-steepest, Math.min(steepest, elevation)),
+          vertical(),
+        ),
       });
     }
   }
@@ -106,9 +111,9 @@ export function createLook(el, store, actions) {
       return;
     }
     drawTriad();
-    const [azimuth, elevation] = anglesOf(lookOf(data));
+    const [azimuth, elevation] = anglesOf(lookOf(data), vertical());
     NAMED.forEach(([, make], i) => {
-      const [a, e] = anglesOf(make(data.scene));
+      const [a, e] = anglesOf(make(data.scene), vertical());
       const pressed = Math.abs(a - azimuth) + Math.abs(e - elevation) < 1e-6;
       set(buttons[i], { "aria-pressed": String(pressed) });
     });

@@ -47,6 +47,17 @@ static void from_the_side_z_is_to_the_left_and_from_above_it_is_down(void **stat
     assert_near(seen[1], -1, 1e-15);
 }
 
+static void with_z_upwards_the_front_shows_x_to_the_right_and_z_up(void **state) {
+    (void)state;
+    const hn_view v = hn_view_z_up(hn_view_front());
+    const double p[3] = {2, 3, 5};
+    double seen[2];
+    hn_view_project(&v, p, seen);
+    assert_near(seen[0], 2, 0);
+    assert_near(seen[1], 5, 0);
+    assert_near(v.toward[1], -1, 0);
+}
+
 static void
 angles_in_degrees_are_read_and_anything_else_is_refused_with_what_is_allowed(void **state) {
     (void)state;
@@ -66,6 +77,7 @@ int main(void) {
         cmocka_unit_test(every_look_is_a_right_handed_frame_of_unit_vectors),
         cmocka_unit_test(the_front_keeps_x_and_y_to_the_last_bit),
         cmocka_unit_test(from_the_side_z_is_to_the_left_and_from_above_it_is_down),
+        cmocka_unit_test(with_z_upwards_the_front_shows_x_to_the_right_and_z_up),
         cmocka_unit_test(
             angles_in_degrees_are_read_and_anything_else_is_refused_with_what_is_allowed),
     };
