@@ -1,5 +1,6 @@
 // One run with its output: the object of `holonom run --json`.
 #include "session/comparison.h"
+#include "session/reactions_json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +18,10 @@ typedef struct table {
     int n_user, nc;
     long long n, cap;
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
-    double *raw_lambda; ///< NULL: not asked for, or the method has none
+    double *raw_lambda;             ///< NULL: not asked for, or the method has none
+    hn_reaction_writer *reactions;  ///< NULL: not asked for
+    double *force, *moment, *state; ///< 3 per carrier; q and v of a sample in system coordinates
+    const hn_system *sys;
 } table;
 
 static hn_status table_create(table *tab, const hn_system *sys, long long cap, int raw_lambda,
@@ -47,6 +51,40 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, i
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
+static hn_status table_want_reactions(table *tab, const hn_model *model, hn_diags *diags) {
+    const hn_system_info info = hn_system_get_info(hn_model_system(model));
+    hn_status status = hn_reaction_writer_create(model, tab->arena, &tab->reactions, diags);
+    if (status != HN_OK) {
+        return status;
+    }
+    const size_t n = 3 * (size_t)tab->cap * (size_t)hn_reaction_writer_count(tab->reactions);
+    if ((double)n * 2 > LARGEST_TABLE) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/reactions", "ask for fewer output times",
+                            "%lld samples of %d reactions are more than one answer may hold",
+                            tab->cap, hn_reaction_writer_count(tab->reactions));
+    }
+    tab->sys = hn_model_system(model);
+    tab->force = hn_arena_doubles(tab->arena, n + 1);
+    tab->moment = hn_arena_doubles(tab->arena, n + 1);
+    tab->state = hn_arena_doubles(tab->arena, (size_t)info.nq + (size_t)info.nv + 1);
+    return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+/// A state without accelerations has no reactions either: told as null.
+static void add_reactions(table *tab, const hn_sample *s, size_t k) {
+    const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions);
+    double *q = tab->state, *v = tab->state + hn_system_get_info(tab->sys).nq;
+    hn_system_from_user(tab->sys, s->q, q);
+    hn_system_rates_from_user(tab->sys, s->v, v);
+    if (hn_reaction_writer_eval(tab->reactions, s->t, q, v) == HN_OK) {
+        hn_reaction_writer_rows(tab->reactions, tab->force + k * n, tab->moment + k * n);
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        tab->force[k * n + i] = tab->moment[k * n + i] = nan("");
+    }
+}
+
 static void table_add(table *tab, const hn_sample *s) {
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
@@ -57,6 +95,9 @@ static void table_add(table *tab, const hn_sample *s) {
     }
     for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
         tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // told as null
+    }
+    if (tab->reactions) {
+        add_reactions(tab, s, k);
     }
     tab->gap[k] = s->gap;
     tab->velocity_gap[k] = s->velocity_gap;
@@ -187,6 +228,11 @@ static void put_samples(hn_strbuf *b, const table *tab) {
     if (tab->raw_lambda) {
         put_rows(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
     }
+    if (tab->reactions) {
+        const int width = 3 * hn_reaction_writer_count(tab->reactions);
+        put_rows(b, "reaction_force", tab->force, tab->n, width);
+        put_rows(b, "reaction_moment", tab->moment, tab->n, width);
+    }
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
     hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
@@ -262,6 +308,9 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     // an adaptive step may end beyond the time asked for
     hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
     put_names(b, model);
+    if (tab->reactions) {
+        hn_reaction_writer_names(b, tab->reactions);
+    }
     put_samples(b, tab);
     hn_json_put_number(b, "worst_gap", s.worst_gap);
     hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
@@ -301,11 +350,15 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
         const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
         status = table_create(&tab, hn_model_system(model), times.n + 1, raw, diags);
     }
+    if (status == HN_OK && request->reactions) {
+        status = table_want_reactions(&tab, model, diags);
+    }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
         put_run(b, model, run, request, warning, *ended, &tab);
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }
+    hn_reaction_writer_free(tab.reactions);
     hn_arena_free(tab.arena);
     hn_run_free(run);
     return status;

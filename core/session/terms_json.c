@@ -1,6 +1,7 @@
 // Every term at one state, in the coordinates of the scene.
 #include "dynamics/eval.h"
 #include "session/model.h"
+#include "session/reactions_json.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,6 +21,7 @@ typedef struct terms {
     double t, *uq, *uv, *q, *v, *P, *M, *J, *f, *a, *ua, *lambda, *scratch;
     hn_accel_info accel_info;
     hn_status accel_status;
+    hn_reaction_writer *reactions; ///< NULL: not asked for
 } terms;
 
 static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
@@ -62,6 +64,7 @@ static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
 static void destroy(terms *w) {
     hn_eval_free(w->eval);
     hn_accel_free(w->accel);
+    hn_reaction_writer_free(w->reactions);
     hn_arena_free(w->arena);
 }
 
@@ -221,6 +224,9 @@ static void put_terms(hn_strbuf *b, const terms *w) {
     hn_json_put_numbers(b, "phi", phi, (size_t)m);
     put_saddle(b, w);
     put_solution(b, w);
+    if (w->reactions) {
+        hn_reaction_writer_put(b, w->reactions);
+    }
     hn_json_put_number(b, "gap", norm(phi, m));
     hn_json_put_number(b, "velocity_gap", velocity_gap(w));
     hn_json_put_number(b, "kinetic", energy[0]);
@@ -228,10 +234,14 @@ static void put_terms(hn_strbuf *b, const terms *w) {
     hn_json_end_object(b);
 }
 
-hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
-                              const hn_state_entry *entries, int n_entries, hn_diags *diags) {
+static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
+                             const hn_state_entry *entries, int n_entries, int reactions,
+                             hn_diags *diags) {
     terms w;
     hn_status status = create(&w, model, diags);
+    if (status == HN_OK && reactions) {
+        status = hn_reaction_writer_create(model, w.arena, &w.reactions, diags);
+    }
     if (status == HN_OK && !isfinite(t)) {
         status = hn_diags_add(diags, HN_ERR_INPUT, "/t", NULL, "the time is not a finite number");
     }
@@ -243,8 +253,23 @@ hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
     }
     if (status == HN_OK) {
         calc_user_terms(&w);
+        // without accelerations there is nothing to carry: the list stays empty and "status" says why
+        if (w.reactions && w.accel_status == HN_OK) {
+            w.accel_status = hn_reaction_writer_eval(w.reactions, t, w.q, w.v);
+        }
         put_terms(b, &w);
     }
     destroy(&w);
     return status;
+}
+
+hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
+                              const hn_state_entry *entries, int n_entries, hn_diags *diags) {
+    return write_terms(b, model, t, entries, n_entries, 0, diags);
+}
+
+hn_status hn_model_terms_json_with_reactions(hn_strbuf *b, const hn_model *model, double t,
+                                             const hn_state_entry *entries, int n_entries,
+                                             hn_diags *diags) {
+    return write_terms(b, model, t, entries, n_entries, 1, diags);
 }

@@ -37,7 +37,7 @@ typedef struct hn_args {
     const char *method, *format, *out, *host, *theme, *view, *loops, *key;
     double time, every, t, port, width, height, seed, frame_dt;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
-    int json, open, help, raw_lambda;
+    int json, open, help, raw_lambda, reactions;
 } hn_args;
 
 typedef struct hn_command {

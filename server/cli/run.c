@@ -32,7 +32,24 @@ static int add_parts(column *columns, int n, const cJSON *samples, const char *k
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row, and the three measures.
+/// Three columns for each joint and constraint: "force O1 x".
+static int add_wrenches(column *columns, int n, const cJSON *run, const char *key,
+                        const char *what) {
+    const cJSON *list = hn_document_get(hn_document_get(run, "samples"), key), *name;
+    const cJSON *names = list ? hn_document_get(run, "carriers") : NULL;
+    int part = 0;
+    cJSON_ArrayForEach(name, names) {
+        for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
+            column *c = &columns[n++];
+            snprintf(c->name, sizeof c->name, "%s %s %c", what, name->valuestring, "xyz"[i]);
+            c->list = list;
+            c->part = part++;
+        }
+    }
+    return n;
+}
+
+/// t, coordinates, rates, multipliers by row, reactions, and the three measures.
 static int find_columns(column *columns, const cJSON *run) {
     static const char *const last[] = {"gap", "velocity_gap", "energy"};
     const cJSON *samples = hn_document_get(run, "samples");
@@ -44,6 +61,8 @@ static int find_columns(column *columns, const cJSON *run) {
         n = add_parts(columns, n, samples, "raw_lambda", "raw lambda ",
                       hn_document_get(run, "rows"));
     }
+    n = add_wrenches(columns, n, run, "reaction_force", "force");
+    n = add_wrenches(columns, n, run, "reaction_moment", "moment");
     for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
         columns[n] = (column){.list = hn_document_get(samples, last[i]), .part = -1};
         snprintf(columns[n++].name, sizeof columns[0].name, "%s", last[i]);
@@ -161,6 +180,7 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .n_at = args->at.n,
                                   .every = isnan(args->every) ? 0 : args->every,
                                   .raw_lambda = args->raw_lambda,
+                                  .reactions = args->reactions,
                                   .progress = tell_progress,
                                   .user = &progress};
         if (!isnan(args->every) && !(args->every > 0)) {

@@ -96,6 +96,30 @@ static void put_vector(hn_strbuf *b, const char *title, const cJSON *document, c
     }
 }
 
+/// Force and moment of each, in world axes; a star where redundant rows leave it undetermined.
+static void put_reactions(hn_strbuf *b, const cJSON *list) {
+    static const char *const keys[] = {"force", "moment"};
+    const cJSON *item;
+    if (!list) {
+        return;
+    }
+    hn_strbuf_add(b, "reactions on the child, world axes\n");
+    cJSON_ArrayForEach(item, list) {
+        hn_strbuf_printf(b, "  %-16s", hn_document_text(item, "name"));
+        for (int k = 0; k < 2; k++) {
+            const cJSON *part = hn_document_get(item, keys[k]), *number;
+            hn_strbuf_add(b, k ? "  moment" : "  force");
+            cJSON_ArrayForEach(number, part) {
+                hn_strbuf_printf(b, " %12.6g", cJSON_GetNumberValue(number));
+            }
+            hn_strbuf_add(b, k ? " N m" : " N");
+        }
+        hn_strbuf_add(b, cJSON_IsTrue(hn_document_get(item, "determined"))
+                             ? "\n"
+                             : "  * one of many: rows are redundant\n");
+    }
+}
+
 static void put_terms(hn_strbuf *b, const cJSON *d) {
     static const struct {
         const char *title, *key;
@@ -121,6 +145,7 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
             put_vector(b, parts[i].title, d, parts[i].key, row_names);
         }
     }
+    put_reactions(b, hn_document_get(d, "reactions"));
     hn_strbuf_printf(b, "rank %g, gap %.3g, velocity gap %.3g, energy %.9g J\n",
                      hn_document_number(d, "rank"), hn_document_number(d, "gap"),
                      hn_document_number(d, "velocity_gap"),
@@ -142,8 +167,10 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
         status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
     }
     if (status == HN_OK) {
-        status =
-            hn_model_terms_json(&b, model, isnan(args->t) ? 0 : args->t, s->entries, s->n, &diags);
+        const double t = isnan(args->t) ? 0 : args->t;
+        status = args->reactions
+                     ? hn_model_terms_json_with_reactions(&b, model, t, s->entries, s->n, &diags)
+                     : hn_model_terms_json(&b, model, t, s->entries, s->n, &diags);
     }
     hn_model_free(model);
     free(s);

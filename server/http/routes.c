@@ -37,6 +37,9 @@ static const hn_field TERMS[] = {
     {.name = "state",
      .type = HN_FIELD_BY_NAME,
      .about = "coordinates and rates that differ from the assembled start"},
+    {.name = "reactions",
+     .type = HN_FIELD_BOOL,
+     .about = "what every joint and constraint carries too: forces [N] and moments [N m]"},
     END_OF_FIELDS};
 
 static const hn_field EQUATIONS[] = {SCENE_FIELDS,
@@ -67,6 +70,10 @@ static const hn_field RUN[] = {SCENE_FIELDS,
                                 .min = 1e-9,
                                 .max = LONGEST_RUN,
                                 .about = "output interval [s]; 200 samples when neither is given"},
+                               {.name = "reactions",
+                                .type = HN_FIELD_BOOL,
+                                .about = "columns reaction_force [N] and reaction_moment [N m] "
+                                         "too, three numbers for each of carriers"},
                                {.name = "raw_lambda",
                                 .type = HN_FIELD_BOOL,
                                 .about =

@@ -53,8 +53,10 @@ void hn_handle_terms(hn_request *r) {
         cJSON_ArrayForEach(item, state) {
             entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
         }
-        status =
-            hn_model_terms_json(&b, model, hn_body_number(r->json, "t", 0), entries, n, &diags);
+        const double t = hn_body_number(r->json, "t", 0);
+        status = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions"))
+                     ? hn_model_terms_json_with_reactions(&b, model, t, entries, n, &diags)
+                     : hn_model_terms_json(&b, model, t, entries, n, &diags);
     }
     free(entries);
     conclude(r, model, status, &b, &diags);
@@ -142,6 +144,7 @@ void hn_handle_run(hn_request *r) {
         .at = at ? times : NULL,
         .every = hn_body_number(r->json, "every", 0),
         .max_samples = r->server->opts.max_samples,
+        .reactions = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions")),
         .raw_lambda = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "raw_lambda")),
         .progress = may_go_on,
         .stop_reason = "the computing time of one request is used up",

@@ -98,6 +98,20 @@ class Stateless(driver.ServerCase):
         for k in range(len(t["rows"])):
             self.assertAlmostEqual(sum(t["J"][k][j] * t["a"][j] for j in range(len(t["a"]))), -t["gamma"][k], delta=1e-9)
 
+    def test_terms_tell_what_joints_carry(self):
+        self.assertNotIn("reactions", self.post("terms", {"scene": "four-bar"}).json())
+        t = self.post("terms", {"scene": "four-bar", "reactions": True}).json()
+        by_name = {r["name"]: r for r in t["reactions"]}
+        # the joint that closes the loop pushes its child with the multipliers of its rows, turned round
+        for k in range(2):
+            self.assertAlmostEqual(by_name["B"]["force"][k], -t["lambda"][k], delta=1e-12)
+        self.assertTrue(all(r["determined"] for r in t["reactions"]))
+        run = self.post("runs", {"scene": "four-bar", "method": "projection@rk4:h=1e-3", "time": 0.01, "at": [0, 0.01], "reactions": True}).json()
+        self.assertEqual(run["carriers"], [r["name"] for r in t["reactions"]])
+        flat = [x for r in t["reactions"] for x in r["force"]]
+        for got, want in zip(run["samples"]["reaction_force"][0], flat, strict=True):
+            self.assertAlmostEqual(got, want, delta=1e-9)
+
     def test_terms_take_a_state(self):
         start = self.post("terms", {"scene": "pendulum"}).json()
         name = start["coordinates"][0]

@@ -277,6 +277,78 @@ static void a_driven_crank_turns_as_told_and_its_multiplier_is_the_torque(void *
     end(&p);
 }
 
+// a four-bar whose crank is driven at w: the other angles and their rates by the law of cosines, the drive's torque by its power
+static void a_driven_four_bar_moves_as_its_closed_form(void **state) {
+    (void)state;
+    const double l1 = 0.3, l2 = 0.9, l3 = 0.7, d = 1.0, w = 4, t = 0.37;
+    probe p;
+    double a[MAX_N], lambda[MAX_N], user[3], speed[3], q[MAX_N], v[MAX_N], x[3];
+    begin(&p,
+          "{\"holonom\":1,\"name\":\"x\",\"bodies\":[{\"name\":\"crank\",\"mass\":1,"
+          "\"inertia\":{\"zz\":0.1}},{\"name\":\"coupler\",\"mass\":2,\"com\":[0.4,0],"
+          "\"inertia\":{\"zz\":0.2}},{\"name\":\"rocker\",\"mass\":1,\"inertia\":{\"zz\":0.3}}],"
+          "\"joints\":[{\"name\":\"A\",\"type\":\"revolute\"," GROUND_TO(
+              "crank") ",\"coordinate\":"
+                       "\"a\"},{\"name\":\"B\",\"type\":\"revolute\",\"parent\":{\"body\":"
+                       "\"crank\",\"at\":"
+                       "[0.3,0]},\"child\":{\"body\":\"coupler\"},\"coordinate\":\"b\"},{\"name\":"
+                       "\"D\",\"type\":"
+                       "\"revolute\",\"parent\":{\"body\":\"ground\",\"at\":[1,0]},\"child\":{"
+                       "\"body\":\"rocker\"},"
+                       "\"coordinate\":\"c\"},{\"name\":\"C\",\"type\":\"revolute\",\"cut\":true,"
+                       "\"parent\":{"
+                       "\"body\":\"coupler\",\"at\":[0.9,0]},\"child\":{\"body\":\"rocker\",\"at\":"
+                       "[0.7,0]}}],"
+                       "\"constraints\":[{\"name\":\"drive\",\"motion\":{\"joint\":\"A\",\"value\":"
+                       "\"4*t\"}}],"
+                       "\"start\":{\"positions\":{\"b\":{\"guess\":0.8},\"c\":{\"guess\":1.6}}}}");
+    double angle[5][3]; // crank, coupler, rocker, absolute, 1 ms apart
+    for (int k = 0; k < 5; k++) {
+        const double th = w * (t + (k - 2) * 1e-3), bx = l1 * cos(th), by = l1 * sin(th);
+        const double r = hypot(d - bx, by), to_d = atan2(-by, d - bx);
+        angle[k][0] = th;
+        angle[k][1] = to_d + acos((r * r + l2 * l2 - l3 * l3) / (2 * r * l2));
+        angle[k][2] = atan2(by + l2 * sin(angle[k][1]), bx + l2 * cos(angle[k][1]) - d);
+    }
+    const double h = 1e-3;
+    double rate[3], second[3];
+    for (int i = 0; i < 3; i++) {
+        rate[i] = (angle[0][i] - 8 * angle[1][i] + 8 * angle[3][i] - angle[4][i]) / (12 * h);
+        second[i] =
+            (-angle[0][i] + 16 * angle[1][i] - 30 * angle[2][i] + 16 * angle[3][i] - angle[4][i]) /
+            (12 * h * h);
+        user[i] = angle[2][i] - (i == 1 ? angle[2][0] : 0);
+        speed[i] = rate[i] - (i == 1 ? rate[0] : 0);
+    }
+    hn_system_from_user(p.m.sys, user, q);
+    hn_system_rates_from_user(p.m.sys, speed, v);
+    hn_eval_run(p.eval, t, q, v);
+    for (int i = 0; i < p.m.info.nc; i++) {
+        assert_near(hn_eval_get(p.eval, HN_TERM_PHI)[i], 0, 1e-14);
+    }
+    memcpy(p.m.q, q, (size_t)p.m.info.nq * sizeof *q);
+    memcpy(p.m.v, v, (size_t)p.m.info.nv * sizeof *v);
+    solve(&p, t, a, lambda);
+    x[0] = second[0];
+    x[1] = second[1] - second[0];
+    x[2] = second[2];
+    assert_all_near(a, x, 3, 1e-7); // rounding / h^2
+    // the drive's power is the change of the kinetic energy: coupler's centre 0.4 m from B
+    const double sb = sin(angle[2][1]), cb = cos(angle[2][1]), sa = sin(angle[2][0]),
+                 ca = cos(angle[2][0]);
+    const double vx = -l1 * w * sa - 0.4 * rate[1] * sb, vy = l1 * w * ca + 0.4 * rate[1] * cb;
+    const double ax = -l1 * w * w * ca - 0.4 * (second[1] * sb + rate[1] * rate[1] * cb);
+    const double ay = -l1 * w * w * sa + 0.4 * (second[1] * cb - rate[1] * rate[1] * sb);
+    const double power =
+        2 * (vx * ax + vy * ay) + 0.2 * rate[1] * second[1] + 0.3 * rate[2] * second[2];
+    int drive = -1;
+    for (int i = 0; i < p.m.info.nc; i++) {
+        drive = strcmp(hn_system_row_name(p.m.sys, i), "drive") == 0 ? i : drive;
+    }
+    assert_near(lambda[drive] * w, power, 1e-6);
+    end(&p);
+}
+
 static void every_constraint_is_a_loop_and_one_with_points_has_a_tear(void **state) {
     (void)state;
     hn_model m;
@@ -345,6 +417,7 @@ int main(void) {
         cmocka_unit_test(a_rod_pulls_with_weight_and_centrifugal_force),
         cmocka_unit_test(a_gear_shares_the_torque_by_its_ratio),
         cmocka_unit_test(a_driven_crank_turns_as_told_and_its_multiplier_is_the_torque),
+        cmocka_unit_test(a_driven_four_bar_moves_as_its_closed_form),
         cmocka_unit_test(every_constraint_is_a_loop_and_one_with_points_has_a_tear),
         cmocka_unit_test(a_wheel_whose_axle_tilts_is_refused_with_the_reason),
     };
