@@ -273,6 +273,23 @@ static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
     return status;
 }
 
+static void put_solver(hn_strbuf *b, const counts *c) {
+    hn_json_key(b, "solver");
+    hn_json_object(b);
+    hn_json_put_string(b, "answers",
+                       c->factor.available ? "sparse LDL' on the tape" : "dense least-norm");
+    hn_json_put_string(b, "why",
+                       c->factor.available
+                           ? "an order of elimination without a zero pivot was found when compiling"
+                           : "every order of elimination meets a zero pivot");
+    if (c->factor.available) {
+        hn_json_put_string(b, "behind_it",
+                           "refinement where pivots are small, dense least-norm where one is lost");
+        hn_json_put_int(b, "pivots", c->factor.n_blocks);
+    }
+    hn_json_end_object(b);
+}
+
 static void put_nonzeros(hn_strbuf *b, const hn_system *sys, const counts *c) {
     int below = (c->M_entries - sys->M.n) + sys->J.n; // entries of K below its diagonal
     hn_json_key(b, "nonzeros");
@@ -397,6 +414,7 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     }
     put_coordinates(b, sys);
     put_limits(b, sys);
+    put_solver(b, &c);
     put_nonzeros(b, sys, &c);
     put_operations(b, &c);
     hn_json_put_int(b, "graph_nodes", hn_graph_size(sys->g));

@@ -8,9 +8,11 @@
 
 #include <stdint.h>
 
-/// Squared lengths of this ratio and below: the row is taken as lost, and not stretched to unit length to be solved with.
-#define HN_ROW_GUARD 1e-9 ///< for projections
-#define HN_ROW_LOST 1e-14 ///< for accelerations
+/// Squared lengths of this ratio and below (a row of 3e-5 of the longest): projections leave what the row asks for open. Closing
+/// it would turn eps into errors of the speeds of 1e-7 and more, against the 1e-9 of the step itself.
+#define HN_ROW_GUARD 1e-9
+/// And accelerations do without the row (1e-7 of the longest): its part would be the error of the speeds over 1e-7.
+#define HN_ROW_LOST 1e-14
 #define HN_ROW_RANK_TOL 1e-4 ///< what counts as lost then, against rows as long as they are
 
 typedef struct hn_row_groups {
