@@ -79,7 +79,8 @@ typedef struct hn_accel_info {
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
-#define HN_PIVOT_DOUBT 5e-2
+/// Smaller pivots are refined: an answer then has 1e-13 or better without it, and a correction costs more than the tape.
+#define HN_PIVOT_DOUBT 1e-3
 
 HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
                                         hn_arena *arena, hn_accel **out);

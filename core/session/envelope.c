@@ -9,6 +9,7 @@
 /// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene makes it slow.
 enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
 static const double ENVELOPE_SECONDS = 10;
+static const double FAR = 4;     ///< times what the mechanism spans at the start
 static const double FLAT = 1e-6; ///< of the largest extent: thinner than that is a plane mechanism
 static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
@@ -101,7 +102,16 @@ static void grow(reach *r, const double *points, const char *skipped, int n) {
     }
 }
 
-/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts.
+static double extent(const reach *r) {
+    double size = 0;
+    for (int k = 0; k < 3; k++) {
+        size = fmax(size, r->high[k] - r->low[k]);
+    }
+    return size;
+}
+
+/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts; what falls or flies
+/// away would leave the view of a dot, so it is followed for some lengths only.
 static void grow_by_motion(reach *r, const char *skipped, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
@@ -115,6 +125,7 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
         return;
     }
     hn_run_watch(run, 0);
+    const double far = FAR * fmax(extent(r), hn_system_length(hn_model_system(model)));
     double end = fmin(ENVELOPE_SECONDS, hn_model_scene(model)->duration);
     for (int k = 1; k <= ENVELOPE_SAMPLES; k++) {
         double t = end * k / ENVELOPE_SAMPLES;
@@ -122,7 +133,12 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
         if (hn_run_advance(run, t) != HN_OK || hn_run_sample(run, t, &sample) != HN_OK) {
             break;
         }
-        grow(r, sample.points, skipped, info.n_points);
+        reach more = *r;
+        grow(&more, sample.points, skipped, info.n_points);
+        if (extent(&more) > far) {
+            break;
+        }
+        *r = more;
     }
     hn_run_free(run);
 }

@@ -14,7 +14,6 @@ HEADINGS = "  n  method                           freedoms  outcome    t [s]  wo
 
 def pairs(program):
     for f in json.loads(ask(program, "list", "methods")[1])["formulations"]:
-        if not f["integrators"]: continue
         yield f["name"], next((s for s in FIRST_INTEGRATOR if s in f["integrators"]), f["integrators"][0])
 
 

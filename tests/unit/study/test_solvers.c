@@ -96,9 +96,9 @@ static void the_range_space_refuses_a_massless_rocker_and_names_it(void **state)
 
 static void answers_from_small_pivots_are_refined_and_counted(void **state) {
     (void)state;
-    // a coupler a thousand times lighter than its neighbours: pivots of 1e-3
+    // a coupler a hundred thousand times lighter than its neighbours: pivots of 1e-5
     hn_model light, usual;
-    hn_model_open_closed(&light, "fb0", "m2=0.002");
+    hn_model_open_closed(&light, "fb0", "m2=0.00002");
     hn_model_open_closed(&usual, "fb0", NULL);
     hn_run *run = hn_motion_start(&light, "index1@rk4:h=1e-3"),
            *other = hn_motion_start(&usual, "index1@rk4:h=1e-3");
