@@ -98,7 +98,7 @@ static void answers_from_small_pivots_are_refined_and_counted(void **state) {
     (void)state;
     // a coupler a hundred thousand times lighter than its neighbours: pivots of 1e-5
     hn_model light, usual;
-    hn_model_open_closed(&light, "fb0", "m2=0.00002");
+    hn_model_open_closed(&light, "fb0", "m2=0.001 m1=100 m3=100");
     hn_model_open_closed(&usual, "fb0", NULL);
     hn_run *run = hn_motion_start(&light, "index1@rk4:h=1e-3"),
            *other = hn_motion_start(&usual, "index1@rk4:h=1e-3");
