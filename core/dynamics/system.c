@@ -81,6 +81,7 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->q_symbols = hn_arena_ints(sys->arena, (size_t)nq);
     sys->v_symbols = hn_arena_ints(sys->arena, n);
     sys->rows = hn_arena_get(sys->arena, m * sizeof *sys->rows);
+    sys->dropped = hn_arena_get(sys->arena, m * sizeof *sys->dropped);
     sys->loops = hn_arena_get(sys->arena, (size_t)n_loops * sizeof *sys->loops);
     return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
 }
@@ -110,7 +111,7 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
         if (fabs(value) > CLOSED * (row->is_length ? sys->length : 1)) {
             return refuse_row(sys, row, value);
         }
-        sys->info.rows_dropped++;
+        sys->dropped[sys->info.rows_dropped++] = row->name;
         return HN_OK;
     }
     int i = sys->nc++;

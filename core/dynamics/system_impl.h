@@ -74,6 +74,7 @@ struct hn_system {
     hn_ex *M_dense, *J_dense;
 
     hn_row *rows;
+    const char **dropped; ///< names of the info.rows_dropped rows that vanish identically
     int n_loops;
     hn_loop *loops;
     double length;

@@ -1,5 +1,6 @@
 // What the compiler made of a scene, and what assembly found at its start.
 #include "dynamics/inspect.h"
+#include "dynamics/redundancy.h"
 #include "session/caption.h"
 #include "session/model.h"
 
@@ -28,8 +29,11 @@ hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *d
     hn_json_put_string(b, "title", hn_model_scene(model)->title);
     hn_json_put_string(b, "caption", caption);
     put_start(b, hn_model_assembly(model));
+    hn_status status = hn_system_redundancy_put(b, hn_model_system(model), 0, hn_model_q(model));
     hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
-    const hn_status status = hn_system_inspect_put(b, hn_model_system(model));
+    if (status == HN_OK) {
+        status = hn_system_inspect_put(b, hn_model_system(model));
+    }
     hn_json_end_object(b);
     return status == HN_OK
                ? HN_OK

@@ -90,6 +90,85 @@ static void a_pendulum_has_no_rows_and_a_constant_mass_matrix(void **state) {
     hn_library_free(lib);
 }
 
+static void list_is(const cJSON *object, const char *key, int n, const char *const *names) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key);
+    assert_int_equal(cJSON_GetArraySize(list), n);
+    for (int i = 0; i < n; i++) {
+        assert_string_equal(cJSON_GetArrayItem(list, i)->valuestring, names[i]);
+    }
+}
+
+// a plane says: no way along its normal, no tilt; the compiler sees it also where the plane is oblique
+static void rows_that_a_plane_leaves_out_are_named(void **state) {
+    static const char *const oblique[] = {"B: 3rd axis", "B: tilt 1", "B: tilt 2"},
+                             *const upright[] = {"B: z", "B: tilt 1", "B: tilt 2"};
+    (void)state;
+    hn_library *lib = open_library();
+    cJSON *d = inspect(lib, "oblique-four-bar"), *p = inspect(lib, "parallelogram");
+    const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
+    list_is(rows, "vanish", 3, oblique);
+    list_is(rows, "follow", 0, NULL);
+    rows = cJSON_GetObjectItemCaseSensitive(p, "redundant_rows");
+    list_is(rows, "vanish", 3, upright);
+    list_is(rows, "follow", 0, NULL);
+    cJSON_Delete(p);
+    cJSON_Delete(d);
+    hn_library_free(lib);
+}
+
+// teeth of sun, planet and ring fix each planet and the carrier: the second and third planet's ring teeth add nothing. With the
+// first planet's two rows and its own sun row the carrier and the planet are known, so that is what each follows from.
+static void the_teeth_of_further_planets_follow_from_the_first(void **state) {
+    static const char *const second[] = {"sun and planet 1", "sun and planet 2",
+                                         "ring and planet 1"};
+    static const char *const third[] = {"sun and planet 1", "sun and planet 3",
+                                        "ring and planet 1"};
+    (void)state;
+    hn_library *lib = open_library();
+    cJSON *d = inspect(lib, "planetary-gear");
+    const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
+    list_is(rows, "vanish", 0, NULL);
+    list_is(find(rows, "follow", "row", "ring and planet 2"), "from", 3, second);
+    list_is(find(rows, "follow", "row", "ring and planet 3"), "from", 3, third);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(rows, "follow")), 2);
+    cJSON_Delete(d);
+    hn_library_free(lib);
+}
+
+// two shafts that are parallel, five closure rows of which a spatial loop of one freedom has room for two
+static void dependent_rows_of_shaft_and_bennett_are_named(void **state) {
+    static const char *const first[] = {"U2: 1st axis"};
+    static const char *const two[] = {"J3: 1st axis", "J3: 2nd axis"};
+    static const char *const more[] = {"J3: 3rd axis", "J3: tilt 1", "J3: tilt 2"};
+    (void)state;
+    hn_library *lib = open_library();
+    cJSON *d = inspect(lib, "cardan-shaft"), *b = inspect(lib, "bennett");
+    const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
+    list_is(find(rows, "follow", "row", "U2: 3rd axis"), "from", 1, first);
+    rows = cJSON_GetObjectItemCaseSensitive(b, "redundant_rows");
+    for (int i = 0; i < 3; i++) {
+        list_is(find(rows, "follow", "row", more[i]), "from", 2, two);
+    }
+    cJSON_Delete(b);
+    cJSON_Delete(d);
+    hn_library_free(lib);
+}
+
+// elimination in the order of the rows and pivoted QR count alike, in every scene
+static void as_many_rows_follow_as_assembly_counts(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
+        cJSON *d = inspect(lib, hn_library_scene_id(lib, i));
+        const cJSON *rows = cJSON_GetObjectItemCaseSensitive(d, "redundant_rows");
+        const cJSON *start = cJSON_GetObjectItemCaseSensitive(d, "start");
+        const int n = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(rows, "follow"));
+        assert_int_equal(n, (int)number(start, "redundant"));
+        cJSON_Delete(d);
+    }
+    hn_library_free(lib);
+}
+
 static void sharing_and_leaving_out_never_cost(void **state) {
     static const char *const terms[] = {"M", "f", "phi", "J", "gamma"};
     (void)state;
@@ -136,6 +215,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(four_bar_has_three_speeds_two_rows_one_freedom),
         cmocka_unit_test(a_pendulum_has_no_rows_and_a_constant_mass_matrix),
+        cmocka_unit_test(rows_that_a_plane_leaves_out_are_named),
+        cmocka_unit_test(the_teeth_of_further_planets_follow_from_the_first),
+        cmocka_unit_test(dependent_rows_of_shaft_and_bennett_are_named),
+        cmocka_unit_test(as_many_rows_follow_as_assembly_counts),
         cmocka_unit_test(sharing_and_leaving_out_never_cost),
         cmocka_unit_test(every_scene_and_problem_belongs_to_one_lesson),
     };
