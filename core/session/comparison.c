@@ -318,6 +318,7 @@ static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sa
         return;
     }
     hn_json_put_numbers(b, "q", sample->q, (size_t)info.n_user);
+    hn_json_put_numbers(b, "v", sample->v, (size_t)info.n_user);
     hn_json_put_numbers(b, "points", sample->points, 3 * (size_t)info.n_points);
     hn_json_put_number(b, "gap", sample->gap);
     hn_json_put_number(b, "velocity_gap", sample->velocity_gap);

@@ -143,17 +143,46 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
     hn_run_free(run);
 }
 
-hn_status hn_model_points(const hn_model *model, const double *q, double *points) {
+static hn_status eval_points(const hn_model *model, double t, const double *q, double *points) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     hn_eval *eval = NULL;
     hn_status status = arena ? hn_eval_create(hn_model_system(model), HN_TERM_POINTS, arena, &eval)
                              : HN_ERR_MEMORY;
     if (status == HN_OK) {
-        hn_eval_run(eval, 0, q, hn_model_v(model));
+        hn_eval_run(eval, t, q, hn_model_v(model));
         memcpy(points, hn_eval_get(eval, HN_TERM_POINTS), 3 * (size_t)n * sizeof *points);
     }
     hn_eval_free(eval);
+    hn_arena_free(arena);
+    return status;
+}
+
+hn_status hn_model_points(const hn_model *model, const double *q, double *points) {
+    return eval_points(model, 0, q, points);
+}
+
+// a point of a body is a formula of the coordinates: it differs where all of them and the time do; one of the ground is a constant
+hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
+    const hn_system_info info = hn_system_get_info(hn_model_system(model));
+    const size_t n = 3 * (size_t)info.n_points;
+    hn_arena *arena = hn_arena_create(0);
+    double *here = arena ? hn_arena_doubles(arena, n + 1) : NULL;
+    double *there = arena ? hn_arena_doubles(arena, n + 1) : NULL;
+    double *q = arena ? hn_arena_doubles(arena, (size_t)info.nq + 1) : NULL;
+    hn_status status = here && there && q ? HN_OK : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        for (int i = 0; i < info.nq; i++) {
+            q[i] = hn_model_q(model)[i] + 0.3 + 0.7 / (i + 2); // no two alike, none a full turn
+        }
+        status = hn_model_points(model, hn_model_q(model), here);
+    }
+    if (status == HN_OK) {
+        status = eval_points(model, 0.7312, q, there);
+    }
+    for (int i = 0; i < info.n_points && status == HN_OK; i++) {
+        is_ground[i] = memcmp(here + 3 * i, there + 3 * i, 3 * sizeof *here) == 0;
+    }
     hn_arena_free(arena);
     return status;
 }

@@ -8,6 +8,9 @@
 /// World points (3 n_points) at q (system coordinates).
 HN_MUST_CHECK hn_status hn_model_points(const hn_model *model, const double *q, double *points);
 
+/// is_ground[i]: 1 for each of the world points (n_points) that neither a coordinate nor time moves.
+HN_MUST_CHECK hn_status hn_model_ground_points(const hn_model *model, char *is_ground);
+
 enum { HN_ENVELOPE_EXTREMES = 64 };
 
 typedef struct hn_envelope {

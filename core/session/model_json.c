@@ -150,6 +150,24 @@ static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a) {
     hn_json_put_number(b, "energy", a->energy);
 }
 
+/// Indices of the points that stand still whatever moves.
+static void put_ground_points(hn_strbuf *b, const hn_model *model, hn_arena *arena) {
+    const int n = hn_system_get_info(hn_model_system(model)).n_points;
+    char *is_ground = hn_arena_get(arena, (size_t)n + 1);
+    if (!is_ground || hn_model_ground_points(model, is_ground) != HN_OK) {
+        b->failed = 1;
+        return;
+    }
+    hn_json_key(b, "ground_points");
+    hn_json_array(b);
+    for (int i = 0; i < n; i++) {
+        if (is_ground[i]) {
+            hn_json_int(b, i);
+        }
+    }
+    hn_json_end_array(b);
+}
+
 /// World points at the start; the box around the motion in the world, and in the view that fits it.
 static void put_points(hn_strbuf *b, const hn_model *model) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
@@ -159,6 +177,7 @@ static void put_points(hn_strbuf *b, const hn_model *model) {
         hn_envelope e;
         hn_model_envelope(model, NULL, &e);
         hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
+        put_ground_points(b, model, arena);
         if (n > 0) {
             hn_json_put_numbers(b, "envelope", e.box, 4);
             if (e.spatial) {

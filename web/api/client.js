@@ -72,6 +72,7 @@ export const api = {
   index: () => request("GET", `${BASE}/`),
   scenes: () => request("GET", `${BASE}/scenes`),
   methods: () => request("GET", `${BASE}/methods`),
+  lessons: () => request("GET", `${BASE}/lessons`),
   look: () => request("GET", `${BASE}/look`),
   /** @param {string} id */
   scene: (id) => request("GET", `${BASE}/scenes/${id}`),

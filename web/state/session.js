@@ -20,6 +20,13 @@ const FIRST_METHODS = [
   "reduced@rk4:h=1e-3",
 ];
 
+/** Which of the methods the server refused to run on the scene, or -1. @param {unknown} error */
+function refusedPlace(error) {
+  const pointer = error instanceof Problem ? (error.errors[0]?.pointer ?? "") : "";
+  const match = /^\/methods\/(\d+)$/.exec(pointer);
+  return match ? Number(match[1]) : -1;
+}
+
 /** @param {import("./store.js").Store} store */
 export function createSession(store) {
   const data = store.data;
@@ -170,10 +177,37 @@ export function createSession(store) {
     );
   }
 
-  /** @param {object} body */
+  /**
+   * Asks with a list of methods; those that the scene cannot serve are left out, with their reasons, and the others go on.
+   * @template {{methods?: string[]}} Body
+   * @param {Body} body
+   * @param {(body: Body) => Promise<any>} ask
+   */
+  async function withoutRefused(body, ask) {
+    const refused = [];
+    const methods = [...(body.methods ?? [])];
+    for (;;) {
+      try {
+        const description = await ask({ ...body, methods });
+        return { description, refused };
+      } catch (error) {
+        const at = refusedPlace(error);
+        if (at < 0 || at >= methods.length || methods.length === 1) {
+          throw error;
+        }
+        const [spelling] = methods.splice(at, 1);
+        refused.push({ spelling, reason: sentenceOf(error) });
+      }
+    }
+  }
+
+  /** @param {{methods: string[], [key: string]: any}} body */
   async function create(body) {
     const old = data.id;
-    const description = await api.createComparison({ paused: true, speed: data.speed, ...body });
+    const { description, refused } = await withoutRefused(body, (asked) =>
+      api.createComparison({ paused: true, speed: data.speed, ...asked }),
+    );
+    data.refused = refused;
     adopt(description);
     if (old) {
       api
@@ -237,16 +271,18 @@ export function createSession(store) {
   const actions = {
     /** Everything the page needs before it can draw. @param {string} wanted id of a scene, or "" */
     async start(wanted) {
-      const [index, look, catalogue, list] = await Promise.all([
+      const [index, look, catalogue, list, lessons] = await Promise.all([
         api.index(),
         api.look(),
         api.methods(),
         api.scenes(),
+        api.lessons(),
       ]);
       data.build = index.version ?? index.build ?? "";
       data.look = look;
       data.catalogue = catalogue;
       data.scenes = list.scenes.filter((scene) => !scene.errors);
+      data.lessons = lessons.lessons;
       store.emit("ready");
       const ids = data.scenes.map(({ id }) => id);
       await actions.loadScene(
@@ -311,7 +347,16 @@ export function createSession(store) {
       asked = asked === speed ? 0 : asked;
     },
     /** @param {string[]} spellings */
-    setMethods: (spellings) => restart({ methods: spellings }),
+    async setMethods(spellings) {
+      await restart({ methods: spellings });
+      const there = data.methods.map(({ spelling }) => spelling);
+      actions.setRefused(data.refused.filter(({ spelling }) => !there.includes(spelling)));
+    },
+    /** @param {import("./store.js").Refused[]} refused */
+    setRefused(refused) {
+      data.refused = refused;
+      store.emit("view");
+    },
     /** One setting of every method that has it. @param {string} key @param {number} value @param {string} [and] another key */
     setSetting(key, value, and) {
       const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));

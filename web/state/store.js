@@ -6,7 +6,7 @@
  * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
  * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: {p: number, q: number, name: string}[]}} Drawing
  * @typedef {{id: string, title: string, about: string, look_for: string, caption: string, parameters: Parameter[], n: number, m: number,
- *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], envelope: number[], extremes?: number[],
+ *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], ground_points: number[], envelope: number[], extremes?: number[],
  *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]}, methods: string[],
  *   duration: number, step: number}} Scene
  * @typedef {{slot: number, short: string, label: string, rule: string, drift: string, model_error: boolean, keeps_gap: boolean, order: number,
@@ -15,6 +15,8 @@
  *   energy_change?: number, steps: number, rejected: number, evals: number, ops: number, cpu: number, worst_gap: number,
  *   worst_velocity_gap: number, worst_energy_change: number}} MethodFrame
  * @typedef {{generation: number, frame: number, t: number, finished: boolean, methods: MethodFrame[]}} Frame
+ * @typedef {{spelling: string, reason: string}} Refused a method that the scene cannot serve
+ * @typedef {{id: string, title: string, scenes: string[]}} Lesson
  * @typedef {{method: number, code: string, t: number, quantity: string, value: number, limit: number, message: string, remedies: string[]}} Incident
  */
 
@@ -41,11 +43,13 @@ function initialData() {
       integrators: [],
     },
     /** @type {{id: string, title: string}[]} */ scenes: [],
+    /** @type {Lesson[]} */ lessons: [],
     id: "",
     generation: -1,
     /** null until the first comparison is there */
     scene: /** @type {Scene} */ (/** @type {any} */ (null)),
     /** @type {Method[]} */ methods: [],
+    /** @type {Refused[]} */ refused: [],
     /** @type {Record<string, number>} */ settings: {},
     frameDt: 0,
     duration: 0,

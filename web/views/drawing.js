@@ -6,12 +6,11 @@ import { quantity } from "../state/format.js";
 import { describeDrawing } from "../state/words.js";
 import { boxAround, createCamera, seenBox } from "../widgets/camera.js";
 import { h, s, say, set } from "../widgets/dom.js";
+import { createNamePlaces } from "../widgets/name-places.js";
+import { baseOf, createPen, isCrowded, piecesOf } from "../widgets/pieces.js";
 import * as shapes from "../widgets/shapes.js";
 
 const TRACE_POINTS = 600;
-const CROWDED = 60; // shapes
-const OUTLINES = ["bar", "slider", "polygon"]; // filled; the other kinds are lines
-const LINES = ["spring", "damper", "arrow", "guide"];
 
 /**
  * @param {HTMLElement} el
@@ -50,9 +49,14 @@ export function createDrawing(el, store, actions) {
     spoken,
   );
 
-  /** @type {{group: any, fill: any, pins: any, lines: any}[]} */
+  /** @type {ReturnType<typeof makeGhost>[]} */
   let ghosts = [];
+  let drawnFor = ""; // which methods are drawn, and which of them opaque
+  const viewKey = () => JSON.stringify([data.view.selected, ...data.view.hidden]);
   let camera = createCamera([-1, -1, 1, 1], 100, 100);
+  /** @type {ReturnType<typeof createPen>} */
+  let pen;
+  let places = createNamePlaces({ width: 100, height: 100 });
   let size = { width: 0, height: 0 };
 
   function toggle(key, word, on) {
@@ -85,48 +89,11 @@ export function createDrawing(el, store, actions) {
 
   // ---- once per scene and size -----------------------------------------------------------------------------------
 
-  /** A long chain is drawn with thinner bars and without rings at its cuts. */
-  const crowded = () => data.scene.drawing.shapes.length > CROWDED;
-
-  function radius(shape) {
-    const width = shape.width > 0 ? shape.width : 0.045 * data.scene.length;
-    return Math.min(11, Math.max(crowded() ? 1.5 : 4.5, 0.5 * width * camera.scale));
-  }
-
-  /** Drawn once: what stands on the ground. @param {import("../state/store.js").Shape} shape */
-  const isFixed = ({ kind, body }) => kind === "ground" || (kind === "guide" && body < 0);
-
-  /** The guide reaches across the view. @returns {[[number, number], [number, number]]} */
-  function guideEnds(p, q) {
-    const dx = q[0] - p[0];
-    const dy = q[1] - p[1];
-    const length = Math.hypot(dx, dy) || 1;
-    const reach = (component, low, high, from) =>
-      Math.abs(component) < 1e-9
-        ? [-Infinity, Infinity]
-        : [(low - from) / component, (high - from) / component].sort((a, b) => a - b);
-    const [ax, bx] = reach(dx / length, 12, size.width - 12, p[0]);
-    const [ay, by] = reach(dy / length, 12, size.height - 12, p[1]);
-    const [a, b] = [Math.max(ax, ay), Math.min(bx, by)];
-    const place = (along) =>
-      /** @type {[number, number]} */ ([
-        p[0] + (along * dx) / length,
-        p[1] + (along * dy) / length,
-      ]);
-    return [place(a), place(b)];
-  }
-
   function drawFixed(points) {
-    const place = (i) => camera.point(points, i);
+    const { solid, marks } = baseOf(data.scene);
     layers.fixed.replaceChildren(
-      ...data.scene.drawing.shapes.filter(isFixed).map((shape) => {
-        const p = place(shape.p);
-        if (shape.kind === "ground") {
-          return s("path", { d: shapes.ground(p, crowded() ? 4 : 11), class: "ground" });
-        }
-        const [from, to] = guideEnds(p, place(shape.q));
-        return s("path", { d: shapes.guide(from, to, radius(shape) + 5), class: "guide" });
-      }),
+      ...marks.map((shape) => s("path", { d: pen.mark(shape, points), class: shape.kind })),
+      s("path", { d: solid.map((shape) => pen.outline(shape, points)).join(""), class: "base" }),
     );
   }
 
@@ -151,85 +118,70 @@ export function createDrawing(el, store, actions) {
       ? seenBox(data.scene.extremes, from)
       : boxAround(data.scene.envelope, data.scene.points);
     camera = createCamera(box, size.width, size.height, from);
+    pen = createPen(data.scene, camera, size);
+    places = createNamePlaces(size);
     drawFixed(data.scene.points);
     drawScale();
     update();
   }
 
-  function makeGhosts() {
-    ghosts = data.methods.map((method) => {
-      const fill = s("path", { class: "outline" });
-      const lines = s("path", { class: "lines" });
-      const pins = s("path", { class: "pins" });
-      const group = s("g", { class: `ghost slot-${method.slot}` }, fill, lines, pins);
-      const dash = data.look.slots[method.slot].dash;
-      if (dash.length) {
-        set(fill, { "stroke-dasharray": dash.join(" ") });
-      }
-      return { group, fill, pins, lines };
-    });
-    say(caption, data.scene?.caption ?? "");
-    arrange();
+  /** The selected method in pieces that cover each other, any other in one path per layer. @param {number} m */
+  function makeGhost(m) {
+    const method = data.methods[m];
+    const selected = m === data.view.selected;
+    const inSpace = Boolean(data.scene.view?.spatial);
+    const how = !selected || isCrowded(data.scene) ? "together" : inSpace ? "alone" : "bodies";
+    const dash = data.look.slots[method.slot].dash.join(" ");
+    const pieces = piecesOf(data.scene, how).map((piece) => ({
+      ...piece,
+      path: s("path", {
+        class: piece.layer,
+        "stroke-dasharray": (!selected && piece.layer === "outline" && dash) || null,
+      }),
+    }));
+    const group = s(
+      "g",
+      { class: `ghost slot-${method.slot}${selected ? " selected" : ""}` },
+      ...pieces.map(({ path }) => path),
+    );
+    return { group, pieces, sorted: how === "alone" };
   }
 
-  function arrange() {
+  function makeGhosts() {
+    say(caption, data.scene?.caption ?? "");
+    caption.title = data.scene?.caption ?? "";
+    if (!data.scene) {
+      return;
+    }
+    ghosts = data.methods.map((_, m) => makeGhost(m));
     const order = data.methods
       .map((_, m) => m)
       .filter((m) => m !== data.view.selected && !data.view.hidden.has(m));
     if (!data.view.hidden.has(data.view.selected)) {
       order.push(data.view.selected);
     }
-    layers.ghosts.replaceChildren(...order.map((m) => ghosts[m]?.group).filter(Boolean));
-    ghosts.forEach(({ group }, m) => group.classList.toggle("selected", m === data.view.selected));
+    layers.ghosts.replaceChildren(...order.map((m) => ghosts[m].group));
+    drawnFor = viewKey();
     update();
   }
 
   // ---- every frame -----------------------------------------------------------------------------------------------
 
-  /** @param {ArrayLike<number>} points @param {string[]} kinds */
-  function pathOf(points, kinds) {
-    const place = (i) => camera.point(points, i);
-    let d = "";
-    for (const shape of data.scene.drawing.shapes) {
-      if (
-        !kinds.includes(shape.kind) ||
-        (shape.kind === "guide" && isFixed(shape)) ||
-        Number.isNaN(points[3 * shape.p])
-      ) {
-        continue;
-      }
-      d += outlineOf(shape, place);
+  /** What lies farther away comes first. */
+  function sortPieces(ghost, points) {
+    const depths = new Map(ghost.pieces.map((piece) => [piece, pen.depth(piece, points)]));
+    const order = [...ghost.pieces].sort((a, b) => depths.get(a) - depths.get(b));
+    if (order.some((piece, i) => ghost.group.childNodes[i] !== piece.path)) {
+      ghost.group.replaceChildren(...order.map(({ path }) => path));
     }
-    return d;
   }
 
-  function outlineOf(shape, place) {
-    const p = place(shape.p);
-    const r = radius(shape);
-    const q = shape.q >= 0 && shape.kind !== "polygon" ? place(shape.q) : p;
-    switch (shape.kind) {
-      case "bar":
-        return shapes.bar(p, q, r);
-      case "slider":
-        return shapes.slider(p, q, r + 4);
-      case "polygon":
-        return shapes.polyline(
-          Array.from({ length: shape.n }, (_, i) => place(shape.p + i)),
-          true,
-        );
-      case "pivot":
-      case "ground":
-        return shapes.circle(p, Math.max(crowded() ? 1 : 2.5, 0.55 * r));
-      case "spring":
-        return shapes.spring(p, q, r + 2);
-      case "guide":
-        return shapes.guide(...guideEnds(p, q), r + 5);
-      case "damper":
-        return shapes.damper(p, q, r + 1);
-      case "arrow":
-        return shapes.load(p, 1.5 * r);
-      default:
-        return "";
+  function drawGhost(ghost, points) {
+    for (const { shapes: drawn, path } of ghost.pieces) {
+      set(path, { d: drawn.map((shape) => pen.outline(shape, points)).join("") });
+    }
+    if (ghost.sorted) {
+      sortPieces(ghost, points);
     }
   }
 
@@ -239,7 +191,7 @@ export function createDrawing(el, store, actions) {
       .filter(([[x]]) => Number.isFinite(x))
       .map(([a, b]) => `${shapes.polyline([a, b], false)}`)
       .join("");
-    const rings = (crowded() ? [] : data.scene.drawing.tears)
+    const rings = (isCrowded(data.scene) ? [] : data.scene.drawing.tears)
       .map(({ p, q }) => [camera.point(points, p), camera.point(points, q)])
       .filter(([[x]]) => Number.isFinite(x))
       .map(([a, b]) => shapes.circle([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], 14))
@@ -251,17 +203,16 @@ export function createDrawing(el, store, actions) {
   }
 
   function drawLabels(points) {
-    const taken = [];
-    const nodes = [];
-    data.scene.drawing.labels.forEach((label, i) => {
-      const [x, y] = camera.point(points, i);
-      if (!label || !Number.isFinite(x) || taken.some(([u, v]) => Math.hypot(u - x, v - y) < 16)) {
-        return;
-      }
-      taken.push([x, y]);
-      nodes.push(s("text", { x: (x + 12).toFixed(1), y: (y - 12).toFixed(1) }, label));
+    const names = data.scene.drawing.labels.flatMap((text, i) => {
+      const at = camera.point(points, i);
+      return text && Number.isFinite(at[0]) ? [{ i, text, at }] : [];
     });
-    layers.labels.replaceChildren(...nodes);
+    const placed = places.place(names, names.length ? pen.obstacles(points) : []);
+    layers.labels.replaceChildren(
+      ...placed.map(({ text, x, y }) =>
+        s("text", { x: x.toFixed(1), y: (y + 4.5).toFixed(1), "text-anchor": "middle" }, text),
+      ),
+    );
   }
 
   function drawTraces(now) {
@@ -312,15 +263,11 @@ export function createDrawing(el, store, actions) {
     if (!data.scene || !data.history || now < 0 || ghosts.length !== data.methods.length) {
       return;
     }
-    ghosts.forEach(({ group, fill, pins, lines }, m) => {
-      if (!group.parentNode) {
-        return;
+    ghosts.forEach((ghost, m) => {
+      if (ghost.group.parentNode) {
+        drawGhost(ghost, data.history.pointsAt(m, now));
+        ghost.group.classList.toggle("ended", data.history.ended[m] <= data.history.t[now]);
       }
-      const points = data.history.pointsAt(m, now);
-      set(fill, { d: pathOf(points, OUTLINES) });
-      set(lines, { d: pathOf(points, LINES) });
-      set(pins, { d: pathOf(points, ["pivot", "ground"]) });
-      group.classList.toggle("ended", data.history.ended[m] <= data.history.t[now]);
     });
     const points = data.history.pointsAt(data.view.selected, now);
     drawTears(points);
@@ -336,6 +283,7 @@ export function createDrawing(el, store, actions) {
   observer.observe(stage);
   const stop = listen(store, {
     scene: () => {
+      ghosts = []; // of the scene before; the methods follow
       fit();
       title.textContent = data.scene?.title ?? "";
       spoken.textContent = "";
@@ -345,7 +293,11 @@ export function createDrawing(el, store, actions) {
       if (camera.look !== lookOf(data)) {
         fit();
       }
-      arrange();
+      if (drawnFor === viewKey()) {
+        update();
+      } else {
+        makeGhosts();
+      }
     },
     state: () => {
       if (data.state !== "running") {

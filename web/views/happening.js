@@ -1,6 +1,7 @@
 // @ts-check
 // What is happening, in sentences that a screen reader may follow, and the cards that say why.
 import { seconds } from "../state/format.js";
+import { INCIDENTS } from "../state/incidents.js";
 import { listen } from "../state/store.js";
 import { beforeAndAfter, cardOfMethod, sentences, tryOfRemedy } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
@@ -8,55 +9,6 @@ import { h, say } from "../widgets/dom.js";
 const PAUSE = 2000; // [ms] between two things said
 const PAUSE_ENDS = 1400; // [ms] sooner when someone pauses or plays
 const MOST_SHOWN = 40;
-const NAMES = {
-  "near-singular": "close to a singular pose",
-  "rank-loss": "constraint rows depend on each other",
-  "branch-flip": "jumped to the other way of assembling",
-  "gap-open": "the loop has opened",
-  "energy-jump": "energy jumped",
-  "chart-change": "changed its coordinates",
-  "chart-lost": "its coordinates no longer serve",
-  "step-limit": "the step is at its limit",
-  "projection-failed": "projection did not close the loop",
-  diverged: "diverged",
-  "step-underflow": "the step became too small",
-  budget: "took too long",
-  "rank-ahead": "a singular pose lies ahead",
-  "ill-conditioned": "digits of the forces are lost",
-  "multipliers-grow": "the forces in the loop grow without bound",
-  "solver-fallback": "the fast solve gave way to the careful one",
-};
-const RULES = {
-  "near-singular":
-    "Near a pose where constraint rows become dependent the multipliers grow without bound and small errors with them.",
-  "rank-loss":
-    "Where rows of J depend on each other only their sum of forces is determined; the least one is taken and the motion is the same.",
-  "branch-flip":
-    "The same lengths close in more than one way. A step that is too large can land on another one.",
-  "gap-open":
-    "A constraint kept only as an acceleration leaves the errors of two integrations unopposed: the gap grows with time squared.",
-  "energy-jump":
-    "A closed mechanism without loads keeps its energy. A jump means the step misses the motion, closed or not.",
-  "chart-change":
-    "Minimal coordinates serve one part of the motion. At a turning point of the chosen one another must take over.",
-  "chart-lost":
-    "Minimal coordinates serve one part of the motion. At a turning point of the chosen one the rest cannot be found from it.",
-  "step-limit":
-    "A step times the fastest rate must stay within the stability region of the integrator.",
-  "projection-failed":
-    "Projection looks for the nearest closed pose; from too far away, or where none exists, it does not arrive.",
-  diverged: "An explicit step beyond its stability limit multiplies errors at every step.",
-  "step-underflow": "The tolerance cannot be met at any step the arithmetic can still tell apart.",
-  budget: "One frame may take a bounded time, so that the other methods are not held up.",
-  "rank-ahead":
-    "The smallest singular value of the scaled J falls to zero like a straight line before a pose where rows depend on each other.",
-  "ill-conditioned":
-    "Each factor of ten in the condition number of the saddle-point matrix costs one digit of the forces, and some of the accelerations.",
-  "multipliers-grow":
-    "Near a singular pose small accelerations of the gap need large forces, one over the smallest singular value.",
-  "solver-fallback":
-    "The order of elimination was fixed beforehand. Where one of its pivots vanishes, a rank-revealing solve answers instead.",
-};
 
 /**
  * @param {HTMLElement} el
@@ -181,6 +133,7 @@ export function createHappening(el, store, actions) {
   /** @param {import("../state/store.js").Incident} incident */
   function incidentItem(incident) {
     const method = data.methods[incident.method];
+    const words = INCIDENTS[incident.code];
     return h(
       "li",
       { class: method ? `slot-${method.slot}` : "" },
@@ -194,12 +147,12 @@ export function createHappening(el, store, actions) {
           h(
             "span",
             { class: "what" },
-            `${method ? `${method.label}: ` : ""}${NAMES[incident.code] ?? incident.code}`,
+            `${method ? `${method.label}: ` : ""}${words?.name ?? incident.code}`,
           ),
           h("span", { class: "why-word" }, "Why?"),
         ),
         h("p", {}, sentenceOf(incident.message)),
-        RULES[incident.code] ? h("p", { class: "rule" }, RULES[incident.code]) : "",
+        words ? h("p", { class: "rule" }, words.rule) : "",
         tryButtons(incident.remedies.map(tryOfRemedy)),
       ),
     );
@@ -265,6 +218,3 @@ export function createHappening(el, store, actions) {
     },
   };
 }
-
-/** For the test: every incident code has words. */
-export const INCIDENT_CODES = Object.keys(NAMES);

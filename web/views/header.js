@@ -38,7 +38,16 @@ export function createHeader(el, store, actions, open) {
   }
 
   function fill() {
-    menu.replaceChildren(...data.scenes.map(({ id, title }) => h("option", { value: id }, title)));
+    const option = ({ id, title }) => h("option", { value: id }, title);
+    const groups = data.lessons.map(({ title, scenes }) =>
+      h("optgroup", { label: title }, ...data.scenes.filter(({ id }) => scenes.includes(id)).map(option)),
+    );
+    const placed = new Set(data.lessons.flatMap(({ scenes }) => scenes));
+    const others = data.scenes.filter(({ id }) => !placed.has(id)).map(option);
+    menu.replaceChildren(
+      ...groups.filter((group) => group.childElementCount > 0),
+      ...(others.length ? [h("optgroup", { label: "Other scenes" }, ...others)] : []),
+    );
     menu.disabled = false;
   }
 
@@ -51,6 +60,7 @@ export function createHeader(el, store, actions, open) {
     ready: fill,
     scene: () => {
       menu.value = data.scene?.id ?? "";
+      menu.title = data.scene?.title ?? "";
       const text = data.scene?.about ?? "";
       about.textContent = text.split(/(?<=\.)\s/)[0];
       about.title = text;

@@ -2,7 +2,7 @@
 // The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state in words.
 import { quantity } from "../state/format.js";
 import { MOST_METHODS } from "../state/session.js";
-import { parseSpelling } from "../state/spelling.js";
+import { cardOf, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { trendOf } from "../state/words.js";
 import { h, icon, s, say, set } from "../widgets/dom.js";
@@ -55,6 +55,7 @@ export function createMethods(el, store, actions, openDialog) {
 
   /** @type {{row: HTMLElement, parts: Record<string, HTMLElement>}[]} */
   let rows = [];
+  let refusals = data.refused;
   let timer = 0;
   let painted = 0;
 
@@ -144,15 +145,54 @@ export function createMethods(el, store, actions, openDialog) {
     return { row, parts };
   }
 
+  /** A method that the scene cannot serve stays in the table, with the reason. */
+  function refusedRow({ spelling, reason }) {
+    const { formulation } = parseSpelling(spelling);
+    const card = cardOf(data.catalogue, "formulation", formulation.name);
+    const text = `does not serve this scene: ${reason}`;
+    return h(
+      "tr",
+      { role: "row", class: "refused" },
+      h("td", { role: "cell", class: "check" }),
+      h(
+        "td",
+        { role: "cell", class: "who", colspan: 4 },
+        h("span", { class: "name" }, card?.short_name ?? formulation.name),
+        h("span", { class: "sub" }, spelling),
+        h("span", { class: "refusal" }, text),
+      ),
+      h(
+        "td",
+        { role: "cell", class: "more" },
+        h(
+          "button",
+          {
+            type: "button",
+            class: "quiet",
+            "aria-label": `Forget ${spelling}`,
+            onclick: () =>
+              actions.setRefused(data.refused.filter((other) => other.spelling !== spelling)),
+          },
+          "forget",
+        ),
+      ),
+    );
+  }
+
   function rebuild() {
     rows = data.methods.map(makeRow);
-    body.replaceChildren(...rows.map(({ row }) => row));
+    refusals = data.refused;
+    body.replaceChildren(...rows.map(({ row }) => row), ...refusals.map(refusedRow));
     add.disabled = data.methods.length >= MOST_METHODS;
     add.title = add.disabled ? `${MOST_METHODS} methods at most` : "";
     showView();
   }
 
   function showView() {
+    if (refusals !== data.refused) {
+      rebuild();
+      return;
+    }
     rows.forEach(({ row, parts }, m) => {
       const selected = m === data.view.selected;
       row.classList.toggle("selected", selected);

@@ -44,6 +44,11 @@ export function createCamera(box, width, height, look = FRONT) {
   return {
     scale,
     look,
+    /** unit vector to the viewer */
+    toward: [0, 1, 2].map(
+      (k) =>
+        right[(k + 1) % 3] * up[(k + 2) % 3] - right[(k + 2) % 3] * up[(k + 1) % 3],
+    ),
     scaleBar: { metres: length, pixels: length * scale },
     /** @param {ArrayLike<number>} points flat x, y, z @param {number} i @returns {[number, number]} */
     point: (points, i) => {

@@ -101,3 +101,21 @@ export function load([x, y], r) {
 export function polyline(points, closed) {
   return points.length ? `M${points.map(at).join("L")}${closed ? "Z" : ""}` : "";
 }
+
+/** @param {Point[]} points */
+export const polygon = (points) => polyline(points, true);
+
+/** The circle through the corners of a regular polygon, or the ellipse as which it is seen. @param {Point[]} points */
+export function disc(points) {
+  const n = points.length;
+  const corner = (i) => points[(i + n) % n];
+  const turn = (2 * Math.PI) / n;
+  // the cubic's handle on a circle, as a part of the chord between the neighbours: the same from wherever one looks
+  const share = ((4 / 3) * Math.tan(turn / 4)) / (2 * Math.sin(turn));
+  const handle = (i, sign) => {
+    const [[x, y], [ax, ay], [bx, by]] = [corner(i), corner(i - 1), corner(i + 1)];
+    return at([x + sign * share * (bx - ax), y + sign * share * (by - ay)]);
+  };
+  const arcs = points.map((_, i) => `C${handle(i, 1)} ${handle(i + 1, -1)} ${at(corner(i + 1))}`);
+  return `M${at(points[0])}${arcs.join("")}Z`;
+}
