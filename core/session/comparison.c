@@ -7,7 +7,8 @@
 #include <string.h>
 
 enum { STEPS_BETWEEN_CLOCKS = 256 };
-static const double SHORTEST_FRAME = 1.0 / 60; // [s]
+static const double FRAME = 1.0 / 60; // [s]
+enum { LEAST_FRAMES = 240 };          // of a run so short that frames of that length would not show it
 
 /// One method of the comparison.
 typedef struct entry {
@@ -86,13 +87,14 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     return HN_OK;
 }
 
-/// A whole number of the largest fixed step, at least a sixtieth of a second.
+/// A whole number of the largest fixed step, at least a sixtieth of a second or of a short run its part.
 static double choose_frame_dt(const hn_comparison *c) {
+    const double shortest = fmin(FRAME, c->duration / LEAST_FRAMES);
     double h = 0;
     for (int i = 0; i < c->n; i++) {
         h = fmax(h, c->entries[i].h);
     }
-    return h > 0 ? h * fmax(1, ceil(SHORTEST_FRAME / h - 1e-9)) : SHORTEST_FRAME;
+    return h > 0 ? h * fmax(1, ceil(shortest / h - 1e-9)) : shortest;
 }
 
 static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_diags *diags) {
@@ -133,8 +135,8 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
         hn_comparison_free(c);
         return status;
     }
-    c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
     c->duration = chosen.duration > 0 ? chosen.duration : hn_model_scene(model)->duration;
+    c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
     c->cpu_budget =
         chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
     *out = c;

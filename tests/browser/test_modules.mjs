@@ -23,9 +23,12 @@ import {
   settingOf,
   withSetting,
 } from "../../web/state/spelling.js";
-import { sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
+import { predictionAt, sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
 import { INCIDENTS } from "../../web/state/incidents.js";
-import { bar, circle } from "../../web/widgets/shapes.js";
+import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
+import { createNamePlaces } from "../../web/widgets/name-places.js";
+import { createPen, piecesOf } from "../../web/widgets/pieces.js";
+import { bar, circle, disc } from "../../web/widgets/shapes.js";
 import { anglesOf, lookFrom } from "../../web/state/look.js";
 import { createCamera, seenBox } from "../../web/widgets/camera.js";
 
@@ -342,4 +345,124 @@ test("the lock files name no address to download from", () => {
       /"resolved"|https?:\/\/registry/,
     );
   }
+});
+
+const PAIRS = {
+  formulations: [
+    { name: "index1", title: "index-1", form: "ode", limits: "", integrators: ["rk4", "dopri5"] },
+    {
+      name: "index3",
+      title: "index 3",
+      form: "index3",
+      limits: "Gauss methods do not converge on it",
+      integrators: ["hht", "radau5"],
+    },
+  ],
+  integrators: [
+    { name: "rk4", title: "Runge-Kutta 4", forms: ["ode"], order: 4, adaptive: false },
+    { name: "dopri5", title: "Dormand-Prince", forms: ["ode"], order: 5, adaptive: true },
+    { name: "hht", title: "HHT", forms: ["index3"], order: 2, adaptive: false },
+    { name: "radau5", title: "Radau 5", forms: ["ode", "index3"], order: 5, adaptive: true },
+  ],
+};
+
+test("a pair that does not fit is told in the words of the cards, one that fits is not", () => {
+  assert.equal(misfit(PAIRS, "index3", "hht"), null);
+  assert.equal(misfit(PAIRS, "no-such", "hht"), null);
+  assert.equal(
+    misfit(PAIRS, "index3", "rk4"),
+    "Runge-Kutta 4 takes an ordinary differential equation; index 3 hands over the equations of index 3, " +
+      "the loop at position level; Gauss methods do not converge on it",
+  );
+  assert.match(misfit(PAIRS, "index1", "radau5") ?? "", /^Radau 5 does not serve index-1/);
+  assert.deepEqual(misfitsOf(PAIRS, "index3"), [
+    { takes: "an ordinary differential equation", titles: ["Runge-Kutta 4", "Dormand-Prince"] },
+  ]);
+});
+
+test("a formulation keeps the integrator at hand, else takes a neighbour's, else one that steps alike", () => {
+  assert.equal(choosePartner(PAIRS, "index1", "dopri5", ["rk4"]), "dopri5");
+  assert.equal(choosePartner(PAIRS, "index1", "hht", ["rk4"]), "rk4");
+  assert.equal(choosePartner(PAIRS, "index3", "rk4", ["rk4"]), "hht");
+  assert.equal(choosePartner(PAIRS, "index3", "dopri5", []), "radau5");
+});
+
+test("a setting outside its range, in another unit or not among the choices is told with what is allowed", () => {
+  const h = { key: "h", unit: "s", min: 1e-12, max: 100 };
+  assert.equal(faultOf(h, "20 ms"), "");
+  assert.equal(faultOf(h, "0"), "a number from 1e-12 to 100 s is needed");
+  assert.equal(faultOf(h, "3 m"), "a number from 1e-12 to 100 s is needed");
+  const rule = { key: "rule", choices: ["given", "auto"] };
+  assert.equal(faultOf(rule, "auto"), "");
+  assert.equal(faultOf(rule, "often"), "one of given, auto");
+});
+
+test("a regular polygon is drawn as its circle, from wherever one looks", () => {
+  const n = 12;
+  const seen = (turn) => [Math.cos(turn) * 40, 0.3 * Math.sin(turn) * 40];
+  const corners = Array.from({ length: n }, (_, i) => seen((2 * Math.PI * i) / n));
+  const numbers = disc(corners).match(/-?[\d.]+/g).map(Number);
+  // the middle of each cubic lies on the ellipse as well
+  for (let i = 0; i < n; i++) {
+    const at = (k) => numbers.slice(2 + 6 * i + 2 * k, 4 + 6 * i + 2 * k);
+    const [a, b, c, d] = [numbers.slice(6 * i, 6 * i + 2), at(0), at(1), at(2)];
+    const [x, y] = [0, 1].map((k) => (a[k] + 3 * b[k] + 3 * c[k] + d[k]) / 8);
+    assert.ok(Math.abs(Math.hypot(x / 40, y / 12) - 1) < 2e-3); // coordinates carry two decimals
+  }
+});
+
+test("in space what lies nearer is drawn over what lies farther, and a pin over the bars it holds", () => {
+  const bar = (p, q) => ({ kind: "bar", p, q, n: 2, width: 0.1, body: p });
+  const scene = {
+    length: 1,
+    points: [],
+    ground_points: [],
+    drawing: {
+      shapes: [bar(0, 1), bar(1, 2), { kind: "pivot", p: 1, q: 1, n: 1, width: 0, body: 0 }],
+    },
+  };
+  const pose = [0, 0, 0, 1, 0, 0, 1, 0, 2]; // the second bar comes towards the viewer of the front
+  const order = (look) => {
+    const pen = createPen(scene, createCamera([-1, -1, 2, 2], 400, 300, look), {
+      width: 400,
+      height: 300,
+    });
+    return piecesOf(scene, "alone")
+      .sort((a, b) => pen.depth(a, pose) - pen.depth(b, pose))
+      .map(({ shapes: [shape] }) => `${shape.kind} ${shape.p}`);
+  };
+  assert.deepEqual(order({ right: [1, 0, 0], up: [0, 1, 0] }), ["bar 0", "bar 1", "pivot 1"]);
+  assert.deepEqual(order({ right: [-1, 0, 0], up: [0, 1, 0] }), ["bar 1", "bar 0", "pivot 1"]);
+});
+
+test("a name keeps clear of the parts and stays where it is while there is room", () => {
+  const places = createNamePlaces({ width: 300, height: 300 });
+  const names = [{ i: 0, text: "A", at: [150, 150] }];
+  const bar = [150, 150, 250, 60, 6]; // to the upper right, where a name would stand by itself
+  const [first] = places.place(names, [bar]);
+  const along = ((first.x - 150) * 100 - (first.y - 150) * 90) / Math.hypot(100, 90);
+  const aside = Math.abs((first.x - 150) * 90 + (first.y - 150) * 100) / Math.hypot(100, 90);
+  assert.ok(along < 0 || aside > 12, JSON.stringify(first));
+  const [second] = places.place(names, [[150, 150, 250, 62, 6]]);
+  assert.deepEqual(second, first);
+});
+
+test("what is seen coming is counted down until it is there, for the methods it is seen by", () => {
+  const history = createHistory(2, 1);
+  for (let k = 0; k <= 60; k++) {
+    history.push({ ...frame(k, 1), methods: [frame(k, 1).methods[0], frame(k, 1).methods[0]] });
+  }
+  const data = {
+    history,
+    methods: [{ label: "raw" }, { label: "projection" }],
+    incidents: [{ code: "rank-ahead", method: 0, t: 0.25, value: 0.5 }],
+    view: { hidden: new Set() },
+  };
+  assert.equal(predictionAt(data, 6), "");
+  assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s (raw)");
+  assert.equal(predictionAt(data, 54), "");
+  data.incidents.push({ code: "rank-ahead", method: 1, t: 0.3, value: 0.4 });
+  assert.equal(predictionAt(data, 30), "J loses rank in 0.20 s");
+  data.view.hidden.add(1);
+  assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s");
 });

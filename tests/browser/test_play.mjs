@@ -371,3 +371,72 @@ test("a comparison that the server has forgotten is made again, and said so", as
   assert.match(await page.textContent(".notice"), /started again/);
   assert.deepEqual(opened.faults.splice(0), [`not found: ${server.url}api/v1/comparisons/${id}`]);
 });
+
+test("the scenes stand under their lessons, in the order of the lessons", async () => {
+  const page = await open();
+  const groups = await page.evaluate(() =>
+    [...document.querySelectorAll("#scene optgroup")].map((group) => ({
+      label: group.label,
+      scenes: [...group.children].map((option) => option.value),
+    })),
+  );
+  const lessons = await read(page, (data) => data.lessons);
+  assert.ok(lessons.length >= 3);
+  assert.deepEqual(
+    groups,
+    lessons.map(({ title, scenes }) => ({ label: title, scenes })),
+  );
+  assert.equal(
+    groups.flatMap(({ scenes }) => scenes).length,
+    await read(page, (data) => data.scenes.length),
+  );
+});
+
+test("the dialog offers what fits the formulation, and says why the rest does not", async () => {
+  const page = await open();
+  const catalogue = await read(page, (data) => data.catalogue);
+  await page.getByRole("button", { name: "add a method" }).click();
+  for (const { name, integrators } of catalogue.formulations) {
+    await page.selectOption("#pick-formulation", name);
+    const offered = await page.evaluate(() =>
+      [...document.querySelectorAll("#pick-integrator option")].map((option) => option.value),
+    );
+    assert.deepEqual(offered.sort(), [...integrators].sort());
+    assert.ok(integrators.includes(await page.inputValue("#pick-integrator")));
+    const told = await page.evaluate(() =>
+      [...document.querySelectorAll(".misfits p")].flatMap((p) => p.textContent.split(/; |: take/)),
+    );
+    for (const card of catalogue.integrators) {
+      assert.equal(
+        !integrators.includes(card.name),
+        told.includes(card.title),
+        `${name} with ${card.name}`,
+      );
+    }
+  }
+  await page.fill("#pick-spelling", "index3@rk4:h=1e-3");
+  assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/);
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  assert.equal(await read(page, (data) => data.methods.length), 5);
+  assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/);
+});
+
+test("a method that cannot serve the scene stands in the table with its reason, and the others go on", async () => {
+  const page = await open();
+  await page.route("**/api/v1/scenes/heavy-top", async (route) => {
+    const answer = await route.fetch();
+    const scene = await answer.json();
+    await route.fulfill({
+      response: answer,
+      json: { ...scene, methods: ["index3@rattle:h=1e-3", ...scene.methods] },
+    });
+  });
+  await page.selectOption("#scene", "heavy-top");
+  await until(page, (data) => data.scene.id === "heavy-top" && data.refused.length === 1);
+  assert.match(await page.textContent(".refused"), /does not serve this scene: .*ball/);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.2);
+  await page.getByRole("button", { name: /^Forget/ }).click();
+  assert.equal(await page.locator(".refused").count(), 0);
+});

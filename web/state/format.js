@@ -74,9 +74,10 @@ export function plain(value) {
     : text;
 }
 
-/** @param {number} t [s] */
-export function seconds(t) {
-  return `${t.toFixed(2)} s`;
+/** @param {number} t [s] @param {number} [span] [s] of the whole run: the shorter, the more decimals */
+export function seconds(t, span = 10) {
+  const more = span > 0 && span < 2 ? Math.max(0, Math.ceil(0.5 - Math.log10(span))) : 0;
+  return `${t.toFixed(2 + more)} s`;
 }
 
 /** m/s^2 as it is written by hand: m/s². @param {string} unit */

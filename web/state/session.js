@@ -3,12 +3,14 @@
 // changes nothing here either, and is handed back as a Problem for the field that asked.
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
+import { niceBelow } from "./format.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
 
-const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
+const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
 const MOST_INCIDENTS = 200;
-const STEPPED_SECONDS = 0.1; // one press of Play when motion is unwelcome
+const SHORT = 2; // [s]: a run of less is shown slowly, so that there is something to see
+const SHOWN_FOR = 5; // [s]
 export const MOST_METHODS = 8;
 
 const FIRST_SCENE = "four-bar";
@@ -19,6 +21,17 @@ const FIRST_METHODS = [
   "nullspace@rk4:h=1e-3",
   "reduced@rk4:h=1e-3",
 ];
+
+/** One press of Play when motion is unwelcome [s]. @param {number} duration of the run [s] */
+export const stepSeconds = (duration) => Math.min(0.1, niceBelow(duration / 20 || 0.1));
+
+/** The speed at which a run of this duration is shown first. @param {number} duration [s] @param {number} before [s] of the scene before @param {number} now */
+const firstSpeed = (duration, before, now) =>
+  duration < SHORT
+    ? ([...SPEEDS].reverse().find((speed) => speed <= (1.3 * duration) / SHOWN_FOR) ?? SPEEDS[0])
+    : before < SHORT
+      ? 1
+      : now;
 
 /** Which of the methods the server refused to run on the scene, or -1. @param {unknown} error */
 function refusedPlace(error) {
@@ -205,7 +218,7 @@ export function createSession(store) {
   async function create(body) {
     const old = data.id;
     const { description, refused } = await withoutRefused(body, (asked) =>
-      api.createComparison({ paused: true, speed: data.speed, ...asked }),
+      api.createComparison({ paused: true, ...asked }),
     );
     data.refused = refused;
     adopt(description);
@@ -229,6 +242,7 @@ export function createSession(store) {
         scene: data.scene.id,
         settings: data.settings,
         methods: data.methods.map((m) => m.spelling),
+        speed: data.speed,
       });
       notice("the server had closed this comparison; it was started again");
       return api.changeComparison(data.id, change);
@@ -294,12 +308,14 @@ export function createSession(store) {
       data.view.hidden.clear();
       data.view.selected = 0;
       const methods = id === FIRST_SCENE ? chooseMethods(null) : chooseMethods(await api.scene(id));
-      await create({ scene: id, methods });
+      const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
+      const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
+      await create({ scene: id, methods, speed });
     },
     play() {
       data.view.shown = -1;
       if (data.view.stepped && data.state !== "finished") {
-        return actions.step(Math.max(1, Math.round(STEPPED_SECONDS / data.frameDt)));
+        return actions.step(Math.max(1, Math.round(stepSeconds(data.duration) / data.frameDt)));
       }
       return changeOrTell(
         data.state === "finished" ? { reset: true, state: "running" } : { state: "running" },

@@ -42,7 +42,7 @@ function initialData() {
       formulations: [],
       integrators: [],
     },
-    /** @type {{id: string, title: string}[]} */ scenes: [],
+    /** @type {{id: string, title: string, duration: number}[]} */ scenes: [],
     /** @type {Lesson[]} */ lessons: [],
     id: "",
     generation: -1,

@@ -5,7 +5,7 @@ import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 
 /** A gap that more than doubles from the first half of the motion to the second grows: t to t^2 do, an oscillation does not. */
 const GROWTH = 1.5;
-const EARLIEST = 0.1; // [s]; before it there is nothing to tell
+const EARLIEST = 6; // [frames] before it there is nothing to tell
 
 /**
  * @typedef {{word: string, arrow: string, tone: "calm" | "warn" | "bad"}} Trend
@@ -24,7 +24,7 @@ export function trendOf(history, m, shown) {
   if (!(late > ROUNDING)) {
     return { word: "closed", arrow: "→", tone: "calm" };
   }
-  if (t < EARLIEST) {
+  if (shown < EARLIEST) {
     return { word: "just started", arrow: "→", tone: "calm" };
   }
   const early = history.worst(m, "gap", 0, half);
@@ -77,6 +77,36 @@ export function sentences(data, shown) {
 }
 
 /**
+ * What the engine sees coming at the time shown: "J loses rank in 0.31 s (index-1, projection)", "" when nothing is.
+ * @param {import("./store.js").Store["data"]} data
+ * @param {number} shown
+ */
+export function predictionAt(data, shown) {
+  const { history, incidents, methods, view } = data;
+  if (!history || shown < 0) {
+    return "";
+  }
+  const now = history.t[shown];
+  /** @type {Map<number, number>} time of the pose by method, as told last */
+  const ahead = new Map();
+  for (const { code, method, t, value } of incidents) {
+    if (code === "rank-ahead" && t <= now && !(history.ended[method] <= now)) {
+      ahead.set(method, t + value);
+    }
+  }
+  const coming = [...ahead]
+    .filter(([m, at]) => at > now && !view.hidden.has(m))
+    .sort(([, a], [, b]) => a - b);
+  if (coming.length === 0) {
+    return "";
+  }
+  const drawn = methods.filter((_, m) => !view.hidden.has(m)).length;
+  const names = coming.map(([m]) => methods[m].label).join(", ");
+  const whose = coming.length < drawn ? ` (${names})` : "";
+  return `J loses rank in ${(coming[0][1] - now).toFixed(2)} s${whose}`;
+}
+
+/**
  * "until 5 s Baumgarte: worst gap 0.42 m before, 0.66 mm now; energy change 1 J before, 0.7 J now", over the time both runs cover.
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
@@ -104,7 +134,7 @@ export function beforeAndAfter(data, shown) {
     const gap = `worst gap ${quantity(gap0, "m")} before, ${quantity(gap1, "m")} now`;
     const closed = gap1 < ROUNDING && gap0 < ROUNDING;
     return [
-      `${method.label} until ${seconds(t)}: ${closed ? `worst ${energy}` : `${gap}; ${energy}`}`,
+      `${method.label} until ${seconds(t, data.duration)}: ${closed ? `worst ${energy}` : `${gap}; ${energy}`}`,
     ];
   });
 }
@@ -182,7 +212,7 @@ export function cardOfMethod(data, m, shown) {
   const happened =
     trend.tone === "bad"
       ? `It ${trend.word}${reason ? `: ${reason}` : ""}.`
-      : `After ${seconds(history.t[shown])} the loop gap is ${quantity(value("gap"), "m")} (${trend.word}), the energy has changed by ` +
+      : `After ${seconds(history.t[shown], data.duration)} the loop gap is ${quantity(value("gap"), "m")} (${trend.word}), the energy has changed by ` +
         `${quantity(value("energy_change"), "J")}.`;
   return {
     title: `${method.title}`,
@@ -212,7 +242,7 @@ export function describeDrawing(data, shown) {
     ? `, loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}`
     : "";
   return (
-    `${scene.title} at ${seconds(history.t[shown])}, drawn by ${drawn.join(", ") || "no method"}; ` +
+    `${scene.title} at ${seconds(history.t[shown], data.duration)}, drawn by ${drawn.join(", ") || "no method"}; ` +
     `${method.label}${places.length ? `: ${places.join(", ")}` : ""}${gap}.`
   );
 }

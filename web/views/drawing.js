@@ -3,7 +3,7 @@
 import { lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
 import { quantity } from "../state/format.js";
-import { describeDrawing } from "../state/words.js";
+import { describeDrawing, predictionAt } from "../state/words.js";
 import { boxAround, createCamera, seenBox } from "../widgets/camera.js";
 import { h, s, say, set } from "../widgets/dom.js";
 import { createNamePlaces } from "../widgets/name-places.js";
@@ -33,6 +33,7 @@ export function createDrawing(el, store, actions) {
   const title = h("p", { id: "drawing-title", class: "hidden" });
   const spoken = h("p", { class: "spoken", role: "status" });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
+  const ahead = h("p", { class: "ahead", hidden: true });
   const caption = h("p", { class: "caption" });
   const labels = toggle("labels", "labels", true);
   const traces = toggle("traces", "paths", false);
@@ -41,7 +42,7 @@ export function createDrawing(el, store, actions) {
     { type: "button", class: "quiet", onclick: tellDrawing },
     "describe",
   );
-  const stage = h("div", { class: "stage" }, svg, banner);
+  const stage = h("div", { class: "stage" }, svg, ahead, banner);
   el.replaceChildren(
     stage,
     title,
@@ -258,6 +259,12 @@ export function createDrawing(el, store, actions) {
     }
   }
 
+  function tellAhead(now) {
+    const text = predictionAt(data, now);
+    ahead.hidden = text === "";
+    say(ahead, text);
+  }
+
   function update() {
     const now = shown();
     if (!data.scene || !data.history || now < 0 || ghosts.length !== data.methods.length) {
@@ -276,6 +283,7 @@ export function createDrawing(el, store, actions) {
       drawLabels(points);
     }
     drawTraces(now);
+    tellAhead(now);
     tellFailures(now);
   }
 

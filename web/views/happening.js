@@ -3,7 +3,7 @@
 import { seconds } from "../state/format.js";
 import { INCIDENTS } from "../state/incidents.js";
 import { listen } from "../state/store.js";
-import { beforeAndAfter, cardOfMethod, sentences, tryOfRemedy } from "../state/words.js";
+import { beforeAndAfter, cardOfMethod, predictionAt, sentences, tryOfRemedy } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
 
 const PAUSE = 2000; // [ms] between two things said
@@ -49,8 +49,9 @@ export function createHappening(el, store, actions) {
     if (now < 0) {
       return;
     }
-    const lines =
-      now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
+    const ahead = predictionAt(data, now);
+    const state = now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
+    const lines = ahead ? [ahead, ...state] : state;
     const changes = beforeAndAfter(data, now);
     const text = [...changes, ...lines];
     if (live.dataset.text !== text.join("\n")) {
@@ -143,7 +144,7 @@ export function createHappening(el, store, actions) {
         h(
           "summary",
           {},
-          h("span", { class: "number when" }, seconds(incident.t)),
+          h("span", { class: "number when" }, seconds(incident.t, data.duration)),
           h(
             "span",
             { class: "what" },

@@ -1,6 +1,8 @@
 // @ts-check
 // Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the server checks.
 import { sentenceOf } from "../api/client.js";
+import { parseQuantity, plain, prettyUnit } from "../state/format.js";
+import { choosePartner, faultOf, handsOver, misfit, misfitsOf, partnersOf } from "../state/pairs.js";
 import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
@@ -13,9 +15,14 @@ import { h, say, set } from "../widgets/dom.js";
 export function createMethodDialog(el, store, actions) {
   const data = store.data;
   const title = h("h2", { id: "dialog-title" });
-  const formulation = h("select", { id: "pick-formulation", onchange: compose });
+  const formulation = h("select", { id: "pick-formulation", onchange: onFormulation });
   const integrator = h("select", { id: "pick-integrator", onchange: compose });
   const about = h("p", { class: "about" });
+  const limits = h("p", { class: "about" });
+  const steps = h("p", { class: "about" });
+  const misfits = h("div", {});
+  const why = h("summary", {});
+  const others = h("details", { class: "misfits" }, why, misfits);
   const settings = h("div", { class: "dialog-settings" });
   const spelling = h("input", {
     id: "pick-spelling",
@@ -35,8 +42,11 @@ export function createMethodDialog(el, store, actions) {
     h("label", { for: "pick-formulation" }, "How the constraints enter"),
     formulation,
     about,
+    limits,
     h("label", { for: "pick-integrator" }, "How time advances"),
     integrator,
+    steps,
+    others,
     settings,
     h("label", { for: "pick-spelling" }, "Spelling"),
     spelling,
@@ -54,10 +64,39 @@ export function createMethodDialog(el, store, actions) {
   el.append(dialog);
   let place = -1;
 
+  const option = (card) => h("option", { value: card.name }, card.title);
+
   function fillLists() {
-    const options = (cards) => cards.map((card) => h("option", { value: card.name }, card.title));
-    formulation.replaceChildren(...options(data.catalogue.formulations));
-    integrator.replaceChildren(...options(data.catalogue.integrators));
+    formulation.replaceChildren(...data.catalogue.formulations.map(option));
+  }
+
+  /** Only what fits the formulation can be chosen; for the rest the reason is told. */
+  function fillIntegrators() {
+    const fitting = partnersOf(data.catalogue, formulation.value);
+    const group = (label, cards) =>
+      cards.length ? [h("optgroup", { label }, ...cards.map(option))] : [];
+    const chosen = integrator.value;
+    integrator.replaceChildren(
+      ...group("steps as set", fitting.filter((card) => !card.adaptive)),
+      ...group("steps chosen from a tolerance", fitting.filter((card) => card.adaptive)),
+    );
+    integrator.value = fitting.some(({ name }) => name === chosen) ? chosen : fitting[0]?.name;
+    const unfit = misfitsOf(data.catalogue, formulation.value);
+    const count = unfit.reduce((sum, { titles }) => sum + titles.length, 0);
+    say(why, `${count} integrators do not fit. Why?`);
+    others.hidden = count === 0;
+    misfits.replaceChildren(
+      h("p", {}, `The integrator gets ${handsOver(data.catalogue, formulation.value)}.`),
+      ...unfit.map(({ takes, titles }) => h("p", {}, `${titles.join("; ")}: take ${takes}.`)),
+    );
+  }
+
+  function onFormulation() {
+    const before = parseSpelling(spelling.value).integrator.name;
+    const shared = data.methods.map((method) => method.integrator);
+    fillIntegrators();
+    integrator.value = choosePartner(data.catalogue, formulation.value, before, shared);
+    compose();
   }
 
   /** Keeps what was set under the same key when the choice changes. */
@@ -66,13 +105,16 @@ export function createMethodDialog(el, store, actions) {
     const kept = new Map([...old.formulation.settings, ...old.integrator.settings]);
     const part = (kind, name) => {
       const card = cardOf(data.catalogue, kind, name);
+      if (kind === "integrator" && card?.adaptive && old.integrator.name !== name) {
+        kept.delete("h"); // it chooses its step, unless it is told one
+      }
       const list = (card?.settings ?? [])
-        .filter((setting) => kept.has(setting.key) || setting.default === null)
+        .filter((setting) => keeps(setting, kept) || setting.default === null || isStep(card, setting))
         .map(
           (setting) =>
             /** @type {[string, string]} */ ([
               setting.key,
-              kept.get(setting.key) ?? defaultOf(setting),
+              keeps(setting, kept) ? kept.get(setting.key) : firstOf(setting),
             ]),
         );
       return { name, settings: list };
@@ -84,9 +126,18 @@ export function createMethodDialog(el, store, actions) {
     showParts();
   }
 
-  /** A setting without a default takes the step of the scene, or the least that is allowed. */
-  function defaultOf(setting) {
-    return setting.key === "h" ? String(data.scene?.step || 1e-3) : String(setting.min);
+  /** A fixed step is written out, so that it is seen. */
+  const isStep = (card, { key }) => key === "h" && !card.adaptive;
+
+  /** A value may be of use to another part too, where it means the same and is allowed. */
+  const keeps = (setting, kept) =>
+    kept.has(setting.key) && faultOf(setting, kept.get(setting.key)) === "";
+
+  /** The step of the scene; else the default, or the least that is allowed. */
+  function firstOf(setting) {
+    return setting.key === "h"
+      ? String(data.scene?.step || setting.default || 1e-3)
+      : String(setting.default ?? setting.min);
   }
 
   function onTyped() {
@@ -94,20 +145,41 @@ export function createMethodDialog(el, store, actions) {
     if (cardOf(data.catalogue, "formulation", parsed.formulation.name)) {
       formulation.value = parsed.formulation.name;
     }
+    fillIntegrators();
     if (cardOf(data.catalogue, "integrator", parsed.integrator.name)) {
-      integrator.value = parsed.integrator.name;
+      integrator.value = parsed.integrator.name; // none, when the pair does not fit
     }
     showParts();
+    const { formulation: f, integrator: i } = parsed;
+    tell(misfit(data.catalogue, f.name, i.name) ?? "");
   }
 
   function showParts() {
     tell("");
-    const card = cardOf(data.catalogue, "formulation", formulation.value);
-    say(about, card ? card.rule : "");
     const parsed = parseSpelling(spelling.value);
+    const card = cardOf(data.catalogue, "formulation", formulation.value);
+    const stepper = cardOf(data.catalogue, "integrator", integrator.value);
+    say(about, card ? card.rule : "");
+    const notes = [
+      card?.when_not && `Not for ${card.when_not}.`,
+      card?.limits && `${capital(card.limits)}.`,
+      card?.order_note && `Order: ${card.order_note}.`,
+    ];
+    say(limits, notes.filter(Boolean).join(" "));
+    say(steps, stepper ? stepper.about : "");
     settings.replaceChildren(
       ...["formulation", "integrator"].flatMap((kind) => settingFields(kind, parsed[kind])),
     );
+  }
+
+  const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+  /** What may be written, and what it means: "0 to 1, 0.2 if left out: ...". */
+  function hintOf(setting) {
+    const range = setting.choices?.length
+      ? ""
+      : `${plain(setting.min)} to ${plain(setting.max)}${setting.unit ? ` ${prettyUnit(setting.unit)}` : ""}; `;
+    return `${range}${setting.about}`;
   }
 
   function settingFields(kind, part) {
@@ -116,10 +188,11 @@ export function createMethodDialog(el, store, actions) {
       const id = `pick-${kind}-${setting.key}`;
       const written = part.settings.find(([key]) => key === setting.key);
       const value = written ? written[1] : "";
+      const hint = h("span", { class: "hint", id: `${id}-hint` }, hintOf(setting));
       const input = setting.choices?.length
         ? h(
             "select",
-            { id },
+            { id, "aria-describedby": hint.id },
             ...setting.choices.map((choice) => h("option", { value: choice }, choice)),
           )
         : h("input", {
@@ -127,17 +200,30 @@ export function createMethodDialog(el, store, actions) {
             type: "text",
             inputmode: "decimal",
             autocomplete: "off",
-            placeholder: setting.default === null ? "" : String(setting.default),
+            "aria-describedby": hint.id,
+            placeholder: setting.default === null ? "" : plain(setting.default),
           });
       input.value = value || (setting.choices?.length ? setting.default : "");
-      input.addEventListener("change", () => writeSetting(kind, setting.key, input.value.trim()));
-      return h(
+      const row = h(
         "p",
-        { class: "dialog-setting", title: setting.about },
+        { class: "dialog-setting" },
         h("label", { for: id }, setting.key),
         input,
-        h("span", { class: "unit" }, setting.unit ?? ""),
+        h("span", { class: "unit" }, prettyUnit(setting.unit ?? "")),
+        hint,
       );
+      input.addEventListener("change", () => {
+        const text = input.value.trim().replace(",", ".");
+        const fault = text ? faultOf(setting, text) : "";
+        say(hint, fault || hintOf(setting));
+        row.dataset.kind = fault ? "error" : "";
+        set(input, { "aria-invalid": fault ? "true" : null });
+        if (!fault) {
+          const value = parseQuantity(text, prettyUnit(setting.unit ?? ""));
+          writeSetting(kind, setting.key, text && !setting.choices?.length ? plain(value) : text);
+        }
+      });
+      return row;
     });
   }
 
@@ -146,7 +232,7 @@ export function createMethodDialog(el, store, actions) {
     const part = parsed[kind];
     part.settings = part.settings.filter(([name]) => name !== key);
     if (value) {
-      part.settings.push([key, value.replace(",", ".")]);
+      part.settings.push([key, value]);
     }
     spelling.value = formatSpelling(parsed);
     tell("");
@@ -173,6 +259,13 @@ export function createMethodDialog(el, store, actions) {
 
   async function onSubmit(event) {
     event.preventDefault();
+    const { formulation: f, integrator: i } = parseSpelling(spelling.value);
+    const fault = misfit(data.catalogue, f.name, i.name);
+    if (fault) {
+      tell(fault);
+      spelling.focus();
+      return;
+    }
     const spellings = data.methods.map((method) => method.spelling);
     const at = place < 0 ? spellings.length : place;
     spellings[at] = spelling.value.trim();

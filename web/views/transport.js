@@ -1,6 +1,7 @@
 // @ts-check
 // Play, pause, step, back to the start, speed, and the time with its scrubber.
 import { plain, seconds } from "../state/format.js";
+import { stepSeconds } from "../state/session.js";
 import { listen } from "../state/store.js";
 import { h, icon, say, set } from "../widgets/dom.js";
 
@@ -103,7 +104,7 @@ export function createTransport(el, store, actions) {
       : data.state === "finished"
         ? "Again"
         : data.view.stepped
-          ? "Step 0.1 s"
+          ? `Step ${plain(stepSeconds(data.duration))} s`
           : "Play";
     if (play.dataset.word !== word) {
       play.dataset.word = word;
@@ -123,7 +124,7 @@ export function createTransport(el, store, actions) {
     const shown = data.view.shown < 0 ? last : Math.min(data.view.shown, last);
     set(scrub, {
       max: Math.max(history.t[last], 1e-9),
-      "aria-valuetext": seconds(history.t[shown]),
+      "aria-valuetext": seconds(history.t[shown], data.duration),
     });
     if (
       document.activeElement !== scrub ||
@@ -134,7 +135,7 @@ export function createTransport(el, store, actions) {
     }
     say(
       time,
-      `t ${seconds(data.view.shown < 0 && data.latest ? data.latest.t : history.t[shown])}`,
+      `t ${seconds(data.view.shown < 0 && data.latest ? data.latest.t : history.t[shown], data.duration)}`,
     );
   }
 
