@@ -14,6 +14,7 @@ import { createLook } from "./views/look.js";
 import { createMethodDialog } from "./views/method-dialog.js";
 import { createMethods } from "./views/methods.js";
 import { createPlots } from "./views/plots.js";
+import { createReactions } from "./views/reactions.js";
 import { createStatus } from "./views/status.js";
 import { createTear } from "./views/tear.js";
 import { createTransport } from "./views/transport.js";
@@ -39,6 +40,7 @@ const views = [
   createControls(at("controls"), store, session),
   createHappening(at("happening"), store, session),
   createPlots(at("plots"), store, session),
+  createReactions(at("reactions"), store, session),
   createEquations(at("equations"), store, session),
   createStatus(at("status"), store),
 ];

@@ -23,6 +23,7 @@ import {
   settingOf,
   withSetting,
 } from "../../web/state/spelling.js";
+import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
 import { predictionAt, sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
 import { INCIDENTS } from "../../web/state/incidents.js";
 import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
@@ -465,4 +466,39 @@ test("what is seen coming is counted down until it is there, for the methods it 
   assert.equal(predictionAt(data, 30), "J loses rank in 0.20 s");
   data.view.hidden.add(1);
   assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s");
+});
+
+test("the state goes to the server under the names of coordinates and rates", () => {
+  const coordinates = [
+    { name: "th1", rate: "w1" },
+    { name: "s", rate: "ds" },
+  ];
+  assert.deepEqual(namedState(coordinates, [1, 2], Float64Array.of(3, 4)), {
+    th1: 1,
+    w1: 3,
+    s: 2,
+    ds: 4,
+  });
+});
+
+test("a history keeps the state of each frame, and of a failed method its last one", () => {
+  const history = createHistory(1, 1, 2);
+  history.push(frame(0, 1, { q: [1, 2], v: [3, 4] }));
+  history.push(frame(1, 1, { q: [5, 6], v: [7, 8] }));
+  history.push({ ...frame(2, 1), methods: [{ state: "failed", t: 0.01 }] });
+  assert.deepEqual([...history.stateAt(0, 0).q, ...history.stateAt(0, 0).v], [1, 2, 3, 4]);
+  assert.deepEqual([...history.stateAt(0, 2).q, ...history.stateAt(0, 2).v], [5, 6, 7, 8]);
+});
+
+test("arrows keep their scale while the largest can be read, and rounding is no force", () => {
+  const first = arrowScale(14, 1);
+  assert.equal(first, 5);
+  assert.equal(arrowScale(9, first), first);
+  assert.equal(arrowScale(1400, first), 0.05);
+  assert.equal(arrowScale(0, first), first);
+  const list = [{ force: [3, 4, 0], moment: [0, 0, 3e-16] }];
+  const zero = zeroOf(list, 2);
+  assert.ok(zero.moment > 3e-16 && zero.moment < 1e-9 && zero.force < 1e-9);
+  assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3 + 1e-9], 1), 1);
+  assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3.1], 1), -1);
 });

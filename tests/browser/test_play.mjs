@@ -440,3 +440,49 @@ test("a method that cannot serve the scene stands in the table with its reason, 
   await page.getByRole("button", { name: /^Forget/ }).click();
   assert.equal(await page.locator(".refused").count(), 0);
 });
+
+test("the forces in the joints are those of the state shown, as numbers and as arrows", async () => {
+  const page = await open();
+  await page.click("#reactions summary");
+  await page.getByRole("button", { name: "draw as arrows" }).click();
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused" && data.reactions?.t === data.latest.t);
+  const { t, list, state } = await read(page, (data) => ({
+    t: data.reactions.t,
+    list: data.reactions.list,
+    state: Object.fromEntries(
+      data.scene.coordinates.flatMap(({ name, rate }, i) => [
+        [name, data.latest.methods[0].q[i]],
+        [rate, data.latest.methods[0].v[i]],
+      ]),
+    ),
+  }));
+  const answer = await fetch(`${server.url}api/v1/terms`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ scene: "four-bar", t, state, reactions: true }),
+  });
+  const { reactions } = await answer.json();
+  assert.deepEqual(
+    list.map(({ name, force }) => ({ name, force })),
+    reactions.map(({ name, force }) => ({ name, force })),
+  );
+  const rows = await page.evaluate(() =>
+    [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => row.textContent),
+  );
+  assert.deepEqual(
+    rows.map((text) => text.replace(/[\d−].*/s, "")),
+    ["O", "A", "O", "B"],
+  );
+  assert.match(rows[0], /O1[\d.]+ m?N.*N m/);
+  assert.equal(await page.locator(".arrows path").count(), 4);
+  assert.match(await page.textContent(".arrows text"), /^[\d.]+ m?N$/);
+  await page.selectOption("#scene", "fb0-lagrangian");
+  await page.waitForFunction(() =>
+    /no joints that could carry/.test(document.querySelector("#reactions").textContent),
+  );
+  assert.equal(await page.locator(".arrows path").count(), 0);
+});

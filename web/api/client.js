@@ -80,6 +80,8 @@ export const api = {
   equations: (scene, settings) =>
     request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),
   /** @param {object} body */
+  terms: (body) => request("POST", `${BASE}/terms`, body),
+  /** @param {object} body */
   createComparison: (body) => request("POST", `${BASE}/comparisons`, body),
   /** @param {string} id */
   comparison: (id) => request("GET", `${BASE}/comparisons/${id}`),

@@ -23,9 +23,10 @@ export const COLUMNS = /** @type {const} */ ([
 /**
  * @param {number} nMethods
  * @param {number} nPoints
+ * @param {number} [nCoordinates] of the scene: as many values and rates are kept
  */
-export function createHistory(nMethods, nPoints) {
-  const perFrame = 8 * nMethods * (3 * nPoints + COLUMNS.length);
+export function createHistory(nMethods, nPoints, nCoordinates = 0) {
+  const perFrame = 8 * nMethods * (3 * nPoints + 2 * nCoordinates + COLUMNS.length);
   const capacity = Math.max(
     FEWEST_FRAMES,
     Math.min(MOST_FRAMES, 2 * Math.floor(BYTES / perFrame / 2)),
@@ -35,6 +36,11 @@ export function createHistory(nMethods, nPoints) {
     Object.fromEntries(COLUMNS.map((name) => [name, new Float64Array(capacity)])),
   );
   const points = Array.from({ length: nMethods }, () => new Float64Array(capacity * 3 * nPoints));
+  /** q and v of each kept frame */
+  const states = Array.from(
+    { length: nMethods },
+    () => new Float64Array(capacity * 2 * nCoordinates),
+  );
   /** time at which a method ended early, or NaN */
   const ended = new Float64Array(nMethods).fill(NaN);
   let count = 0;
@@ -43,6 +49,7 @@ export function createHistory(nMethods, nPoints) {
 
   function halve() {
     const width = 3 * nPoints;
+    const both = 2 * nCoordinates;
     for (let i = 0; i < count / 2; i++) {
       t[i] = t[2 * i];
       for (let m = 0; m < nMethods; m++) {
@@ -50,6 +57,7 @@ export function createHistory(nMethods, nPoints) {
           columns[m][name][i] = columns[m][name][2 * i];
         }
         points[m].copyWithin(i * width, 2 * i * width, (2 * i + 1) * width);
+        states[m].copyWithin(i * both, 2 * i * both, (2 * i + 1) * both);
       }
     }
     count = Math.ceil(count / 2);
@@ -67,13 +75,19 @@ export function createHistory(nMethods, nPoints) {
       const value = method[name];
       columns[m][name][count] = gone || value === undefined || value === null ? NaN : value;
     }
-    const from = count * 3 * nPoints;
-    if (method.points && method.points.length === 3 * nPoints) {
-      points[m].set(method.points, from);
+    keep(points[m], 3 * nPoints, method.points);
+    keep(states[m], 2 * nCoordinates, [...(method.q ?? []), ...(method.v ?? [])]);
+  }
+
+  /** What came, or what was there before; NaN where nothing ever came. @param {Float64Array} rows @param {number} width @param {number[] | undefined} values */
+  function keep(rows, width, values) {
+    const from = count * width;
+    if (values?.length === width) {
+      rows.set(values, from);
     } else if (count > 0) {
-      points[m].copyWithin(from, from - 3 * nPoints, from);
+      rows.copyWithin(from, from - width, from);
     } else {
-      points[m].fill(NaN, from, from + 3 * nPoints);
+      rows.fill(NaN, from, from + width);
     }
   }
 
@@ -115,6 +129,14 @@ export function createHistory(nMethods, nPoints) {
     /** Points of a method in the i-th kept frame (a view, not a copy). @param {number} m @param {number} i */
     pointsAt(m, i) {
       return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
+    },
+    /** Coordinates and rates of a method in the i-th kept frame (views). @param {number} m @param {number} i */
+    stateAt(m, i) {
+      const from = 2 * nCoordinates * i;
+      return {
+        q: states[m].subarray(from, from + nCoordinates),
+        v: states[m].subarray(from + nCoordinates, from + 2 * nCoordinates),
+      };
     },
     /** Index of the kept frame nearest to a time. @param {number} time */
     indexAt(time) {

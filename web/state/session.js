@@ -4,10 +4,11 @@
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
 import { niceBelow } from "./format.js";
+import { createReactionFeed } from "./reaction-feed.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
 
-const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
+const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
 const MOST_INCIDENTS = 200;
 const SHORT = 2; // [s]: a run of less is shown slowly, so that there is something to see
 const SHOWN_FOR = 5; // [s]
@@ -49,6 +50,7 @@ export function createSession(store) {
   let queue = Promise.resolve();
   /** the speed that was asked for and not answered yet, or 0: quick presses count from it */
   let asked = 0;
+  const endReactions = createReactionFeed(store);
   const wantedSpeed = () => asked || data.speed;
 
   /** @param {string} text */
@@ -84,7 +86,8 @@ export function createSession(store) {
     const labels = labelsOf(data.methods);
     data.methods.forEach((method, m) => (method.label = labels[m]));
     data.scene = description.scene;
-    data.history = createHistory(data.methods.length, description.scene.drawing.points);
+    const { drawing, coordinates } = description.scene;
+    data.history = createHistory(data.methods.length, drawing.points, coordinates.length);
     data.incidents = [];
     data.latest = null;
     data.view.shown = -1;
@@ -423,6 +426,7 @@ export function createSession(store) {
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
     notice,
     dispose() {
+      endReactions();
       stream?.dispose();
       if (data.id) {
         api.abandonComparison(data.id);

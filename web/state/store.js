@@ -6,12 +6,12 @@
  * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
  * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: {p: number, q: number, name: string}[]}} Drawing
  * @typedef {{id: string, title: string, about: string, look_for: string, caption: string, parameters: Parameter[], n: number, m: number,
- *   rank: number, freedoms: number, length: number, drawing: Drawing, points: number[], ground_points: number[], envelope: number[], extremes?: number[],
+ *   rank: number, freedoms: number, length: number, drawing: Drawing, coordinates: {name: string, rate: string}[], points: number[], ground_points: number[], envelope: number[], extremes?: number[],
  *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]}, methods: string[],
  *   duration: number, step: number}} Scene
  * @typedef {{slot: number, short: string, label: string, rule: string, drift: string, model_error: boolean, keeps_gap: boolean, order: number,
  *   spelling: string, formulation: string, integrator: string, title: string}} Method
- * @typedef {{state: string, status: string, reason: string, t: number, points?: number[], gap?: number, velocity_gap?: number,
+ * @typedef {{state: string, status: string, reason: string, t: number, points?: number[], q?: number[], v?: number[], gap?: number, velocity_gap?: number,
  *   energy_change?: number, steps: number, rejected: number, evals: number, ops: number, cpu: number, worst_gap: number,
  *   worst_velocity_gap: number, worst_energy_change: number}} MethodFrame
  * @typedef {{generation: number, frame: number, t: number, finished: boolean, methods: MethodFrame[]}} Frame
@@ -30,6 +30,7 @@ export const EVENTS = [
   "incident",
   "state", // running, paused, finished, speed
   "stream",
+  "reactions", // what the joints carry, as last asked for
   "notice", // a sentence for the status line
   "theme",
 ];
@@ -60,6 +61,9 @@ function initialData() {
     /** The run before the last change, for "before and after". @type {{methods: Method[], history: import("./history.js").History} | null} */
     before: null,
     /** @type {Incident[]} */ incidents: [],
+    /** Forces in the joints of a method at a time; `point`: the drawn point at the joint, or -1; null until they are asked for.
+     * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], reason: string} | null} */
+    reactions: null,
     stream: { state: "connecting", id: "" },
     notice: "",
     /** @type {"light" | "dark"} */ theme: "light",
@@ -69,6 +73,8 @@ function initialData() {
       /** index into the history, or -1: the latest */ shown: -1,
       labels: true,
       traces: false,
+      /** the table of forces is open */ reactions: false,
+      /** forces are drawn */ arrows: false,
       /** where one looks from; null: as the scene is best seen @type {{right: number[], up: number[]} | null} */ look: null,
       letters: true,
       stepped: false,

@@ -1,6 +1,7 @@
 // @ts-check
 // The mechanism: supports once, one ghost per method, the selected method opaque and on top.
 import { lookOf } from "../state/look.js";
+import { arrowScale, sizeOf, zeroOf } from "../state/reactions.js";
 import { listen } from "../state/store.js";
 import { quantity } from "../state/format.js";
 import { describeDrawing, predictionAt } from "../state/words.js";
@@ -11,6 +12,7 @@ import { baseOf, createPen, isCrowded, piecesOf } from "../widgets/pieces.js";
 import * as shapes from "../widgets/shapes.js";
 
 const TRACE_POINTS = 600;
+const SHORTEST_ARROW = 3; // [px]
 
 /**
  * @param {HTMLElement} el
@@ -20,7 +22,7 @@ const TRACE_POINTS = 600;
 export function createDrawing(el, store, actions) {
   const data = store.data;
   const layers = Object.fromEntries(
-    ["fixed", "traces", "ghosts", "tears", "labels", "scale"].map((name) => [
+    ["fixed", "traces", "ghosts", "tears", "arrows", "labels", "scale"].map((name) => [
       name,
       s("g", { class: name }),
     ]),
@@ -57,6 +59,7 @@ export function createDrawing(el, store, actions) {
   let camera = createCamera([-1, -1, 1, 1], 100, 100);
   /** @type {ReturnType<typeof createPen>} */
   let pen;
+  let newton = 1; // [px]
   let places = createNamePlaces({ width: 100, height: 100 });
   let size = { width: 0, height: 0 };
 
@@ -203,17 +206,54 @@ export function createDrawing(el, store, actions) {
     );
   }
 
-  function drawLabels(points) {
+  /** @param {ArrayLike<number>} points @param {number[][]} arrows names keep clear of them too */
+  function drawLabels(points, arrows) {
     const names = data.scene.drawing.labels.flatMap((text, i) => {
       const at = camera.point(points, i);
       return text && Number.isFinite(at[0]) ? [{ i, text, at }] : [];
     });
-    const placed = places.place(names, names.length ? pen.obstacles(points) : []);
+    const placed = places.place(names, names.length ? [...pen.obstacles(points), ...arrows] : []);
     layers.labels.replaceChildren(
       ...placed.map(({ text, x, y }) =>
         s("text", { x: x.toFixed(1), y: (y + 4.5).toFixed(1), "text-anchor": "middle" }, text),
       ),
     );
+  }
+
+  /** The force on each joint's child, from the joint outwards; it moves with the joint until the next answer. Returns where arrows are. */
+  function drawArrows(points) {
+    const { reactions, view, scene } = data;
+    if (!view.arrows || !reactions || reactions.method !== view.selected) {
+      layers.arrows.replaceChildren();
+      return [];
+    }
+    const zero = zeroOf(reactions.list, scene.length).force;
+    const loaded = reactions.list.filter(({ force }) => sizeOf(force) > zero);
+    newton = arrowScale(Math.max(0, ...loaded.map(({ force }) => sizeOf(force))), newton);
+    const along = (axis, f) => axis[0] * f[0] + axis[1] * f[1] + axis[2] * f[2];
+    /** @type {number[][]} */
+    const lines = [];
+    layers.arrows.replaceChildren(
+      ...loaded.flatMap(({ force, place, point }) => {
+        const p = point >= 0 ? camera.point(points, point) : camera.point(place, 0);
+        const [dx, dy] = [
+          newton * along(camera.look.right, force),
+          -newton * along(camera.look.up, force),
+        ];
+        const length = Math.hypot(dx, dy);
+        if (length < SHORTEST_ARROW) {
+          return [];
+        }
+        const away = 1 + 16 / length;
+        const text = { x: (p[0] + away * dx).toFixed(1), y: (p[1] + away * dy + 4).toFixed(1) };
+        lines.push([...p, p[0] + away * dx, p[1] + away * dy, 8]);
+        return [
+          s("path", { d: shapes.arrow(p, [p[0] + dx, p[1] + dy]) }),
+          s("text", { ...text, "text-anchor": "middle" }, quantity(sizeOf(force), "N", 2)),
+        ];
+      }),
+    );
+    return lines;
   }
 
   function drawTraces(now) {
@@ -278,9 +318,10 @@ export function createDrawing(el, store, actions) {
     });
     const points = data.history.pointsAt(data.view.selected, now);
     drawTears(points);
+    const arrows = drawArrows(points);
     layers.labels.style.display = data.view.labels ? "" : "none";
     if (data.view.labels) {
-      drawLabels(points);
+      drawLabels(points, arrows);
     }
     drawTraces(now);
     tellAhead(now);
@@ -297,6 +338,7 @@ export function createDrawing(el, store, actions) {
       spoken.textContent = "";
     },
     methods: makeGhosts,
+    reactions: update,
     view: () => {
       if (camera.look !== lookOf(data)) {
         fit();

@@ -119,3 +119,11 @@ export function disc(points) {
   const arcs = points.map((_, i) => `C${handle(i, 1)} ${handle(i + 1, -1)} ${at(corner(i + 1))}`);
   return `M${at(points[0])}${arcs.join("")}Z`;
 }
+
+/** An arrow from p to q. @param {Point} p @param {Point} q */
+export function arrow(p, q) {
+  const { d, n, length } = frame(p, q);
+  const head = Math.min(9, 0.5 * length);
+  const barb = (side) => at(offset(q, d, -head, n, side * 0.45 * head));
+  return `M${at(p)}L${at(q)}M${barb(1)}L${at(q)}L${barb(-1)}`;
+}

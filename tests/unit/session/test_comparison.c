@@ -81,6 +81,21 @@ static void all_methods_share_one_clock_and_one_start(void **state) {
     hn_library_free(lib);
 }
 
+// 0.03 s in frames of 1/60 s would be over before anything could be seen
+static void a_short_run_has_hundreds_of_frames(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "seven-body-squeezer");
+    hn_comparison *c = compare(model, (const char *const[]){"projection@rk4:h=2e-5"}, 1, NULL);
+    assert_near(hn_comparison_frame_dt(c), 1.4e-4, 1e-15); // whole steps, above 0.03 s / 240
+    hn_comparison_free(c);
+    c = compare(model, (const char *const[]){"projection@dopri5:rtol=1e-6"}, 1, NULL);
+    assert_near(hn_comparison_frame_dt(c), 0.03 / 240, 1e-15);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
 static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
     (void)state;
     hn_library *lib = open_library();
@@ -321,6 +336,7 @@ static void bad_requests_name_their_field(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_methods_share_one_clock_and_one_start),
+        cmocka_unit_test(a_short_run_has_hundreds_of_frames),
         cmocka_unit_test(a_second_comparison_and_a_reset_give_the_same_bits),
         cmocka_unit_test(a_failed_method_stays_with_its_last_state_and_its_reason),
         cmocka_unit_test(bad_methods_are_named_by_their_place),

@@ -1,6 +1,8 @@
 #include "support/near.h"
 
+#include "dynamics/drawing.h"
 #include "session/caption.h"
+#include "session/envelope.h"
 #include "session/model.h"
 #include "session/picture.h"
 
@@ -289,6 +291,36 @@ static void a_parameter_changes_the_mechanism(void **state) {
     hn_model_free(model);
 }
 
+/// Whether every point of every fixed shape (`standing` of them solid bars) is told as ground, and no point of a body.
+static void assert_ground(const char *scene, int n_standing) {
+    hn_model *model = load(&(hn_model_source){.name = scene});
+    const hn_system *sys = hn_model_system(model);
+    const hn_drawing d = hn_system_drawing(sys);
+    char *is_ground = calloc((size_t)d.n_points + 1, 1);
+    assert_int_equal(hn_model_ground_points(model, is_ground), HN_OK);
+    int standing = 0;
+    for (int i = 0; i < d.n_shapes; i++) {
+        const hn_shape *shape = &d.shapes[i];
+        if (shape->kind == HN_SHAPE_GROUND) {
+            assert_true(is_ground[shape->p]);
+        } else if (shape->kind == HN_SHAPE_BAR) {
+            standing += is_ground[shape->p] && is_ground[shape->q];
+            assert_false(shape->body >= 0 && is_ground[shape->p] && is_ground[shape->q]);
+        }
+    }
+    assert_int_equal(standing, n_standing);
+    free(is_ground);
+    hn_model_free(model);
+}
+
+static void what_stands_on_the_ground_is_told_from_what_moves(void **state) {
+    (void)state;
+    assert_ground("four-bar", 0);
+    assert_ground("delta-robot", 3);     // its base; the rods belong to no body and move
+    assert_ground("planetary-gear", 36); // its ring
+    assert_ground("car-axis", 0);        // formulas: the chassis has no body either
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(captions_follow_grashof_and_count_freedoms),
@@ -300,6 +332,7 @@ int main(void) {
         cmocka_unit_test(equations_say_which_quaternion_an_orientation_is),
         cmocka_unit_test(equations_keep_the_names_of_parameters),
         cmocka_unit_test(a_picture_is_a_png_and_says_what_it_shows),
+        cmocka_unit_test(what_stands_on_the_ground_is_told_from_what_moves),
         cmocka_unit_test(a_parameter_changes_the_mechanism),
     };
     return cmocka_run_group_tests(tests, open_library, close_library);

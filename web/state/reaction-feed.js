@@ -1,0 +1,87 @@
+// @ts-check
+// Asks the server what the joints carry, while somebody looks: one question at a time, for the selected method at the time shown.
+import { Problem, api, sentenceOf } from "../api/client.js";
+import { namedState, pointAt } from "./reactions.js";
+
+const PAUSE = 100; // [ms] between an answer and the next question while the mechanism moves
+
+/** @param {import("./store.js").Store} store @returns {() => void} ends it */
+export function createReactionFeed(store) {
+  const data = store.data;
+  let asking = false;
+  let timer = 0;
+  let answered = "";
+  let refusedFor = -1; // generation: what the scene cannot tell at one time it cannot at another
+
+  function wanted() {
+    const { history, view } = data;
+    const last = (history?.count ?? 0) - 1;
+    const index = view.shown < 0 ? last : Math.min(view.shown, last);
+    const m = view.selected;
+    const key = `${data.generation} ${m} ${history?.lastFrame} ${index}`;
+    const asked = (view.reactions || view.arrows) && data.scene && index >= 0 && data.methods[m];
+    return asked && key !== answered && refusedFor !== data.generation ? { index, m, key } : null;
+  }
+
+  /** @param {{index: number, m: number}} what */
+  async function ask({ index, m }) {
+    const { history, scene, settings } = data;
+    const { q, v } = history.stateAt(m, index);
+    const points = history.pointsAt(m, index).slice();
+    const t = history.t[index];
+    try {
+      const answer = await api.terms({
+        scene: scene.id,
+        settings,
+        t,
+        state: namedState(scene.coordinates, q, v),
+        reactions: true,
+      });
+      const list = answer.reactions.map((item) => ({
+        ...item,
+        point: pointAt(points, item.place, scene.length),
+      }));
+      return { method: m, t, list, reason: answer.reason ?? "" };
+    } catch (error) {
+      if (error instanceof Problem && error.status === 422) {
+        refusedFor = data.generation;
+      }
+      return { method: m, t, list: [], reason: sentenceOf(error) };
+    }
+  }
+
+  async function look() {
+    timer = 0;
+    const what = asking ? null : wanted();
+    if (!what) {
+      return;
+    }
+    asking = true;
+    const { generation } = data;
+    const answer = await ask(what);
+    asking = false;
+    if (generation === data.generation) {
+      answered = what.key;
+      data.reactions = answer;
+      store.emit("reactions");
+    }
+    timer = window.setTimeout(look, PAUSE);
+  }
+
+  function poke() {
+    if (!timer && !asking) {
+      look();
+    }
+  }
+
+  const off = ["frame", "view", "methods"].map((name) => store.on(name, poke));
+  const forget = store.on("scene", () => {
+    data.reactions = null;
+    answered = "";
+    store.emit("reactions");
+  });
+  return () => {
+    clearTimeout(timer);
+    [...off, forget].forEach((remove) => remove());
+  };
+}

@@ -1,0 +1,145 @@
+// @ts-check
+// What every joint carries in the selected method at the time shown: a table that is asked for while it is open, and the choice to draw
+// the forces as arrows.
+import { quantity, seconds } from "../state/format.js";
+import { sizeOf, zeroOf } from "../state/reactions.js";
+import { listen } from "../state/store.js";
+import { h, say, set } from "../widgets/dom.js";
+
+const AXES = [
+  { key: "world", word: "world axes", title: "x, y and z of the scene" },
+  {
+    key: "joint",
+    word: "joint axes",
+    title: "reference direction, axis × reference, axis, on the joint's parent",
+  },
+];
+const NAMES = { world: ["x", "y", "z"], joint: ["1", "2", "3"] };
+const DIGITS = 3;
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ */
+export function createReactions(el, store, actions) {
+  const data = store.data;
+  const summary = h("summary", {}, h("h2", { id: "reactions-title" }, "Forces in the joints"));
+  const whose = h("p", { class: "about" });
+  const arrows = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      "aria-pressed": "false",
+      onclick: () => actions.setView({ arrows: !data.view.arrows }),
+    },
+    "draw as arrows",
+  );
+  let axes = "world";
+  const frames = AXES.map(({ key, word, title }) =>
+    h("button", { type: "button", class: "quiet", title, onclick: () => chooseAxes(key) }, word),
+  );
+  const table = h("table", { class: "numbers" });
+  const scroll = h(
+    "div",
+    { class: "reaction-table", tabindex: "0", role: "region", "aria-labelledby": "reactions-title" },
+    table,
+  );
+  const details = h(
+    "details",
+    { class: "equation-panel" },
+    summary,
+    h("div", { class: "reaction-head" }, whose, h("div", { class: "choices" }, ...frames, arrows)),
+    scroll,
+  );
+  el.replaceChildren(details);
+
+  /** @param {string} key */
+  function chooseAxes(key) {
+    axes = key;
+    show();
+  }
+
+  /** Plane mechanisms carry forces in the plane and moments about its normal. */
+  function columns() {
+    const spatial = Boolean(data.scene?.view?.spatial) || axes === "joint";
+    const names = NAMES[axes];
+    const forces = spatial ? [0, 1, 2] : [0, 1];
+    const moments = spatial ? [0, 1, 2] : [2];
+    return { names, forces, moments };
+  }
+
+  function head({ names, forces, moments }) {
+    const cell = (text) => h("th", { scope: "col" }, text);
+    return h(
+      "tr",
+      {},
+      cell("Joint"),
+      cell("Force"),
+      ...forces.map((k) => cell(`F${names[k]}`)),
+      ...moments.map((k) => cell(`M${names[k]}`)),
+      cell(""),
+    );
+  }
+
+  function row(item, zero, { forces, moments }) {
+    const own = axes === "joint";
+    const force = own ? item.joint_force : item.force;
+    const moment = own ? item.joint_moment : item.moment;
+    const cell = (value, unit, least) =>
+      h(
+        "td",
+        {},
+        value === undefined ? "–" : quantity(Math.abs(value) < least ? 0 : value, unit, DIGITS),
+      );
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, item.name),
+      cell(sizeOf(item.force), "N", zero.force),
+      ...forces.map((k) => cell(force?.[k], "N", zero.force)),
+      ...moments.map((k) => cell(moment?.[k], "N m", zero.moment)),
+      h("td", { class: "note" }, item.determined ? "" : "one of many: rows depend on each other"),
+    );
+  }
+
+  function show() {
+    set(arrows, { "aria-pressed": String(data.view.arrows) });
+    frames.forEach((button, i) => set(button, { "aria-pressed": String(AXES[i].key === axes) }));
+    const answer = data.reactions;
+    if (!details.open || !answer) {
+      return;
+    }
+    const method = data.methods[answer.method];
+    if (answer.reason || !method) {
+      say(whose, answer.reason);
+      table.replaceChildren();
+      return;
+    }
+    say(
+      whose,
+      `What each joint's parent exerts on its child, at the joint: ${method.label} at ${seconds(answer.t, data.duration)}.`,
+    );
+    const shown = columns();
+    const zero = zeroOf(answer.list, data.scene.length);
+    table.replaceChildren(
+      h("thead", {}, head(shown)),
+      h("tbody", {}, ...answer.list.map((item) => row(item, zero, shown))),
+    );
+  }
+
+  function follow() {
+    actions.setView({ reactions: details.open });
+  }
+
+  details.addEventListener("toggle", follow);
+  const stop = listen(store, { reactions: show, view: show, scene: show });
+  return {
+    update() {},
+    dispose() {
+      stop();
+      el.replaceChildren();
+    },
+  };
+}
