@@ -8,7 +8,7 @@
 
 enum { STEPS_BETWEEN_CLOCKS = 256 };
 static const double FRAME = 1.0 / 60; // [s]
-enum { LEAST_FRAMES = 240 };          // of a run so short that frames of that length would not show it
+enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length would not show it
 
 /// One method of the comparison.
 typedef struct entry {

@@ -13,7 +13,8 @@ enum { HN_COMPARISON_MAX_METHODS = 8 };
 typedef struct hn_comparison hn_comparison;
 
 typedef struct hn_comparison_opts {
-    double frame_dt; ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the duration, whichever is less
+    double
+        frame_dt; ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the duration, whichever is less
     double duration; ///< [s]; 0: the scene's
     double
         cpu_budget; ///< seconds of stepping allowed for one frame of one method; beyond it the method is stopped with HN_ERR_BUDGET; 0: 5

@@ -28,7 +28,7 @@ export function createEquations(el, store, actions) {
     "aria-label": "Equations of this scene",
   });
   const summary = h("summary", {}, h("h2", { id: "equations-title" }, "Equations"));
-  const details = h("details", { class: "equation-panel" }, summary, body);
+  const details = h("details", { class: "fold equation-panel" }, summary, body);
   el.replaceChildren(details);
   let shownFor = "";
 

@@ -48,7 +48,7 @@ export function createReactions(el, store, actions) {
   );
   const details = h(
     "details",
-    { class: "equation-panel" },
+    { class: "fold reaction-panel" },
     summary,
     h("div", { class: "reaction-head" }, whose, h("div", { class: "choices" }, ...frames, arrows)),
     scroll,
