@@ -51,7 +51,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
 CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
-LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lOSMesa -lpng -lxml2 -lm
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lklu -lOSMesa -lpng -lxml2 -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)
@@ -142,7 +142,7 @@ $(OUT)/%.o: %.c
 programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
-RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libosmesa6-dev libpng-dev \
+RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev \
                  libxml2-dev ca-certificates node:nodejs npm:npm
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format

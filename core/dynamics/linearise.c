@@ -6,6 +6,7 @@
 #include "dynamics/system_impl.h"
 #include "expr/tape.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -420,6 +421,41 @@ int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows,
     *rows = of->rows;
     *cols = of->cols;
     return of->n_entries;
+}
+
+// out += X x, or X' x
+static void add_product(const hn_linear *l, hn_linear_term term, int transposed, const double *x,
+                        double *out) {
+    const term_values *of = &l->terms[index_of(term)];
+    const size_t cols = (size_t)count_cols(l, index_of(term));
+    HN_ASSERT(of->values != NULL);
+    for (int k = 0; k < of->n_entries; k++) {
+        const int i = of->rows[k], j = of->cols[k];
+        const double e = of->values[(size_t)i * cols + (size_t)j];
+        out[transposed ? j : i] += e * x[transposed ? i : j];
+    }
+}
+
+void hn_linear_apply(const hn_linear *l, hn_linear_term term, const double *x, double *out) {
+    memset(out, 0, (size_t)count_rows(l, index_of(term)) * sizeof *out);
+    add_product(l, term, 0, x, out);
+}
+
+void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const double *x,
+                                double *out) {
+    memset(out, 0, (size_t)count_cols(l, index_of(term)) * sizeof *out);
+    add_product(l, term, 1, x, out);
+}
+
+int hn_linear_is_finite(const hn_linear *l, hn_linear_term term) {
+    const term_values *of = &l->terms[index_of(term)];
+    const size_t cols = (size_t)count_cols(l, index_of(term));
+    for (int k = 0; k < of->n_entries; k++) {
+        if (!isfinite(of->values[(size_t)of->rows[k] * cols + (size_t)of->cols[k]])) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 double hn_linear_ops(const hn_linear *l) {

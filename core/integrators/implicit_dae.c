@@ -38,6 +38,7 @@ typedef struct implicit_dae {
     double *raw;                  // nc
     double h, last_h;             // of the trial, of the last accepted step (0: none)
     double *force;                // nv: f + J' lambda at the start of the trial
+    double *pushed;               // nv: Y mu
     long long accelerations;
     char why[HN_STAGES_WHY];
 } implicit_dae;
@@ -111,9 +112,8 @@ static hn_status residual(void *self, int stage, double t, const double *u, cons
         r[i] = rate[i] - r[i];
     }
     if (s->form == HN_FORM_GGL) {
-        for (int i = 0; i < nv; i++) {
-            r[i] -= hn_dot(nc, s->lin.Y + (size_t)i * (size_t)nc, u + 2 * nv + nc);
-        }
+        hn_implicit_linear_push(&s->lin, u + 2 * nv + nc, s->pushed);
+        hn_axpy(nv, -1, s->pushed, r);
     }
     memcpy(r + nv, s->R, (size_t)nv * sizeof *r);
     if (!s->opts.at_end) {
@@ -160,6 +160,7 @@ static hn_status allocate(implicit_dae *s, const hn_collocation *col, hn_arena *
                   {&s->lambda_start, nc},
                   {&s->last_a, stages * nv},
                   {&s->force, nv},
+                  {&s->pushed, nv},
                   {&s->last_lambda, stages * nc},
                   {&s->raw, nc}};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
@@ -323,7 +324,7 @@ static void filter_error(implicit_dae *s, const double *v, const double *force, 
     const int nv = s->nv;
     double *r = s->st.parts;
     memset(r, 0, (size_t)s->st.n * sizeof *r);
-    hn_mat_vec(nv, nv, s->lin.M, ew, r + nv);
+    hn_linear_apply(s->lin.terms, HN_LINEAR_M, ew, r + nv);
     for (int i = 0; i < nv; i++) {
         r[i] = -(v[i] + ex[i]);
         r[nv + i] = -(r[nv + i] + force[i]);
@@ -409,7 +410,7 @@ static hn_status begin(implicit_dae *s, double t, const double *y) {
         return status;
     }
     const double *R = hn_linear_get(s->lin.terms, HN_LINEAR_RESIDUAL);
-    hn_mat_vec(s->nv, s->nv, s->lin.M, s->a_start, s->force);
+    hn_linear_apply(s->lin.terms, HN_LINEAR_M, s->a_start, s->force);
     hn_axpy(s->nv, -1, R, s->force);
     return HN_OK;
 }
@@ -477,18 +478,12 @@ const double *hn_implicit_dae_raw_lambda(const void *self) {
 
 void hn_implicit_dae_add_cost(const void *self, hn_cost *cost) {
     const implicit_dae *s = self;
-    const hn_collocation *col = &s->st.col;
-    const double n = s->nv + s->nc, blocks = col->n_real + col->n_pairs;
-    // a complex multiplication and addition are eight operations against two
-    const double weight = (col->n_real + 4.0 * col->n_pairs) / blocks;
     cost->evals += hn_linear_count(s->at_stage) + s->accelerations;
     cost->factorisations += s->st.factorisations;
     cost->solves += s->st.solves;
     cost->newton += s->st.iterations;
     cost->ops += (double)hn_linear_count(s->at_stage) * hn_linear_ops(s->at_stage) +
-                 (double)hn_linear_count(s->lin.terms) * hn_linear_ops(s->lin.terms) +
-                 weight * ((double)s->st.factorisations * 2.0 / 3 * n * n * n +
-                           (double)s->st.solves * 2 * n * n);
+                 hn_implicit_linear_ops(&s->lin);
     if (s->projector) {
         cost->evals += hn_projector_evals(s->projector);
         cost->ops += hn_projector_ops(s->projector);

@@ -1,6 +1,7 @@
 #include "integrators/implicit_linear.h"
 
 #include "linalg/dense.h"
+#include "methods/flops.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,27 +14,85 @@ static int has_stabiliser(const hn_implicit_linear *l) {
     return l->form == HN_FORM_GGL;
 }
 
-static void allocate(hn_implicit_linear *l, hn_arena *arena) {
+static int entries_of(const hn_implicit_linear *l, hn_linear_term term) {
+    const int *rows, *cols;
+    return hn_linear_pattern(l->terms, term, &rows, &cols);
+}
+
+// puts into matrix (2) or (3)
+static int count_puts(const hn_implicit_linear *l) {
+    const int motion = entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) +
+                       entries_of(l, HN_LINEAR_K) + 2 * entries_of(l, HN_LINEAR_J) +
+                       entries_of(l, HN_LINEAR_V);
+    const int stabiliser = entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) +
+                           2 * entries_of(l, HN_LINEAR_J);
+    return motion + (has_stabiliser(l) ? stabiliser : 0);
+}
+
+static int wants_sparse(const hn_implicit_linear *l) {
+    const int mass = entries_of(l, HN_LINEAR_M), stiffness = entries_of(l, HN_LINEAR_K),
+              damping = entries_of(l, HN_LINEAR_C);
+    int most = mass > stiffness ? mass : stiffness;
+    most = damping > most ? damping : most;
+    return hn_newton_matrix_wants_sparse(l->nv + l->nc,
+                                         most + 2LL * entries_of(l, HN_LINEAR_J));
+}
+
+static int create_matrices(hn_implicit_linear *l, hn_arena *arena) {
+    const int puts = count_puts(l), n = l->nv + l->nc, extended = l->sparse && has_stabiliser(l);
+    for (int which = 0; which < 2; which++) {
+        l->matrix[which] = hn_newton_matrix_create(arena, which ? HN_COMPLEX : HN_REAL, l->sparse,
+                                                   extended ? 2 * n : n, puts);
+        if (!l->matrix[which]) {
+            return 0;
+        }
+    }
+    l->packed = hn_arena_doubles(arena, 4 * (size_t)n);
+    l->packed_rows = hn_arena_doubles(arena, (size_t)n);
+    return 1;
+}
+
+// M's lower triangle as its own sparse matrix
+static int create_mass_factor(hn_implicit_linear *l, hn_arena *arena) {
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_M, &rows, &cols);
+    int *row = hn_arena_ints(arena, (size_t)n), *col = hn_arena_ints(arena, (size_t)n);
+    l->lower = hn_arena_ints(arena, (size_t)n);
+    l->lower_values = hn_arena_doubles(arena, (size_t)n);
+    if (hn_arena_failed(arena)) {
+        return 0;
+    }
+    for (int k = 0; k < n; k++) {
+        if (rows[k] >= cols[k]) {
+            row[l->n_lower] = rows[k];
+            col[l->n_lower] = cols[k];
+            l->lower[l->n_lower++] = rows[k] * l->nv + cols[k];
+        }
+    }
+    l->mass_factor = hn_sparse_spd_create(arena, l->nv, l->n_lower, row, col);
+    return l->mass_factor != NULL;
+}
+
+static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     const size_t nv = (size_t)l->nv, nc = (size_t)l->nc, n = nv + nc;
     l->kept = hn_arena_ints(arena, nc);
+    l->place = hn_arena_ints(arena, nc);
     l->unit = hn_arena_doubles(arena, nc);
-    if (has_stabiliser(l)) {
+    if (has_stabiliser(l) && !l->sparse) {
         l->Y = hn_arena_doubles(arena, nv * nc);
         l->S = hn_arena_doubles(arena, nc * nc);
         l->damped = hn_arena_doubles(arena, nv * nv);
         l->mass = hn_arena_doubles(arena, nv * nv);
     }
-    l->real = hn_arena_doubles(arena, n * n);
-    l->scale = hn_arena_doubles(arena, n);
-    l->matrix = hn_arena_get(arena, (n * n + 1) * sizeof *l->matrix);
-    l->packed = hn_arena_get(arena, (n + 1) * sizeof *l->packed);
-    l->pivot[0] = hn_arena_ints(arena, n);
-    l->pivot[1] = hn_arena_ints(arena, n);
     for (int part = 0; part < 2; part++) {
         for (int k = 0; k < 5; k++) {
             l->work[part][k] = hn_arena_doubles(arena, n);
         }
     }
+    if (has_stabiliser(l) && l->sparse && !create_mass_factor(l, arena)) {
+        return HN_ERR_MEMORY;
+    }
+    const int good = create_matrices(l, arena) && hn_qr_init(&l->qr, arena, l->nv, l->nc);
+    return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
 hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, hn_dae_form form,
@@ -42,11 +101,7 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_V;
     *l = (hn_implicit_linear){.form = form, .nv = info.nv, .nc = info.nc};
-    allocate(l, arena);
-    if (!hn_qr_init(&l->qr, arena, info.nv, info.nc) || hn_arena_failed(arena)) {
-        return HN_ERR_MEMORY;
-    }
-    const hn_status status = hn_linear_create(sys, terms, arena, &l->terms);
+    hn_status status = hn_linear_create(sys, terms, arena, &l->terms);
     if (status != HN_OK) {
         return status;
     }
@@ -55,14 +110,38 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     l->C = hn_linear_get(l->terms, HN_LINEAR_C);
     l->J = hn_linear_get(l->terms, HN_LINEAR_J);
     l->V = hn_linear_get(l->terms, HN_LINEAR_V);
-    const int *rows, *cols;
-    l->has_damping = hn_linear_pattern(l->terms, HN_LINEAR_C, &rows, &cols) > 0;
-    return HN_OK;
+    l->has_damping = entries_of(l, HN_LINEAR_C) > 0;
+    l->sparse = wants_sparse(l);
+    status = allocate(l, arena);
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
+    return status == HN_OK
+               ? hn_row_check_create(arena, l->nc, l->nv, n, rows, cols, &l->check)
+               : status;
 }
 
 void hn_implicit_linear_free(hn_implicit_linear *l) {
     hn_linear_free(l->terms);
+    hn_newton_matrix_free(l->matrix[0]);
+    hn_newton_matrix_free(l->matrix[1]);
     l->terms = NULL;
+    l->matrix[0] = l->matrix[1] = NULL;
+}
+
+static void note_places(hn_implicit_linear *l) {
+    for (int i = 0; i < l->nc; i++) {
+        l->place[i] = -1;
+    }
+    for (int k = 0; k < l->n_kept; k++) {
+        l->place[l->kept[k]] = k;
+    }
+}
+
+static void keep_all(hn_implicit_linear *l) {
+    l->n_kept = l->nc;
+    for (int i = 0; i < l->nc; i++) {
+        l->kept[i] = i;
+    }
+    note_places(l);
 }
 
 // by pivoted QR of J' with rows of length 1
@@ -70,6 +149,10 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
                                  const double *v) {
     const int nv = l->nv, nc = l->nc;
     hn_linear_run(l->terms, t, q, v, NULL, NULL);
+    if (l->check && hn_row_check_run(l->check, l->J)) {
+        keep_all(l);
+        return 1;
+    }
     double longest = 0;
     for (int i = 0; i < nc; i++) {
         l->unit[i] = hn_norm2(nv, l->J + (size_t)i * (size_t)nv);
@@ -88,13 +171,29 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     for (int k = 0; k < l->n_kept; k++) {
         l->kept[k] = l->qr.perm[k];
     }
+    note_places(l);
+    l->ops += hn_flops_qr(nv, nc);
     return hn_qr_pivot_ratio(&l->qr);
+}
+
+static hn_status factor_mass(hn_implicit_linear *l) {
+    double largest = 0;
+    for (int k = 0; k < l->n_lower; k++) {
+        l->lower_values[k] = l->M[l->lower[k]];
+        largest = fmax(largest, fabs(l->lower_values[k]));
+    }
+    l->ops += hn_sparse_spd_factor_ops(l->mass_factor);
+    return hn_sparse_spd_factor(l->mass_factor, l->lower_values, 1e-14 * largest) == HN_OK
+               ? HN_OK
+               : HN_ERR_SINGULAR;
 }
 
 // Y = M^-1 J', S = J Y of the kept rows
 static hn_status prepare_stabiliser(hn_implicit_linear *l) {
     const int nv = l->nv, nk = l->n_kept;
     double *column = l->work[0][0];
+    l->ops += hn_flops_cholesky(nv) + nk * hn_flops_cholesky_solve(nv) +
+              hn_flops_product(nk, nv, nk) + hn_flops_cholesky(nk);
     memcpy(l->mass, l->M, (size_t)(nv * nv) * sizeof *l->mass);
     double largest = 0;
     for (int i = 0; i < nv; i++) {
@@ -145,11 +244,15 @@ static void find_damped(hn_implicit_linear *l) {
 hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q, const double *v,
                                 const double *a, const double *lambda) {
     hn_linear_run(l->terms, t, q, v, a, lambda);
-    if (!hn_all_finite(l->nv * l->nv, l->M) || !hn_all_finite(l->nv * l->nc, l->J)) {
+    if (!hn_linear_is_finite(l->terms, HN_LINEAR_M) ||
+        !hn_linear_is_finite(l->terms, HN_LINEAR_J)) {
         return HN_ERR_DIVERGED;
     }
     if (!has_stabiliser(l)) {
         return HN_OK;
+    }
+    if (l->sparse) {
+        return factor_mass(l);
     }
     const hn_status status = prepare_stabiliser(l);
     if (status == HN_OK && l->has_damping) {
@@ -158,69 +261,87 @@ hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q
     return status;
 }
 
-// entry of the upper left block without its weights
-static double stiffness(const hn_implicit_linear *l, int at) {
-    return has_stabiliser(l) && l->has_damping ? l->K[at] - l->damped[at] : l->K[at];
-}
-
 static hn_complex reciprocal(double re, double im) {
     const double size = re * re + im * im;
     return (hn_complex){re / size, -im / size};
 }
 
-void hn_implicit_linear_matrix(const hn_implicit_linear *l, double s, double *out) {
-    const int nv = l->nv, nk = l->n_kept, n = nv + nk;
-    const double v_weight = l->form == HN_FORM_INDEX2 ? 1 / s : 0;
-    memset(out, 0, (size_t)(n * n) * sizeof *out);
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j < nv; j++) {
-            const int at = i * nv + j;
-            out[i * n + j] = l->M[at] + l->C[at] / s + stiffness(l, at) / (s * s);
-        }
+static hn_complex product(hn_complex a, hn_complex b) {
+    return (hn_complex){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+// w times a square term, its first entry at (row, col)
+static void put_term(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linear_term term,
+                     hn_complex w, int row, int col) {
+    const double *values = hn_linear_get(l->terms, term);
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, term, &rows, &cols);
+    for (int k = 0; k < n; k++) {
+        const double e = values[(size_t)rows[k] * (size_t)l->nv + (size_t)cols[k]];
+        hn_newton_matrix_put(to, row + rows[k], col + cols[k], w.re * e, w.im * e);
     }
-    for (int k = 0; k < nk; k++) {
-        for (int j = 0; j < nv; j++) {
-            const int at = l->kept[k] * nv + j;
-            out[j * n + nv + k] = -l->J[at];
-            out[(nv + k) * n + j] = l->J[at] + v_weight * l->V[at];
+}
+
+// w times the kept rows of J or V, or of their transpose
+static void put_rows(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linear_term term,
+                     int transposed, hn_complex w, int row, int col) {
+    const double *values = hn_linear_get(l->terms, term);
+    const int *rows, *cols, n = hn_linear_pattern(l->terms, term, &rows, &cols);
+    for (int k = 0; k < n; k++) {
+        const int at = l->place[rows[k]];
+        if (at >= 0) {
+            const double e = values[(size_t)rows[k] * (size_t)l->nv + (size_t)cols[k]];
+            hn_newton_matrix_put(to, row + (transposed ? cols[k] : at),
+                                 col + (transposed ? at : cols[k]), w.re * e, w.im * e);
         }
     }
 }
 
-static void complex_matrix(hn_implicit_linear *l, double re, double im) {
+// the term with S of (2), which is full
+static void put_damped(const hn_implicit_linear *l, hn_newton_matrix *to, hn_complex w) {
+    for (int i = 0; i < l->nv; i++) {
+        for (int j = 0; j < l->nv; j++) {
+            const double e = -l->damped[i * l->nv + j];
+            hn_newton_matrix_put(to, i, j, w.re * e, w.im * e);
+        }
+    }
+}
+
+// matrix (2), or (3), with 1/s
+static void fill(const hn_implicit_linear *l, hn_newton_matrix *to, hn_complex one) {
     const int nv = l->nv, nk = l->n_kept, n = nv + nk;
-    const hn_complex one = reciprocal(re, im);
-    const hn_complex two = {one.re * one.re - one.im * one.im, 2 * one.re * one.im};
-    const double v_weight = l->form == HN_FORM_INDEX2;
-    memset(l->matrix, 0, (size_t)(n * n) * sizeof *l->matrix);
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j < nv; j++) {
-            const int at = i * nv + j;
-            const double k = stiffness(l, at);
-            l->matrix[i * n + j] = (hn_complex){l->M[at] + l->C[at] * one.re + k * two.re,
-                                                l->C[at] * one.im + k * two.im};
-        }
+    const hn_complex two = product(one, one), plus = {1, 0}, minus = {-1, 0};
+    const int stabilised = has_stabiliser(l), extended = stabilised && l->sparse;
+    hn_newton_matrix_begin(to, extended ? 2 * n : n);
+    put_term(l, to, HN_LINEAR_M, plus, 0, 0);
+    put_term(l, to, HN_LINEAR_C, one, 0, 0);
+    put_term(l, to, HN_LINEAR_K, two, 0, 0);
+    if (stabilised && l->has_damping && !l->sparse) {
+        put_damped(l, to, two);
     }
-    for (int k = 0; k < nk; k++) {
-        for (int j = 0; j < nv; j++) {
-            const int at = l->kept[k] * nv + j;
-            l->matrix[j * n + nv + k].re = -l->J[at];
-            l->matrix[(nv + k) * n + j] =
-                (hn_complex){l->J[at] + v_weight * l->V[at] * one.re, v_weight * l->V[at] * one.im};
-        }
+    put_rows(l, to, HN_LINEAR_J, 1, minus, 0, nv);
+    put_rows(l, to, HN_LINEAR_J, 0, plus, nv, 0);
+    if (l->form == HN_FORM_INDEX2) {
+        put_rows(l, to, HN_LINEAR_V, 0, one, nv, 0);
     }
+    if (extended) {
+        put_term(l, to, HN_LINEAR_C, (hn_complex){-one.re, -one.im}, 0, n);
+        put_term(l, to, HN_LINEAR_M, plus, n, n);
+        put_rows(l, to, HN_LINEAR_J, 1, minus, n, n + nv);
+        put_rows(l, to, HN_LINEAR_V, 0, one, n + nv, 0);
+        put_rows(l, to, HN_LINEAR_J, 0, minus, n + nv, n);
+    }
+}
+
+void hn_implicit_linear_matrix(hn_implicit_linear *l, double s, double *out) {
+    fill(l, l->matrix[0], reciprocal(s, 0));
+    hn_newton_matrix_copy(l->matrix[0], out);
 }
 
 hn_status hn_implicit_linear_factor(hn_implicit_linear *l, int which, double re, double im) {
-    const int n = l->nv + l->n_kept;
     l->s[which][0] = re;
     l->s[which][1] = im;
-    if (which == 0) {
-        hn_implicit_linear_matrix(l, re, l->real);
-        return hn_lu_factor(n, l->real, l->pivot[0], l->scale);
-    }
-    complex_matrix(l, re, im);
-    return hn_lu_factor_complex(n, l->matrix, l->pivot[1], l->scale);
+    fill(l, l->matrix[which], reciprocal(re, which == 0 ? 0 : im));
+    return hn_newton_matrix_factor(l->matrix[which]);
 }
 
 // vectors in parts: x *= (re, im)
@@ -242,31 +363,61 @@ static void add(int parts, int n, double sign, double *const *y, double *const *
     }
 }
 
-static void solve_saddle(hn_implicit_linear *l, int parts, double *const *top,
-                         double *const *bottom) {
-    const int nv = l->nv, nk = l->n_kept, n = nv + nk;
-    double *const real = &l->packed[0].re;
+// x (n) into the packed right side from its entry `first` on
+static void pack(hn_implicit_linear *l, int parts, int first, int n, const int *of,
+                 double *const *x) {
     for (int i = 0; i < n; i++) {
         for (int p = 0; p < parts; p++) {
-            real[parts * i + p] = i < nv ? top[p][i] : bottom[p][l->kept[i - nv]];
-        }
-    }
-    if (parts == 1) {
-        hn_lu_solve(n, l->real, l->pivot[0], real);
-    } else {
-        hn_lu_solve_complex(n, l->matrix, l->pivot[1], l->packed);
-    }
-    for (int p = 0; p < parts; p++) {
-        memset(bottom[p], 0, (size_t)l->nc * sizeof *bottom[p]);
-        for (int i = 0; i < n; i++) {
-            *(i < nv ? &top[p][i] : &bottom[p][l->kept[i - nv]]) = real[parts * i + p];
+            l->packed[parts * (first + i) + p] = x[p][of ? of[i] : i];
         }
     }
 }
 
+// the reverse; rows that are left out become 0
+static void unpack(const hn_implicit_linear *l, int parts, int first, int n, const int *of,
+                   double *const *x) {
+    for (int p = 0; p < parts; p++) {
+        if (of) {
+            memset(x[p], 0, (size_t)l->nc * sizeof *x[p]);
+        }
+        for (int i = 0; i < n; i++) {
+            x[p][of ? of[i] : i] = l->packed[parts * (first + i) + p];
+        }
+    }
+}
+
+static void solve_saddle(hn_implicit_linear *l, int parts, double *const *top,
+                         double *const *bottom) {
+    const int nv = l->nv, nk = l->n_kept;
+    pack(l, parts, 0, nv, NULL, top);
+    pack(l, parts, nv, nk, l->kept, bottom);
+    hn_newton_matrix_solve(l->matrix[parts - 1], l->packed);
+    unpack(l, parts, 0, nv, NULL, top);
+    unpack(l, parts, nv, nk, l->kept, bottom);
+}
+
+// system (3): along is -s times its last right side on entry; p and m on return
+static void solve_extended(hn_implicit_linear *l, int parts, const double *s, double *const *top,
+                           double *const *bottom, double *const *along, double *const *pushed) {
+    const int nv = l->nv, nk = l->n_kept, n = nv + nk;
+    const hn_complex one = reciprocal(s[0], s[1]);
+    multiply(parts, l->nc, along, -one.re, -one.im);
+    memset(l->packed, 0, (size_t)(2 * parts * n) * sizeof *l->packed);
+    pack(l, parts, 0, nv, NULL, top);
+    pack(l, parts, nv, nk, l->kept, bottom);
+    pack(l, parts, n + nv, nk, l->kept, along);
+    hn_newton_matrix_solve(l->matrix[parts - 1], l->packed);
+    unpack(l, parts, 0, nv, NULL, top);
+    unpack(l, parts, nv, nk, l->kept, bottom);
+    unpack(l, parts, n, nv, NULL, pushed);
+    unpack(l, parts, n + nv, nk, l->kept, along);
+    multiply(parts, nv, pushed, s[0], s[1]);
+    multiply(parts, l->nc, along, s[0], s[1]);
+}
+
 // rows <- S^-1 rows, those that were left out become 0
 static void solve_stabiliser(hn_implicit_linear *l, double *rows) {
-    double *packed = l->scale;
+    double *packed = l->packed_rows;
     for (int k = 0; k < l->n_kept; k++) {
         packed[k] = rows[l->kept[k]];
     }
@@ -293,13 +444,13 @@ static void start_right_side(hn_implicit_linear *l, int parts, double *const *r1
                              const double *s, double *const *top, double *const *along,
                              double *const *scratch) {
     for (int p = 0; p < parts; p++) {
-        hn_mat_vec(l->nv, l->nv, l->M, r1[p], top[p]);
-        hn_mat_vec(l->nc, l->nv, l->J, r1[p], along[p]);
+        hn_linear_apply(l->terms, HN_LINEAR_M, r1[p], top[p]);
+        hn_linear_apply(l->terms, HN_LINEAR_J, r1[p], along[p]);
     }
     multiply(parts, l->nv, top, s[0], s[1]);
     for (int p = 0; p < parts; p++) {
         if (l->has_damping) {
-            hn_mat_vec(l->nv, l->nv, l->C, r1[p], scratch[p]);
+            hn_linear_apply(l->terms, HN_LINEAR_C, r1[p], scratch[p]);
             hn_axpy(l->nv, 1, scratch[p], top[p]);
         }
         hn_axpy(l->nv, 1, r2[p], top[p]);
@@ -341,18 +492,24 @@ void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
         rows[p] = l->work[p][3];
         scratch[p] = l->work[p][4];
     }
+    l->ops += 2.0 * parts *
+              (entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_J) + entries_of(l, HN_LINEAR_C));
     start_right_side(l, parts, r1, r2, s, top, along, scratch);
     constraint_side(l, parts, s, r3, along, bottom);
     if (has_stabiliser(l)) { // e = r3' + J r1 - s r3
         multiply(parts, nc, r3, s[0], s[1]);
         add(parts, nc, -1, r3, along);
         add(parts, nc, 1, r4, along);
-        for (int p = 0; p < parts && l->has_damping; p++) {
+        for (int p = 0; p < parts && l->has_damping && !l->sparse; p++) {
             push_stabiliser(l, along[p], top[p], rows[p], scratch[p]);
         }
     }
     multiply(parts, nv, top, two[0], two[1]);
-    solve_saddle(l, parts, top, bottom);
+    if (has_stabiliser(l) && l->sparse) {
+        solve_extended(l, parts, s, top, bottom, along, scratch);
+    } else {
+        solve_saddle(l, parts, top, bottom);
+    }
     // l' = s^2 times what was solved for; w = s x + r1 (- Y m)
     const double square[2] = {s[0] * s[0] - s[1] * s[1], 2 * s[0] * s[1]};
     multiply(parts, nc, bottom, square[0], square[1]);
@@ -364,10 +521,15 @@ void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
     add(parts, nv, 1, r1, r2);
     if (has_stabiliser(l)) {
         for (int p = 0; p < parts; p++) {
-            hn_mat_vec(nc, nv, l->V, top[p], r4[p]);
-            hn_axpy(nc, 1, along[p], r4[p]);
-            solve_stabiliser(l, r4[p]);
-            hn_mat_vec(nv, nc, l->Y, r4[p], scratch[p]);
+            if (l->sparse) {
+                memcpy(r4[p], along[p], (size_t)nc * sizeof *r4[p]);
+            } else {
+                hn_linear_apply(l->terms, HN_LINEAR_V, top[p], r4[p]);
+                hn_axpy(nc, 1, along[p], r4[p]);
+                solve_stabiliser(l, r4[p]);
+                hn_mat_vec(nv, nc, l->Y, r4[p], scratch[p]);
+                l->ops += 2.0 * nv * nc;
+            }
             hn_axpy(nv, -1, scratch[p], r2[p]);
             memcpy(rows[p], r4[p], (size_t)nc * sizeof *rows[p]);
         }
@@ -377,4 +539,21 @@ void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
     for (int p = 0; p < parts; p++) {
         memcpy(r1[p], top[p], (size_t)nv * sizeof *top[p]);
     }
+}
+
+void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out) {
+    if (!l->sparse) {
+        hn_mat_vec(l->nv, l->nc, l->Y, m, out);
+        l->ops += 2.0 * l->nv * l->nc;
+        return;
+    }
+    hn_linear_apply_transposed(l->terms, HN_LINEAR_J, m, out);
+    hn_sparse_spd_solve(l->mass_factor, out);
+    l->ops += 2.0 * entries_of(l, HN_LINEAR_J) + hn_sparse_spd_solve_ops(l->mass_factor);
+}
+
+double hn_implicit_linear_ops(const hn_implicit_linear *l) {
+    return l->ops + (double)hn_linear_count(l->terms) * hn_linear_ops(l->terms) +
+           hn_newton_matrix_ops(l->matrix[0]) + hn_newton_matrix_ops(l->matrix[1]) +
+           (l->check ? hn_row_check_ops(l->check) : 0);
 }

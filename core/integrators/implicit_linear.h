@@ -11,12 +11,23 @@
 // (V/s: index 2; the term with S: GGL, m = S^-1 (V x + r3' + J r1 - s r3)). In these unknowns, h^2 times the multipliers, its
 // condition does not depend on the step. Rows of J that depend on others are left out, and their multipliers stay as they are.
 // Source: Bottasso, Dopico & Trainelli 2008, on the scaling of index three equations.
+//
+// Large mechanisms: Y, S and with them (2) of GGL are full. There p = Y m stays an unknown of its own,
+//
+//     [M + C/s + K/s^2   -J'   -C/s     .  ] [ x      ]
+//     [J                  .      .      .  ] [ l'/s^2 ]
+//     [.                  .      M     -J' ] [ p/s    ]
+//     [V/s                .     -J      .  ] [ m/s    ]                                                          (3)
+//
+// and every block is as sparse as the mechanism (linalg/newton_matrix.h).
 
 #include "base/arena.h"
 #include "dynamics/linearise.h"
 #include "integrators/stages.h"
-#include "linalg/lu.h"
+#include "linalg/newton_matrix.h"
 #include "linalg/qr.h"
+#include "linalg/row_check.h"
+#include "linalg/sparse_spd.h"
 #include "methods/method.h"
 
 typedef struct hn_implicit_linear {
@@ -25,16 +36,23 @@ typedef struct hn_implicit_linear {
     hn_linear *terms; ///< M K C J V R at the start of the step
     const double *M, *K, *C, *J, *V;
     int has_damping; ///< C is not identically zero
+    int sparse;
     int n_kept, *kept;
-    double *unit; ///< nc: 1 / length of a row
+    int *place;          ///< nc: which of the kept rows this is; -1: left out
+    hn_row_check *check; ///< NULL: the pivoted QR always chooses
+    double *unit;        ///< nc: 1 / length of a row
     hn_qr qr;
-    double *Y, *S, *damped; ///< GGL: nv x nc; n_kept x n_kept factored; C Y S^-1 V (nv x nv)
+    double *Y, *S, *damped; ///< GGL, dense: nv x nc; n_kept x n_kept factored; C Y S^-1 V (nv x nv)
     double *mass;           ///< nv x nv factored
-    double *real, *scale;
-    hn_complex *matrix, *packed;
-    int *pivot[2];
+    hn_sparse_spd *mass_factor; ///< GGL, sparse
+    int *lower;                 ///< entries of M's pattern in its lower triangle
+    int n_lower;
+    double *lower_values;
+    hn_newton_matrix *matrix[2]; ///< real, complex
+    double *packed, *packed_rows;
     double s[2][2]; ///< of the real and the complex matrix
     double *work[2][5];
+    double ops; ///< of what is not in `terms`, `matrix` and `check`
 } hn_implicit_linear;
 
 HN_MUST_CHECK hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys,
@@ -51,7 +69,11 @@ HN_MUST_CHECK hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, c
 HN_MUST_CHECK hn_status hn_implicit_linear_factor(hn_implicit_linear *l, int which, double re,
                                                   double im);
 void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r);
-/// Matrix (2) for a real s, row-major of size nv + n_kept, as it is factored; for reports on its condition.
-void hn_implicit_linear_matrix(const hn_implicit_linear *l, double s, double *out);
+/// out (nv) = Y m, m (nc): what mu adds to the rate of the displacement (GGL only).
+void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out);
+/// Matrix (2) for a real s, row-major of size nv + n_kept, as it is factored when it is dense; for reports on its condition.
+void hn_implicit_linear_matrix(hn_implicit_linear *l, double s, double *out);
+/// Arithmetic operations so far.
+double hn_implicit_linear_ops(const hn_implicit_linear *l);
 
 #endif
