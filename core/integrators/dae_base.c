@@ -13,6 +13,13 @@ static const double DEPENDENT_ROW = 1e-8;
 static const double CLOSED = 1e-12; // of the mechanism's length
 static const double STRONG_ROW = 1e-3;
 
+static hn_status find_patterns(hn_dae_base *b, hn_arena *arena) {
+    b->n_M = hn_eval_pattern(b->dyn, HN_TERM_M, &b->M_row, &b->M_col);
+    b->n_J = hn_eval_pattern(b->loop, HN_TERM_J, &b->J_row, &b->J_col);
+    b->sparse = hn_newton_matrix_wants_sparse(b->nv + b->nc, 2LL * b->n_M + 2LL * b->n_J);
+    return hn_row_check_create(arena, b->nc, b->nv, b->n_J, b->J_row, b->J_col, &b->check);
+}
+
 hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena, hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     const hn_accel_opts opts = {.baumgarte = 0, .want_lambda = 1};
@@ -26,6 +33,12 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
         status = hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &b->loop);
     }
     b->rows = hn_arena_ints(arena, (size_t)b->nc);
+    b->place = hn_arena_ints(arena, (size_t)b->nc);
+    b->arm = hn_arena_doubles(arena, (size_t)b->nv);
+    b->gap = hn_arena_doubles(arena, (size_t)b->nc);
+    if (status == HN_OK) {
+        status = find_patterns(b, arena);
+    }
     if (status == HN_OK && (!hn_qr_init(&b->qr, arena, b->nv, b->nc) || hn_arena_failed(arena))) {
         status = HN_ERR_MEMORY;
     }
@@ -59,7 +72,8 @@ void hn_dae_base_add_cost(const hn_dae_base *b, hn_cost *cost) {
     cost->ops += (double)solves * hn_accel_tape_info(b->accel).ops +
                  (double)dense * hn_flops_saddle(b->nv, b->nc) +
                  (double)hn_eval_count(b->dyn) * hn_eval_info(b->dyn).ops +
-                 (double)hn_eval_count(b->loop) * hn_eval_info(b->loop).ops;
+                 (double)hn_eval_count(b->loop) * hn_eval_info(b->loop).ops +
+                 (b->check ? hn_row_check_ops(b->check) : 0);
 }
 
 const char *hn_dae_base_why(const hn_dae_base *b) {
@@ -101,8 +115,31 @@ static int count_rows(hn_dae_base *b) {
     return rank;
 }
 
+static void note_places(hn_dae_base *b) {
+    for (int i = 0; i < b->nc; i++) {
+        b->place[i] = -1;
+    }
+    for (int k = 0; k < b->nr; k++) {
+        b->place[b->rows[k]] = k;
+    }
+}
+
+static void keep_all_rows(hn_dae_base *b) {
+    b->nr = b->nc;
+    for (int i = 0; i < b->nc; i++) {
+        b->rows[i] = b->place[i] = i;
+    }
+    if (hn_norm_max(b->nc, b->phi) <= CLOSED * b->length) {
+        b->rank_seen = b->nc;
+    }
+}
+
 void hn_dae_choose_rows(hn_dae_base *b) {
     const int nv = b->nv, nc = b->nc;
+    if (b->check && hn_row_check_run(b->check, b->J)) {
+        keep_all_rows(b);
+        return;
+    }
     for (int i = 0; i < nc; i++) {
         const double *row = b->J + (size_t)i * nv;
         const double size = hn_norm2(nv, row);
@@ -114,18 +151,87 @@ void hn_dae_choose_rows(hn_dae_base *b) {
     b->nr = count_rows(b);
     memcpy(b->rows, b->qr.perm, (size_t)b->nr * sizeof *b->rows);
     sort_rows(b->nr, b->rows);
+    note_places(b);
     b->cost.ops += hn_flops_qr(nv, nc);
 }
 
-double hn_dae_speed_gap(const hn_dae_base *b, int k, const double *v) {
-    const int row = b->rows[k];
-    return hn_dot(b->nv, b->J + (size_t)row * b->nv, v) + b->phi_t[row];
+// --- Newton matrices --------------------------------------------------------------------------------------------
+
+hn_newton_matrix *hn_dae_matrix_create(const hn_dae_base *b, hn_arena *arena, int n_max,
+                                       int fillings, int borders, int more) {
+    return hn_newton_matrix_create(arena, HN_REAL, b->sparse, n_max,
+                                   2 * fillings * b->n_M + borders * b->n_J + more);
+}
+
+void hn_dae_put_mass(const hn_dae_base *b, hn_newton_matrix *to, double s, int row, int col) {
+    for (int k = 0; k < b->n_M; k++) {
+        const int i = b->M_row[k], j = b->M_col[k];
+        const double e = s * b->M[(size_t)i * b->nv + j];
+        hn_newton_matrix_put(to, row + i, col + j, e, 0);
+        if (i != j) {
+            hn_newton_matrix_put(to, row + j, col + i, e, 0);
+        }
+    }
+}
+
+static void put_border(const hn_dae_base *b, hn_newton_matrix *to, const double *J, int transposed,
+                       double s, int row, int col) {
+    for (int k = 0; k < b->n_J; k++) {
+        const int at = b->place[b->J_row[k]], j = b->J_col[k];
+        if (at >= 0) {
+            hn_newton_matrix_put(to, row + (transposed ? j : at), col + (transposed ? at : j),
+                                 s * J[(size_t)b->J_row[k] * b->nv + j], 0);
+        }
+    }
+}
+
+void hn_dae_put_rows(const hn_dae_base *b, hn_newton_matrix *to, const double *J, double s, int row,
+                     int col) {
+    put_border(b, to, J, 0, s, row, col);
+}
+
+void hn_dae_put_columns(const hn_dae_base *b, hn_newton_matrix *to, const double *J, double s,
+                        int row, int col) {
+    put_border(b, to, J, 1, s, row, col);
+}
+
+void hn_dae_copy_rows(const hn_dae_base *b, double *to) {
+    for (int k = 0; k < b->n_J; k++) {
+        const size_t at = (size_t)b->J_row[k] * b->nv + b->J_col[k];
+        to[at] = b->J[at];
+    }
+}
+
+void hn_dae_mass_times(const hn_dae_base *b, const double *x, double *out) {
+    memset(out, 0, (size_t)b->nv * sizeof *out);
+    for (int k = 0; k < b->n_M; k++) {
+        const int i = b->M_row[k], j = b->M_col[k];
+        const double e = b->M[(size_t)i * b->nv + j];
+        out[i] += e * x[j];
+        if (i != j) {
+            out[j] += e * x[i];
+        }
+    }
+}
+
+void hn_dae_speed_gap(hn_dae_base *b, const double *v, double *out) {
+    memset(b->gap, 0, (size_t)b->nc * sizeof *b->gap);
+    for (int k = 0; k < b->n_J; k++) {
+        const int i = b->J_row[k], j = b->J_col[k];
+        b->gap[i] += b->J[(size_t)i * b->nv + j] * v[j];
+    }
+    for (int k = 0; k < b->nr; k++) {
+        out[k] = b->gap[b->rows[k]] + b->phi_t[b->rows[k]];
+    }
 }
 
 void hn_dae_add_rows(const hn_dae_base *b, const double *J, double s, const double *x,
                      double *out) {
-    for (int k = 0; k < b->nr; k++) {
-        hn_axpy(b->nv, s * x[k], J + (size_t)b->rows[k] * b->nv, out);
+    for (int k = 0; k < b->n_J; k++) {
+        const int at = b->place[b->J_row[k]], j = b->J_col[k];
+        if (at >= 0) {
+            out[j] += s * x[at] * J[(size_t)b->J_row[k] * b->nv + j];
+        }
     }
 }
 
@@ -143,27 +249,39 @@ hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double *q, const dou
     return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t, "the accelerations");
 }
 
+// x' M x
+static double mass_norm(const hn_dae_base *b, const double *x) {
+    double sum = 0;
+    for (int k = 0; k < b->n_M; k++) {
+        const int i = b->M_row[k], j = b->M_col[k];
+        const double e = b->M[(size_t)i * b->nv + j] * x[i] * x[j];
+        sum += i == j ? e : 2 * e;
+    }
+    return sum;
+}
+
 // squared mass norm of the displacement that opens one loop by the mechanism's length
-static double loop_opening(const hn_dae_base *b) {
+static double loop_opening(hn_dae_base *b) {
     double most = 0;
+    memset(b->arm, 0, (size_t)b->nv * sizeof *b->arm);
+    for (int k = 0; k < b->n_J; k++) {
+        const int j = b->J_col[k];
+        b->arm[j] = fmax(b->arm[j], fabs(b->J[(size_t)b->J_row[k] * b->nv + j]));
+    }
     for (int j = 0; j < b->nv; j++) {
-        double arm = 0;
-        for (int i = 0; i < b->nc; i++) {
-            arm = fmax(arm, fabs(b->J[(size_t)i * b->nv + j]));
-        }
-        const double d = arm > 0 ? b->length / arm : 0;
+        const double d = b->arm[j] > 0 ? b->length / b->arm[j] : 0;
         most = fmax(most, b->M[(size_t)j * b->nv + j] * d * d);
     }
     return most;
 }
 
-double hn_dae_newton_size(const hn_dae_base *b, const double *delta, const double *moved,
+double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *moved,
                           const double *q) {
-    double scale = fmax(loop_opening(b), hn_quad_sym(b->nv, b->M, moved, moved));
+    double scale = fmax(loop_opening(b), mass_norm(b, moved));
     if (b->nq == b->nv) {
-        scale = fmax(scale, hn_quad_sym(b->nv, b->M, q, q));
+        scale = fmax(scale, mass_norm(b, q));
     }
-    const double size = hn_quad_sym(b->nv, b->M, delta, delta);
+    const double size = mass_norm(b, delta);
     return size > 0 || !isfinite(size) ? sqrt(size / scale) : 0;
 }
 

@@ -10,7 +10,9 @@
 
 #include "dynamics/eval.h"
 #include "integrators/dae.h"
+#include "linalg/newton_matrix.h"
 #include "linalg/qr.h"
+#include "linalg/row_check.h"
 
 enum { HN_DAE_WHY_TEXT = 240 };
 
@@ -26,8 +28,15 @@ typedef struct hn_dae_base {
     int nr;        ///< rows that count, see hn_dae_choose_rows()
     int rank_seen; ///< largest rank met at a closed pose
     int *rows;     ///< their numbers
+    int *place;    ///< nc: which of the chosen rows this is; -1: left out
     hn_qr qr;
-    hn_cost cost; ///< what the evaluators do not count themselves
+    hn_row_check *check; ///< NULL: the pivoted QR always chooses
+    int sparse;          ///< Newton matrices of these equations are to be sparse
+    /// entries of M's lower triangle and of J that are not identically zero
+    int n_M, n_J;
+    const int *M_row, *M_col, *J_row, *J_col;
+    double *arm, *gap; ///< nv, nc: scratch
+    hn_cost cost;      ///< what the evaluators do not count themselves
     char why[HN_DAE_WHY_TEXT];
 } hn_dae_base;
 
@@ -43,8 +52,22 @@ void hn_dae_dynamics(hn_dae_base *b, double t, const double *q, const double *v)
 void hn_dae_loops(hn_dae_base *b, double t, const double *q);
 /// Chooses the rows that count from J last evaluated.
 void hn_dae_choose_rows(hn_dae_base *b);
-/// J v + phi_t of chosen row k, at the terms last evaluated.
-double hn_dae_speed_gap(const hn_dae_base *b, int k, const double *v);
+/// A matrix of size n_max filled by `fillings` of M and `borders` of the chosen rows of J or their transpose, and `more` puts.
+HN_MUST_CHECK hn_newton_matrix *hn_dae_matrix_create(const hn_dae_base *b, hn_arena *arena,
+                                                     int n_max, int fillings, int borders,
+                                                     int more);
+/// Puts s M, and s times the chosen rows of J (nc x nv) or their transpose, with the first entry at (row, col).
+void hn_dae_put_mass(const hn_dae_base *b, hn_newton_matrix *to, double s, int row, int col);
+void hn_dae_put_rows(const hn_dae_base *b, hn_newton_matrix *to, const double *J, double s, int row,
+                     int col);
+void hn_dae_put_columns(const hn_dae_base *b, hn_newton_matrix *to, const double *J, double s,
+                        int row, int col);
+/// to (nc x nv) = J last evaluated; entries that are identically zero are not touched.
+void hn_dae_copy_rows(const hn_dae_base *b, double *to);
+/// out (nv) = M x at M last evaluated.
+void hn_dae_mass_times(const hn_dae_base *b, const double *x, double *out);
+/// out (nr) = J v + phi_t of the chosen rows, at the terms last evaluated.
+void hn_dae_speed_gap(hn_dae_base *b, const double *v, double *out);
 /// out (nv) += s J' x for x (nr) on the chosen rows of J.
 void hn_dae_add_rows(const hn_dae_base *b, const double *J, double s, const double *x, double *out);
 /// out (nc) = x (nr) on the chosen rows, 0 elsewhere.
@@ -56,7 +79,7 @@ HN_MUST_CHECK hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double
 /// Size of a displacement `delta` (nv) in the mass norm at the terms last evaluated, relative to the largest of the step's whole
 /// displacement `moved` (nv), the coordinates themselves and the displacement that opens a loop by the mechanism's length [-]: the
 /// same in any units, and not below what rounding of the coordinates allows.
-double hn_dae_newton_size(const hn_dae_base *b, const double *delta, const double *moved,
+double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *moved,
                           const double *q);
 /// Notes `what` failed at time t and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);

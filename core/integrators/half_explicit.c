@@ -2,7 +2,6 @@
 
 #include "integrators/dae_base.h"
 #include "linalg/dense.h"
-#include "linalg/square.h"
 
 #include <math.h>
 #include <string.h>
@@ -59,7 +58,7 @@ typedef struct half_explicit {
     hn_dae_base base; // first
     const hn_half_explicit *scheme;
     int doubled;
-    hn_square square;
+    hn_newton_matrix *matrix;
     double *Q, *V;          // nq, nv: the stage
     double *qdot;           // stages x nq
     double *k;              // stages x nv
@@ -93,7 +92,8 @@ hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, c
     s->raw_next = hn_arena_doubles(arena, nc);
     s->middle = hn_arena_doubles(arena, nq + nv);
     s->whole = hn_arena_doubles(arena, nq + nv);
-    if (!hn_square_init(&s->square, arena, (int)(nv + nc)) || hn_arena_failed(arena)) {
+    s->matrix = hn_dae_matrix_create(&s->base, arena, (int)(nv + nc), 1, 2, 0);
+    if (!s->matrix || hn_arena_failed(arena)) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     return HN_OK;
@@ -101,6 +101,8 @@ hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, c
 
 void hn_half_explicit_destroy(void *self) {
     half_explicit *s = self;
+    hn_newton_matrix_free(s->matrix);
+    s->matrix = NULL;
     hn_dae_base_destroy(&s->base);
 }
 
@@ -124,37 +126,29 @@ static void combine(int n, double h, const double *row, int used, const double *
 // [M J_here'; J_next 0] with the chosen rows
 static void fill_matrix(half_explicit *s) {
     const hn_dae_base *b = &s->base;
-    const int nv = b->nv, n = nv + b->nr;
-    double *K = s->square.lu;
-    memset(K, 0, (size_t)n * n * sizeof *K);
-    for (int i = 0; i < nv; i++) {
-        memcpy(K + (size_t)i * n, b->M + (size_t)i * nv, (size_t)nv * sizeof *K);
-        for (int k = 0; k < b->nr; k++) {
-            K[(size_t)i * n + nv + k] = s->J_here[(size_t)b->rows[k] * nv + i];
-        }
-    }
-    for (int k = 0; k < b->nr; k++) {
-        memcpy(K + (size_t)(nv + k) * n, b->J + (size_t)b->rows[k] * nv, (size_t)nv * sizeof *K);
-    }
+    hn_newton_matrix_begin(s->matrix, b->nv + b->nr);
+    hn_dae_put_mass(b, s->matrix, 1, 0, 0);
+    hn_dae_put_columns(b, s->matrix, s->J_here, 1, 0, b->nv);
+    hn_dae_put_rows(b, s->matrix, b->J, 1, b->nv, 0);
 }
 
 // equation (2): k_i, with V_(i+1) without its own share, h a_(i+1,i) k_i, in s->V
 static hn_status solve_stage(half_explicit *s, int i, double step) {
     hn_dae_base *b = &s->base;
-    const int nv = b->nv, n = nv + b->nr;
+    const int nv = b->nv;
     fill_matrix(s);
-    const hn_status status = hn_square_factor(&s->square, n);
+    const hn_status status = hn_newton_matrix_factor(s->matrix);
     b->cost.factorisations++;
     b->cost.solves++;
-    b->cost.ops += 2.0 / 3 * n * n * n + 2.0 * n * n;
     if (status != HN_OK) {
         return status;
     }
     memcpy(s->x, b->f, (size_t)nv * sizeof *s->x);
+    hn_dae_speed_gap(b, s->V, s->x + nv);
     for (int k = 0; k < b->nr; k++) {
-        s->x[nv + k] = -hn_dae_speed_gap(b, k, s->V) / step;
+        s->x[nv + k] /= -step;
     }
-    hn_square_solve(&s->square, s->x);
+    hn_newton_matrix_solve(s->matrix, s->x);
     memcpy(s->k + (size_t)i * nv, s->x, (size_t)nv * sizeof *s->x);
     memset(s->raw_next, 0, (size_t)b->nc * sizeof *s->raw_next);
     for (int k = 0; k < b->nr; k++) {
@@ -184,7 +178,7 @@ static hn_status advance(half_explicit *s, double t, double h, const double *y, 
         const double *row = s->scheme->A + (size_t)(i + 1) * stages;
         const double t_next = t + h * (i + 1 < stages ? abscissa(s->scheme, i + 1) : 1);
         hn_dae_dynamics(b, t + h * abscissa(s->scheme, i), s->Q, s->V);
-        memcpy(s->J_here, b->J, (size_t)b->nc * nv * sizeof *s->J_here);
+        hn_dae_copy_rows(b, s->J_here);
         hn_system_kinematics(b->sys, s->Q, s->V, s->qdot + (size_t)i * nq);
         combine(nq, h, row, i + 1, q, s->qdot, s->Q);
         combine(nv, h, row, i, v, s->k, s->V);
@@ -238,6 +232,7 @@ const double *hn_half_explicit_raw_lambda(const void *self) {
 void hn_half_explicit_add_cost(const void *self, hn_cost *cost) {
     const half_explicit *s = self;
     hn_dae_base_add_cost(&s->base, cost);
+    cost->ops += hn_newton_matrix_ops(s->matrix);
 }
 
 const char *hn_half_explicit_why(const void *self) {

@@ -24,8 +24,8 @@ static int count_puts(const hn_implicit_linear *l) {
     const int motion = entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) +
                        entries_of(l, HN_LINEAR_K) + 2 * entries_of(l, HN_LINEAR_J) +
                        entries_of(l, HN_LINEAR_V);
-    const int stabiliser = entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) +
-                           2 * entries_of(l, HN_LINEAR_J);
+    const int stabiliser =
+        entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) + 2 * entries_of(l, HN_LINEAR_J);
     return motion + (has_stabiliser(l) ? stabiliser : 0);
 }
 
@@ -34,8 +34,7 @@ static int wants_sparse(const hn_implicit_linear *l) {
               damping = entries_of(l, HN_LINEAR_C);
     int most = mass > stiffness ? mass : stiffness;
     most = damping > most ? damping : most;
-    return hn_newton_matrix_wants_sparse(l->nv + l->nc,
-                                         most + 2LL * entries_of(l, HN_LINEAR_J));
+    return hn_newton_matrix_wants_sparse(l->nv + l->nc, most + 2LL * entries_of(l, HN_LINEAR_J));
 }
 
 static int create_matrices(hn_implicit_linear *l, hn_arena *arena) {
@@ -114,9 +113,8 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     l->sparse = wants_sparse(l);
     status = allocate(l, arena);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
-    return status == HN_OK
-               ? hn_row_check_create(arena, l->nc, l->nv, n, rows, cols, &l->check)
-               : status;
+    return status == HN_OK ? hn_row_check_create(arena, l->nc, l->nv, n, rows, cols, &l->check)
+                           : status;
 }
 
 void hn_implicit_linear_free(hn_implicit_linear *l) {
@@ -492,8 +490,9 @@ void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
         rows[p] = l->work[p][3];
         scratch[p] = l->work[p][4];
     }
-    l->ops += 2.0 * parts *
-              (entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_J) + entries_of(l, HN_LINEAR_C));
+    l->ops +=
+        2.0 * parts *
+        (entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_J) + entries_of(l, HN_LINEAR_C));
     start_right_side(l, parts, r1, r2, s, top, along, scratch);
     constraint_side(l, parts, s, r3, along, bottom);
     if (has_stabiliser(l)) { // e = r3' + J r1 - s r3

@@ -16,8 +16,11 @@ struct hn_lagrange {
     int n;         // nq == nv
     double *in;    // q, v, t
     part forces;   // M v, L_q
-    part matrices; // M, (M v)_q
-    part rest;     // Q_v, and beside it what it is the difference of, for judging rounding
+    part matrices; // entries of M and (M v)_q that are not identically zero
+    int n_matrices, *at;
+    double *full;                 // 2 n n: M, (M v)_q
+    int n_pattern, *row, *column; // of their sum
+    part rest; // Q_v, and beside it what it is the difference of, for judging rounding
     int constant;
 };
 
@@ -76,13 +79,38 @@ static hn_status compile_forces(source *s, hn_arena *arena, part *p) {
     return compile(s, 2 * s->n, arena, p);
 }
 
-static hn_status compile_matrices(source *s, hn_arena *arena, part *p) {
-    const int n = s->n;
-    memcpy(s->list, s->ex.M, (size_t)n * n * sizeof *s->list);
-    for (int i = 0; i < n; i++) {
-        hn_diff(s->g, s->momentum[i], s->ex.q_symbols, n, s->list + (size_t)n * n + (size_t)i * n);
+// what is not identically zero of M and (M v)_q, in s->list, moves to its front; its places are noted
+static void pick_entries(hn_lagrange *l, source *s) {
+    const int size = s->n * s->n;
+    for (int i = 0; i < size; i++) {
+        if (!hn_is_zero(s->list[i]) || !hn_is_zero(s->list[size + i])) {
+            l->row[l->n_pattern] = i / s->n;
+            l->column[l->n_pattern++] = i % s->n;
+        }
     }
-    return compile(s, 2 * n * n, arena, p);
+    for (int i = 0; i < 2 * size; i++) {
+        if (!hn_is_zero(s->list[i])) {
+            s->list[l->n_matrices] = s->list[i];
+            l->at[l->n_matrices++] = i;
+        }
+    }
+}
+
+static hn_status compile_matrices(hn_lagrange *l, source *s, hn_arena *arena) {
+    const size_t n = (size_t)s->n;
+    memcpy(s->list, s->ex.M, n * n * sizeof *s->list);
+    for (size_t i = 0; i < n; i++) {
+        hn_diff(s->g, s->momentum[i], s->ex.q_symbols, s->n, s->list + n * n + i * n);
+    }
+    l->at = hn_arena_ints(arena, 2 * n * n);
+    l->row = hn_arena_ints(arena, n * n);
+    l->column = hn_arena_ints(arena, n * n);
+    l->full = hn_arena_doubles(arena, 2 * n * n);
+    if (hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    pick_entries(l, s);
+    return compile(s, l->n_matrices, arena, &l->matrices);
 }
 
 // Q_v, and the sum of the sizes of its parts, squared
@@ -121,7 +149,7 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
         status = compile_forces(s, arena, &l->forces);
     }
     if (status == HN_OK) {
-        status = compile_matrices(s, arena, &l->matrices);
+        status = compile_matrices(l, s, arena);
     }
     if (status == HN_OK) {
         status = compile_rest(s, arena, &l->rest);
@@ -217,8 +245,17 @@ void hn_lagrange_forces(hn_lagrange *l, double t, const double *q, const double 
 void hn_lagrange_matrices(hn_lagrange *l, double t, const double *q, const double *v,
                           const double **M, const double **B) {
     run(l, &l->matrices, t, q, v);
-    *M = l->matrices.out;
-    *B = l->matrices.out + (size_t)l->n * l->n;
+    for (int k = 0; k < l->n_matrices; k++) {
+        l->full[l->at[k]] = l->matrices.out[k];
+    }
+    *M = l->full;
+    *B = l->full + (size_t)l->n * l->n;
+}
+
+int hn_lagrange_pattern(const hn_lagrange *l, const int **rows, const int **cols) {
+    *rows = l->row;
+    *cols = l->column;
+    return l->n_pattern;
 }
 
 const double *hn_lagrange_dissipation(hn_lagrange *l, double t, const double *q, const double *v) {

@@ -29,6 +29,8 @@ void hn_lagrange_forces(hn_lagrange *l, double t, const double *q, const double 
 /// M (nv x nv) and B = (M v)_q (nv x nv, row i: derivative of entry i).
 void hn_lagrange_matrices(hn_lagrange *l, double t, const double *q, const double *v,
                           const double **M, const double **B);
+/// Entries of M + (M v)_q that are not identically zero: their number, rows and columns (borrowed).
+int hn_lagrange_pattern(const hn_lagrange *l, const int **rows, const int **cols);
 /// Q_v (nv).
 const double *hn_lagrange_dissipation(hn_lagrange *l, double t, const double *q, const double *v);
 double hn_lagrange_ops(const hn_lagrange *l); ///< arithmetic operations so far

@@ -9,12 +9,11 @@
 //
 // a is an auxiliary that approximates accelerations; what e, past and carry are makes the method. D is taken along the speeds
 // (hn_system_move), so that balls turn about their own axes. Newton's unknowns are D, eta and beta h^2 lambda: with (3) times
-// beta h^2 the matrix stays well conditioned for every h.
+// beta h^2 the matrix stays well conditioned for every h. Of a large mechanism M0^-1 J0' eta is an unknown of its own.
 // Source: Arnold, Bruls & Cardona 2015; Bottasso, Dopico & Trainelli 2008 (scaling).
 
 #include "dynamics/linearise.h"
 #include "integrators/dae_base.h"
-#include "linalg/square.h"
 
 typedef struct hn_newmark {
     hn_dae_base base; ///< first
@@ -22,13 +21,14 @@ typedef struct hn_newmark {
     double beta, gamma, weight;
     hn_linear *rest;     ///< R, phi, J v + phi_t
     hn_linear *matrices; ///< M, K, C, J, V
-    hn_square square;
+    hn_newton_matrix *matrix;
     double *a0, *past, *carry; ///< nv each: of (1) to (3), set by the method before a step
     double *guess;             ///< nc: multipliers to begin with, set by the method before a step
     double *a1, *e;            ///< nv each: found
     double *lambda;            ///< nc: found, 0 on rows left out
     // the rest is the step's own
     double *D, *eta, *scaled, *P, *factor, *x, *v1;
+    double *pushed; ///< nv: M0^-1 J0' eta
 } hn_newmark;
 
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, told in diag.

@@ -2,7 +2,6 @@
 #include "integrators/lagrange_terms.h"
 #include "integrators/registry.h"
 #include "linalg/dense.h"
-#include "linalg/square.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,7 +36,7 @@ typedef struct rattle {
     hn_dae_base base; // first
     hn_lagrange *terms;
     int split, constant, fresh; // fresh: `now` has to be taken from y
-    hn_square square;
+    hn_newton_matrix *matrix;
     carried now, next;
     double *J0;             // nc x nv
     double *D, *middle, *w; // nv: q1 - q0; (q0 + q1) / 2; D / h
@@ -64,9 +63,10 @@ static hn_status allocate(rattle *s, hn_arena *arena) {
     s->J0 = hn_arena_doubles(arena, nc * nv);
     s->x = hn_arena_doubles(arena, nv + nc);
     s->lambda = hn_arena_doubles(arena, nc);
-    const int good = carried_init(&s->now, arena, nv, nc) &&
-                     carried_init(&s->next, arena, nv, nc) &&
-                     hn_square_init(&s->square, arena, (int)(nv + nc));
+    const int *rows, *cols, turning = hn_lagrange_pattern(s->terms, &rows, &cols);
+    s->matrix = hn_dae_matrix_create(&s->base, arena, (int)(nv + nc), 1, 2, 3 * turning);
+    const int good =
+        carried_init(&s->now, arena, nv, nc) && carried_init(&s->next, arena, nv, nc) && s->matrix;
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
@@ -109,6 +109,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
 
 static void destroy(void *self) {
     rattle *s = self;
+    hn_newton_matrix_free(s->matrix);
+    s->matrix = NULL;
     hn_lagrange_free(s->terms);
     hn_dae_base_destroy(&s->base);
 }
@@ -119,42 +121,29 @@ static hn_status start(void *self, double t, const double *y) {
     return hn_dae_accelerate(&s->base, t, y, y + s->base.nq, s->v, s->now.raw);
 }
 
-// [A -+ J_left'; J 0] with the chosen rows; A is in place
+// [. sign J_left'; J .] with the chosen rows
 static void border(rattle *s, const double *J_left, double sign) {
     const hn_dae_base *b = &s->base;
-    const int nv = b->nv, n = nv + b->nr;
-    double *K = s->square.lu;
-    for (int k = 0; k < b->nr; k++) {
-        const size_t row = (size_t)b->rows[k] * nv;
-        for (int i = 0; i < nv; i++) {
-            K[(size_t)i * n + nv + k] = sign * J_left[row + i];
-            K[(size_t)(nv + k) * n + i] = b->J[row + i];
-        }
-        memset(K + (size_t)(nv + k) * n + nv, 0, (size_t)b->nr * sizeof *K);
-    }
+    hn_dae_put_columns(b, s->matrix, J_left, sign, 0, b->nv);
+    hn_dae_put_rows(b, s->matrix, b->J, 1, b->nv, 0);
 }
 
 static hn_status factor(rattle *s) {
-    const int n = s->base.nv + s->base.nr;
     s->base.cost.factorisations++;
-    s->base.cost.ops += 2.0 / 3 * n * n * n;
-    return hn_square_factor(&s->square, n);
+    return hn_newton_matrix_factor(s->matrix);
 }
 
 static void solve(rattle *s) {
-    const int n = s->base.nv + s->base.nr;
     s->base.cost.solves++;
-    s->base.cost.ops += 2.0 * n * n;
-    hn_square_solve(&s->square, s->x);
+    hn_newton_matrix_solve(s->matrix, s->x);
 }
 
 // x = (v, -mu) such that M v = p + J' mu and J v = -moving phi_t, at the terms last evaluated
 static hn_status speeds_from(rattle *s, const double *p, double moving) {
     hn_dae_base *b = &s->base;
-    const int nv = b->nv, n = nv + b->nr;
-    for (int i = 0; i < nv; i++) {
-        memcpy(s->square.lu + (size_t)i * n, b->M + (size_t)i * nv, (size_t)nv * sizeof *b->M);
-    }
+    const int nv = b->nv;
+    hn_newton_matrix_begin(s->matrix, nv + b->nr);
+    hn_dae_put_mass(b, s->matrix, 1, 0, 0);
     border(s, b->J, 1);
     const hn_status status = factor(s);
     if (status != HN_OK) {
@@ -224,15 +213,16 @@ static void residual(rattle *s, double t, double h, const double *q, const doubl
 }
 
 static hn_status factor_newton(rattle *s, double t, double h) {
-    const hn_dae_base *b = &s->base;
-    const int nv = b->nv, n = nv + b->nr;
+    const int nv = s->base.nv;
     const double *M, *B;
+    const int *rows, *cols, n = hn_lagrange_pattern(s->terms, &rows, &cols);
     hn_lagrange_matrices(s->terms, t + h / 2, s->middle, s->w, &M, &B);
-    for (int i = 0; i < nv; i++) {
-        for (int j = 0; j < nv; j++) {
-            const size_t at = (size_t)i * nv + j, across = (size_t)j * nv + i;
-            s->square.lu[(size_t)i * n + j] = M[at] + h / 2 * (B[at] - B[across]);
-        }
+    hn_newton_matrix_begin(s->matrix, nv + s->base.nr);
+    for (int k = 0; k < n; k++) {
+        const int i = rows[k], j = cols[k];
+        const size_t at = (size_t)i * nv + j;
+        hn_newton_matrix_put(s->matrix, i, j, M[at] + h / 2 * B[at], 0);
+        hn_newton_matrix_put(s->matrix, j, i, -h / 2 * B[at], 0);
     }
     border(s, s->J0, -1);
     return factor(s);
@@ -321,7 +311,7 @@ static hn_status begin(rattle *s, double t, double h, const double *y) {
     hn_dae_dynamics(b, t, y, s->v);
     hn_dae_loops(b, t, y);
     hn_dae_choose_rows(b);
-    memcpy(s->J0, b->J, (size_t)b->nc * size);
+    hn_dae_copy_rows(b, s->J0);
     if (s->split) {
         const hn_status status = damp(s, t, h / 2, y, s->v);
         if (status != HN_OK) {
@@ -335,7 +325,7 @@ static hn_status begin(rattle *s, double t, double h, const double *y) {
         memset(s->next.q_low, 0, size);
     }
     if (s->fresh || s->split) {
-        hn_mat_vec(nv, nv, b->M, s->v, s->next.p);
+        hn_dae_mass_times(b, s->v, s->next.p);
         memset(s->next.p_low, 0, size);
     }
     return HN_OK;
@@ -379,7 +369,7 @@ static const double *raw_lambda(const void *self) {
 static void add_cost(const void *self, hn_cost *cost) {
     const rattle *s = self;
     hn_dae_base_add_cost(&s->base, cost);
-    cost->ops += hn_lagrange_ops(s->terms);
+    cost->ops += hn_lagrange_ops(s->terms) + hn_newton_matrix_ops(s->matrix);
 }
 
 static const char *why(const void *self) {

@@ -4,8 +4,7 @@
 
 int hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max, int entries_max) {
     const size_t n = (size_t)n_max, m = (size_t)entries_max;
-    *c = (hn_compressed){
-        .n_max = n_max, .entries_max = entries_max, .n_known = -1, .n_sorted = -1};
+    *c = (hn_compressed){.n_max = n_max, .entries_max = entries_max, .n_known = -1, .n_sorted = -1};
     int **of_m[] = {&c->row, &c->put_row, &c->put_col, &c->place, &c->by_row};
     for (size_t i = 0; i < sizeof of_m / sizeof *of_m; i++) {
         *of_m[i] = hn_arena_ints(arena, m);

@@ -11,8 +11,9 @@ typedef struct hn_compressed {
     int n;            ///< size of the matrix
     int *start, *row; ///< column j holds the rows row[start[j]] .. row[start[j + 1] - 1], rising
     // the sequence of puts
-    int n_puts, n_known, n_sorted; // of this filling, of the sequence that is sorted, and the size of its matrix
-    int changed;                   // this filling differs from that sequence
+    int n_puts, n_known,
+        n_sorted; // of this filling, of the sequence that is sorted, and the size of its matrix
+    int changed;  // this filling differs from that sequence
     int *put_row, *put_col, *place;
     double *value; // two for each put
     int *next, *by_row;

@@ -8,7 +8,8 @@
 
 #include <string.h>
 
-static const double GROWTH = 1e-8;    // of entries against factors, below which pivots are chosen anew
+static const double GROWTH = 1e-8; // of entries against factors, below which pivots are chosen anew
+static const double THRESHOLD = 0.1;  // of the largest entry of a column: what may be its pivot
 static const double SINGULAR = 1e-15; // smallest pivot over the largest, rows of length one
 // a complex product and sum are eight operations against two
 static const double COMPLEX_WEIGHT = 4;
@@ -50,8 +51,9 @@ static int allocate_dense(hn_newton_matrix *m, hn_arena *arena) {
 
 static int allocate_sparse(hn_newton_matrix *m, hn_arena *arena, int entries_max) {
     m->values = hn_arena_doubles(arena, (size_t)(m->parts * entries_max));
-    return klu_defaults(&m->common) && m->values &&
-           hn_compressed_init(&m->places, arena, m->n_max, entries_max);
+    const int good = klu_defaults(&m->common);
+    m->common.tol = THRESHOLD;
+    return good && m->values && hn_compressed_init(&m->places, arena, m->n_max, entries_max);
 }
 
 hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field, int sparse,
@@ -60,8 +62,7 @@ hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field
     if (!m) {
         return NULL;
     }
-    *m = (hn_newton_matrix){
-        .parts = field == HN_COMPLEX ? 2 : 1, .n_max = n_max, .sparse = sparse};
+    *m = (hn_newton_matrix){.parts = field == HN_COMPLEX ? 2 : 1, .n_max = n_max, .sparse = sparse};
     const int good = sparse ? allocate_sparse(m, arena, entries_max) : allocate_dense(m, arena);
     return good ? m : NULL;
 }
@@ -151,9 +152,8 @@ static void count_work(hn_newton_matrix *m) {
 static hn_status choose_pivots(hn_newton_matrix *m) {
     hn_compressed *p = &m->places;
     free_numeric(m);
-    m->numeric = m->parts == 1
-                     ? klu_factor(p->start, p->row, m->values, m->symbolic, &m->common)
-                     : klu_z_factor(p->start, p->row, m->values, m->symbolic, &m->common);
+    m->numeric = m->parts == 1 ? klu_factor(p->start, p->row, m->values, m->symbolic, &m->common)
+                               : klu_z_factor(p->start, p->row, m->values, m->symbolic, &m->common);
     if (!m->numeric) {
         return m->common.status == KLU_OUT_OF_MEMORY ? HN_ERR_MEMORY : HN_ERR_SINGULAR;
     }

@@ -133,8 +133,8 @@ int hn_row_check_run(hn_row_check *c, const double *J) {
         const product *p = &c->products[k];
         c->sums[p->sum] += c->entry[p->a] * c->entry[p->b];
     }
-    c->ops += 3.0 * c->n_entries + 2.0 * c->nc + 2.0 * c->n_products +
-              hn_sparse_spd_factor_ops(c->spd);
+    c->ops +=
+        3.0 * c->n_entries + 2.0 * c->nc + 2.0 * c->n_products + hn_sparse_spd_factor_ops(c->spd);
     return hn_sparse_spd_factor(c->spd, c->sums, HN_ROW_CHECK_DISTANCE * HN_ROW_CHECK_DISTANCE) ==
            HN_OK;
 }

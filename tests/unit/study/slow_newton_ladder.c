@@ -1,0 +1,41 @@
+// The ladder of N four-bars by integrators with Newton matrices: what a step costs for each loop as N grows.
+
+#include "support/model.h"
+#include "support/motion.h"
+#include "support/near.h"
+
+#include <stdio.h>
+
+// operations of ten steps for each loop
+static double cost_per_loop(int n_loops, const char *method) {
+    char setting[16];
+    hn_model m;
+    snprintf(setting, sizeof setting, "N=%d", n_loops);
+    hn_model_open_closed(&m, "n-four-bar", setting);
+    const hn_run_summary s = hn_motion_summary(&m, method, 0.01);
+    assert_int_equal(s.cost.fallbacks, 0);
+    hn_model_close(&m);
+    return s.cost.ops / n_loops;
+}
+
+// A dense factorisation costs 400 times as much a loop when there are 20 times as many; 1.5 leaves room for an iteration more.
+static void a_newton_step_costs_the_same_for_each_loop_however_many_there_are(void **state) {
+    (void)state;
+    static const char *const methods[] = {
+        "ggl@radau5:h=1e-3",      "index2@radau5:h=1e-3",   "index3@radau5:h=1e-3",
+        "index2@midpoint:h=1e-3", "index3@genalpha:h=1e-3", "ggl@genalpha:h=1e-3",
+        "index3@rattle:h=1e-3",   "index2@hem3:h=1e-3",     "index2@hem4:h=1e-3"};
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        const double few = cost_per_loop(10, methods[k]), many = cost_per_loop(200, methods[k]);
+        if (!(many < 1.5 * few && many > few / 1.5)) {
+            fail_msg("%s: %g operations a loop with 10 loops, %g with 200", methods[k], few, many);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_newton_step_costs_the_same_for_each_loop_however_many_there_are),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
