@@ -1,0 +1,512 @@
+#include "study/workprecision.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { DEFAULT_LEVELS = 7, RESERVED_SAMPLES = 5, RETRIES = 2 };
+static const double FIRST_RTOL = 3, LAST_RTOL = 12; // powers of ten
+static const double COARSER = 4;                    // first step over the scene's
+static const double GROWTH = 3; // of the cost from a tolerance to the next, before it is known
+static const double POINT_SHARE = 0.2; // of the budget that one run may take
+
+static const char *const state_names[] = {"pending", "done", "failed", "skipped"};
+
+const char *hn_wp_state_name(hn_wp_state state) {
+    HN_ASSERT((int)state >= 0 && state <= HN_WP_SKIPPED);
+    return state_names[state];
+}
+
+static double wall_seconds(void) {
+    struct timespec ts;
+    clock_gettime(CLOCK_MONOTONIC, &ts);
+    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+}
+
+static double *setting_of(hn_method_spec *spec, const char *key) {
+    for (int i = 0; i < spec->stepper->n_settings; i++) {
+        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
+            return &spec->stepper_set[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *size_key(const hn_wp_method *m) {
+    return m->adaptive ? "rtol" : "h";
+}
+
+/// "index1@rk4:h=0.1,x=2" -> "index1@rk4:x=2": a ladder has no one size.
+static void strip_size(char *spelling, const char *key) {
+    char token[16];
+    char *at = strchr(spelling, '@');
+    snprintf(token, sizeof token, "%s=", key);
+    for (char *p = at; p && *p; p++) {
+        if ((*p == ':' || *p == ',') && strncmp(p + 1, token, strlen(token)) == 0) {
+            char *end = p + 1 + strcspn(p + 1, ",");
+            if (*end) { // the next one takes its separator
+                p++;
+                end++;
+            }
+            memmove(p, end, strlen(end) + 1);
+            return;
+        }
+    }
+}
+
+void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]) {
+    hn_method_spec spec = wp->methods[m].spec;
+    *setting_of(&spec, size_key(&wp->methods[m])) = wp->methods[m].point[k].size;
+    hn_method_format(&spec, out);
+}
+
+int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error) {
+    return isfinite(error) && error > HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
+}
+
+/// Size number k: steps divide the reference's intervals and halve, tolerances fall evenly.
+static double size_at(const hn_wp *wp, const hn_wp_method *m, int k) {
+    if (m->adaptive) {
+        return pow(10, -(FIRST_RTOL + (LAST_RTOL - FIRST_RTOL) * k / (wp->n_levels - 1)));
+    }
+    const double between = wp->ref->T / wp->ref->n;
+    const double parts = ceil(between / wp->opts.step * (1 - 1e-12));
+    return wp->ref->T / (wp->ref->n * fmax(1, parts) * ldexp(1, k));
+}
+
+static hn_status set_up_method(hn_wp *wp, const hn_method_spec *spec, int i, hn_diag *diag) {
+    hn_wp_method *m = &wp->methods[i];
+    m->spec = *spec;
+    m->adaptive = hn_method_is_adaptive(spec);
+    hn_method_format(spec, m->spelling);
+    if (!setting_of(&m->spec, size_key(m))) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
+                           "%s has neither a step nor a tolerance to vary", m->spelling);
+    }
+    strip_size(m->spelling, size_key(m));
+    for (int k = 0; k < wp->n_levels; k++) {
+        m->point[k].size = size_at(wp, m, k);
+        m->point[k].own = (double)NAN;
+        m->point[k].median = m->point[k].spread = (double)NAN;
+        m->point[k].low = m->point[k].high = (double)NAN;
+        m->point[k].end_q = hn_arena_doubles(wp->arena, (size_t)wp->ref->n_user);
+    }
+    return HN_OK;
+}
+
+static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag *diag) {
+    o->n_levels = o->n_levels == 0 ? DEFAULT_LEVELS : o->n_levels;
+    o->n_samples = o->n_samples == 0 ? HN_WP_SAMPLES : o->n_samples;
+    o->step = o->step == 0 ? COARSER * hn_system_scene(sys)->step : o->step;
+    if (n < 1 || n > HN_WP_METHODS) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/methods", NULL,
+                           "%d methods were given; a study takes 1 to %d", n, HN_WP_METHODS);
+    }
+    if (o->n_levels < 2 || o->n_levels > HN_WP_LEVELS) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/levels", NULL,
+                           "%d sizes were asked for; a study takes 2 to %d", o->n_levels,
+                           HN_WP_LEVELS);
+    }
+    if (o->n_samples > HN_WP_SAMPLES || !(o->step > 0) || !(o->budget >= 0)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "a study takes at most %d samples of time, a step above 0 and a budget "
+                           "that is not negative",
+                           HN_WP_SAMPLES);
+    }
+    return HN_OK;
+}
+
+hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, const hn_ref *ref,
+                       const hn_method_spec *specs, int n, const hn_wp_opts *opts, hn_wp **out,
+                       hn_diag *diag) {
+    hn_wp_opts o = opts ? *opts : (hn_wp_opts){0};
+    hn_status status = check_opts(&o, n, sys, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_arena *arena = hn_arena_create(0);
+    hn_wp *wp = arena ? hn_arena_get(arena, sizeof *wp) : NULL;
+    if (!wp) {
+        hn_arena_free(arena);
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *wp = (hn_wp){.arena = arena,
+                  .sys = sys,
+                  .q = q,
+                  .v = v,
+                  .ref = ref,
+                  .opts = o,
+                  .n_methods = n,
+                  .n_levels = o.n_levels};
+    wp->methods = hn_arena_get(arena, (size_t)n * sizeof *wp->methods);
+    wp->runs = hn_arena_get(arena, (size_t)(n * o.n_levels) * sizeof *wp->runs);
+    status = hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_errors_create(sys, arena, &wp->errors);
+    for (int i = 0; i < n && status == HN_OK; i++) {
+        status = set_up_method(wp, &specs[i], i, diag);
+    }
+    if (status == HN_OK && hn_arena_failed(arena)) {
+        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    if (status != HN_OK) {
+        hn_wp_free(wp);
+        return status;
+    }
+    *out = wp;
+    return HN_OK;
+}
+
+static void drop_run(hn_wp *wp, int m, int k) {
+    hn_run_free(wp->runs[m * wp->n_levels + k]);
+    wp->runs[m * wp->n_levels + k] = NULL;
+}
+
+void hn_wp_free(hn_wp *wp) {
+    if (wp) {
+        for (int i = 0; wp->methods && wp->runs && i < wp->n_methods * wp->n_levels; i++) {
+            hn_run_free(wp->runs[i]);
+        }
+        hn_errors_free(wp->errors);
+        hn_arena_free(wp->arena);
+    }
+}
+
+// one point ------------------------------------------------------------------------------------------------------
+
+static hn_run *run_of(hn_wp *wp, int m, int k, hn_diag *diag) {
+    hn_run **run = &wp->runs[m * wp->n_levels + k];
+    if (!*run) {
+        hn_method_spec spec = wp->methods[m].spec;
+        *setting_of(&spec, size_key(&wp->methods[m])) = wp->methods[m].point[k].size;
+        const hn_status status = hn_run_create(wp->sys, &spec, wp->q, wp->v, NULL, run, diag);
+        if (status != HN_OK) {
+            *run = NULL;
+            diag->status = status;
+            return NULL;
+        }
+        hn_run_watch(*run, 0); // the study looks itself
+    }
+    return *run;
+}
+
+typedef struct looker {
+    hn_wp *wp;
+    hn_wp_point *point;
+} looker;
+
+static int look(void *user, int k, const hn_sample *s) {
+    looker *l = user;
+    hn_wp_point *p = l->point;
+    const hn_state_seen at = {s->t, s->q, s->v, s->lambda, s->energy, s->gap, s->velocity_gap};
+    const hn_state_seen reference = hn_ref_at(l->wp->ref, k);
+    hn_errors_calc(l->wp->errors, &at, &reference, &l->wp->ref->scales, p->end);
+    for (int i = 0; i < HN_ERROR_COUNT; i++) {
+        p->worst[i] = isnan(p->end[i]) || p->end[i] > p->worst[i] ? p->end[i] : p->worst[i];
+    }
+    memcpy(p->end_q, s->q, (size_t)l->wp->ref->n_user * sizeof(double));
+    return isfinite(p->end[HN_ERROR_Q]) && isfinite(p->end[HN_ERROR_V]);
+}
+
+static void set_reason(hn_wp_point *p, hn_wp_state state, hn_status status, const char *reason) {
+    p->state = state;
+    p->status = status;
+    snprintf(p->reason, sizeof p->reason, "%s", reason);
+}
+
+/// What a walk that did not reach the end says of its point.
+static void set_failure(const hn_wp *wp, hn_wp_point *p, const hn_run *run, hn_walk_end end) {
+    const hn_run_summary s = hn_run_get_summary(run);
+    char text[256];
+    p->t_reached = fmin(s.t, wp->ref->T);
+    if (end == HN_WALK_OVER) {
+        snprintf(text, sizeof text, "one run takes more than %.3g s of the %.3g s budget",
+                 POINT_SHARE * wp->opts.budget, wp->opts.budget);
+        set_reason(p, HN_WP_SKIPPED, HN_ERR_BUDGET, text);
+    } else {
+        set_reason(p, HN_WP_FAILED, s.status == HN_OK ? HN_ERR_DIVERGED : s.status,
+                   s.reason[0] ? s.reason : "the state is not finite any more");
+    }
+}
+
+static void keep_counts(hn_wp_point *p, const hn_run *run) {
+    const hn_run_summary s = hn_run_get_summary(run);
+    p->steps = s.steps;
+    p->rejected = s.rejected;
+    p->cost = s.cost;
+    p->first_cpu = s.cpu_seconds;
+}
+
+/// How far the end is from that of the next coarser point that reached it.
+static void compare_with_coarser(hn_wp *wp, int m, int k) {
+    for (int j = k - 1; j >= 0; j--) {
+        const hn_wp_point *coarser = &wp->methods[m].point[j];
+        if (coarser->state == HN_WP_DONE) {
+            hn_wp_point *p = &wp->methods[m].point[k];
+            p->own = hn_errors_between(wp->errors, p->end_q, coarser->end_q);
+            return;
+        }
+    }
+}
+
+/// The run with looks, then one without, which counts and warms up. 0: stopped on request.
+static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
+    hn_wp_point *p = &wp->methods[m].point[k];
+    hn_diag diag = {0};
+    hn_run *run = run_of(wp, m, k, &diag);
+    if (!run) {
+        set_reason(p, HN_WP_FAILED, diag.status, diag.message);
+        return 1;
+    }
+    looker l = {wp, p};
+    const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
+    memset(p->worst, 0, sizeof p->worst);
+    hn_walk_end end = hn_walk(run, wp->ref->T, wp->ref->n, &limits, look, &l);
+    if (end == HN_WALK_DONE) {
+        end = hn_run_reset(run) == HN_OK ? hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL)
+                                         : HN_WALK_FAILED;
+    }
+    if (end == HN_WALK_STOPPED) {
+        drop_run(wp, m, k);
+        return 0;
+    }
+    keep_counts(p, run);
+    if (end != HN_WALK_DONE) {
+        set_failure(wp, p, run, end);
+        drop_run(wp, m, k);
+        return 1;
+    }
+    p->state = HN_WP_DONE;
+    p->t_reached = wp->ref->T;
+    compare_with_coarser(wp, m, k);
+    return 1;
+}
+
+// the budget -----------------------------------------------------------------------------------------------------
+
+/// CPU time that the next point of a method will take, from the coarser ones; 0: not known.
+static double expected_cpu(const hn_wp_method *m, int k) {
+    if (k == 0 || m->point[k - 1].state != HN_WP_DONE) {
+        return 0;
+    }
+    const double last = m->point[k - 1].first_cpu;
+    double growth = m->adaptive ? GROWTH : 2;
+    if (m->adaptive && k > 1 && m->point[k - 2].state == HN_WP_DONE) {
+        growth = fmax(1, last / m->point[k - 2].first_cpu);
+    }
+    return last * growth;
+}
+
+static double sample_cost(double cpu) {
+    return fmax(HN_WP_BATCH, cpu);
+}
+
+/// Time kept for samples of the points that are done.
+static double reserved(const hn_wp *wp) {
+    double sum = 0;
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            const hn_wp_point *p = &wp->methods[m].point[k];
+            const int due =
+                wp->opts.n_samples < RESERVED_SAMPLES ? wp->opts.n_samples : RESERVED_SAMPLES;
+            sum += p->state == HN_WP_DONE && p->n_samples < due
+                       ? (due - p->n_samples) * sample_cost(p->first_cpu)
+                       : 0;
+        }
+    }
+    return sum;
+}
+
+/// 1 if a point fits into what is left; otherwise it says so.
+static int fits(hn_wp *wp, int m, int k, double started) {
+    if (!(wp->opts.budget > 0)) {
+        return 1;
+    }
+    if (k > 0 && wp->methods[m].point[k - 1].state == HN_WP_SKIPPED) {
+        set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET,
+                   "left out, as the coarser size before it, to keep the budget");
+        return 0;
+    }
+    const double cpu = expected_cpu(&wp->methods[m], k);
+    const double sampling = wp->opts.n_samples > 0 ? RESERVED_SAMPLES * sample_cost(cpu) : 0;
+    const double needed = 2 * cpu + sampling;
+    const double left = wp->opts.budget - (wall_seconds() - started) - reserved(wp);
+    char text[256];
+    if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
+        return 1;
+    }
+    snprintf(text, sizeof text,
+             "left out: about %.2g s of computing, and %.2g s are left of the budget of %.3g s",
+             needed, fmax(0, left), wp->opts.budget);
+    set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET, text);
+    return 0;
+}
+
+// time -----------------------------------------------------------------------------------------------------------
+
+static int by_size(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Linear interpolation between order statistics.
+static double quantile(const double *sorted, int n, double share) {
+    const double at = share * (n - 1);
+    const int i = (int)floor(at);
+    return i + 1 < n ? sorted[i] + (at - i) * (sorted[i + 1] - sorted[i]) : sorted[n - 1];
+}
+
+void hn_wp_point_statistics(hn_wp_point *p) {
+    double sorted[HN_WP_SAMPLES];
+    if (p->n_samples < 1) {
+        return;
+    }
+    memcpy(sorted, p->sample, (size_t)p->n_samples * sizeof *sorted);
+    qsort(sorted, (size_t)p->n_samples, sizeof *sorted, by_size);
+    p->median = quantile(sorted, p->n_samples, 0.5);
+    p->low = quantile(sorted, p->n_samples, 0.25);
+    p->high = quantile(sorted, p->n_samples, 0.75);
+    p->spread = p->median > 0 ? (p->high - p->low) / p->median : 0;
+}
+
+/// One batch: CPU seconds of a run, and wall over CPU time in *load. 0: stopped or failed.
+static int take_batch(hn_wp *wp, hn_run *run, double first_cpu, const hn_walk_limits *limits,
+                      double *seconds, double *load) {
+    const int n = (int)fmin(1e6, ceil(HN_WP_BATCH / fmax(1e-8, first_cpu)));
+    double cpu = 0, wall = 0;
+    for (int i = 0; i < n || cpu < HN_WP_BATCH; i++) {
+        if (hn_run_reset(run) != HN_OK) {
+            return 0;
+        }
+        const double w = wall_seconds(), c = hn_thread_seconds();
+        // straight through: clocks between steps would be part of what is measured
+        const hn_status status = hn_run_advance(run, wp->ref->T);
+        cpu += hn_thread_seconds() - c;
+        wall += wall_seconds() - w;
+        *seconds = cpu / (i + 1);
+        if (status != HN_OK || (limits->stop && limits->stop(limits->user))) {
+            return 0;
+        }
+    }
+    *load = wall / cpu;
+    return 1;
+}
+
+static int take_sample(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
+    hn_wp_point *p = &wp->methods[m].point[k];
+    hn_diag diag = {0};
+    hn_run *run = run_of(wp, m, k, &diag);
+    const hn_walk_limits limits = {0, hooks->stop, hooks->user};
+    double seconds = 0, load = 0;
+    for (int i = 0; run && i <= RETRIES; i++) {
+        if (!take_batch(wp, run, p->first_cpu, &limits, &seconds, &load)) {
+            return 0;
+        }
+        if (load <= HN_WP_BUSY) {
+            break;
+        }
+    }
+    if (!run) {
+        return 0;
+    }
+    p->busy += load > HN_WP_BUSY;
+    p->sample[p->n_samples++] = seconds;
+    hn_wp_point_statistics(p);
+    if (hooks->sample) {
+        hooks->sample(hooks->user, m, k);
+    }
+    return 1;
+}
+
+// the whole ------------------------------------------------------------------------------------------------------
+
+static int is_stopped(const hn_wp_hooks *hooks) {
+    return hooks->stop && hooks->stop(hooks->user);
+}
+
+/// Share done: points count for what their finer sizes cost, samples for the rest.
+static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double started) {
+    double all = 0, done = 0;
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            const hn_wp_point *p = &wp->methods[m].point[k];
+            const double cpu =
+                p->state == HN_WP_DONE ? p->first_cpu : expected_cpu(&wp->methods[m], k);
+            const double timing = p->state == HN_WP_PENDING || p->state == HN_WP_DONE
+                                      ? sample_cost(cpu) * fmax(0, wp->opts.n_samples)
+                                      : 0;
+            all += 2 * cpu + timing;
+            done += p->state == HN_WP_DONE ? 2 * cpu + sample_cost(cpu) * p->n_samples : 0;
+        }
+    }
+    double share = all > 0 ? done / all : 0;
+    if (wp->opts.budget > 0) { // whichever end comes first
+        share = fmax(share, (wall_seconds() - started) / wp->opts.budget);
+    }
+    if (hooks->progress) {
+        hooks->progress(hooks->user, fmin(1, share));
+    }
+}
+
+/// Every size of every method, coarse ones first. 0: stopped.
+static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
+    for (int k = 0; k < wp->n_levels; k++) {
+        for (int m = 0; m < wp->n_methods; m++) {
+            hn_wp_point *p = &wp->methods[m].point[k];
+            if (p->state == HN_WP_SKIPPED) {
+                p->state = HN_WP_PENDING; // another try, with a budget of its own
+            }
+            if (is_stopped(hooks)) {
+                return 0;
+            }
+            if (p->state != HN_WP_PENDING) {
+                continue;
+            }
+            if (fits(wp, m, k, started) && !measure_point(wp, m, k, hooks)) {
+                return 0;
+            }
+            wp->out_of_time |= p->state == HN_WP_SKIPPED;
+            if (hooks->point && p->state != HN_WP_SKIPPED) {
+                hooks->point(hooks->user, m, k);
+            }
+            tell_progress(wp, hooks, started);
+        }
+    }
+    return 1;
+}
+
+/// Sample number `round` of every point that has fewer. 0: stopped or out of time.
+static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double started) {
+    for (int k = 0; k < wp->n_levels; k++) {
+        for (int m = 0; m < wp->n_methods; m++) {
+            hn_wp_point *p = &wp->methods[m].point[k];
+            if (p->state != HN_WP_DONE || p->n_samples > round) {
+                continue;
+            }
+            const double left = wp->opts.budget - (wall_seconds() - started);
+            if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
+                wp->out_of_time = 1;
+                return 0;
+            }
+            if (!take_sample(wp, m, k, hooks)) {
+                return 0;
+            }
+            tell_progress(wp, hooks, started);
+        }
+    }
+    return 1;
+}
+
+int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
+    static const hn_wp_hooks nobody = {0};
+    const hn_wp_hooks *h = hooks ? hooks : &nobody;
+    const double started = wall_seconds();
+    wp->out_of_time = 0;
+    int going = run_points(wp, h, started);
+    for (int round = 0; going && round < wp->opts.n_samples; round++) {
+        going = run_round(wp, round, h, started);
+    }
+    wp->stopped = is_stopped(h);
+    wp->elapsed = wall_seconds() - started;
+    return going && !wp->out_of_time;
+}
