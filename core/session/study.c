@@ -1,0 +1,180 @@
+#include "session/study_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double DEFAULT_BUDGET = 60; // [s]
+static const double REFERENCE_SHARE =
+    0.5; // of the budget, for one of the computations of a reference
+
+// from the naive to the specialised: fixed steps, chosen steps, differential-algebraic integrators
+static const char *const STANDARD[] = {
+    "index1@rk4",        "baumgarte@rk4",     "projection@rk4",      "nullspace@rk4",
+    "projection@dopri5", "projection@dop853", "partitioning@dop853", "ggl@radau5",
+    "index2@hem4",       "index3@rattle",     "index3@genalpha",     "index2@ida",
+};
+
+hn_study_request hn_study_request_default(void) {
+    return (hn_study_request){.time = (double)NAN, .budget = (double)NAN};
+}
+
+const char *const *hn_study_standard(int *n) {
+    *n = (int)(sizeof STANDARD / sizeof *STANDARD);
+    return STANDARD;
+}
+
+static hn_status parse_methods(const hn_study_request *r, hn_method_spec *specs, hn_diags *diags) {
+    if (r->n_methods > HN_WP_METHODS) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/methods", NULL,
+                            "%d methods were given; a study takes 1 to %d", r->n_methods,
+                            HN_WP_METHODS);
+    }
+    for (int i = 0; i < r->n_methods; i++) {
+        char pointer[32];
+        hn_diag diag = {0};
+        snprintf(pointer, sizeof pointer, "/methods/%d", i);
+        const hn_status status = hn_method_parse(r->methods[i], &specs[i], &diag);
+        if (status != HN_OK) {
+            return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status check_times(const hn_study_request *r, hn_diags *diags) {
+    if (!(r->time > 0) || !(r->time <= 1e7)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
+                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
+    }
+    if (!(r->budget >= 0) || !isfinite(r->budget)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL,
+                            "the budget is %g s; it must be above 0, or 0 for none", r->budget);
+    }
+    return HN_OK;
+}
+
+static hn_status find_reference(hn_study *s, hn_diags *diags) {
+    const hn_study_request *r = &s->request;
+    hn_diag diag = {0};
+    s->ref = r->folder ? hn_store_read_ref(r->folder, s->model, r->time, HN_REF_TIMES) : NULL;
+    if (s->ref) {
+        s->kept_reference = 1;
+        return HN_OK;
+    }
+    hn_ref_opts opts = hn_ref_opts_default();
+    opts.limits = (hn_walk_limits){REFERENCE_SHARE * r->budget, r->hooks.stop, r->hooks.user};
+    const hn_status status = hn_ref_create(hn_model_system(s->model), hn_model_q(s->model),
+                                           hn_model_v(s->model), r->time, &opts, &s->ref, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    if (r->folder) {
+        hn_store_write_ref(r->folder, s->ref); // without it the next study computes it again
+    }
+    return HN_OK;
+}
+
+static hn_status set_up(hn_study *s, hn_diags *diags) {
+    hn_method_spec specs[HN_WP_METHODS];
+    hn_diag diag = {0};
+    const hn_study_request *r = &s->request;
+    hn_status status = check_times(r, diags);
+    if (status == HN_OK) {
+        status = parse_methods(r, specs, diags);
+    }
+    if (status == HN_OK) {
+        status = find_reference(s, diags);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    const hn_wp_opts opts = {.n_levels = r->levels, .n_samples = r->samples, .budget = r->budget};
+    status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
+                          s->ref, specs, r->n_methods, &opts, &s->wp, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    return r->folder ? hn_store_open_log(s, diags) : HN_OK;
+}
+
+hn_status hn_study_open(const hn_model *model, const hn_study_request *request, hn_study **out,
+                        hn_diags *diags) {
+    hn_study *s = calloc(1, sizeof *s);
+    if (!s) {
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    s->model = model;
+    s->request = *request;
+    if (s->request.n_methods == 0) {
+        s->request.methods = hn_study_standard(&s->request.n_methods);
+    }
+    s->request.time = isnan(request->time) ? hn_model_scene(model)->duration : request->time;
+    s->request.budget = isnan(request->budget) ? DEFAULT_BUDGET : request->budget;
+    const hn_status status = set_up(s, diags);
+    if (status != HN_OK) {
+        hn_study_free(s);
+        return status;
+    }
+    *out = s;
+    return HN_OK;
+}
+
+void hn_study_free(hn_study *s) {
+    if (s) {
+        hn_store_close_log(s, 0);
+        hn_wp_free(s->wp);
+        hn_ref_free(s->ref);
+        free(s);
+    }
+}
+
+static int ask_to_stop(void *user) {
+    const hn_study *s = user;
+    return s->request.hooks.stop && s->request.hooks.stop(s->request.hooks.user);
+}
+
+static void pass_progress(void *user, double share) {
+    const hn_study *s = user;
+    if (s->request.hooks.progress) {
+        s->request.hooks.progress(s->request.hooks.user, share);
+    }
+}
+
+static void keep_point(void *user, int m, int k) {
+    hn_store_log_point(user, m, k);
+}
+
+static void keep_sample(void *user, int m, int k) {
+    hn_store_log_sample(user, m, k);
+}
+
+int hn_study_run(hn_study *s) {
+    const hn_wp_hooks hooks = {s, ask_to_stop, pass_progress, keep_point, keep_sample};
+    const int finished = hn_wp_run(s->wp, &hooks);
+    for (int m = 0; m < s->wp->n_methods; m++) {
+        hn_wp_classify(s->wp, m, &s->classes[m]);
+    }
+    hn_store_close_log(s, finished);
+    return finished;
+}
+
+const hn_wp *hn_study_wp(const hn_study *s) {
+    return s->wp;
+}
+
+const hn_class *hn_study_classes(const hn_study *s) {
+    return s->classes;
+}
+
+const hn_model *hn_study_model(const hn_study *s) {
+    return s->model;
+}
+
+int hn_study_resumed(const hn_study *s) {
+    return s->resumed;
+}
+
+int hn_study_kept_reference(const hn_study *s) {
+    return s->kept_reference;
+}

@@ -1,0 +1,31 @@
+#ifndef HN_SESSION_STUDY_INTERNAL_H
+#define HN_SESSION_STUDY_INTERNAL_H
+// The inside of a study: study.c (life), study_store.c (files), study_doc.c and study_html.c (documents).
+
+#include "session/study.h"
+
+#include <stdio.h>
+
+struct hn_study {
+    const hn_model *model;
+    hn_study_request request;
+    hn_ref *ref;
+    hn_wp *wp;
+    hn_class classes[HN_WP_METHODS];
+    int resumed, kept_reference;
+    FILE *log;          ///< lines of the unfinished study, NULL: nothing is kept
+    char log_path[512]; ///< "" while there is none
+    int log_failed;     ///< a line could not be written: nothing more is
+};
+
+/// FOLDER/reference-HASH.json. NULL: there is none, or it is not this one.
+hn_ref *hn_store_read_ref(const char *folder, const hn_model *model, double T, int n);
+/// 1 when it was written.
+int hn_store_write_ref(const char *folder, const hn_ref *ref);
+
+/// Opens the log of this study, reads what it holds into the study, and goes on behind its last whole line. HN_ERR_IO: another program has it.
+HN_MUST_CHECK hn_status hn_store_open_log(hn_study *study, hn_diags *diags);
+void hn_store_close_log(hn_study *study, int finished); ///< a finished one is deleted
+void hn_store_log_point(hn_study *study, int m, int k);
+void hn_store_log_sample(hn_study *study, int m, int k);
+#endif
