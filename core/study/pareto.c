@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char *const cost_names[HN_COST_COUNT] = {"time", "operations", "evaluations"};
 static const char *const cost_units[HN_COST_COUNT] = {"s", "op", ""};
@@ -156,7 +155,13 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/// Costs at which most methods have points: between the medians of the cheapest and of the dearest.
+/// To two digits.
+static double round_2(double x) {
+    const double unit = pow(10, floor(log10(x)) - 1);
+    return round(x / unit) * unit;
+}
+
+/// Costs at which most methods have points: between the median of their cheapest points and that of their dearest.
 static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
                       double cost[HN_RACE_COSTS]) {
     double low[HN_WP_METHODS], high[HN_WP_METHODS];
@@ -179,9 +184,9 @@ static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind er
     }
     qsort(low, (size_t)n, sizeof *low, ascending);
     qsort(high, (size_t)n, sizeof *high, ascending);
-    const double a = low[(3 * n) / 4 < n ? (3 * n) / 4 : n - 1], b = high[n / 4];
+    const double a = low[n / 2], b = high[n / 2];
     for (int i = 0; i < HN_RACE_COSTS; i++) {
-        cost[i] = hn_round_125(a * pow(b / a, (i + 0.5) / HN_RACE_COSTS));
+        cost[i] = round_2(a * pow(b / a, (i + 0.5) / HN_RACE_COSTS));
     }
     return HN_RACE_COSTS;
 }
@@ -198,9 +203,13 @@ void hn_wp_race(const hn_wp *wp, const hn_class *classes, hn_error_kind error, h
 
 // words ----------------------------------------------------------------------------------------------------------
 
-static int same_answer(const hn_band *a, const hn_band *b) {
-    return a->best.method == b->best.method && a->n_close == b->n_close &&
-           memcmp(a->close, b->close, (size_t)a->n_close * sizeof *a->close) == 0;
+/// The methods that share the first place, a bit each.
+static unsigned winners(const hn_band *band) {
+    unsigned set = 1u << band->best.method;
+    for (int i = 0; i < band->n_close; i++) {
+        set |= 1u << band->close[i];
+    }
+    return set;
 }
 
 static void put_amount(hn_strbuf *b, double cost, hn_cost_kind kind) {
@@ -239,7 +248,7 @@ static void put_sentence(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p, int 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     for (int i = 0; i < p->n_bands;) {
         int last = i;
-        while (last + 1 < p->n_bands && same_answer(&p->band[i], &p->band[last + 1])) {
+        while (last + 1 < p->n_bands && winners(&p->band[i]) == winners(&p->band[last + 1])) {
             last++;
         }
         put_sentence(b, wp, p, i, last);

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { DEFAULT_LEVELS = 7, RESERVED_SAMPLES = 5, RETRIES = 2 };
+enum { DEFAULT_LEVELS = 7, RESERVED_SAMPLES = 5, RETRIES = 1 };
 static const double FIRST_RTOL = 3, LAST_RTOL = 12; // powers of ten
 static const double COARSER = 4;                    // first step over the scene's
 static const double GROWTH = 3; // of the cost from a tolerance to the next, before it is known

@@ -36,8 +36,9 @@ typedef struct hn_args {
     hn_numbers at;
     const char *method, *format, *out, *host, *theme, *view, *loops, *key;
     double time, every, t, port, width, height, seed, frame_dt;
+    double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
-    int json, open, help, raw_lambda, reactions;
+    int json, csv, open, help, raw_lambda, reactions;
 } hn_args;
 
 typedef struct hn_command {
@@ -96,6 +97,7 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);

@@ -107,6 +107,17 @@ static double now(void) {
     return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
 }
 
+/// What is done, and how long the rest will take if it goes on like this.
+static void put_bar(const char *what, double share, double elapsed) {
+    enum { WIDTH = 24 };
+    const int done = (int)(WIDTH * (share < 0 ? 0 : share > 1 ? 1 : share));
+    fprintf(stderr, "\r\033[K%s [%.*s%.*s] %3.0f %%", what, done, "########################",
+            WIDTH - done, "........................", 100 * share);
+    if (share > 0.01) {
+        fprintf(stderr, ", %.0f s left", elapsed * (1 - share) / share);
+    }
+}
+
 void hn_progress_tell(hn_progress *p, const char *what, double share) {
     static const double PATIENCE = 1, BETWEEN = 0.1; // [s]
     double t = now();
@@ -116,7 +127,7 @@ void hn_progress_tell(hn_progress *p, const char *what, double share) {
     if (t - p->started < PATIENCE || t - p->last < BETWEEN || !isatty(STDERR_FILENO)) {
         return;
     }
-    fprintf(stderr, "\r%s %3.0f %%", what, 100 * share);
+    put_bar(what, share, t - p->started);
     fflush(stderr);
     p->last = t;
     p->shown = 1;

@@ -1,0 +1,421 @@
+#include "support/near.h"
+#include "support/trial.h"
+
+#include "base/strbuf.h"
+#include "study/pareto.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// ladders written down by hand: what is said of them can be checked ------------------------------------------------
+
+typedef struct written {
+    hn_wp wp;
+    hn_ref ref;
+    hn_wp_method methods[3];
+    hn_class classes[3];
+} written;
+
+static void write_down(written *w, int n_methods, int n_levels, double reference_error) {
+    memset(w, 0, sizeof *w);
+    w->ref.T = 1;
+    w->ref.error[HN_ERROR_Q] = reference_error;
+    w->wp = (hn_wp){
+        .ref = &w->ref, .n_methods = n_methods, .n_levels = n_levels, .methods = w->methods};
+    static const char *const spellings[3] = {"index1@rk4", "projection@rk4", "nullspace@rk4"};
+    for (int m = 0; m < n_methods; m++) {
+        w->methods[m].spec = hn_trial_spec(spellings[m]);
+        snprintf(w->methods[m].spelling, HN_SPEC_MAX, "%s", spellings[m]);
+    }
+}
+
+/// Errors e at steps 10, 20, 40, ...; `limit` is where the method converges to, away from the reference.
+static void set_ladder(written *w, int m, const double *e, double limit) {
+    for (int k = 0; k < w->wp.n_levels; k++) {
+        hn_wp_point *p = &w->methods[m].point[k];
+        p->state = HN_WP_DONE;
+        p->steps = 10 << k;
+        p->size = 1.0 / (double)p->steps;
+        p->worst[HN_ERROR_Q] = p->end[HN_ERROR_Q] = limit + e[k];
+        p->own = k ? fabs(e[k] - e[k - 1]) : (double)NAN;
+        p->cost.ops = 1000.0 * (1 << k);
+    }
+}
+
+static hn_class class_of(const written *w, int m) {
+    hn_class c;
+    hn_wp_classify(&w->wp, m, &c);
+    return c;
+}
+
+static void a_fourth_order_ladder_converges_with_order_four(void **state) {
+    (void)state;
+    written w;
+    const double e[6] = {1e-2, 1e-2 / 16, 1e-2 / 256, 1e-2 / 4096, 1e-2 / 65536, 1e-2 / 1048576};
+    write_down(&w, 1, 6, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_near(c.order, 4, 1e-12);
+    assert_true(c.as_theory && isnan(c.floor));
+}
+
+static void an_order_that_is_not_the_integrators_is_told_as_such(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {1e-2, 1e-2 / 8, 1e-2 / 64, 1e-2 / 512, 1e-2 / 4096};
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_near(c.order, 3, 1e-12);
+    assert_false(c.as_theory);
+    assert_non_null(strstr(c.text, "where its integrator has 4"));
+}
+
+static void rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone(void **state) {
+    (void)state;
+    written w;
+    const double e[7] = {1e-4, 6.25e-6, 3.9e-7, 2.44e-8, 3e-10, 5e-10, 2e-10};
+    write_down(&w, 1, 7, 1e-14);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_near(c.floor, 5e-10, 1e-14);
+    // the fit may use the first point of the floor's size or not, but nothing that wanders
+    assert_near(c.order, 4, 0.2);
+}
+
+static void errors_below_the_references_own_are_a_floor(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {3e-12, 2e-12, 4e-12, 1e-12, 2e-12};
+    write_down(&w, 1, 5, 1e-12);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_FLOOR);
+    assert_near(c.floor, 1e-11, 1e-15);
+}
+
+static void a_limit_that_is_not_the_motion_is_something_else(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {1e-2, 1e-2 / 16, 1e-2 / 256, 1e-2 / 4096, 1e-2 / 65536};
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0.3);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_ELSEWHERE);
+    assert_near(c.offset, 0.3, 1e-6);
+    // the same distance from a reference that knows no better accuses nobody
+    w.ref.error[HN_ERROR_Q] = 0.1;
+    assert_int_not_equal(class_of(&w, 0).kind, HN_CLASS_ELSEWHERE);
+}
+
+static void a_slow_method_that_still_converges_is_not_something_else(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {0.4, 0.2, 0.1, 0.05, 0.025}; // order 1, far from the end
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_near(c.order, 1, 1e-12);
+}
+
+static void slopes_that_wander_are_not_in_the_asymptotic_range(void **state) {
+    (void)state;
+    written w;
+    const double e[5] = {0.3, 0.25, 2e-2, 1e-2, 1e-4};
+    write_down(&w, 1, 5, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    assert_int_equal(class_of(&w, 0).kind, HN_CLASS_UNSETTLED);
+    assert_non_null(strstr(class_of(&w, 0).text, "asymptotic"));
+}
+
+static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **state) {
+    (void)state;
+    written w;
+    const double e[4] = {1, 1, 1, 1e-3};
+    write_down(&w, 1, 4, 1e-13);
+    set_ladder(&w, 0, e, 0);
+    for (int k = 0; k < 3; k++) {
+        w.methods[0].point[k].state = HN_WP_FAILED;
+        snprintf(w.methods[0].point[k].reason, HN_DIAG_MESSAGE, "the loop flew apart");
+    }
+    assert_int_equal(class_of(&w, 0).kind, HN_CLASS_FAILED);
+    assert_non_null(strstr(class_of(&w, 0).text, "1 of 4 sizes came to the end: the loop flew"));
+}
+
+// times ------------------------------------------------------------------------------------------------------------
+
+static void set_time(hn_wp_point *p, const double *samples, int n) {
+    memcpy(p->sample, samples, (size_t)n * sizeof *samples);
+    p->n_samples = n;
+    hn_wp_point_statistics(p);
+}
+
+static void medians_and_quartiles_are_those_of_the_samples(void **state) {
+    (void)state;
+    hn_wp_point p = {0};
+    const double samples[5] = {5, 1, 4, 2, 3};
+    set_time(&p, samples, 5);
+    assert_near(p.median, 3, 0);
+    assert_near(p.low, 2, 0);
+    assert_near(p.high, 4, 0);
+    assert_near(p.spread, 2.0 / 3, 1e-15);
+}
+
+/// Two methods with the same errors, the second with times `factor` as long.
+static hn_pareto front_of(written *w, double factor) {
+    const double e[3] = {1e-2, 1e-4, 1e-6};
+    hn_pareto p;
+    write_down(w, 3, 3, 1e-13);
+    for (int m = 0; m < 3; m++) {
+        set_ladder(w, m, e, m == 2 ? 0.5 : 0);
+        w->classes[m].kind = m == 2 ? HN_CLASS_ELSEWHERE : HN_CLASS_CONVERGES;
+        for (int k = 0; k < 3; k++) {
+            const double t = (1 << k) * (m == 1 ? factor : m == 2 ? 0.01 : 1);
+            const double samples[4] = {0.99 * t, t, 1.01 * t, t};
+            set_time(&w->methods[m].point[k], samples, 4);
+        }
+    }
+    hn_wp_pareto(&w->wp, w->classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    return p;
+}
+
+static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
+    (void)state;
+    written w;
+    const hn_pareto p = front_of(&w, 2);
+    assert_int_equal(p.n_bands, 6); // 1e-1 .. 1e-6
+    for (int i = 0; i < p.n_bands; i++) {
+        assert_int_equal(p.band[i].best.method, 0);
+        assert_int_equal(p.band[i].next.method, 1);
+        assert_int_equal(p.band[i].n_close, 0);
+        assert_near(p.band[i].ratio, 2, 1e-12);
+    }
+    assert_int_equal(p.band[0].best.level, 0);
+    assert_int_equal(p.band[5].best.level, 2);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_pareto_sentences(&b, &w.wp, &p);
+    assert_string_equal(hn_strbuf_text(&b), "Errors of 1e-01 to 1e-06: index1@rk4, 1.0 s to 4.0 s; "
+                                            "next projection@rk4 at 2 times that.\n");
+    hn_strbuf_reset(&b);
+}
+
+static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
+    (void)state;
+    written w;
+    const hn_pareto p = front_of(&w, 1.05);
+    assert_int_equal(p.band[0].n_close, 1);
+    assert_int_equal(p.band[0].close[0], 1);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_pareto_sentences(&b, &w.wp, &p);
+    assert_non_null(strstr(hn_strbuf_text(&b), "too close to rank"));
+    hn_strbuf_reset(&b);
+}
+
+static void what_converges_to_something_else_takes_no_part(void **state) {
+    (void)state;
+    written w;
+    front_of(&w, 2); // the third is a hundred times cheaper
+    for (int k = 0; k < 3; k++) {
+        assert_true(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 0, k));
+        assert_false(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 1, k));
+        assert_false(hn_wp_on_front(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, 2, k));
+    }
+}
+
+static void equal_cost_is_read_off_between_the_points(void **state) {
+    (void)state;
+    written w;
+    hn_race race;
+    front_of(&w, 2);
+    hn_wp_race(&w.wp, w.classes, HN_ERROR_Q, &race);
+    assert_int_equal(race.n, HN_RACE_COSTS);
+    for (int i = 0; i < race.n; i++) {
+        // e = 1e-2 at 1000, 1e-4 at 2000, 1e-6 at 4000 operations: a straight line in the logarithms
+        const double expected = 1e-2 * pow(1e-2, log2(race.cost[i] / 1000));
+        assert_true(race.cost[i] > 1000 && race.cost[i] < 4000);
+        assert_near(race.error[i][0] / expected, 1, 1e-9);
+        assert_true(isnan(race.error[i][2]));
+    }
+}
+
+// real ladders -----------------------------------------------------------------------------------------------------
+
+static hn_wp *study_of(const hn_trial *trial, const hn_ref *ref, const char *const *spellings,
+                       int n, const hn_wp_opts *opts) {
+    hn_method_spec specs[4];
+    hn_wp *wp = NULL;
+    hn_diag diag = {0};
+    for (int i = 0; i < n; i++) {
+        specs[i] = hn_trial_spec(spellings[i]);
+    }
+    if (hn_wp_create(trial->sys, trial->q, trial->v, ref, specs, n, opts, &wp, &diag) != HN_OK) {
+        fail_msg("%s", diag.message);
+    }
+    return wp;
+}
+
+static hn_ref *reference_of(const hn_trial *trial, double T) {
+    hn_ref *ref = NULL;
+    hn_diag diag = {0};
+    assert_int_equal(hn_ref_create(trial->sys, trial->q, trial->v, T, NULL, &ref, &diag), HN_OK);
+    return ref;
+}
+
+static void counts_are_the_same_the_second_time(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[2] = {"projection@rk4", "projection@dopri5"};
+    const hn_wp_opts opts = {.n_samples = -1, .n_levels = 4};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 0.5);
+    hn_wp *a = study_of(&trial, ref, spellings, 2, &opts);
+    hn_wp *b = study_of(&trial, ref, spellings, 2, &opts);
+    assert_true(hn_wp_run(a, NULL));
+    assert_true(hn_wp_run(b, NULL));
+    for (int m = 0; m < 2; m++) {
+        for (int k = 0; k < 4; k++) {
+            const hn_wp_point *p = &a->methods[m].point[k], *r = &b->methods[m].point[k];
+            assert_int_equal(p->state, HN_WP_DONE);
+            assert_int_equal(p->cost.evals, r->cost.evals);
+            assert_true(p->cost.ops == r->cost.ops && p->cost.ops > 0);
+            assert_int_equal(p->steps, r->steps);
+            assert_memory_equal(p->worst, r->worst, sizeof p->worst);
+        }
+    }
+    // halving the step doubles what a fixed step costs, exactly
+    assert_int_equal(a->methods[0].point[1].steps, 2 * a->methods[0].point[0].steps);
+    hn_wp_free(a);
+    hn_wp_free(b);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+static void a_method_that_cannot_serve_the_scene_stays_with_its_reason(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[2] = {"partitioning@rk4", "projection@rk4"};
+    const hn_wp_opts opts = {.n_samples = -1, .n_levels = 2};
+    hn_trial_open(&trial, "lessons/03-space-and-drives/scenes/heavy-top.json");
+    hn_ref *ref = reference_of(&trial, 0.05);
+    hn_wp *wp = study_of(&trial, ref, spellings, 2, &opts);
+    assert_true(hn_wp_run(wp, NULL));
+    assert_int_equal(wp->methods[0].point[0].state, HN_WP_FAILED);
+    assert_int_equal(wp->methods[0].point[0].status, HN_ERR_UNSUPPORTED);
+    assert_true(wp->methods[0].point[0].reason[0] != 0);
+    assert_int_equal(wp->methods[1].point[1].state, HN_WP_DONE);
+    hn_wp_free(wp);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[1] = {"projection@rk4"};
+    const hn_wp_opts opts = {.n_levels = 4, .budget = 1e-6};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 0.5);
+    hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
+    assert_false(hn_wp_run(wp, NULL));
+    assert_true(wp->out_of_time);
+    for (int k = 0; k < 4; k++) {
+        assert_int_equal(wp->methods[0].point[k].state, HN_WP_SKIPPED);
+        assert_non_null(strstr(wp->methods[0].point[k].reason, "budget"));
+    }
+    hn_wp_free(wp);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+static int stop_after(void *user) {
+    return --*(int *)user < 0;
+}
+
+static void a_stopped_study_keeps_what_it_has_and_goes_on_from_there(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[2] = {"projection@rk4", "projection@dopri5"};
+    const hn_wp_opts opts = {.n_levels = 3, .n_samples = -1};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 0.5);
+    hn_wp *whole = study_of(&trial, ref, spellings, 2, &opts);
+    hn_wp *broken = study_of(&trial, ref, spellings, 2, &opts);
+    assert_true(hn_wp_run(whole, NULL));
+    int questions = 3, done = 0;
+    const hn_wp_hooks hooks = {.user = &questions, .stop = stop_after};
+    assert_false(hn_wp_run(broken, &hooks));
+    for (int i = 0; i < 6; i++) {
+        done += broken->methods[i / 3].point[i % 3].state == HN_WP_DONE;
+    }
+    assert_true(broken->stopped && done > 0 && done < 6);
+    assert_true(hn_wp_run(broken, NULL));
+    for (int i = 0; i < 6; i++) {
+        const hn_wp_point *p = &whole->methods[i / 3].point[i % 3];
+        const hn_wp_point *r = &broken->methods[i / 3].point[i % 3];
+        assert_memory_equal(p->worst, r->worst, sizeof p->worst);
+        assert_memory_equal(&p->own, &r->own, sizeof p->own);
+        assert_int_equal(p->cost.evals, r->cost.evals);
+    }
+    hn_wp_free(whole);
+    hn_wp_free(broken);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+static void samples_of_time_are_batches_above_the_clocks_grain(void **state) {
+    (void)state;
+    hn_trial trial;
+    static const char *const spellings[1] = {"projection@rk4"};
+    const hn_wp_opts opts = {.n_levels = 2, .n_samples = 3};
+    hn_trial_open(&trial, HN_TRIAL_LESSON "fb0.json");
+    hn_ref *ref = reference_of(&trial, 0.5);
+    hn_wp *wp = study_of(&trial, ref, spellings, 1, &opts);
+    assert_true(hn_wp_run(wp, NULL));
+    for (int k = 0; k < 2; k++) {
+        const hn_wp_point *p = &wp->methods[0].point[k];
+        assert_int_equal(p->n_samples, 3);
+        assert_true(p->median > 0 && p->low <= p->median && p->median <= p->high);
+    }
+    // sizes are the ladder's: the one of the spelling is gone
+    char spelling[HN_SPEC_MAX];
+    hn_wp_spelling(wp, 0, 1, spelling);
+    assert_string_equal(wp->methods[0].spelling, "projection@rk4");
+    assert_near(hn_method_setting(&wp->methods[0].spec, "h", 0), 1e-3, 0);
+    assert_near(wp->methods[0].point[1].size, wp->methods[0].point[0].size / 2, 0);
+    const hn_method_spec again = hn_trial_spec(spelling);
+    assert_near(hn_method_setting(&again, "h", 0), wp->methods[0].point[1].size, 0);
+    hn_wp_free(wp);
+    hn_ref_free(ref);
+    hn_trial_close(&trial);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_fourth_order_ladder_converges_with_order_four),
+        cmocka_unit_test(an_order_that_is_not_the_integrators_is_told_as_such),
+        cmocka_unit_test(rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone),
+        cmocka_unit_test(errors_below_the_references_own_are_a_floor),
+        cmocka_unit_test(a_limit_that_is_not_the_motion_is_something_else),
+        cmocka_unit_test(a_slow_method_that_still_converges_is_not_something_else),
+        cmocka_unit_test(slopes_that_wander_are_not_in_the_asymptotic_range),
+        cmocka_unit_test(a_method_that_hardly_ever_finishes_is_failed_with_its_reason),
+        cmocka_unit_test(medians_and_quartiles_are_those_of_the_samples),
+        cmocka_unit_test(the_cheapest_method_of_each_accuracy_is_named),
+        cmocka_unit_test(times_that_cannot_be_told_apart_are_not_ranked),
+        cmocka_unit_test(what_converges_to_something_else_takes_no_part),
+        cmocka_unit_test(equal_cost_is_read_off_between_the_points),
+        cmocka_unit_test(counts_are_the_same_the_second_time),
+        cmocka_unit_test(a_method_that_cannot_serve_the_scene_stays_with_its_reason),
+        cmocka_unit_test(a_budget_that_is_too_small_leaves_points_out_and_says_so),
+        cmocka_unit_test(a_stopped_study_keeps_what_it_has_and_goes_on_from_there),
+        cmocka_unit_test(samples_of_time_are_batches_above_the_clocks_grain),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
