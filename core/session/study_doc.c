@@ -176,6 +176,7 @@ static void put_paretos(hn_strbuf *b, const hn_study *s) {
             hn_json_object(b);
             hn_json_put_string(b, "error", hn_error_name((hn_error_kind)error));
             hn_json_put_string(b, "cost", hn_cost_name((hn_cost_kind)cost));
+            hn_json_put_bool(b, "ranked", !p.few);
             put_sentences(b, s, &p);
             hn_json_key(b, "bands");
             hn_json_array(b);

@@ -12,7 +12,7 @@
 static const char STYLE[] =
     "*{box-sizing:border-box}"
     "body{margin:0;background:var(--paper);color:var(--ink);font:15px/1.5 system-ui,sans-serif}"
-    "main{max-width:1040px;margin:0 auto;padding:32px 24px 64px}"
+    "main{max-width:1180px;margin:0 auto;padding:32px 24px 64px}"
     "h1{font-size:24px;font-weight:600;margin:0 0 "
     "4px}h2{font-size:17px;font-weight:600;margin:40px 0 8px}"
     "p{margin:8px 0;max-width:76ch}.quiet{color:var(--muted);font-size:13px}"
@@ -20,13 +20,14 @@ static const char STYLE[] =
     "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;width:100%}"
     "th{font-weight:500;color:var(--muted);text-align:left;vertical-align:bottom}"
     "th,td{padding:4px 10px 4px 0;border-bottom:1px solid var(--hairline)}"
-    "td.n,th.n{text-align:right;white-space:nowrap}td.m{white-space:nowrap}"
+    "td.n,th.n{text-align:right;white-space:nowrap}td.m{white-space:nowrap}td.v{min-width:190px}"
     ".scroll{overflow-x:auto}.wrong{color:var(--tear)}"
     "svg{display:block;width:100%;height:auto}svg.key{display:inline-block;width:28px;vertical-"
     "align:-2px}"
     ".grid{stroke:var(--hairline);stroke-width:1;fill:none}.axis{stroke:var(--muted);stroke-width:"
     "1;fill:none}"
-    ".curve{fill:none;stroke-width:2}.elsewhere{opacity:.55}.leader{fill:none;stroke:var(--"
+    ".curve{fill:none;stroke-width:2}.again{stroke-width:1.2}.lap{fill:none;stroke-width:1}."
+    "elsewhere{opacity:.55}.leader{fill:none;stroke:var(--"
     "hairline)}"
     ".open{fill:none;stroke-width:.5}.solid{stroke:none}.failed path{fill:none;stroke-width:2}"
     ".band{fill:var(--muted);opacity:.14}"
@@ -39,8 +40,12 @@ static const char STYLE[] =
     "6px;border-radius:4px;color:var(--ink)}"
     ".plot{display:none}details{margin:8px 0}summary{cursor:pointer}"
     "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{max-width:none;padding:0}"
-    "table{font-size:8pt}.bar{display:none}h2{break-after:avoid}tr,svg,li{break-inside:avoid}"
-    ".all>summary,.all{display:none}}";
+    "table{font-size:7pt}th,td{padding:2px 5px 2px "
+    "0}td.v{min-width:105px}td.n,td.m{white-space:normal}"
+    ".scroll{overflow:visible}svg.key{width:18px}.bar{display:none}h2{break-after:avoid;margin-top:"
+    "20px}"
+    "tr,svg,li{break-inside:avoid}"
+    ".all{display:none}}";
 
 static void put_theme(hn_strbuf *b, hn_theme theme) {
     const hn_surface *s = hn_surface_get(theme);
@@ -95,7 +100,7 @@ static void put_head(hn_strbuf *b, const char *title) {
 
 static void put_method(hn_strbuf *b, const hn_study *s, int m) {
     hn_strbuf_add(b, "<td class=\"m\">");
-    hn_study_key(b, hn_look_slot(m));
+    hn_study_key(b, m);
     hn_strbuf_add(b, " ");
     hn_html_text(b, hn_study_wp(s)->methods[m].spelling);
     hn_strbuf_add(b, "</td>");
@@ -193,7 +198,7 @@ static void put_methods(hn_strbuf *b, const hn_study *s) {
         }
         hn_strbuf_add(b, "<tr>");
         put_method(b, s, m);
-        hn_strbuf_printf(b, "<td%s>", c->kind == HN_CLASS_ELSEWHERE ? " class=\"wrong\"" : "");
+        hn_strbuf_printf(b, "<td class=\"v%s\">", c->kind == HN_CLASS_ELSEWHERE ? " wrong" : "");
         hn_html_text(b, c->text);
         hn_strbuf_printf(b, "</td><td class=\"n\">%d of %d</td>", done, wp->n_levels);
         for (int i = 0; i < HN_ERROR_COUNT; i++) {

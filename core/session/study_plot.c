@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { WIDTH = 900, HEIGHT = 520, LEFT = 66, RIGHT = 190, TOP = 30, BOTTOM = 50, LABEL_STEP = 15 };
+enum { WIDTH = 900, HEIGHT = 520, LEFT = 66, RIGHT = 190, TOP = 30, BOTTOM = 50, LABEL_STEP = 16 };
 static const double MARKER = 4.2; // half its size
 static const double SMALLEST = 1e-17;
 static const double SLOPE_MARGIN = 0.05; // of the range of costs, left and right
@@ -81,7 +81,8 @@ static int find_frame(const hn_wp *wp, frame *f) {
     return f->x1 > f->x0 && f->y1 > f->y0;
 }
 
-static void put_marker(hn_strbuf *b, int slot, double x, double y, double r) {
+/// Of method m; from the eighth on, where colours begin anew, with a ring around it.
+static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
     static const char *const shapes[HN_MARKER_COUNT] = {
         [HN_MARKER_DISC] = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
         [HN_MARKER_SQUARE] = "M-.9-.9H.9V.9H-.9Z",
@@ -92,6 +93,7 @@ static void put_marker(hn_strbuf *b, int slot, double x, double y, double r) {
         [HN_MARKER_PLUS] = "M-1.1 0H1.1M0-1.1V1.1",
         [HN_MARKER_DOT] = "M-.5 0a.5.5 0 1 0 1 0a.5.5 0 1 0 -1 0Z",
     };
+    const int slot = hn_look_slot(m);
     const hn_marker marker = hn_look_get(slot)->marker;
     const int open =
         marker == HN_MARKER_CROSS || marker == HN_MARKER_PLUS || marker == HN_MARKER_RING;
@@ -100,19 +102,30 @@ static void put_marker(hn_strbuf *b, int slot, double x, double y, double r) {
                      "style=\"%s:var(--slot-%d)\" class=\"%s\"/>",
                      x, y, r, shapes[marker], open ? "stroke" : "fill", slot,
                      open ? "open" : "solid");
+    if (m >= HN_LOOK_METHODS) {
+        hn_strbuf_printf(b,
+                         "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" class=\"lap\" "
+                         "style=\"stroke:var(--slot-%d)\"/>",
+                         x, y, 1.75 * r, slot);
+    }
 }
 
-void hn_study_key(hn_strbuf *b, int slot) {
-    hn_strbuf_add(b, "<svg class=\"key\" viewBox=\"-14 -7 28 14\" width=\"28\" height=\"14\" "
-                     "aria-hidden=\"true\">");
-    const hn_look *look = hn_look_get(slot);
-    hn_strbuf_printf(b, "<path d=\"M-14 0H14\" class=\"curve\" style=\"stroke:var(--slot-%d)\"",
-                     slot);
+/// "curve", thinner where colours begin anew, and the dashes.
+static void put_line_style(hn_strbuf *b, int m, const char *more) {
+    const hn_look *look = hn_look_get(hn_look_slot(m));
+    hn_strbuf_printf(b, " class=\"curve%s%s\" style=\"stroke:var(--slot-%d)\"",
+                     m >= HN_LOOK_METHODS ? " again" : "", more, hn_look_slot(m));
     for (int i = 0; i < look->n_dash; i++) {
         hn_strbuf_printf(b, "%s%g", i ? " " : " stroke-dasharray=\"", look->dash[i]);
     }
     hn_strbuf_add(b, look->n_dash ? "\"/>" : "/>");
-    put_marker(b, slot, 0, 0, MARKER);
+}
+
+void hn_study_key(hn_strbuf *b, int m) {
+    hn_strbuf_add(b, "<svg class=\"key\" viewBox=\"-14 -8 28 16\" width=\"28\" height=\"16\" "
+                     "aria-hidden=\"true\"><path d=\"M-14 0H14\"");
+    put_line_style(b, m, "");
+    put_marker(b, m, 0, 0, MARKER);
     hn_strbuf_add(b, "</svg>");
 }
 
@@ -187,11 +200,8 @@ static void put_tip(hn_strbuf *b, const hn_study *s, const frame *f, int m, int 
 
 static void put_curve(hn_strbuf *b, const hn_study *s, const frame *f, int m) {
     const hn_wp *wp = hn_study_wp(s);
-    const int slot = hn_look_slot(m);
-    const hn_look *look = hn_look_get(slot);
     int started = 0;
-    hn_strbuf_printf(b, "<path class=\"curve%s\" style=\"stroke:var(--slot-%d)\" d=\"",
-                     hn_study_classes(s)[m].kind == HN_CLASS_ELSEWHERE ? " elsewhere" : "", slot);
+    hn_strbuf_add(b, "<path d=\"");
     for (int k = 0; k < wp->n_levels; k++) {
         const hn_wp_point *p = &wp->methods[m].point[k];
         if (is_drawn(p, f)) {
@@ -201,17 +211,13 @@ static void put_curve(hn_strbuf *b, const hn_study *s, const frame *f, int m) {
         }
     }
     hn_strbuf_add(b, "\"");
-    for (int i = 0; i < look->n_dash; i++) {
-        hn_strbuf_printf(b, "%s%g", i ? " " : " stroke-dasharray=\"", look->dash[i]);
-    }
-    hn_strbuf_add(b, look->n_dash ? "\"/>" : "/>");
+    put_line_style(b, m, hn_study_classes(s)[m].kind == HN_CLASS_ELSEWHERE ? " elsewhere" : "");
     for (int k = 0; k < wp->n_levels; k++) {
         const hn_wp_point *p = &wp->methods[m].point[k];
         if (is_drawn(p, f)) {
             hn_strbuf_add(b, "<g class=\"point\">");
             put_tip(b, s, f, m, k);
-            put_marker(b, slot, x_of(f, hn_wp_cost(p, f->cost)), y_of(f, p->worst[f->error]),
-                       MARKER);
+            put_marker(b, m, x_of(f, hn_wp_cost(p, f->cost)), y_of(f, p->worst[f->error]), MARKER);
             hn_strbuf_add(b, "</g>");
         }
     }
@@ -282,11 +288,10 @@ static void put_labels(hn_strbuf *b, const hn_wp *wp, const frame *f) {
     const int n = collect_labels(wp, f, list);
     spread_labels(list, n);
     for (int i = 0; i < n; i++) {
-        const int slot = hn_look_slot(list[i].method);
         const double edge = WIDTH - RIGHT;
         hn_strbuf_printf(b, "<path class=\"leader\" d=\"M%.1f %.1fL%.1f %.1fH%.1f\"/>",
                          list[i].x + MARKER + 2, list[i].y, edge + 2, list[i].at, edge + 8);
-        put_marker(b, slot, edge + 15, list[i].at, MARKER);
+        put_marker(b, list[i].method, edge + 15, list[i].at, MARKER);
         put_text(b, edge + 24, list[i].at + 4, "label", wp->methods[list[i].method].spelling);
     }
 }

@@ -8,8 +8,8 @@
 /// One <svg> element. Curves are labelled at their ends; failed points stand on the upper edge, at what they had cost by then; the band
 /// at the lower edge is what the reference cannot resolve.
 void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_cost_kind cost);
-/// A marker of a method on its own, for legends.
-void hn_study_key(hn_strbuf *b, int slot);
+/// Line and marker of method m on their own, for legends.
+void hn_study_key(hn_strbuf *b, int m);
 /// Text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);
 #endif

@@ -62,8 +62,7 @@ static int too_close(const hn_wp_point *a, const hn_wp_point *b, hn_cost_kind co
     if (cost != HN_COST_TIME) {
         return hn_wp_cost(a, cost) == hn_wp_cost(b, cost);
     }
-    return b->median < HN_PARETO_CLOSE * a->median || b->low <= a->high ||
-           a->n_samples < HN_WP_ENOUGH || b->n_samples < HN_WP_ENOUGH;
+    return b->median < HN_PARETO_CLOSE * a->median || b->low <= a->high;
 }
 
 static void fill_band(const hn_wp *wp, const hn_class *classes, const hn_pareto *p, hn_band *band) {
@@ -94,9 +93,22 @@ static void fill_band(const hn_wp *wp, const hn_class *classes, const hn_pareto 
     }
 }
 
+static int is_timed_too_seldom(const hn_wp *wp) {
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            const hn_wp_point *p = &wp->methods[m].point[k];
+            if (p->state == HN_WP_DONE && p->n_samples < HN_WP_ENOUGH) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                   hn_pareto *out) {
-    *out = (hn_pareto){.cost = cost, .error = error};
+    *out = (hn_pareto){
+        .cost = cost, .error = error, .few = cost == HN_COST_TIME && is_timed_too_seldom(wp)};
     for (int d = 1; d <= HN_PARETO_BANDS; d++) {
         hn_band band = {.accuracy = pow(10, -d)};
         fill_band(wp, classes, out, &band);
@@ -246,6 +258,11 @@ static void put_sentence(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p, int 
 }
 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
+    if (p->few) {
+        hn_strbuf_printf(b, "Some points were timed fewer than %d times: times are not ranked.\n",
+                         HN_WP_ENOUGH);
+        return;
+    }
     for (int i = 0; i < p->n_bands;) {
         int last = i;
         while (last + 1 < p->n_bands && winners(&p->band[i]) == winners(&p->band[last + 1])) {

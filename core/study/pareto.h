@@ -30,6 +30,7 @@ typedef struct hn_band {
 typedef struct hn_pareto {
     hn_cost_kind cost;
     hn_error_kind error;
+    int few; ///< 1: points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
     int n_bands; ///< 1e-1, 1e-2, ... down to the best error reached
     hn_band band[HN_PARETO_BANDS];
 } hn_pareto;

@@ -218,6 +218,24 @@ static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
     hn_strbuf_reset(&b);
 }
 
+static void times_taken_too_seldom_are_not_ranked(void **state) {
+    (void)state;
+    written w;
+    hn_pareto p = front_of(&w, 2);
+    assert_false(p.few);
+    w.methods[1].point[2].n_samples = HN_WP_ENOUGH - 1;
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_true(p.few);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_pareto_sentences(&b, &w.wp, &p);
+    assert_null(strstr(hn_strbuf_text(&b), "index1@rk4"));
+    hn_strbuf_reset(&b);
+    // counts are exact, however often a clock was read
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_OPS, &p);
+    assert_false(p.few);
+}
+
 static void what_converges_to_something_else_takes_no_part(void **state) {
     (void)state;
     written w;
@@ -409,6 +427,7 @@ int main(void) {
         cmocka_unit_test(medians_and_quartiles_are_those_of_the_samples),
         cmocka_unit_test(the_cheapest_method_of_each_accuracy_is_named),
         cmocka_unit_test(times_that_cannot_be_told_apart_are_not_ranked),
+        cmocka_unit_test(times_taken_too_seldom_are_not_ranked),
         cmocka_unit_test(what_converges_to_something_else_takes_no_part),
         cmocka_unit_test(equal_cost_is_read_off_between_the_points),
         cmocka_unit_test(counts_are_the_same_the_second_time),

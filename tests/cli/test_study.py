@@ -1,0 +1,218 @@
+"""Work-precision studies from the command line: documents that agree, what is kept when a study is cut short, reports without network."""
+
+import csv
+import io
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from html.parser import HTMLParser
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+DONE, INPUT, ENDED = 0, 2, 4
+METHODS = ["projection@rk4", "projection@dopri5", "nullspace-as-printed@rk4"]
+SMALL = ["study", "fb0", "work-precision", "--methods", *METHODS, "--time", "1", "--levels", "5", "--samples", "0"]
+VOID = {"meta", "input", "br", "circle", "path", "rect"}
+
+
+def command(words, folder):
+    return [driver.PROGRAM, *words], dict(os.environ, HOLONOM_CACHE=folder)
+
+
+def call(words, folder):
+    argv, env = command(words, folder)
+    return subprocess.run(argv, capture_output=True, env=env, timeout=120 * driver.SLOW)
+
+
+def strict(text):
+    def refuse(word):
+        raise ValueError("JSON holds " + word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def without_times(document):
+    """The same on every run: counts, errors, verdicts; not what a clock said."""
+    document = dict(document, elapsed=None, pareto=[p for p in document["pareto"] if p["cost"] != "time"])
+    for method in document["methods"]:
+        for point in method["points"]:
+            point.pop("cpu", None)
+    return json.dumps(document, sort_keys=True)
+
+
+class Study(unittest.TestCase):
+    def setUp(self):
+        self.kept = tempfile.TemporaryDirectory()
+        self.folder = self.kept.name
+
+    def tearDown(self):
+        self.kept.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def test_json_tells_errors_counts_verdicts_and_who_is_cheapest(self):
+        done = call([*SMALL, "--json"], self.folder)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        study = strict(done.stdout)
+        self.assertTrue(study["finished"])
+        self.assertGreater(study["reference"]["digits"], 12)
+        self.assertEqual([m["method"] for m in study["methods"]], METHODS)
+        kinds = [m["class"]["kind"] for m in study["methods"]]
+        self.assertEqual(kinds, ["converges", "converges", "elsewhere"])
+        self.assertAlmostEqual(study["methods"][0]["class"]["order"], 4, delta=0.2)
+        for method in study["methods"]:
+            self.assertEqual(len(method["points"]), 5)
+            for point in method["points"]:
+                self.assertEqual(point["state"], "done")
+                self.assertEqual(set(point["worst"]), {"q", "v", "reaction", "gap", "velocity_gap", "energy"})
+                for name, value in point["worst"].items():
+                    self.assertGreaterEqual(value, point["end"][name])
+        front = next(p for p in study["pareto"] if p["cost"] == "operations" and p["error"] == "q")
+        for band in front["bands"]:
+            self.assertNotEqual(band["best"]["method"], METHODS[2], "a wrong model is not the cheapest")
+        # closed to rounding, and wrong: the gap says nothing about the motion
+        printed = study["methods"][2]["points"][-1]
+        self.assertLess(printed["worst"]["gap"], 1e-12)
+        self.assertGreater(printed["worst"]["q"], 1e-3)
+
+    def test_csv_and_json_hold_the_same_numbers(self):
+        done = call([*SMALL, "--csv", "--out", self.path("s.json")], self.folder)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        rows = list(csv.DictReader(io.StringIO(done.stdout.decode())))
+        with open(self.path("s.json"), encoding="utf-8") as f:
+            study = strict(f.read())
+        points = [p for m in study["methods"] for p in m["points"]]
+        self.assertEqual(len(rows), len(points))
+        for row, point in zip(rows, points):
+            self.assertEqual(float(row["worst_q"]), point["worst"]["q"])
+            self.assertEqual(float(row["end_energy"]), point["end"]["energy"])
+            self.assertEqual(int(row["evaluations"]), point["evaluations"])
+
+    def test_the_table_names_every_method_and_draws_them(self):
+        done = call(SMALL, self.folder)
+        text = done.stdout.decode()
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        for method in METHODS:
+            self.assertIn(method, text)
+        self.assertIn("converges to something else", text)
+        self.assertIn("converges with order", text)
+        self.assertRegex(text, "[\u2801-\u28ff]", "braille")
+        self.assertIn("Cheapest by operations", text)
+        self.assertNotIn("nan", text)
+
+    def test_the_report_is_one_file_that_asks_no_network(self):
+        done = call([*SMALL, "--out", self.path("report.html")], self.folder)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        with open(self.path("report.html"), encoding="utf-8") as f:
+            text = f.read()
+        self.assertNotRegex(text, r"https?://|src=|@import|url\(|<script|<link")
+        self.assertNotRegex(text, r"\bnan\b|\binf\b")
+        self.assertEqual(text.count("<svg viewBox=\"0 0 900"), 12, "6 errors x 2 costs that were measured")
+        for method in METHODS:
+            self.assertIn(method, text)
+        open_tags = []
+
+        class Balance(HTMLParser):
+            def handle_starttag(self, tag, attrs):
+                if tag not in VOID:
+                    open_tags.append(tag)
+
+            def handle_startendtag(self, tag, attrs):
+                pass
+
+            def handle_endtag(self, tag):
+                assert open_tags.pop() == tag, tag
+
+        Balance().feed(text)
+        self.assertEqual(open_tags, [])
+
+    def test_what_is_at_fault_is_told(self):
+        for words, said in (
+            (["study", "fb0", "work-precison"], b"no study called 'work-precison'"),
+            (["study", "fb0", "--methods", "index1@rk5"], b"rk5"),
+            (["study", "fb0", "--levels", "99"], b"2 to 10"),
+            (["study", "fb0", "--time", "-1"], b"above 0"),
+            (["study", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
+            (["study", "fb0", "--json", "--csv"], b"JSON and CSV at once"),
+        ):
+            done = call(words, self.folder)
+            self.assertEqual(done.returncode, INPUT, words)
+            self.assertIn(said, done.stderr + done.stdout)
+
+    def test_a_second_study_reads_the_reference_and_counts_the_same(self):
+        first = strict(call([*SMALL, "--json"], self.folder).stdout)
+        kept = os.listdir(self.folder)
+        self.assertEqual([k.split("-")[0] for k in kept], ["reference"], "nothing is left of a finished study")
+        second = strict(call([*SMALL, "--json"], self.folder).stdout)
+        self.assertEqual(without_times(first), without_times(second))
+        # a reference that was cut short is not used
+        with open(self.path(kept[0]), "r+b") as f:
+            f.truncate(100)
+        third = strict(call([*SMALL, "--json"], self.folder).stdout)
+        self.assertEqual(without_times(first), without_times(third))
+
+    def test_a_study_killed_ten_times_ends_as_an_undisturbed_one(self):
+        words = [*SMALL[:-1], "2", "--levels", "6", "--time", "4", "--json"]
+        whole = tempfile.TemporaryDirectory()
+        undisturbed = strict(call(words, whole.name).stdout)
+        whole.cleanup()
+        chance = random.Random(5)
+        killed = 0
+        argv, env = command(words, self.folder)
+        for _ in range(10):
+            with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                time.sleep(chance.uniform(0.05, 0.25) * driver.SLOW)
+                killed += process.poll() is None
+                process.kill()
+                process.communicate()
+        self.assertGreaterEqual(killed, 3)
+        done = call(words, self.folder)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(without_times(strict(done.stdout)), without_times(undisturbed))
+
+    def test_an_interrupt_keeps_what_is_done_and_the_same_command_goes_on(self):
+        words = ["study", "fb0", "--methods", *METHODS, "--time", "2", "--samples", "3", "--json", "--budget", "0"]
+        argv, env = command(words, self.folder)
+        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            deadline = time.monotonic() + 30 * driver.SLOW
+            while time.monotonic() < deadline and not any(k.startswith("study") for k in os.listdir(self.folder)):
+                time.sleep(0.02)
+            time.sleep(0.3 * driver.SLOW)
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=30 * driver.SLOW)
+        self.assertEqual(process.returncode, ENDED, err)
+        study = strict(out)
+        self.assertTrue(study["stopped"])
+        self.assertIn(b"goes on from here", err)
+        done = sum(p["state"] == "done" for m in study["methods"] for p in m["points"])
+        text = call([w for w in words if w != "--json"], self.folder)
+        self.assertEqual(text.returncode, DONE)
+        found = re.search(rb"going on with (\d+) points", text.stderr)
+        self.assertEqual(int(found.group(1)) if found else 0, done)
+
+    def test_a_budget_is_kept_and_what_it_left_out_is_told(self):
+        words = ["study", "fb0", "--time", "10", "--budget", "2", "--json"]
+        started = time.monotonic()
+        done = call(words, self.folder)
+        took = time.monotonic() - started
+        study = strict(done.stdout)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertLess(study["elapsed"], 2 * 1.1 * driver.SLOW)
+        self.assertLess(took, 20 * driver.SLOW)
+        skipped = [p for m in study["methods"] for p in m["points"] if p["state"] == "skipped"]
+        self.assertTrue(skipped or not study["finished"])
+        for p in skipped:
+            self.assertIn("budget", p["reason"])
+
+
+if __name__ == "__main__":
+    driver.main()
