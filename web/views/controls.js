@@ -1,7 +1,7 @@
 // @ts-check
 // Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some method has; and the scene's parameters.
 import { sentenceOf } from "../api/client.js";
-import { parseQuantity, plain, prettyUnit } from "../state/format.js";
+import { niceAbove, niceBelow, parseQuantity, plain, prettyUnit } from "../state/format.js";
 import { settingOf } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { createSliderField } from "../widgets/slider-field.js";
@@ -84,6 +84,7 @@ export function createControls(el, store, actions) {
   const fields = new Map();
   /** @type {Map<string, ReturnType<typeof createSliderField>>} */
   const parameters = new Map();
+  let settingsOf = "";
   let parametersOf = "";
 
   /** The value that the methods share; the first one when they differ. @param {string} key */
@@ -97,9 +98,19 @@ export function createControls(el, store, actions) {
     return null;
   }
 
-  function makeField(control) {
+  /** Fast scenes take shorter steps and larger constants than the sliders have by themselves. */
+  function rangeOf({ key, min, max, scale }, held) {
+    return scale === "log"
+      ? { min: key === "h" ? Math.min(min, niceBelow((data.scene?.step || 1e-3) / 10)) : min, max }
+      : { min, max: Math.max(max, niceAbove(1.5 * held)) };
+  }
+
+  function makeField(control, held) {
+    const range = rangeOf(control, held);
     return createSliderField({
       ...control,
+      ...range,
+      step: control.step && range.max > control.max ? range.max / 100 : control.step,
       scale: /** @type {"log" | "linear"} */ (control.scale),
       id: `set-${control.key}`,
       read: (text) => parseQuantity(text, control.unit),
@@ -108,6 +119,11 @@ export function createControls(el, store, actions) {
   }
 
   function showSettings() {
+    if (settingsOf !== data.scene?.id) {
+      settingsOf = data.scene?.id ?? "";
+      fields.forEach((field) => field.dispose());
+      fields.clear();
+    }
     for (const control of CONTROLS) {
       const held = heldBy(control.key);
       let field = fields.get(control.key);
@@ -117,7 +133,7 @@ export function createControls(el, store, actions) {
         continue;
       }
       if (!field) {
-        field = makeField(control);
+        field = makeField(control, held);
         fields.set(control.key, field);
       }
       field.update(held);

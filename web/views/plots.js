@@ -1,6 +1,6 @@
 // @ts-check
 // Four curves over one clock: loop gap, velocity error, energy change, cost; each with a table as its twin.
-import { quantity } from "../state/format.js";
+import { niceAbove, quantity } from "../state/format.js";
 import { thin } from "../state/history.js";
 import { listen } from "../state/store.js";
 import { createPlot } from "../widgets/plot.js";
@@ -138,6 +138,7 @@ export function createPlots(el, store, actions) {
         series.map((one) => ({ ...one })),
         inks(),
         anew,
+        niceAbove(Math.min(1, data.duration || 1)),
       ),
     );
     figures.forEach(({ kind, empty }) => (empty.hidden = !(kind.loop && data.scene?.m === 0)));

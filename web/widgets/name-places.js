@@ -1,17 +1,20 @@
 // @ts-check
-// Where a name stands beside its point: of twelve places the one with the most room, kept until another is clearly better, so that names
+// Where a name stands beside its point: of twelve places near it and twelve farther off the one with the most room, kept until another is clearly better, so that names
 // neither cover the parts nor jump.
 
 const PLACES = 12;
-const ENOUGH = 10; // [px] of room; more is no better
+const ENOUGH = 5; // [px] of room; more is no better
 const KEEP = 4; // [px] that another place must have more
 const OFF = 15; // [px] from the point to the middle of the line
 const LETTER = 7.4; // [px] of a bold 13 px font
 const HALF_HEIGHT = 7;
 const CLOSE = 16; // [px] between points of which only the first is named
 const MOST_WORK = 12000; // names times obstacles
-/** places in the order of preference: to the upper right first */
+const FARTHER = 12; // [px] of the second ring
+const NEARER = 3; // [px] that a place of the second ring must have more
+/** places in the order of preference: to the upper right first, near before far */
 const ANGLES = [1, 2, 0, 11, 3, 10, 4, 5, 9, 6, 7, 8].map((k) => (2 * Math.PI * k) / PLACES);
+const SPOTS = [0, FARTHER].flatMap((more) => ANGLES.map((angle) => ({ angle, more })));
 
 /** @param {number} x @param {number} y @param {number[]} line [x, y, x, y, half a width] */
 function roomTo(x, y, [ax, ay, bx, by, r]) {
@@ -28,8 +31,11 @@ export function createNamePlaces(size) {
 
   function placeAt([x, y], width, k) {
     const half = width / 2;
-    const [c, sn] = [Math.cos(ANGLES[k]), Math.sin(ANGLES[k])];
-    return [x + c * (OFF - 3 + half), y - sn * OFF];
+    const { angle, more } = SPOTS[k];
+    return [
+      x + Math.cos(angle) * (OFF - 3 + half + more),
+      y - Math.sin(angle) * (OFF + more),
+    ];
   }
 
   function score([x, y], width, lines) {
@@ -62,7 +68,9 @@ export function createNamePlaces(size) {
         const width = LETTER * text.length;
         let best = kept.get(i) ?? 0;
         if (!cheap) {
-          const scores = ANGLES.map((_, k) => score(placeAt(at, width, k), width, lines));
+          const scores = SPOTS.map(
+            ({ more }, k) => score(placeAt(at, width, k), width, lines) - (more ? NEARER : 0),
+          );
           scores[best] += kept.has(i) ? KEEP : 0;
           best = scores.indexOf(Math.max(...scores));
           kept.set(i, best);

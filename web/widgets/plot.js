@@ -283,12 +283,12 @@ export function createPlot(el, options) {
   return {
     /** The smallest value that is plotted. */
     floor: FLOOR,
-    /** New curves: a new comparison, another selection, another theme. @param {typeof series} wanted @param {typeof ink} inks @param {boolean} anew */
-    setSeries(wanted, inks, anew) {
+    /** New curves: a new comparison, another selection, another theme. @param {typeof series} wanted @param {typeof ink} inks @param {boolean} anew @param {number} first [s] that the axis of time has at least */
+    setSeries(wanted, inks, anew, first) {
       series = wanted;
       ink = inks;
       if (anew) {
-        span = { x: 1, low: 1e-10, high: options.log ? 1e-6 : 0 };
+        span = { x: first, low: 1e-10, high: options.log ? 1e-6 : 0 };
       }
       build();
     },
