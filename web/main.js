@@ -77,6 +77,9 @@ addEventListener("keydown", (event) => {
     }
   }
 });
+addEventListener("hashchange", () => {
+  session.openLink(location.hash.slice(1)).catch((error) => session.notice(sentenceOf(error)));
+});
 addEventListener("pagehide", (event) => {
   if (!event.persisted) {
     session.dispose();

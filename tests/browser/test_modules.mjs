@@ -30,6 +30,7 @@ import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs
 import { createNamePlaces } from "../../web/widgets/name-places.js";
 import { createPen, piecesOf } from "../../web/widgets/pieces.js";
 import { bar, circle, disc } from "../../web/widgets/shapes.js";
+import { decodeLink, encodeLink, fits } from "../../web/state/link.js";
 import { anglesOf, lookFrom } from "../../web/state/look.js";
 import { createCamera, seenBox } from "../../web/widgets/camera.js";
 
@@ -68,7 +69,7 @@ test("a single character can be switched off, Space and the arrows stay", () => 
   assert.equal(press("-", false), undefined);
   assert.equal(press(" ", false), "toggle");
   assert.equal(press("ArrowRight", false), "step");
-  assert.equal(KEYS.filter(isCharacter).length, 11);
+  assert.equal(KEYS.filter(isCharacter).length, 12);
 });
 
 test("a number is read as people type it, and only in its unit", () => {
@@ -501,4 +502,42 @@ test("arrows keep their scale while the largest can be read, and rounding is no 
   assert.ok(zero.moment > 3e-16 && zero.moment < 1e-9 && zero.force < 1e-9);
   assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3 + 1e-9], 1), 1);
   assert.equal(pointAt([0, 0, 0, 1, 2, 3], [1, 2, 3.1], 1), -1);
+});
+
+test("a link says the same after it was read and written again", () => {
+  let seed = 7;
+  const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+  const pick = (list) => list.filter(() => random() < 0.5);
+  for (let k = 0; k < 2000; k++) {
+    const text = encodeLink({
+      scene: pick(["four", "bar", "6", "ä b&c=d"]).join("-") || "x",
+      settings: Object.fromEntries(
+        pick(["l1", "g", "th_0"]).map((name) => [name, (random() - 0.5) * 10 ** (12 * random() - 6)]),
+      ),
+      methods: pick(["index1@rk4:h=1e-3", "baumgarte:alpha=5,beta=5@dopri5:rtol=1e-8", "ggl@ida"]),
+      frame: Math.floor(random() * 5000),
+      selected: Math.floor(random() * 8),
+      hidden: pick([0, 1, 2, 3]),
+      show: pick(["labels", "traces", "arrows", "reactions"]),
+      build: "0.1.0 gcc 12.2.0",
+    });
+    const { link, faults } = decodeLink(text);
+    assert.deepEqual(faults, []);
+    assert.equal(encodeLink(link), text);
+  }
+  assert.ok(!fits("x".repeat(5000)));
+});
+
+test("a link that was changed or cut off names the field, and the rest is read", () => {
+  assert.equal(decodeLink("four-bar").link.scene, "four-bar");
+  const { link, faults } = decodeLink(
+    "scene=four-bar&set.l1=much&method=index1&method=index1@rk4:h=1e-3&frame=-2&show=labels,sound&colour=red&build=%E2%8",
+  );
+  assert.equal(link.scene, "four-bar");
+  assert.deepEqual(link.methods, ["index1@rk4:h=1e-3"]);
+  assert.deepEqual(link.settings, {});
+  assert.deepEqual(
+    faults.map((fault) => fault.split(" ").slice(0, 2).join(" ")),
+    ["l1 is", "method has", "frame is", "show names", "no field", "'build=%E2%8' is"],
+  );
 });

@@ -486,3 +486,41 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   );
   assert.equal(await page.locator(".arrows path").count(), 0);
 });
+
+test("a link opens the same comparison at the same frame with the same numbers", async () => {
+  const page = await open();
+  await page.click(".scene-parameters summary");
+  await type(page, "#parameter-l2", "1.3");
+  await until(page, (data) => data.settings.l2 === 1.3);
+  await page.click("#reactions summary");
+  await page.getByRole("button", { name: "paths" }).click();
+  await page.keyboard.press("3");
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  await page.keyboard.press("l");
+  await until(page, (data) => /link copied|address line/.test(data.notice));
+  const what = (data) => ({
+    frame: data.latest.frame,
+    q: data.latest.methods.map(({ q }) => q),
+    gaps: data.latest.methods.map(({ gap }) => gap),
+    methods: data.methods.map(({ spelling }) => spelling),
+    settings: data.settings,
+    view: [data.view.selected, data.view.traces, data.view.reactions, data.view.arrows],
+  });
+  const before = await read(page, what);
+  const fragment = new URL(page.url()).hash;
+  assert.match(fragment, /^#scene=four-bar&set\.l2=1\.3&method=/);
+  const other = await openPage(browser, server.url, { hash: fragment });
+  await until(other.page, `(data) => data.latest?.frame === ${before.frame} && data.view.traces`);
+  assert.deepEqual(await read(other.page, what), before);
+  assert.equal(await other.page.locator("#reactions details[open]").count(), 1);
+  await other.page.evaluate(() => {
+    location.hash = "scene=four-baar&frame=3";
+  });
+  await until(other.page, (data) => /no scene is called 'four-baar'/.test(data.notice));
+  assert.deepEqual(other.faults, []);
+  await other.close();
+});

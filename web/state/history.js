@@ -43,6 +43,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
   );
   /** time at which a method ended early, or NaN */
   const ended = new Float64Array(nMethods).fill(NaN);
+  const frames = new Int32Array(capacity);
   let count = 0;
   let stride = 1;
   let lastFrame = -1;
@@ -52,6 +53,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     const both = 2 * nCoordinates;
     for (let i = 0; i < count / 2; i++) {
       t[i] = t[2 * i];
+      frames[i] = frames[2 * i];
       for (let m = 0; m < nMethods; m++) {
         for (const name of COLUMNS) {
           columns[m][name][i] = columns[m][name][2 * i];
@@ -122,6 +124,7 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
         }
       }
       t[count] = frame.t;
+      frames[count] = frame.frame;
       frame.methods.forEach((method, m) => put(m, method, frame.t));
       count++;
       return true;
@@ -130,6 +133,8 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     pointsAt(m, i) {
       return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
     },
+    /** Which frame of the clock the i-th kept one is. @param {number} i */
+    frameAt: (i) => frames[i],
     /** Coordinates and rates of a method in the i-th kept frame (views). @param {number} m @param {number} i */
     stateAt(m, i) {
       const from = 2 * nCoordinates * i;

@@ -44,6 +44,7 @@ export const KEYS = [
   { key: "Backspace", context: "page", action: "reset", means: "back to the start" },
   { key: "-", context: "page", action: "slower", means: "slower" },
   { key: "=", context: "page", action: "faster", means: "faster" },
+  { key: "l", context: "page", action: "share", means: "a link to what is shown", shown: "L" },
   { key: "F1", context: "page", action: "help", means: "this table" },
   ...Array.from({ length: 8 }, (_, i) => ({
     key: String(i + 1),

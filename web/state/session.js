@@ -5,6 +5,7 @@ import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
 import { niceBelow } from "./format.js";
 import { createReactionFeed } from "./reaction-feed.js";
+import { decodeLink, encodeLink, fits } from "./link.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
 
@@ -13,6 +14,8 @@ const MOST_INCIDENTS = 200;
 const SHORT = 2; // [s]: a run of less is shown slowly, so that there is something to see
 const SHOWN_FOR = 5; // [s]
 export const MOST_METHODS = 8;
+const MOST_STEPS = 600; // frames that the server takes in one request
+const PANELS = /** @type {const} */ (["labels", "traces", "arrows", "reactions"]);
 
 const FIRST_SCENE = "four-bar";
 const FIRST_METHODS = [
@@ -285,9 +288,49 @@ export function createSession(store) {
     return scene?.methods?.length ? scene.methods : known;
   }
 
+  /** What a link says; what it says wrongly is named, and stays as the scene has it. @param {string} fragment */
+  async function openLink(fragment) {
+    const { link, faults } = decodeLink(fragment);
+    const ids = data.scenes.map(({ id }) => id);
+    const id = [link.scene, FIRST_SCENE, ids[0]].find((one) => ids.includes(one)) ?? FIRST_SCENE;
+    if (link.scene && id !== link.scene) {
+      faults.unshift(`no scene is called '${link.scene}'`);
+    }
+    if (link.build && link.build !== data.build) {
+      faults.push(`it was made by build ${link.build}, this is ${data.build}: last digits may differ`);
+    }
+    Object.assign(data.view, Object.fromEntries(PANELS.map((name) => [name, link.show.includes(name)])));
+    try {
+      await actions.loadScene(id, id === link.scene ? link : undefined);
+    } catch (error) {
+      faults.unshift(sentenceOf(error));
+      await actions.loadScene(id);
+    }
+    if (id === link.scene) {
+      await showLinked(link);
+    }
+    if (faults.length) {
+      notice(`the link: ${faults.join("; ")}`);
+    }
+    store.emit("view");
+  }
+
+  /** @param {import("./link.js").Linked} link */
+  async function showLinked({ frame, selected, hidden }) {
+    for (let left = frame; left > 0; left -= MOST_STEPS) {
+      await change({ step: Math.min(left, MOST_STEPS) });
+      if (data.state === "finished") {
+        break;
+      }
+    }
+    const n = data.methods.length;
+    data.view.hidden = new Set(hidden.filter((m) => m < n));
+    data.view.selected = Math.min(selected, n - 1);
+  }
+
   const actions = {
-    /** Everything the page needs before it can draw. @param {string} wanted id of a scene, or "" */
-    async start(wanted) {
+    /** Everything the page needs before it can draw. @param {string} fragment of the address: a scene, or a link */
+    async start(fragment) {
       const [index, look, catalogue, list, lessons] = await Promise.all([
         api.index(),
         api.look(),
@@ -301,19 +344,45 @@ export function createSession(store) {
       data.scenes = list.scenes.filter((scene) => !scene.errors);
       data.lessons = lessons.lessons;
       store.emit("ready");
-      const ids = data.scenes.map(({ id }) => id);
-      await actions.loadScene(
-        [wanted, FIRST_SCENE, ids[0]].find((id) => ids.includes(id)) ?? FIRST_SCENE,
+      await openLink(fragment);
+    },
+    openLink,
+    /** The address of what is shown: copied, and put where the browser keeps it. */
+    async share() {
+      const { view, history } = data;
+      const last = (history?.count ?? 0) - 1;
+      const fragment = encodeLink({
+        scene: data.scene.id,
+        settings: data.settings,
+        methods: data.methods.map(({ spelling }) => spelling),
+        frame: view.shown < 0 ? (data.latest?.frame ?? 0) : history.frameAt(Math.min(view.shown, last)),
+        selected: view.selected,
+        hidden: [...view.hidden],
+        show: PANELS.filter((name) => view[name]),
+        build: data.build,
+      });
+      if (!fits(fragment)) {
+        notice("this comparison is too long for a link: take fewer methods or parameters");
+        return;
+      }
+      window.history.replaceState(null, "", `#${fragment}`);
+      await navigator.clipboard.writeText(location.href).then(
+        () => notice("link copied"),
+        () => notice("the browser did not let the link be copied: it stands in the address line"),
       );
     },
-    /** @param {string} id */
-    async loadScene(id) {
+    /** @param {string} id @param {{settings: Record<string, number>, methods: string[]}} [link] in place of what the scene suggests */
+    async loadScene(id, link) {
       data.view.hidden.clear();
       data.view.selected = 0;
-      const methods = id === FIRST_SCENE ? chooseMethods(null) : chooseMethods(await api.scene(id));
+      const suggested = () =>
+        id === FIRST_SCENE ? chooseMethods(null) : api.scene(id).then(chooseMethods);
+      const methods = link?.methods.length
+        ? link.methods.slice(0, MOST_METHODS)
+        : await suggested();
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
-      await create({ scene: id, methods, speed });
+      await create({ scene: id, methods, speed, settings: link?.settings ?? {} });
     },
     play() {
       data.view.shown = -1;

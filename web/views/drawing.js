@@ -37,8 +37,8 @@ export function createDrawing(el, store, actions) {
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
   const ahead = h("p", { class: "ahead", hidden: true });
   const caption = h("p", { class: "caption" });
-  const labels = toggle("labels", "labels", true);
-  const traces = toggle("traces", "paths", false);
+  const labels = toggle("labels", "labels");
+  const traces = toggle("traces", "paths");
   const describe = h(
     "button",
     { type: "button", class: "quiet", onclick: tellDrawing },
@@ -63,18 +63,14 @@ export function createDrawing(el, store, actions) {
   let places = createNamePlaces({ width: 100, height: 100 });
   let size = { width: 0, height: 0 };
 
-  function toggle(key, word, on) {
+  function toggle(key, word) {
     return h(
       "button",
       {
         type: "button",
         class: "quiet",
-        "aria-pressed": String(on),
-        onclick: (event) => {
-          const pressed = event.currentTarget.getAttribute("aria-pressed") !== "true";
-          event.currentTarget.setAttribute("aria-pressed", String(pressed));
-          actions.setView({ [key]: pressed });
-        },
+        "aria-pressed": String(data.view[key]),
+        onclick: () => actions.setView({ [key]: !data.view[key] }),
       },
       word,
     );
@@ -340,6 +336,8 @@ export function createDrawing(el, store, actions) {
     methods: makeGhosts,
     reactions: update,
     view: () => {
+      set(labels, { "aria-pressed": String(data.view.labels) });
+      set(traces, { "aria-pressed": String(data.view.traces) });
       if (camera.look !== lookOf(data)) {
         fit();
       }

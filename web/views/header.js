@@ -19,11 +19,21 @@ export function createHeader(el, store, actions, open) {
   );
   const theme = h("button", { type: "button", class: "quiet", onclick: open.toggleTheme }, "dark");
   const keys = h("button", { type: "button", class: "quiet", onclick: open.openKeys }, "keys");
+  const link = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      title: "copy a link to what is shown (L)",
+      onclick: () => actions.share(),
+    },
+    "link",
+  );
   const about = h("p", { class: "about scene-about" });
   el.append(
     h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu),
     about,
-    h("div", { class: "choices" }, theme, keys),
+    h("div", { class: "choices" }, link, theme, keys),
   );
 
   async function load() {

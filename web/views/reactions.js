@@ -130,11 +130,25 @@ export function createReactions(el, store, actions) {
   }
 
   function follow() {
-    actions.setView({ reactions: details.open });
+    if (details.open !== data.view.reactions) {
+      actions.setView({ reactions: details.open });
+    } else {
+      show();
+    }
   }
 
   details.addEventListener("toggle", follow);
-  const stop = listen(store, { reactions: show, view: show, scene: show });
+  let wasOpen = data.view.reactions;
+  /** Opened by a link, or by hand: then the store follows. */
+  function obey() {
+    if (wasOpen !== data.view.reactions) {
+      wasOpen = data.view.reactions;
+      details.open = wasOpen;
+    }
+    show();
+  }
+
+  const stop = listen(store, { reactions: show, view: obey, scene: show });
   return {
     update() {},
     dispose() {

@@ -1,0 +1,117 @@
+// @ts-check
+// What a link to the page holds, in its fragment (which never reaches a server's log): scene, parameters, methods, the frame of the clock, and what is shown.
+// A bare fragment is the id of a scene.
+
+const SHOWN = ["labels", "traces", "arrows", "reactions"];
+const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
+const LONGEST = 4000; // [characters] that every mail program and browser takes
+
+/**
+ * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number, selected: number, hidden: number[],
+ *   show: string[], build: string}} Linked
+ */
+
+/** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
+const escape = (text) => encodeURIComponent(text).replace(/%(3A|2C|40|3D|2F)/g, decodeURIComponent);
+
+/** @param {Linked} what @returns {string} */
+export function encodeLink({ scene, settings, methods, frame, selected, hidden, show, build }) {
+  const pairs = [
+    ["scene", scene],
+    ...Object.entries(settings).map(([name, value]) => [`set.${name}`, String(value)]),
+    ...methods.map((method) => ["method", method]),
+    ["frame", String(frame)],
+    ["selected", String(selected)],
+    ...hidden.map((m) => ["hidden", String(m)]),
+    ["show", show.join(",")],
+    ["build", build],
+  ];
+  return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
+}
+
+/** May a link of this length be sent around? @param {string} text */
+export const fits = (text) => text.length <= LONGEST;
+
+const EMPTY = () => ({
+  scene: "",
+  settings: /** @type {Record<string, number>} */ ({}),
+  methods: /** @type {string[]} */ ([]),
+  frame: 0,
+  selected: 0,
+  hidden: /** @type {number[]} */ ([]),
+  show: ["labels"],
+  build: "",
+});
+
+/** @type {Record<string, (out: Linked, value: string) => string>} each puts a value and says what is wrong with it */
+const FIELDS = {
+  scene: (out, value) => {
+    out.scene = value;
+    return value ? "" : "is empty";
+  },
+  method: (out, value) => {
+    out.methods.push(value);
+    return value.includes("@") ? "" : "has no @ between formulation and integrator";
+  },
+  frame: (out, value) => putNumber(value, (number) => (out.frame = Math.round(number)), 0, 1e6),
+  selected: (out, value) => putNumber(value, (number) => (out.selected = number), 0, 7),
+  hidden: (out, value) => putNumber(value, (number) => out.hidden.push(number), 0, 7),
+  show: (out, value) => {
+    const words = value.split(",").filter(Boolean);
+    out.show = words.filter((word) => SHOWN.includes(word));
+    const other = words.find((word) => !SHOWN.includes(word));
+    return other ? `names '${other}'; there are ${SHOWN.join(", ")}` : "";
+  },
+  build: (out, value) => {
+    out.build = value;
+    return "";
+  },
+};
+
+function putNumber(text, put, least, most) {
+  const value = NUMBER.test(text) ? Number(text) : NaN;
+  if (!(value >= least && value <= most)) {
+    return `is '${text}'; a number from ${least} to ${most} is needed`;
+  }
+  put(value);
+  return "";
+}
+
+/**
+ * @param {string} fragment without its #
+ * @returns {{link: Linked, faults: string[]}} what could be read, and what could not, by field
+ */
+export function decodeLink(fragment) {
+  const link = EMPTY();
+  /** @type {string[]} */
+  const faults = [];
+  if (!fragment.includes("=")) {
+    link.scene = decode(fragment) ?? "";
+    return { link, faults };
+  }
+  for (const item of fragment.split("&").filter(Boolean)) {
+    const [key, value] = [item.split("=")[0], item.split("=").slice(1).join("=")].map(decode);
+    if (key === null || value === null) {
+      faults.push(`'${item.slice(0, 40)}' is cut off`);
+    } else if (key.startsWith("set.")) {
+      const fault = putNumber(value, (number) => (link.settings[key.slice(4)] = number), -1e12, 1e12);
+      faults.push(...(fault ? [`${key.slice(4)} ${fault}`] : []));
+    } else if (!Object.hasOwn(FIELDS, key)) {
+      faults.push(`no field is called '${key.slice(0, 40)}'`);
+    } else {
+      const fault = FIELDS[key](link, value);
+      faults.push(...(fault ? [`${key} ${fault}`] : []));
+    }
+  }
+  link.methods = link.methods.filter((method) => method.includes("@"));
+  return { link, faults };
+}
+
+/** @param {string} text @returns {string | null} null: an escape is cut off */
+function decode(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return null;
+  }
+}
