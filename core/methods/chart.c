@@ -2,6 +2,7 @@
 
 #include "linalg/dense.h"
 #include "methods/flops.h"
+#include "methods/reduced_mass.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -242,38 +243,6 @@ void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *p, const doubl
     }
 }
 
-// y (nv x r) = M x, entry by entry of the lower triangle
-static void multiply_mass(const hn_chart *chart, const double *M, const double *x, int r,
-                          double *y) {
-    const size_t nv = (size_t)chart->nv;
-    memset(y, 0, nv * (size_t)r * sizeof *y);
-    for (int k = 0; k < chart->n_M; k++) {
-        const size_t i = (size_t)chart->M_row[k], j = (size_t)chart->M_col[k];
-        const double m = M[i * nv + j];
-        hn_axpy(r, m, x + j * (size_t)r, y + i * (size_t)r);
-        if (i != j) {
-            hn_axpy(r, m, x + i * (size_t)r, y + j * (size_t)r);
-        }
-    }
-}
-
-// A (r x r) = N' M N, lower triangle
-static void project_mass(hn_chart *chart, const double *M) {
-    const int nv = chart->nv, r = chart->r;
-    const double *N = chart->here.N;
-    multiply_mass(chart, M, N, r, chart->Mx);
-    for (int i = 0; i < r; i++) {
-        for (int j = 0; j <= i; j++) {
-            double sum = 0;
-            for (int k = 0; k < nv; k++) {
-                sum += N[k * r + i] * chart->Mx[k * r + j];
-            }
-            chart->A[i * r + j] = sum;
-        }
-    }
-    chart->cost.ops += 4.0 * chart->n_M * r + hn_flops_product(r, nv, r) / 2;
-}
-
 hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
     const int nv = chart->nv, nc = chart->nc, r = chart->r;
     const hn_chart_point *p = &chart->here;
@@ -290,13 +259,15 @@ hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
     }
     // N' (f - M c)
     double *force = chart->dq;
-    multiply_mass(chart, M, chart->c, 1, force);
+    const hn_mass_entries at = {nv, chart->n_M, chart->M_row, chart->M_col};
+    hn_mass_multiply(&at, M, chart->c, 1, force);
     for (int i = 0; i < nv; i++) {
         force[i] = f[i] - force[i];
     }
-    project_mass(chart, M);
+    hn_mass_multiply(&at, M, p->N, r, chart->Mx);
+    hn_mass_project(nv, r, p->N, chart->Mx, chart->A);
     hn_mat_t_vec(nv, r, p->N, force, u_dot);
-    chart->cost.ops += 4.0 * chart->n_M + hn_flops_product(r, nv, 1);
+    chart->cost.ops += hn_mass_project_ops(&at, r) + 4.0 * chart->n_M + hn_flops_product(r, nv, 1);
     return hn_chart_solve_reduced(chart, p->t, u_dot);
 }
 

@@ -56,7 +56,7 @@ typedef struct hn_chart {
     int *at;              ///< nv: its entry of q, -1 for the speed of a ball
     hn_eval *loop, *full; ///< phi, phi_t, J; and M, f, gamma
     int *dep, *ind;       ///< rank and r column numbers, ascending
-    double *scale;        ///< nv, 1 / sqrt(M_jj) at the start: makes columns of J comparable
+    double *scale;        ///< nv, what counts as one: makes columns of J comparable
     int with_rate;        ///< 1: gamma is evaluated, c of (2) enters (3); 0: c is taken as zero
     hn_chart_point here, probe; ///< where the right-hand side is, and one for looking elsewhere
     hn_chart_point base;        ///< the last accepted state: q, N, s, t and sign alone

@@ -110,6 +110,8 @@ typedef struct hn_formulation {
     /// Mends y in place at the end of an accepted step. *changed = 1 if y moved or its meaning changed (FSAL, history and
     /// dense output are then stale). NULL: nothing to do.
     hn_status (*after_step)(void *self, double t, double *y, int *changed);
+    /// 1: y means something else after each step, so that the dense output of the last one cannot be read. NULL: 0.
+    int (*state_is_local)(const void *self);
     /// Changes a setting while running (sliders); NULL: not possible.
     hn_status (*set)(void *self, int setting, double value);
     void (*add_cost)(const void *self, hn_cost *cost); ///< adds its counters

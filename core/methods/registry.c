@@ -19,6 +19,8 @@ static const hn_formulation *const formulations[] = {
     &hn_formulation_ali3p,
     &hn_formulation_symmetric_projection,
     &hn_formulation_nullspace_solver,
+    &hn_formulation_nullspace_tangent,
+    &hn_formulation_nullspace_untracked,
 };
 enum { N_FORMULATIONS = sizeof formulations / sizeof formulations[0] };
 

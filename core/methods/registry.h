@@ -9,6 +9,7 @@ extern const hn_formulation hn_formulation_index1, hn_formulation_baumgarte,
     hn_formulation_augmented_lagrangian, hn_formulation_udwadia_kalaba, hn_formulation_ggl,
     hn_formulation_index2, hn_formulation_index3;
 extern const hn_formulation hn_formulation_ali3p, hn_formulation_symmetric_projection,
-    hn_formulation_nullspace_solver;
+    hn_formulation_nullspace_solver, hn_formulation_nullspace_tangent,
+    hn_formulation_nullspace_untracked;
 
 #endif

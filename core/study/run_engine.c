@@ -154,6 +154,10 @@ hn_status hn_engine_read(hn_run *run, hn_run_engine *e, double t, const double *
 
 int hn_engine_has_dense(const hn_run *run) {
     const hn_dae_stepper *dae = dae_of(run);
+    const hn_formulation *f = run->spec.formulation;
+    if (!dae && f->state_is_local && f->state_is_local(run->main.formulation)) {
+        return 0;
+    }
     return dae ? dae->dense != NULL : run->spec.stepper->dense != NULL;
 }
 

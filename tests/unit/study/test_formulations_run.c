@@ -219,7 +219,8 @@ static void operations_are_counted_and_follow_the_evaluations(void **state) {
             assert_int_equal(s.cost.evals, 400);
         }
         assert_true(s.cost.ops / (double)s.cost.evals > 80);
-        assert_true(s.cost.ops / (double)s.cost.evals < 400);
+        // tangent-space coordinates close the loops at each evaluation: two turns, each with its own factors
+        assert_true(s.cost.ops / (double)s.cost.evals < 800);
         assert_true(s.cost.factorisations >= 400);
         assert_int_equal(s.cost.fallbacks, 0);
         hn_run_free(run);
