@@ -463,6 +463,8 @@ test("what is seen coming is counted down until it is there, for the methods it 
   assert.equal(predictionAt(data, 6), "");
   assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s (raw)");
   assert.equal(predictionAt(data, 54), "");
+  data.incidents.push({ code: "near-singular", method: 0, t: 0.76, value: 1e-5 });
+  assert.equal(predictionAt(data, 54), "a singular pose was passed at 0.76 s");
   data.incidents.push({ code: "rank-ahead", method: 1, t: 0.3, value: 0.4 });
   assert.equal(predictionAt(data, 30), "J loses rank in 0.20 s");
   data.view.hidden.add(1);

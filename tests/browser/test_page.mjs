@@ -334,6 +334,36 @@ test("the equations of the scene are set as mathematics", () =>
     await screenshot(page, "page-1280-light-equations");
   }));
 
+test("a formula too long to be read is not set, and said where it is printed", () =>
+  onPage({ hash: "#stewart-6-6" }, async (page) => {
+    await page.click(".equation-panel summary");
+    await page.waitForFunction(() =>
+      /thousand characters: "holonom equations" prints it/.test(
+        document.querySelector(".equation-body").textContent,
+      ),
+    );
+    assert.equal(await page.locator(".katex-error").count(), 0);
+    assert.match(await page.textContent(".equation-body"), /rotation vector of the unit quaternion/);
+  }));
+
+for (const width of [360, 768]) {
+  test(`${width} wide, in space, with forces and the dialog open: no horizontal scroll`, () =>
+    onPage({ viewport: { width, height: 780 }, hash: "#delta-robot" }, async (page) => {
+      await page.click("#reactions summary");
+      await page.waitForSelector("#reactions tbody tr");
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+      await page.getByRole("button", { name: "add a method" }).click();
+      await page.selectOption("#pick-formulation", "ggl");
+      await page.click(".misfits summary");
+      const [dialog, inner] = await page.evaluate(() => {
+        const node = document.querySelector(".dialog");
+        return [node.clientWidth, node.scrollWidth];
+      });
+      assert.equal(inner, dialog);
+      await screenshot(page, `dialog-${width}`);
+    }));
+}
+
 test("every shipped scene opens, moves and draws no NaN", () =>
   onPage({}, async (page) => {
     const ids = await read(page, (data) => data.scenes.map(({ id }) => id));

@@ -76,6 +76,17 @@ export function sentences(data, shown) {
   return out.slice(0, 3);
 }
 
+const SAID_AFTER = 0.5; // [s] that a pose which was passed is still told: some come quickly
+const PASSED = ["near-singular", "rank-loss"];
+
+/** @param {import("./store.js").Store["data"]} data @param {number} now [s] */
+function passedAt({ incidents, view, duration }, now) {
+  const last = incidents
+    .filter(({ code, method, t }) => PASSED.includes(code) && t > 0 && t <= now && !view.hidden.has(method))
+    .reduce((latest, { t }) => Math.max(latest, t), -Infinity);
+  return now - last < SAID_AFTER ? `a singular pose was passed at ${seconds(last, duration)}` : "";
+}
+
 /**
  * What the engine sees coming at the time shown: "J loses rank in 0.31 s (index-1, projection)", "" when nothing is.
  * @param {import("./store.js").Store["data"]} data
@@ -98,7 +109,7 @@ export function predictionAt(data, shown) {
     .filter(([m, at]) => at > now && !view.hidden.has(m))
     .sort(([, a], [, b]) => a - b);
   if (coming.length === 0) {
-    return "";
+    return passedAt(data, now);
   }
   const drawn = methods.filter((_, m) => !view.hidden.has(m)).length;
   const names = coming.map(([m]) => methods[m].label).join(", ");
@@ -232,9 +243,12 @@ export function describeDrawing(data, shown) {
   const method = methods[view.selected];
   const drawn = methods.filter((_, m) => !view.hidden.has(m)).map(({ label }) => label);
   const points = history.pointsAt(view.selected, shown);
+  const dimensions = scene.view?.spatial ? 3 : 2;
   const places = scene.drawing.labels
     .map((label, i) =>
-      label ? `${label} at (${points[3 * i].toFixed(2)}, ${points[3 * i + 1].toFixed(2)}) m` : "",
+      label
+        ? `${label} at (${Array.from(points.slice(3 * i, 3 * i + dimensions), (x) => x.toFixed(2)).join(", ")}) m`
+        : "",
     )
     .filter(Boolean)
     .slice(0, 8);

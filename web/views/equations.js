@@ -5,7 +5,8 @@ import katex from "katex";
 import { listen } from "../state/store.js";
 import { h } from "../widgets/dom.js";
 
-const MOST_ENTRIES = 80; // beyond it a large scene would only fill the page
+const MOST_ENTRIES = 40; // beyond it a large scene would only fill the page
+const LONGEST = 600; // [characters of TeX] nobody reads a longer formula, and setting it takes a browser seconds
 
 const SYSTEM = String.raw`\begin{bmatrix} M & J^{\mathsf T} \\ J & 0 \end{bmatrix}\begin{bmatrix} a \\ -\lambda \end{bmatrix} = \begin{bmatrix} f \\ -\gamma \end{bmatrix}, \qquad \varphi(q, t) = 0`;
 const FREE = String.raw`M\,a = f`;
@@ -32,10 +33,14 @@ export function createEquations(el, store, actions) {
   el.replaceChildren(details);
   let shownFor = "";
 
+  /** A long subscript has its parts apart: e_{0,top} for e_{0\\_top}. @param {string} latex */
+  const tidy = (latex) =>
+    latex.replace(/_\{(\w+)\\_([^{}]+)\}/g, (_, first, rest) => `_{${first},\\mathrm{${rest}}}`);
+
   /** @param {string} latex @param {boolean} display */
   function formula(latex, display) {
     const node = h("div", { class: display ? "display" : "line" });
-    katex.render(latex, node, {
+    katex.render(tidy(latex), node, {
       displayMode: display,
       throwOnError: false,
       output: "htmlAndMathml",
@@ -81,8 +86,21 @@ export function createEquations(el, store, actions) {
         { class: "about" },
         `Speeds, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries not listed are zero.`,
       ),
+      ...(answer.coordinates ?? []).map(({ name, is }) =>
+        h("p", { class: "about" }, `${name}: ${is}.`),
+      ),
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
     );
+  }
+
+  function entryLine(entry) {
+    if (entry.latex.length <= LONGEST) {
+      return formula(`${entry.name_latex} = ${entry.latex}`, false);
+    }
+    const line = formula(`${entry.name_latex} = \\ldots`, false);
+    const size = `${Math.round(entry.latex.length / 100) / 10} thousand characters`;
+    line.append(h("span", { class: "about" }, ` ${size}: "holonom equations" prints it`));
+    return line;
   }
 
   function termBlock(term) {
@@ -92,7 +110,7 @@ export function createEquations(el, store, actions) {
       "section",
       { class: "term-block" },
       h("h3", {}, `${term.meaning}`),
-      ...most.map((entry) => formula(`${entry.name_latex} = ${entry.latex}`, false)),
+      ...most.map(entryLine),
       more > 0 ? h("p", { class: "about" }, `and ${more} more entries`) : "",
     );
   }
