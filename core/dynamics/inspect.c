@@ -3,6 +3,7 @@
 #include "dynamics/factor.h"
 #include "dynamics/system_impl.h"
 #include "expr/print.h"
+#include "linalg/newton_matrix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -273,7 +274,18 @@ static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
     return status;
 }
 
-static void put_solver(hn_strbuf *b, const counts *c) {
+// who factors the matrices of Newton's method: [M -J'; J 0] and what implicit integrators add to it in the same places
+static void put_newton(hn_strbuf *b, const hn_system *sys, const counts *c) {
+    const int n = sys->nv + sys->nc;
+    const long long entries = c->M_entries + 2LL * sys->J.n;
+    const int sparse = hn_newton_matrix_wants_sparse(n, entries);
+    hn_json_put_string(b, "newton",
+                       sparse ? "sparse LU (SuiteSparse KLU)" : "dense LU, equilibrated");
+    hn_json_put_int(b, "newton_size", n);
+    hn_json_put_int(b, "newton_entries", entries);
+}
+
+static void put_solver(hn_strbuf *b, const hn_system *sys, const counts *c) {
     hn_json_key(b, "solver");
     hn_json_object(b);
     hn_json_put_string(b, "answers",
@@ -287,6 +299,7 @@ static void put_solver(hn_strbuf *b, const counts *c) {
                            "refinement where pivots are small, dense least-norm where one is lost");
         hn_json_put_int(b, "pivots", c->factor.n_blocks);
     }
+    put_newton(b, sys, c);
     hn_json_end_object(b);
 }
 
@@ -414,7 +427,7 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     }
     put_coordinates(b, sys);
     put_limits(b, sys);
-    put_solver(b, &c);
+    put_solver(b, sys, &c);
     put_nonzeros(b, sys, &c);
     put_operations(b, &c);
     hn_json_put_int(b, "graph_nodes", hn_graph_size(sys->g));

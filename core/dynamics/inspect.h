@@ -14,7 +14,9 @@
 ///   "groups"       [{"base", "base_rotates", "bodies"}]                 (bodies and joints only)
 ///   "coordinates"  [{"name", "rate", "meaning", "scene"}]: the system's own, and the scene's coordinate in terms of them
 ///   "limits"       [{"name", "min", "max"}]: scene coordinates with limits; a side without one is left out; told when passed, not forces
-///   "solver"       {"answers", "why", "behind_it"?, "pivots"?}: who solves for the accelerations, by structure
+///   "solver"       {"answers", "why", "behind_it"?, "pivots"?, "newton", "newton_size", "newton_entries"}: who solves for the
+///                  accelerations, by structure, and who factors the Newton matrices of implicit methods (two unknowns for each of
+///                  theirs with ggl), of what size and with how many entries
 ///   "nonzeros"     {"M", "M_of", "J", "J_of", "L", "fill_in"}: entries not identically zero, of how many; L of the solve
 ///   "operations"   {"M", "f", "phi", "J", "gamma", "together", "solve", "solve_baumgarte"}: one evaluation each
 ///   "tape"         {"instructions", "slots", "additions", "products", "divisions", "sincos"} of the solve without Baumgarte

@@ -16,7 +16,11 @@ static const double STRONG_ROW = 1e-3;
 static hn_status find_patterns(hn_dae_base *b, hn_arena *arena) {
     b->n_M = hn_eval_pattern(b->dyn, HN_TERM_M, &b->M_row, &b->M_col);
     b->n_J = hn_eval_pattern(b->loop, HN_TERM_J, &b->J_row, &b->J_col);
-    b->sparse = hn_newton_matrix_wants_sparse(b->nv + b->nc, 2LL * b->n_M + 2LL * b->n_J);
+    long long entries = 2LL * b->n_J;
+    for (int k = 0; k < b->n_M; k++) {
+        entries += b->M_row[k] == b->M_col[k] ? 1 : 2;
+    }
+    b->sparse = hn_newton_matrix_wants_sparse(b->nv + b->nc, entries);
     return hn_row_check_create(arena, b->nc, b->nv, b->n_J, b->J_row, b->J_col, &b->check);
 }
 
@@ -296,6 +300,14 @@ hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *wh
     }
     snprintf(b->why, sizeof b->why, "%s at t = %.6g s: %s", what, t, reason);
     return status;
+}
+
+int hn_dae_close_setting(hn_dae_form form, const double *form_settings) {
+    return form == HN_FORM_INDEX2 ? (int)form_settings[0] : HN_CLOSE_NEVER;
+}
+
+int hn_dae_closes(int close, long long n, int dependent) {
+    return close == HN_CLOSE_DEPENDENT ? dependent : close > 0 && n % close == 0;
 }
 
 hn_newton_verdict hn_newton_look(hn_newton *n, double size) {

@@ -84,6 +84,13 @@ double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *mov
 /// Notes `what` failed at time t and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
 
+/// When integrators on index 2 close the position at the end of a step: every so many steps, or one of these.
+enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
+/// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.
+int hn_dae_close_setting(hn_dae_form form, const double *form_settings);
+/// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent` says that rows were left out.
+int hn_dae_closes(int close, long long n, int dependent);
+
 /// A Newton iteration watched: it has converged when the correction, or what the contraction seen so far leaves of it, is
 /// below tol times the size of the unknowns, or when it has shrunk to rounding and stays there.
 typedef struct hn_newton {

@@ -1,10 +1,13 @@
 #include "integrators/half_explicit.h"
 
+#include "dynamics/project.h"
 #include "integrators/dae_base.h"
 #include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>
+
+#define CLOSED 1e-15 // of the length: as far as rounding allows
 
 static const double hem3_A[] = {
     0,       0,    0,    // stage 1
@@ -57,7 +60,9 @@ const hn_half_explicit hn_half_explicit_rk4 = {4, 3, rk4_A};
 typedef struct half_explicit {
     hn_dae_base base; // first
     const hn_half_explicit *scheme;
-    int doubled;
+    int doubled, close;
+    long long accepted;
+    hn_projector *projector; // NULL with HN_CLOSE_NEVER
     hn_newton_matrix *matrix;
     double *Q, *V;          // nq, nv: the stage
     double *qdot;           // stages x nq
@@ -68,16 +73,25 @@ typedef struct half_explicit {
     double *middle, *whole; // nq + nv each, doubled only
 } half_explicit;
 
-hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, const hn_system *sys,
-                                  hn_arena *arena, void **self, hn_diag *diag) {
+hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, int close,
+                                  const hn_system *sys, hn_arena *arena, void **self,
+                                  hn_diag *diag) {
     half_explicit *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    const hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
+    hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
     if (status != HN_OK) {
         return status;
+    }
+    s->close = close;
+    if (close != HN_CLOSE_NEVER) {
+        status = hn_projector_create(sys, HN_WEIGHT_MASS, arena, &s->projector);
+    }
+    if (status != HN_OK) {
+        return hn_diag_set(diag, status, NULL, "index2:close=-1 needs none", "the projection: %s",
+                           hn_status_text(status));
     }
     const size_t nq = (size_t)s->base.nq, nv = (size_t)s->base.nv, nc = (size_t)s->base.nc;
     s->scheme = scheme;
@@ -102,7 +116,9 @@ hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled, c
 void hn_half_explicit_destroy(void *self) {
     half_explicit *s = self;
     hn_newton_matrix_free(s->matrix);
+    hn_projector_free(s->projector);
     s->matrix = NULL;
+    s->projector = NULL;
     hn_dae_base_destroy(&s->base);
 }
 
@@ -195,13 +211,10 @@ static hn_status advance(half_explicit *s, double t, double h, const double *y, 
     return HN_OK;
 }
 
-hn_status hn_half_explicit_step(void *self, double t, double h, const double *y, double *y_new,
-                                double *err) {
-    half_explicit *s = self;
+// by step doubling
+static hn_status advance_doubled(half_explicit *s, double t, double h, const double *y,
+                                 double *y_new, double *err) {
     const int n = s->base.nq + s->base.nv;
-    if (!s->doubled) {
-        return advance(s, t, h, y, y_new);
-    }
     hn_status status = advance(s, t, h, y, s->whole);
     if (status == HN_OK) {
         status = advance(s, t, h / 2, y, s->middle);
@@ -216,12 +229,33 @@ hn_status hn_half_explicit_step(void *self, double t, double h, const double *y,
     return status;
 }
 
+static hn_status close_end(half_explicit *s, double t, double *y) {
+    hn_status status = hn_project_position(s->projector, t, y, CLOSED, NULL);
+    if (status == HN_OK) {
+        status = hn_project_velocity(s->projector, t, y, y + s->base.nq, NULL);
+    }
+    return status == HN_OK ? HN_OK
+                           : hn_dae_fail(&s->base, status, t, "closing the end of the step");
+}
+
+hn_status hn_half_explicit_step(void *self, double t, double h, const double *y, double *y_new,
+                                double *err) {
+    half_explicit *s = self;
+    const hn_status status =
+        s->doubled ? advance_doubled(s, t, h, y, y_new, err) : advance(s, t, h, y, y_new);
+    const int dependent = s->base.nr < s->base.nc;
+    return status == HN_OK && hn_dae_closes(s->close, s->accepted + 1, dependent)
+               ? close_end(s, t + h, y_new)
+               : status;
+}
+
 void hn_half_explicit_accepted(void *self, int changed) {
     half_explicit *s = self;
     (void)changed; // no state but the multipliers is carried over
     double *const raw = s->raw;
     s->raw = s->raw_next;
     s->raw_next = raw;
+    s->accepted++;
 }
 
 const double *hn_half_explicit_raw_lambda(const void *self) {
@@ -233,6 +267,10 @@ void hn_half_explicit_add_cost(const void *self, hn_cost *cost) {
     const half_explicit *s = self;
     hn_dae_base_add_cost(&s->base, cost);
     cost->ops += hn_newton_matrix_ops(s->matrix);
+    if (s->projector) {
+        cost->evals += hn_projector_evals(s->projector);
+        cost->ops += hn_projector_ops(s->projector);
+    }
 }
 
 const char *hn_half_explicit_why(const void *self) {

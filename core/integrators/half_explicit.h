@@ -27,10 +27,10 @@ extern const hn_half_explicit
     hn_half_explicit_rk4; ///< the classical tableau, order 3 when used like this
 
 /// For the slots of hn_dae_stepper. `doubled`: each step is made once whole and once in halves; the halves are kept and the
-/// difference estimates their error (Richardson).
+/// difference estimates their error (Richardson). `close`: when the position is projected, see hn_dae_closes().
 HN_MUST_CHECK hn_status hn_half_explicit_create(const hn_half_explicit *scheme, int doubled,
-                                                const hn_system *sys, hn_arena *arena, void **self,
-                                                hn_diag *diag);
+                                                int close, const hn_system *sys, hn_arena *arena,
+                                                void **self, hn_diag *diag);
 void hn_half_explicit_destroy(void *self);
 hn_status hn_half_explicit_start(void *self, double t, const double *y);
 hn_status hn_half_explicit_step(void *self, double t, double h, const double *y, double *y_new,

@@ -1,3 +1,4 @@
+#include "integrators/dae_base.h"
 #include "integrators/half_explicit.h"
 #include "integrators/registry.h"
 
@@ -5,10 +6,9 @@
     static hn_status create_##name(const hn_system *sys, hn_dae_form form, const double *settings, \
                                    const double *form_settings, hn_arena *arena, void **self,      \
                                    hn_diag *diag) {                                                \
-        (void)form;                                                                                \
         (void)settings;                                                                            \
-        (void)form_settings;                                                                       \
-        return hn_half_explicit_create(&(scheme), doubled, sys, arena, self, diag);                \
+        const int close = hn_dae_close_setting(form, form_settings);                               \
+        return hn_half_explicit_create(&(scheme), doubled, close, sys, arena, self, diag);         \
     }                                                                                              \
     static const hn_dae_stepper dae_##name = {                                                     \
         .create = create_##name,                                                                   \

@@ -1,3 +1,4 @@
+#include "integrators/dae_base.h"
 #include "integrators/ida_jacobian.h"
 #include "integrators/ida_words.h"
 #include "integrators/registry.h"
@@ -151,6 +152,11 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
+    if (hn_dae_close_setting(form, form_settings) > 0) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use ggl@ida, or index2@radau5",
+                           "ida cannot take projected positions (close): its history of steps "
+                           "would begin anew each time");
+    }
     take_settings(s, form, settings);
     hn_status status = hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
     if (status != HN_OK) {

@@ -3,6 +3,7 @@
 #include "dynamics/eval.h"
 #include "dynamics/project.h"
 #include "integrators/control.h"
+#include "integrators/dae_base.h"
 #include "integrators/implicit_linear.h"
 #include "integrators/stages.h"
 #include "linalg/dense.h"
@@ -39,7 +40,7 @@ typedef struct implicit_dae {
     double h, last_h;             // of the trial, of the last accepted step (0: none)
     double *force;                // nv: f + J' lambda at the start of the trial
     double *pushed;               // nv: Y mu
-    long long accelerations;
+    long long accelerations, accepted;
     char why[HN_STAGES_WHY];
 } implicit_dae;
 
@@ -365,13 +366,16 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     put_error(s, h, err);
 }
 
-// what Newton's tolerance leaves, and what rows that were left out need
+// what Newton's tolerance leaves, what rows that were left out need, and what index 2 leaves open on request
 static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     hn_status status = HN_OK;
-    if (s->nc == 0 || (!(s->opts.rtol > 0) && s->lin.n_kept == s->nc)) {
+    const int dependent = s->lin.n_kept < s->nc;
+    const int closes =
+        s->form == HN_FORM_INDEX2 && hn_dae_closes(s->opts.close, s->accepted + 1, dependent);
+    if (s->nc == 0 || (!(s->opts.rtol > 0) && !dependent && !closes)) {
         return HN_OK;
     }
-    if (wants_phi(s->form)) {
+    if (wants_phi(s->form) || closes) {
         status = hn_project_position(s->projector, t, q, CLOSED, NULL);
     }
     if (status == HN_OK && wants_speed_gap(s->form)) {
@@ -450,6 +454,7 @@ void hn_implicit_dae_accepted(void *self, int changed) {
     if (!(s->h > 0)) {
         return;
     }
+    s->accepted++;
     for (int i = 0; i < stages; i++) {
         memcpy(s->last_a + i * nv, s->st.rate + (2 * i + 1) * nv, (size_t)nv * sizeof(double));
         memcpy(s->last_lambda + i * nc, s->st.u + i * s->st.n + 2 * nv,

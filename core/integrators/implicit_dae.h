@@ -15,6 +15,7 @@
 typedef struct hn_implicit_dae_opts {
     /// 1: the constraint is asked for at the end of the step instead of at the stages (one stage only).
     int at_end;
+    int close; ///< of index 2, see hn_dae_closes()
     double rtol,
         atol; ///< of an adaptive method; rtol 0: Newton's method goes on to rounding, no error estimate
 } hn_implicit_dae_opts;

@@ -8,6 +8,7 @@
 
 #define ROW_FLOOR \
     1e-3 // of the longest row: a shorter one is dying away and stays as short against the others
+#define OWN_FLOOR 0.1  // of the longest a row has been: one that is dying away turns within a step
 #define RANK_TOL 1e-10 // of the largest row, all brought to length 1
 
 static int has_stabiliser(const hn_implicit_linear *l) {
@@ -76,6 +77,7 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     l->kept = hn_arena_ints(arena, nc);
     l->place = hn_arena_ints(arena, nc);
     l->unit = hn_arena_doubles(arena, nc);
+    l->seen = hn_arena_doubles(arena, nc);
     if (has_stabiliser(l) && !l->sparse) {
         l->Y = hn_arena_doubles(arena, nv * nc);
         l->S = hn_arena_doubles(arena, nc * nc);
@@ -158,7 +160,8 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     }
     for (int i = 0; i < nc; i++) {
         const double *row = l->J + (size_t)i * (size_t)nv;
-        const double size = fmax(l->unit[i], ROW_FLOOR * longest);
+        l->seen[i] = fmax(l->seen[i], l->unit[i]);
+        const double size = fmax(fmax(l->unit[i], OWN_FLOOR * l->seen[i]), ROW_FLOOR * longest);
         l->unit[i] = size > 0 ? 1 / size : 0;
         for (int j = 0; j < nv; j++) {
             l->qr.a[i * nv + j] = row[j] * l->unit[i];

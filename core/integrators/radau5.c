@@ -1,3 +1,4 @@
+#include "integrators/dae_base.h"
 #include "integrators/implicit_steppers.h"
 
 #include <math.h>
@@ -30,8 +31,7 @@ static hn_status create_dae(const hn_system *sys, hn_dae_form form, const double
                             const double *form_settings, hn_arena *arena, void **self,
                             hn_diag *diag) {
     const hn_collocation col = nodes();
-    hn_implicit_dae_opts opts = {0};
-    (void)form_settings;
+    hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings)};
     if (!(settings[FIXED] > 0)) {
         opts.rtol = settings[RTOL];
         opts.atol = settings[ATOL] > 0 ? settings[ATOL] : settings[RTOL];

@@ -15,7 +15,13 @@ const hn_formulation hn_formulation_index2 = {
         "Brenan, Campbell & Petzold 1996; Hairer & Wanner 1996, VII.1; Hairer, Lubich & Roche 1989",
     .needs = "M f J and derivatives",
     .order_note = "radau5: q 5, v 5, its own multipliers 3; midpoint: 2, 2, 1",
-    .limits = "redundant rows: once the gap is open they contradict each other",
+    .limits = "redundant rows contradict each other once the gap is open: there the position is "
+              "projected after each step (close=0); with close=-1 the run ends or goes astray",
     .form = HN_FORM_INDEX2,
     .index = 2,
+    .n_settings = 1,
+    .settings = {{"close", 0, -1, 1e6, "steps",
+                  "the position is projected every so many steps; 0: after each step where rows "
+                  "depend on each other, else never; -1: never (ida: always never)",
+                  NULL, 0, 0}},
 };

@@ -7,12 +7,13 @@
 #include <cjson/cJSON.h>
 #include <string.h>
 
-static cJSON *inspect(const hn_library *lib, const char *scene) {
+static cJSON *inspect_with(const hn_library *lib, const char *scene, const hn_setting *setting) {
     hn_model *model = NULL;
     hn_diags diags = {0};
     hn_strbuf b;
     hn_strbuf_init(&b);
-    const hn_model_source source = {.name = scene};
+    const hn_model_source source = {
+        .name = scene, .settings = setting, .n_settings = setting ? 1 : 0};
     assert_int_equal(hn_model_load(lib, &source, &model, &diags), HN_OK);
     assert_int_equal(hn_model_inspect_json(&b, model, &diags), HN_OK);
     cJSON *document = cJSON_Parse(hn_strbuf_text(&b));
@@ -20,6 +21,10 @@ static cJSON *inspect(const hn_library *lib, const char *scene) {
     hn_strbuf_reset(&b);
     hn_model_free(model);
     return document;
+}
+
+static cJSON *inspect(const hn_library *lib, const char *scene) {
+    return inspect_with(lib, scene, NULL);
 }
 
 static double number(const cJSON *object, const char *key) {
@@ -169,6 +174,24 @@ static void as_many_rows_follow_as_assembly_counts(void **state) {
     hn_library_free(lib);
 }
 
+// the nine unknowns of two four-bars are dense, forty-one of ten are few against the square of their number
+static void who_factors_newton_matrices_is_told(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    static const hn_setting settings[] = {{.name = "N", .value = 2}, {.name = "N", .value = 10}};
+    static const char *const words[] = {"dense", "sparse"};
+    for (int k = 0; k < 2; k++) {
+        cJSON *d = inspect_with(lib, "n-four-bar", &settings[k]);
+        const cJSON *solver = cJSON_GetObjectItemCaseSensitive(d, "solver");
+        const cJSON *who = cJSON_GetObjectItemCaseSensitive(solver, "newton");
+        assert_true(cJSON_IsString(who));
+        assert_memory_equal(who->valuestring, words[k], strlen(words[k]));
+        assert_true(number(solver, "newton_size") == (k ? 41 : 9));
+        cJSON_Delete(d);
+    }
+    hn_library_free(lib);
+}
+
 static void sharing_and_leaving_out_never_cost(void **state) {
     static const char *const terms[] = {"M", "f", "phi", "J", "gamma"};
     (void)state;
@@ -219,6 +242,7 @@ int main(void) {
         cmocka_unit_test(the_teeth_of_further_planets_follow_from_the_first),
         cmocka_unit_test(dependent_rows_of_shaft_and_bennett_are_named),
         cmocka_unit_test(as_many_rows_follow_as_assembly_counts),
+        cmocka_unit_test(who_factors_newton_matrices_is_told),
         cmocka_unit_test(sharing_and_leaving_out_never_cost),
         cmocka_unit_test(every_scene_and_problem_belongs_to_one_lesson),
     };

@@ -236,8 +236,9 @@ static void a_step_that_is_given_is_kept_and_spelled(void **unused) {
 
 static void redundant_rows_change_nothing_but_single_multipliers(void **unused) {
     (void)unused;
-    static const char *const methods[] = {"ggl@radau5:h=0.01", "index2@radau5:h=0.01",
-                                          "index3@radau5:h=0.01", "index2@midpoint:h=0.01"};
+    static const char *const methods[] = {"ggl@radau5:h=0.01", "index2:close=-1@radau5:h=0.01",
+                                          "index3@radau5:h=0.01",
+                                          "index2:close=-1@midpoint:h=0.01"};
     static const char *const scenes[] = {"tests/scenes/fb0-redundant.json",
                                          "tests/scenes/fb0-tilted.json"};
     hn_trial plain;
