@@ -302,7 +302,12 @@ static hn_status trace_terms(hn_mech *m) {
     hn_mech_trace_mass(m);
     hn_mech_trace_bias(m);
     hn_mech_trace_energy(m);
-    status = hn_mech_trace_loops(m);
+    if (m->sys->scene->has_formulas) {
+        status = hn_lagrangian_add_energies(m->sys);
+    }
+    if (status == HN_OK) {
+        status = hn_mech_trace_loops(m);
+    }
     if (status == HN_OK) {
         status = hn_mech_trace_constraints(m);
     }

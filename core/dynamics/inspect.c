@@ -26,7 +26,9 @@ static void put_branch(hn_strbuf *b, const hn_system *sys, int link) {
     hn_strbuf_add(&line, link_name(sys, link));
     if (l->joint >= 0) {
         const hn_joint *joint = &sys->scene->joints[l->joint];
-        hn_strbuf_printf(&line, " by %s %s", hn_joint_type_name(joint->type), joint->name);
+        if (!joint->is_formal) {
+            hn_strbuf_printf(&line, " by %s %s", hn_joint_type_name(joint->type), joint->name);
+        }
     }
     hn_json_string(b, hn_strbuf_text(&line));
     b->failed |= line.failed;
@@ -196,7 +198,11 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
 static void put_sizes(hn_strbuf *b, const hn_system *sys) {
     hn_json_key(b, "sizes");
     hn_json_object(b);
-    hn_json_put_int(b, "bodies", sys->scene->n_bodies);
+    int formal = 0;
+    for (int k = 0; k < sys->scene->n_joints; k++) {
+        formal += sys->scene->joints[k].is_formal;
+    }
+    hn_json_put_int(b, "bodies", sys->scene->n_bodies - formal);
     hn_json_put_int(b, "speeds", sys->nv);
     hn_json_put_int(b, "rows", sys->nc);
     hn_json_put_int(b, "loops", sys->n_loops);
@@ -416,7 +422,10 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
         return status;
     }
     int lagrangian = sys->scene->is_lagrangian;
-    hn_json_put_string(b, "kind", lagrangian ? "Lagrangian" : "bodies and joints");
+    hn_json_put_string(b, "kind",
+                       lagrangian                 ? "Lagrangian"
+                       : sys->scene->has_formulas ? "bodies, joints and formulas"
+                                                  : "bodies and joints");
     put_sizes(b, sys);
     if (!lagrangian) {
         put_tree(b, sys);

@@ -7,7 +7,7 @@
 #include "dynamics/system.h"
 
 /// Writes these keys into the JSON object that is open in `b`:
-///   "kind"         "bodies and joints" or "Lagrangian"
+///   "kind"         "bodies and joints", "Lagrangian" or "bodies, joints and formulas"
 ///   "sizes"        {"bodies", "speeds", "rows", "loops", "freedoms_by_count" (speeds - rows; redundant rows not seen)}
 ///   "tree"         lines of text, indented by depth                     (bodies and joints only)
 ///   "loops"        [{"name", "joint", "why", "rows": [names]}]

@@ -1,4 +1,4 @@
-// A scene of formulas, compiled by exact differentiation. With L = T - V and p = dT/dv:
+// A scene of formulas, or formulas beside bodies, compiled by exact differentiation. With L = T - V and p = dT/dv:
 //     M = dp/dv,   h = (dp/dq) v - dT/dq + dV/dq,   f = Q - h                                          (1)
 //     J = dphi/dq, phi_t, gamma = d/dt (J v + phi_t) at zero u-dot: the directional derivative, twice,
 //     along (q', v', t') = (v, 0, 1), so that terms of t come in by themselves.                         (2)
@@ -55,19 +55,60 @@ static hn_status refuse_kinetic(hn_system *sys, const char *what) {
                         "the kinetic energy must be quadratic in the rates: %s", what);
 }
 
-static hn_status trace_mass(hn_system *sys, const hn_ex *p) {
+/// Coordinates with a position of their own: all but balls, whose rates are no derivatives of coordinates.
+typedef struct plain {
+    int n;
+    int *speed, *q_symbols, *v_symbols;
+    hn_ex *v;
+} plain;
+
+static hn_status list_plain(hn_system *sys, plain *p) {
+    const size_t n = (size_t)sys->nv;
+    *p = (plain){0};
+    p->speed = hn_arena_ints(sys->arena, n);
+    p->q_symbols = hn_arena_ints(sys->arena, n);
+    p->v_symbols = hn_arena_ints(sys->arena, n);
+    p->v = hn_arena_get(sys->arena, n * sizeof *p->v);
+    if (hn_arena_failed(sys->arena)) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        const int at = hn_system_position_of(sys, i);
+        if (at >= 0) {
+            p->speed[p->n] = i;
+            p->q_symbols[p->n] = sys->q_symbols[at];
+            p->v_symbols[p->n] = sys->v_symbols[i];
+            p->v[p->n++] = sys->v[i];
+        }
+    }
+    return HN_OK;
+}
+
+/// Beside bodies an entry may be there already.
+static void add_mass(hn_system *sys, int row, int col, hn_ex e) {
+    for (int k = 0; sys->scene->has_formulas && !hn_is_zero(e) && k < sys->M.n; k++) {
+        hn_entry *at = &sys->M.at[k];
+        if (at->row == row && at->col == col) {
+            at->e = hn_add(sys->g, at->e, e);
+            return;
+        }
+    }
+    hn_entries_add(&sys->M, row, col, e);
+}
+
+static hn_status trace_mass(hn_system *sys, const plain *c, const hn_ex *p) {
     hn_ex *row = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *row);
     if (!row) {
         return HN_ERR_MEMORY;
     }
-    for (int i = 0; i < sys->nv; i++) {
-        hn_diff(sys->g, p[i], sys->v_symbols, i + 1, row);
+    for (int i = 0; i < c->n; i++) {
+        hn_diff(sys->g, p[i], c->v_symbols, i + 1, row);
         for (int j = 0; j <= i; j++) {
             if (depends_on_any(sys, row[j], sys->v_symbols)) {
                 return refuse_kinetic(sys,
                                       "its second derivative by the rates still contains a rate");
             }
-            hn_entries_add(&sys->M, i, j, row[j]);
+            add_mass(sys, c->speed[i], c->speed[j], row[j]);
         }
         if (!hn_is_zero(at_rest(sys, p[i]))) {
             return refuse_kinetic(sys, "it has a term that is linear in a rate");
@@ -76,39 +117,60 @@ static hn_status trace_mass(hn_system *sys, const hn_ex *p) {
     return HN_OK;
 }
 
-static hn_status trace_energies(hn_system *sys) {
+static hn_status check_energies(hn_system *sys, hn_ex kinetic, hn_ex potential) {
+    if (hn_depends_on(sys->g, kinetic, sys->t_symbol)) {
+        return refuse_kinetic(sys, "it depends on t, which is not served");
+    }
+    for (int k = 0; k < 3 * sys->n_balls; k++) {
+        const int speed = sys->balls[k / 3].speed + k % 3;
+        if (hn_depends_on(sys->g, kinetic, sys->v_symbols[speed])) {
+            return refuse_kinetic(
+                sys,
+                "it has the angular velocity of an orientation, which is no coordinate's rate");
+        }
+    }
+    if (depends_on_any(sys, potential, sys->v_symbols)) {
+        return hn_diags_add(sys->diags, HN_ERR_INPUT, sys->scene->lagrangian.potential.pointer,
+                            "write it as a force on a coordinate",
+                            "the potential energy contains a rate");
+    }
+    return hn_is_zero(at_rest(sys, kinetic))
+               ? HN_OK
+               : refuse_kinetic(sys, "it does not vanish with the rates");
+}
+
+hn_status hn_lagrangian_add_energies(hn_system *sys) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
     hn_graph *g = sys->g;
-    size_t n = (size_t)sys->nv + 1;
+    plain c;
+    const size_t n = (size_t)sys->nv + 1;
     hn_ex *p = hn_arena_get(sys->arena, 4 * n * sizeof *p);
-    hn_status status = hn_system_quantity(sys, &l->kinetic, &sys->kinetic);
+    hn_ex kinetic, potential;
+    hn_status status = hn_system_quantity(sys, &l->kinetic, &kinetic);
     if (status == HN_OK) {
-        status = hn_system_quantity(sys, &l->potential, &sys->potential);
+        status = hn_system_quantity(sys, &l->potential, &potential);
+    }
+    if (status == HN_OK) {
+        status = check_energies(sys, kinetic, potential);
+    }
+    if (status == HN_OK) {
+        status = list_plain(sys, &c);
     }
     if (status != HN_OK || !p) {
         return status == HN_OK ? HN_ERR_MEMORY : status;
     }
-    if (hn_depends_on(g, sys->kinetic, sys->t_symbol)) {
-        return refuse_kinetic(sys, "it depends on t, which is not served");
-    }
-    if (depends_on_any(sys, sys->potential, sys->v_symbols)) {
-        return hn_diags_add(sys->diags, HN_ERR_INPUT, l->potential.pointer,
-                            "write it as a force on a coordinate",
-                            "the potential energy contains a rate");
-    }
-    if (!hn_is_zero(at_rest(sys, sys->kinetic))) {
-        return refuse_kinetic(sys, "it does not vanish with the rates");
-    }
     hn_ex *p_rate = p + n, *T_q = p + 2 * n, *V_q = p + 3 * n;
-    hn_diff_reverse(g, sys->kinetic, sys->v_symbols, sys->nv, p);
-    hn_diff_forward(g, p, sys->nv, sys->q_symbols, sys->v, sys->nv, p_rate);
-    hn_diff_reverse(g, sys->kinetic, sys->q_symbols, sys->nv, T_q);
-    hn_diff_reverse(g, sys->potential, sys->q_symbols, sys->nv, V_q);
-    for (int i = 0; i < sys->nv; i++) {
-        hn_ex terms[3] = {T_q[i], hn_neg(p_rate[i]), hn_neg(V_q[i])};
-        sys->f[i] = hn_sum(g, terms, 3);
+    hn_diff_reverse(g, kinetic, c.v_symbols, c.n, p);
+    hn_diff_forward(g, p, c.n, c.q_symbols, c.v, c.n, p_rate);
+    hn_diff_reverse(g, kinetic, c.q_symbols, c.n, T_q);
+    hn_diff_reverse(g, potential, c.q_symbols, c.n, V_q);
+    for (int i = 0; i < c.n; i++) {
+        hn_ex terms[4] = {sys->f[c.speed[i]], T_q[i], hn_neg(p_rate[i]), hn_neg(V_q[i])};
+        sys->f[c.speed[i]] = hn_sum(g, terms, 4);
     }
-    return trace_mass(sys, p);
+    sys->kinetic = hn_add(g, sys->kinetic, kinetic);
+    sys->potential = hn_add(g, sys->potential, potential);
+    return trace_mass(sys, &c, p);
 }
 
 // constraints --------------------------------------------------------------------------------------------------------
@@ -247,7 +309,7 @@ hn_status hn_lagrangian_compile(hn_system *sys) {
         status = make_symbols(sys);
     }
     if (status == HN_OK) {
-        status = trace_energies(sys);
+        status = hn_lagrangian_add_energies(sys);
     }
     if (status == HN_OK) {
         status = trace_constraints(sys);

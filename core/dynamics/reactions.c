@@ -201,6 +201,11 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "write it with bodies and joints",
                            "a scene of formulas has no joints that could carry anything");
     }
+    if (sys->scene->has_formulas) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "write its terms as bodies and loads",
+                           "energies given as formulas act at no place, so joints cannot be told "
+                           "what they carry");
+    }
     hn_reactions *r = hn_arena_get(arena, sizeof *r);
     hn_status status = HN_ERR_MEMORY;
     if (r) {

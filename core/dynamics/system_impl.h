@@ -107,6 +107,8 @@ HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row)
 // the two kinds of scenes: symbols, terms, rows, loops, points, drawing -------------------------------------------
 HN_MUST_CHECK hn_status hn_bodies_compile(hn_system *sys);
 HN_MUST_CHECK hn_status hn_lagrangian_compile(hn_system *sys);
+/// Adds the Lagrangian's energies to M, f and the energies. Coordinates must be known to formulas by then.
+HN_MUST_CHECK hn_status hn_lagrangian_add_energies(hn_system *sys);
 
 /// The difference of two scene points, and how the rates move it.
 typedef struct hn_span {

@@ -140,6 +140,8 @@ int hn_rd_param_value(hn_reader *r, int k, double *value); ///< evaluates on dem
 void hn_rd_bodies(hn_reader *r, const cJSON *root);
 void hn_rd_joints(hn_reader *r, const cJSON *root);
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root);
+/// A constraint of a Lagrangian beside bodies, among the scene's; name NULL: make one.
+void hn_rd_formula_constraint(hn_reader *r, const char *name, const hn_quantity *value);
 void hn_rd_points(hn_reader *r, const cJSON *root);
 void hn_rd_loads(hn_reader *r, const cJSON *root);
 void hn_rd_constraints(hn_reader *r, const cJSON *root);

@@ -1,7 +1,7 @@
 #ifndef HN_SCENE_SCENE_H
 #define HN_SCENE_SCENE_H
 // A scene: a mechanism as a person writes it down, checked. Plain data, owned by the scene's arena and constant
-// after loading. Two kinds: bodies and joints, or a Lagrangian. The compiler (dynamics/) turns either into
+// after loading. Two kinds: bodies and joints, or a Lagrangian; a scene of bodies may have a Lagrangian's terms beside them. The compiler (dynamics/) turns either into
 // equations; nothing here knows about trees, loops that were cut, or methods.
 //
 // Body frame: any frame fixed to the body. A joint sits at `parent_at` in the parent's frame and at `child_at`
@@ -78,6 +78,7 @@ typedef struct hn_joint {
     int cut;           ///< asked to close a loop rather than to carry a coordinate
     int coordinate;    ///< index of its first coordinate, -1 for a fixed joint
     int n_coordinates; ///< they stand in a row
+    int is_formal; ///< carries a coordinate of the Lagrangian's own in a scene of bodies: its body has no mass, nothing is drawn
 } hn_joint;
 
 typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
@@ -153,7 +154,8 @@ typedef struct hn_constraint {
     hn_quantity ratio, value;
 } hn_constraint;
 
-/// Formulas of a Lagrangian scene in coordinates, rates, t and parameters.
+/// Formulas of a Lagrangian in coordinates, rates, t and parameters. Beside bodies the energies are added to theirs, and
+/// the constraints stand among the scene's.
 typedef struct hn_lagrangian {
     hn_quantity kinetic, potential;
     int n_constraints;
@@ -185,8 +187,9 @@ typedef struct hn_shape {
 typedef struct hn_scene {
     hn_arena *arena; ///< owns everything below
     const char *id, *name, *title, *about,
-        *look_for; ///< id: file name without .json, or the "id" field
-    int is_lagrangian;
+        *look_for;     ///< id: file name without .json, or the "id" field
+    int is_lagrangian; ///< no bodies at all
+    int has_formulas;  ///< a scene of bodies to which `lagrangian` adds energies
     int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_constraints, n_shapes;
     hn_param *params;
     hn_body *bodies;

@@ -196,6 +196,24 @@ static void add_constraint(hn_reader *r, const hn_constraint *c) {
     }
 }
 
+void hn_rd_formula_constraint(hn_reader *r, const char *name, const hn_quantity *value) {
+    hn_constraint c = {.name = name,
+                       .pointer = hn_rd_pointer(r),
+                       .kind = HN_CONSTRAINT_FORMULA,
+                       .p = -1,
+                       .q = -1,
+                       .coordinate = {-1, -1},
+                       .value = *value};
+    char made[32];
+    if (!name) {
+        snprintf(made, sizeof made, "constraint %d", r->scene->n_constraints + 1);
+        c.name = hn_rd_keep(r, made);
+    }
+    if (c.name && c.pointer) {
+        add_constraint(r, &c);
+    }
+}
+
 static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     const char *fields[N_KINDS + 2] = {"name", "for"};
     (void)key;

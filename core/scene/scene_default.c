@@ -168,7 +168,7 @@ static void (*const DRAW_JOINT[HN_JOINT_TYPE_COUNT])(hn_reader *, const hn_joint
 };
 
 static void draw_joint(hn_reader *r, const hn_joint *j) {
-    if (!DRAW_JOINT[j->type]) {
+    if (!DRAW_JOINT[j->type] || j->is_formal) {
         return;
     }
     int parent = hn_rd_place(r, j->parent, j->parent_at);

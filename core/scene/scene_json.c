@@ -91,11 +91,9 @@ static void read_gravity(hn_reader *r, const cJSON *root) {
 /// Which of the two kinds it is; 0 after a fault.
 static int read_kind(hn_reader *r, const cJSON *root) {
     const cJSON *bodies = hn_rd_get(root, "bodies"), *joints = hn_rd_get(root, "joints");
-    r->scene->is_lagrangian = hn_rd_get(root, "lagrangian") != NULL;
-    if (r->scene->is_lagrangian && (bodies || joints)) {
-        return hn_rd_fault(r, NULL,
-                           "a scene has either 'lagrangian' or 'bodies' and 'joints', found both");
-    }
+    const int formulas = hn_rd_get(root, "lagrangian") != NULL;
+    r->scene->is_lagrangian = formulas && !bodies && !joints;
+    r->scene->has_formulas = formulas && !r->scene->is_lagrangian;
     if (!r->scene->is_lagrangian && (!bodies || !joints)) {
         return hn_rd_fault(r, NULL,
                            "a scene needs 'bodies' and 'joints', or 'lagrangian'; %s missing",
@@ -116,6 +114,9 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
             hn_rd_fault_at(r, "bodies", NULL, "the scene has no body");
         } else if (r->n_faults == 0) {
             hn_rd_check_connected(r);
+        }
+        if (r->n_faults == 0 && r->scene->has_formulas) {
+            hn_rd_lagrangian(r, root);
         }
     }
     // what refers to names that a fault kept out would only repeat that fault

@@ -1,4 +1,5 @@
-// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas.
+// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas. Beside bodies each of its own
+// coordinates is carried by a body without mass on a joint of its own, so that everything knows it as any other.
 
 #include "scene/reader.h"
 
@@ -23,6 +24,43 @@ int hn_rd_coordinate(hn_reader *r, const char *name, int rates) {
     hn_rd_suggest(hint, sizeof hint, name, names, n);
     hn_rd_fault(r, hint, "there is no coordinate named '%.60s'", name);
     return -1;
+}
+
+/// The body and joint that carry the coordinate of that index, which is the scene's last.
+static void carry(hn_reader *r, int k) {
+    hn_scene *s = r->scene;
+    hn_body *bodies =
+        hn_rd_grow(r, s->bodies, s->n_bodies, sizeof *bodies, HN_SCENE_MAX_BODIES, "bodies");
+    hn_joint *joints =
+        hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints, HN_SCENE_MAX_JOINTS, "joints");
+    const hn_coordinate *c = &s->coordinates[k];
+    char name[HN_RD_MAX_NAME + 16];
+    snprintf(name, sizeof name, "coordinate %s", c->name);
+    const char *kept = hn_rd_keep(r, name), *pointer = hn_rd_pointer(r);
+    if (!bodies || !joints || !kept || !pointer) {
+        return;
+    }
+    if (hn_scene_find_body(s, kept) >= 0) {
+        hn_rd_fault(r, "give the body or the coordinate another name",
+                    "the name '%s' is needed for a coordinate, and a body has it", kept);
+        return;
+    }
+    s->bodies = bodies;
+    s->joints = joints;
+    joints[s->n_joints++] =
+        (hn_joint){.name = kept,
+                   .pointer = pointer,
+                   .type = c->kind == HN_ANGLE ? HN_JOINT_REVOLUTE : HN_JOINT_PRISMATIC,
+                   .parent = HN_GROUND,
+                   .child = s->n_bodies,
+                   .parent_axis = {0, 0, 1},
+                   .child_axis = {0, 0, 1},
+                   .parent_ref = {1, 0, 0},
+                   .child_ref = {1, 0, 0},
+                   .coordinate = k,
+                   .n_coordinates = 1,
+                   .is_formal = 1};
+    bodies[s->n_bodies++] = (hn_body){.name = kept, .pointer = pointer};
 }
 
 static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
@@ -50,7 +88,12 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
         }
     }
     size_t mark = hn_rd_enter(r, "name");
-    hn_rd_add_coordinate(r, name, rate, kind, -1, hn_rd_flag(r, node, "actuated"));
+    const int mixed = r->scene->has_formulas;
+    const int k = hn_rd_add_coordinate(r, name, rate, kind, mixed ? r->scene->n_joints : -1,
+                                       hn_rd_flag(r, node, "actuated"));
+    if (mixed && k >= 0) {
+        carry(r, k);
+    }
     hn_rd_leave(r, mark);
 }
 
@@ -69,6 +112,10 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     }
     if (q.formula && !q.varies && q.value != 0) {
         hn_rd_fault(r, NULL, "this constraint is the constant %g and can never be 0", q.value);
+    }
+    if (r->scene->has_formulas) {
+        hn_rd_formula_constraint(r, name, &q);
+        return;
     }
     if (!name) {
         char made[32];
@@ -119,18 +166,23 @@ void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
     hn_lagrangian *l = &r->scene->lagrangian;
     size_t mark = hn_rd_enter(r, "lagrangian");
     if (hn_rd_object(r, node, "a lagrangian", fields, 5)) {
+        const int mixed = r->scene->has_formulas;
         hn_rd_list(r, node, "coordinates", 0, read_coordinate);
         if (r->scene->n_coordinates == 0 && r->n_faults == 0) {
             hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]",
                         "'coordinates' is missing or empty");
         }
         if (r->n_faults == 0) {
-            hn_rd_member(r, node, "kinetic", 1, 0, &l->kinetic, HN_RD_STATE);
+            hn_rd_member(r, node, "kinetic", !mixed, 0, &l->kinetic, HN_RD_STATE);
             hn_rd_member(r, node, "potential", 0, 0, &l->potential, HN_RD_POSE);
             hn_rd_list(r, node, "constraints", 0, read_constraint);
             hn_rd_list(r, node, "forces", 1, read_force);
         }
-        if (r->n_faults == 0 && !l->kinetic.varies) {
+        if (r->n_faults == 0 && mixed && !node->child) {
+            hn_rd_fault(r, "it adds 'kinetic', 'potential', 'constraints', 'forces' to the bodies",
+                        "this lagrangian is empty");
+        }
+        if (r->n_faults == 0 && !l->kinetic.varies && (!mixed || hn_rd_get(node, "kinetic"))) {
             hn_rd_fault_at(r, "kinetic", "it holds the masses: m*v^2/2",
                            "the kinetic energy does not depend on any rate");
         }
