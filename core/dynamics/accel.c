@@ -1,3 +1,4 @@
+#include "dynamics/blur.h"
 #include "dynamics/eval.h"
 #include "dynamics/factor.h"
 #include "dynamics/inputs.h"
@@ -16,14 +17,6 @@ const char *const hn_solver_names[HN_SOLVER_COUNT] = {
     HN_SOLVER_LIST(HN_SOLVER_NAME)
 #undef HN_SOLVER_NAME
 };
-
-// Rows that depend on others on the closed set come apart where the loops stand open: there J and gamma are off by about the gap
-// over the length (and the velocity gap over the speed), a bit more in a loop of short links. What is not larger tells nothing.
-static const double BLUR = 30;
-static const double BLUR_MAX =
-    1e-2; // a gap of a third of a per mille and more: pivots that size are real
-static const double ROW_FLOOR =
-    0.05; // a shorter row (of the longest) is mostly blur if stretched to unit length
 
 static const double ROW_RESIDUAL = 1e-2; // what rows that have all but vanished may disagree
 
@@ -234,41 +227,28 @@ static int all_finite(const double *x, int n) {
     return zero == 0;
 }
 
-/// Adds Baumgarte's terms to gamma; returns by how much the open gap blurs J and gamma (relative).
+/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (blur.h).
 static double stabilise(hn_accel *s, const double *v, double alpha, double beta) {
-    const double *J = hn_eval_get(s->terms, HN_TERM_J), *phi = hn_eval_get(s->terms, HN_TERM_PHI);
-    const double *phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T);
-    const double length = hn_system_length(s->sys);
-    double gap = 0, rates = 0, sizes = 0, *rate = s->rest, *size = s->step;
-    for (int i = 0; i < s->nc; i++) {
-        rate[i] = phi_t[i];
-        size[i] = fabs(phi_t[i]);
+    const hn_blur_terms at = {.n_J = s->n_J,
+                              .row = s->J_row,
+                              .col = s->J_col,
+                              .J = hn_eval_get(s->terms, HN_TERM_J),
+                              .phi = hn_eval_get(s->terms, HN_TERM_PHI),
+                              .phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T)};
+    const double *rate = s->rest, gap = hn_blur_gap(s->sys, &at, v, s->rest, s->step);
+    for (int i = 0; s->opts.baumgarte && i < s->nc; i++) {
+        s->gamma[i] += 2 * alpha * rate[i] + beta * beta * at.phi[i];
     }
-    for (int k = 0; k < s->n_J; k++) {
-        const int i = s->J_row[k], j = s->J_col[k];
-        const double part = J[(size_t)i * (size_t)s->nv + (size_t)j] * v[j];
-        rate[i] += part;
-        size[i] = fmax(size[i], fabs(part));
-    }
-    for (int i = 0; i < s->nc; i++) {
-        const double unit = hn_system_row_is_length(s->sys, i) ? length : 1;
-        gap = fmax(gap, fabs(phi[i]) / unit);
-        rates = fmax(rates, fabs(rate[i]) / unit);
-        sizes = fmax(sizes, size[i] / unit);
-        if (s->opts.baumgarte) {
-            s->gamma[i] += 2 * alpha * rate[i] + beta * beta * phi[i];
-        }
-    }
-    return fmax(gap, sizes > 0 ? rates / sizes : 0);
+    return gap;
 }
 
-/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the blur of stabilise().
+/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the pivots' blur.
 static double eval_terms(hn_accel *s, double t, const double *q, const double *v, double alpha,
                          double beta) {
     hn_eval_run(s->terms, t, q, v);
     s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
-    return stabilise(s, v, alpha, beta);
+    return hn_blur_of(stabilise(s, v, alpha, beta));
 }
 
 // refinement ---------------------------------------------------------------------------------------------------------
@@ -390,7 +370,7 @@ static double dense_ops(const hn_accel *s) {
 
 static hn_kkt_opts dense_opts(double blur, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
-    opts.row_floor = blur > opts.rank_tol ? ROW_FLOOR : 0;
+    opts.row_floor = blur > opts.rank_tol ? HN_BLUR_ROW_FLOOR : 0;
     opts.rank_tol = fmax(opts.rank_tol, blur);
     opts.residual_tol = fmax(opts.residual_tol, blur);
     opts.want_cond = want_cond;
@@ -466,7 +446,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
         s->fallbacks++;
         return HN_ERR_DIVERGED;
     }
-    const double blur = fmin(BLUR * eval_terms(s, t, q, v, alpha, beta), BLUR_MAX);
+    const double blur = eval_terms(s, t, q, v, alpha, beta);
     if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
         return HN_OK;
     }
@@ -487,7 +467,7 @@ hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const doubl
     if (!all_finite(s->in.x, s->in.n)) {
         return HN_ERR_DIVERGED;
     }
-    const hn_kkt_opts opts = dense_opts(fmin(BLUR * eval_terms(s, t, q, v, 0, 0), BLUR_MAX), 1);
+    const hn_kkt_opts opts = dense_opts(eval_terms(s, t, q, v, 0, 0), 1);
     const hn_status status =
         hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
                      hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,

@@ -16,6 +16,10 @@ static const double DENSE_BUDGET =
 // this small against the present one; nothing is said from farther than NEAR of the largest sigma_min so far
 static const double ANCHOR = 0.85;
 static const double TOUCHES = 0.04;
+// a sigma that is bent on its way to zero leaves the parabola's lowest value above zero, but less of it with the cube of sigma;
+// where the pose is only passed near, the lowest value stays. It has to fall like the square at least, so many times running
+static const double BENT = 0.25;
+enum { FALLING = 2 };
 static const double NEAR = 0.35;
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
@@ -39,6 +43,8 @@ struct hn_radar {
     double largest, strongest; // sigma_min and sigma_max so far
     double t[ANCHORS], square[ANCHORS];
     int n_anchors;
+    double lowest; ///< of the parabola through the last anchors
+    int falling;   ///< anchors in a row by which it has fallen so
     hn_radar_info last;
 };
 
@@ -90,7 +96,8 @@ void hn_radar_free(hn_radar *r) {
 
 void hn_radar_reset(hn_radar *r) {
     r->first = 1;
-    r->wait = r->n_anchors = 0;
+    r->wait = r->n_anchors = r->falling = 0;
+    r->lowest = HUGE_VAL;
     r->largest = r->strongest = 0;
     r->start_rank = r->nc;
     memset(r->r, 0, (size_t)r->nc * sizeof *r->r);
@@ -187,20 +194,54 @@ static void look_sparsely(hn_radar *r, hn_radar_info *info) {
     }
 }
 
-/// Seconds from t until the parabola through the anchors touches zero, HUGE_VAL when it does not.
-static double predict(const hn_radar *r, double t, double sigma) {
-    if (r->n_anchors < ANCHORS || !(sigma < NEAR * r->largest)) {
-        return HUGE_VAL;
+/// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it does not fall to a lowest value.
+static int fit(const hn_radar *r, double *slope, double *curve) {
+    if (r->n_anchors < ANCHORS) {
+        return 0;
     }
     const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
     const double s1 = (r->square[1] - r->square[0]) / a, s2 = (r->square[2] - r->square[1]) / b;
-    const double curve = (s2 - s1) / (a + b), slope = s2 + curve * b; // at the last anchor
-    if (!(curve > 0) || !(slope < 0)) {
+    *curve = (s2 - s1) / (a + b);
+    *slope = s2 + *curve * b;
+    return *curve > 0 && *slope < 0;
+}
+
+/// Seconds from the last anchor until sigma itself, as a parabola through the anchors, is zero.
+static double root(const hn_radar *r) {
+    const double s[ANCHORS] = {sqrt(r->square[0]), sqrt(r->square[1]), sqrt(r->square[2])};
+    const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
+    const double s1 = (s[1] - s[0]) / a, s2 = (s[2] - s[1]) / b;
+    const double curve = (s2 - s1) / (a + b), slope = s2 + curve * b;
+    const double square = slope * slope - 4 * curve * s[2];
+    return slope < 0 && square > 0 ? 2 * s[2] / (sqrt(square) - slope) : HUGE_VAL;
+}
+
+/// Seconds from t until sigma is zero if it goes on as it did, HUGE_VAL when it does not get there.
+static double predict(const hn_radar *r, double t, double sigma) {
+    double slope = 0, curve = 0, when = HUGE_VAL;
+    if (!(sigma < NEAR * r->largest) || !fit(r, &slope, &curve)) {
         return HUGE_VAL;
     }
+    if (fabs(r->lowest) <= TOUCHES * r->square[2]) {
+        when = r->t[2] - slope / (2 * curve);
+    } else if (r->falling >= FALLING && r->lowest <= BENT * r->square[2]) {
+        when = r->t[2] + root(r);
+    }
+    return when > t && when < HUGE_VAL ? when - t : HUGE_VAL;
+}
+
+/// What the parabola through the anchors says after one was added.
+static void follow_lowest(hn_radar *r) {
+    double slope = 0, curve = 0;
+    if (!fit(r, &slope, &curve)) {
+        r->falling = 0;
+        r->lowest = HUGE_VAL;
+        return;
+    }
     const double lowest = r->square[2] - slope * slope / (4 * curve);
-    const double when = r->t[2] - slope / (2 * curve);
-    return fabs(lowest) <= TOUCHES * r->square[2] && when > t ? when - t : HUGE_VAL;
+    const double share = r->square[2] / r->square[1];
+    r->falling = lowest > 0 && lowest <= share * r->lowest ? r->falling + 1 : 0;
+    r->lowest = lowest;
 }
 
 static void remember(hn_radar *r, double t, double sigma) {
@@ -218,6 +259,7 @@ static void remember(hn_radar *r, double t, double sigma) {
     }
     r->t[r->n_anchors] = t;
     r->square[r->n_anchors++] = square;
+    follow_lowest(r);
 }
 
 void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) {

@@ -1,5 +1,6 @@
 #include "methods/dense_ode.h"
 
+#include "dynamics/blur.h"
 #include "linalg/dense.h"
 #include "methods/flops.h"
 
@@ -44,6 +45,16 @@ void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, d
         const double rate = out[i] + ode->phi_t[i];
         out[i] = ode->gamma[i] + 2 * xi * omega * rate + omega * omega * ode->phi[i];
     }
+}
+
+double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size) {
+    const hn_blur_terms at = {.n_J = ode->n_J,
+                              .row = ode->J_row,
+                              .col = ode->J_col,
+                              .J = ode->J,
+                              .phi = ode->phi,
+                              .phi_t = ode->phi_t};
+    return hn_blur_of(hn_blur_gap(ode->sys, &at, v, rate, size));
 }
 
 void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y) {

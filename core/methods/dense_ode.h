@@ -34,6 +34,9 @@ HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sy
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
                        double *out);
 /// y (nc) = J x and x (nv) += J' y, entry by entry.
+/// The size of pivots of J that are blur at the state evaluated last (dynamics/blur.h), with the gap's terms; rate (nc) receives
+/// J v + phi_t, size (nc) is scratch.
+double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size);
 void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y);
 void hn_dense_ode_add_rows(const hn_dense_ode *ode, const double *y, double *x);
 /// Name of the user coordinate behind system coordinate i, for telling.

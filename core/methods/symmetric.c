@@ -21,6 +21,10 @@
 enum { MAX_TURNS = 40 };
 static const double ROUNDING = 4 * DBL_EPSILON; // of coordinates and speeds: as far as (2) is met
 static const double COARSE = 1e3;               // times that, where it gets no better
+// a direction in which J is weaker cannot be trusted to close anything, and a row that is short at this pose is mostly rounding if
+// stretched: pushed along either, the step starts somewhere else
+static const double RANK_TOL = 1e-7;
+static const double ROW_FLOOR = 0.05;
 
 typedef struct symmetric {
     hn_accel_ode ode; // first
@@ -88,8 +92,10 @@ static void destroy(void *self) {
 
 static hn_status tell(symmetric *s, hn_status status, double t) {
     snprintf(s->ode.why, sizeof s->ode.why, "the symmetric projection at t = %.6g s: %s", t,
-             status == HN_ERR_NO_CONVERGENCE ? "it does not converge, the step is too long for it"
-                                             : hn_status_text(status));
+             status == HN_ERR_NO_CONVERGENCE
+                 ? "it does not converge: the step is too long for it, or the pose is close to one "
+                   "where the loops lose rank"
+                 : hn_status_text(status));
     return status;
 }
 
@@ -137,7 +143,7 @@ static hn_status land(symmetric *s, double t1, double *y, double *q1, double *wo
         s->rate[k] = hn_dot(nv, s->J + (size_t)k * nv, y + nq) + s->phi_t[k];
         *worst = fmax(*worst, fmax(fabs(s->phi[k]) / unit_q, fabs(s->rate[k]) / unit_v));
     }
-    return isfinite(*worst) ? HN_OK : HN_ERR_DIVERGED;
+    return isfinite(*worst) ? HN_OK : HN_ERR_NO_CONVERGENCE;
 }
 
 // mu -= (2 S0)^-1 phi, nu -= (2 S0)^-1 (J v + phi_t)
@@ -172,6 +178,8 @@ static hn_status turn(symmetric *s, const hn_step_call *base, double t, double h
 static hn_status begin(symmetric *s, double t, const double *y) {
     const int nv = s->ode.nv, nc = s->ode.nc;
     hn_saddle_opts opts = hn_saddle_opts_default();
+    opts.rank_tol = RANK_TOL;
+    opts.row_floor = ROW_FLOOR;
     opts.residual_tol = HUGE_VAL;
     const hn_status status = look(s, t, y);
     if (status != HN_OK) {

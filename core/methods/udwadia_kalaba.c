@@ -1,3 +1,4 @@
+#include "dynamics/blur.h"
 #include "linalg/dense.h"
 #include "linalg/qr.h"
 #include "methods/dense_ode.h"
@@ -12,7 +13,8 @@
 //
 // The pseudo-inverse by complete orthogonal decomposition: L^-1 J' P = Q [R; 0] with pivoting, rows of J scaled to unit length
 // in that metric, then R' z = P' b in least squares where rows were dropped, and x = Q z. Rows that depend on others
-// need no care; contradicting ones are met in the least-squares sense.
+// need no care; contradicting ones are met in the least-squares sense. Where the loops stand open, rows that depend on others on the
+// closed set part by about the gap: the tolerance that decides the rank grows with it (dynamics/blur.h).
 //
 // Where M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia & Phohomsiri 2006),
 //
@@ -32,6 +34,8 @@ typedef struct udwadia_kalaba {
     hn_qr stack;                 // (nv + nc) x nv: eq. (2)
     double *row_scale, *b, *x;   // nc, nc, max(nv, nc)
     double *stack_scale, *right; // nv, nv + nc
+    double *size;                // nc
+    double rank_tol;             // at this state
     double mass_scale;           // 1 / largest diagonal entry of M, in eq. (2)
 } udwadia_kalaba;
 
@@ -57,18 +61,24 @@ static int factor_mass(udwadia_kalaba *u) {
     return hn_cholesky(nv, u->L, nv, MASS_TOL) == HN_OK;
 }
 
-// scales the columns of u->rows to unit length and factors them
+// scales the columns of u->rows to unit length and factors them; short ones only as far as they are more than blur
 static void factor_rows(udwadia_kalaba *u) {
     const int nv = u->ode.nv, nc = u->ode.nc;
+    double longest = 0;
+    for (int k = 0; k < nc; k++) {
+        u->size[k] = hn_norm2(nv, u->rows.a + (size_t)k * nv);
+        longest = fmax(longest, u->size[k]);
+    }
+    const double least = u->rank_tol > RANK_TOL ? HN_BLUR_ROW_FLOOR * longest : 0;
     for (int k = 0; k < nc; k++) {
         double *column = u->rows.a + (size_t)k * nv;
-        const double size = hn_norm2(nv, column);
+        const double size = fmax(u->size[k], least);
         u->row_scale[k] = size > 0 ? 1 / size : 0;
         for (int j = 0; j < nv; j++) {
             column[j] *= u->row_scale[k];
         }
     }
-    hn_qr_factor(&u->rows, nv, nc, RANK_TOL);
+    hn_qr_factor(&u->rows, nv, nc, u->rank_tol);
     u->ode.cost.factorisations++;
     u->ode.cost.ops += hn_flops_qr(nv, nc);
 }
@@ -203,7 +213,7 @@ static hn_status solve_stack(udwadia_kalaba *u, double t, double *a) {
 
 static hn_status accelerate(void *self, double t, const double *v, double *a) {
     udwadia_kalaba *u = self;
-    (void)v;
+    u->rank_tol = fmax(RANK_TOL, hn_dense_ode_blur(&u->ode, v, u->b, u->size));
     if (!factor_mass(u)) {
         return solve_stack(u, t, a);
     }
@@ -220,7 +230,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = u;
     u->ode.accelerate = accelerate;
-    const hn_status status = hn_dense_ode_init(&u->ode, sys, 0, arena, diag);
+    const hn_status status = hn_dense_ode_init(&u->ode, sys, 1, arena, diag);
     if (status != HN_OK) {
         return status;
     }
@@ -229,6 +239,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     u->scale = hn_arena_doubles(arena, (size_t)nv);
     u->row_scale = hn_arena_doubles(arena, (size_t)nc);
     u->b = hn_arena_doubles(arena, (size_t)nc);
+    u->size = hn_arena_doubles(arena, (size_t)nc);
     u->x = hn_arena_doubles(arena, (size_t)big);
     u->stack_scale = hn_arena_doubles(arena, (size_t)nv);
     u->right = hn_arena_doubles(arena, (size_t)big);
@@ -252,7 +263,7 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
     .when_not = "long runs (nothing closes the gap); large mechanisms (dense, cost grows with the "
                 "cube of the size); near a singular pose, where the rank tolerance decides",
     .source = "Udwadia & Kalaba 1992; Udwadia & Phohomsiri 2006",
-    .needs = "M f J gamma",
+    .needs = "M f phi J gamma",
     .index = 1,
     .create = create,
     .destroy = hn_dense_ode_destroy,

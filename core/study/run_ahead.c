@@ -16,7 +16,9 @@ static const double CLOSE =
 static const double RANGE = 0.35; // and from here on they are compared
 static const double CHANGE =
     0.5; // a continuation that changes the heading by more than this says nothing
-static const double FAR = 0.1; // ratio above which multipliers are those of a regular pose
+static const double INSIDE = 0.02; // of the largest sigma_min: an isolated pose is left at once
+static const double WANDER = 0.3;  // of the length, in the loops' own displacement
+static const double FAR = 0.1;     // ratio above which multipliers are those of a regular pose
 
 static hn_run_ahead *ahead_of(hn_run *run) {
     return &run->watch.ahead;
@@ -28,6 +30,7 @@ hn_status hn_run_ahead_create(hn_run *run) {
     for (int i = 0; i < 3; i++) {
         headings[i]->e = hn_arena_doubles(run->arena, (size_t)run->info.nv);
     }
+    a->entered = hn_arena_doubles(run->arena, (size_t)run->info.nq);
     return hn_arena_failed(run->arena) ? HN_ERR_MEMORY
                                        : hn_radar_create(run->sys, run->arena, &a->radar);
 }
@@ -41,7 +44,7 @@ void hn_run_ahead_start(hn_run *run) {
     hn_radar_reset(a->radar);
     a->info = (hn_radar_info){.ratio = 1, .ahead = HUGE_VAL};
     a->largest = a->multiplier = 0;
-    a->n_headings = a->passing = 0;
+    a->n_headings = a->passing = a->inside = 0;
     a->fallbacks = 0;
 }
 
@@ -168,13 +171,60 @@ static void tell_branch(hn_run *run, double angle) {
     }
 }
 
+static int has_one_freedom(const hn_run *run) {
+    return run->info.nv - run->watch.start_rank == 1 && !run->info.has_time;
+}
+
+/// How far the motion since `entered` would have opened a loop with one of its coordinates alone, over the length.
+static double wandered(hn_run *run) {
+    const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
+    double *step = run->watch.a, most = 0;
+    hn_system_difference(run->sys, ahead_of(run)->entered, run->now.q, step);
+    for (int i = 0; i < run->info.nc; i++) {
+        const double unit = hn_system_row_is_length(run->sys, i) ? run->length : 1;
+        for (int j = 0; j < run->info.nv; j++) {
+            most =
+                fmax(most, fabs(J[(size_t)i * (size_t)run->info.nv + (size_t)j] * step[j]) / unit);
+        }
+    }
+    return most;
+}
+
+// Poses where J loses rank lie apart on the way of a mechanism of one freedom. One that moves on and stays singular has turned off
+// into a motion of which they are all that there is: some of its links folded onto each other.
+static void look_at_stay(hn_run *run) {
+    hn_run_ahead *a = ahead_of(run);
+    if (!has_one_freedom(run) || !(a->info.sigma_min < INSIDE * a->largest)) {
+        a->inside = 0;
+        return;
+    }
+    if (!a->inside) {
+        a->inside = 1;
+        memcpy(a->entered, run->now.q, (size_t)run->info.nq * sizeof *a->entered);
+        return;
+    }
+    const double way = a->inside == 1 ? wandered(run) : 0;
+    if (!(way > WANDER)) {
+        return;
+    }
+    a->inside = 2;
+    hn_incident *i = hn_run_tell(
+        run, HN_INCIDENT_BRANCH_FLIP, "way", way, WANDER,
+        "the run moves on and J stays without its rank (sigma_min is %.2g of %.2g at most): it "
+        "turned off at a singular pose into a motion that has some links folded onto each other",
+        a->info.sigma_min, a->largest);
+    if (i) {
+        hn_run_remedy_robust(run, i->remedy[0]);
+        hn_run_remedy_finer(run, 0.25, i->remedy[1]);
+    }
+}
+
 // With one freedom the direction of motion is a matter of the pose alone, and smooth on a branch.
 static void look_at_heading(hn_run *run) {
     hn_run_ahead *a = ahead_of(run);
     const int n = run->info.nv;
     double *smooth = run->watch.a;
-    if (n - run->watch.start_rank != 1 || run->info.has_time ||
-        a->info.sigma_min < CLOSE * a->largest) {
+    if (!has_one_freedom(run) || a->info.sigma_min < CLOSE * a->largest) {
         return;
     }
     take_heading(run, &a->now);
@@ -286,4 +336,5 @@ void hn_run_ahead_look(hn_run *run, const double *lambda) {
     look_at_condition(run);
     look_at_fallbacks(run);
     look_at_heading(run);
+    look_at_stay(run);
 }

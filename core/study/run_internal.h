@@ -36,6 +36,8 @@ typedef struct hn_run_ahead {
     int n_headings;
     double multiplier;   ///< largest |lambda| away from singular poses
     long long fallbacks; ///< of the method, as told so far
+    double *entered;     ///< nq: where J all but lost rank, as long as it stays so
+    int inside;          ///< it does: 1, 2 once that has been told
     int passing;         ///< 1 + number of the incident that told the pose being passed, 0: none
 } hn_run_ahead;
 

@@ -252,8 +252,10 @@ static void look_at_rank(hn_run *run, int at_start) {
         hn_run_over(run, HN_INCIDENT_RANK_LOSS);
     }
     measure_rows(run);
-    const double row = hn_run_shortest_row(run),
-                 pivot = row * row * info.pivot_ratio; // J M^-1 J': squared
+    // J M^-1 J': squared. A pivot that is lost where J is not says only that the order of elimination does not suit the pose.
+    const double row = hn_run_shortest_row(run), ratio = w->ahead.info.ratio;
+    const double pivot =
+        status == HN_OK && info.fallback ? ratio * ratio : row * row * info.pivot_ratio;
     const int near = status != HN_OK || pivot < HN_RUN_WARN_PIVOT;
     if (!near || info.rank < run->info.nc) {
         hn_run_over(run, HN_INCIDENT_NEAR_SINGULAR);

@@ -446,6 +446,37 @@ static void a_ladder_of_two_hundred_loops_assembles(void **state) {
     hn_model_close(&m);
 }
 
+// |phi| is least where the two copies share the offset: 1e-3 / sqrt(2) in all, half of it in each
+static void two_closures_a_millimetre_apart_are_unreachable_with_half_of_it_in_each(void **state) {
+    (void)state;
+    static const char json[] =
+        "{\"holonom\": 1, \"name\": \"two\", \"bodies\": [{\"name\": \"crank\", \"mass\": 1}, "
+        "{\"name\": \"coupler\", \"mass\": 1}, {\"name\": \"rocker\", \"mass\": 1}], \"joints\": ["
+        "{\"name\": \"O1\", \"type\": \"revolute\", \"child\": {\"body\": \"crank\"}, "
+        "\"parent\": {\"body\": \"ground\"}, \"coordinate\": \"th1\"},"
+        "{\"name\": \"A\", \"type\": \"revolute\", \"parent\": {\"body\": \"crank\", \"at\": [1, "
+        "0, 0]}, "
+        "\"child\": {\"body\": \"coupler\"}, \"coordinate\": \"a2\"},"
+        "{\"name\": \"O3\", \"type\": \"revolute\", \"parent\": {\"body\": \"ground\", \"at\": "
+        "[2.2, 0, 0]}, "
+        "\"child\": {\"body\": \"rocker\"}, \"coordinate\": \"th3\"},"
+        "{\"name\": \"B\", \"type\": \"revolute\", \"cut\": true, \"parent\": {\"body\": "
+        "\"coupler\", "
+        "\"at\": [2, 0, 0]}, \"child\": {\"body\": \"rocker\", \"at\": [1.8, 0, 0]}},"
+        "{\"name\": \"C\", \"type\": \"revolute\", \"cut\": true, \"parent\": {\"body\": "
+        "\"coupler\", "
+        "\"at\": [2, 0, 0]}, \"child\": {\"body\": \"rocker\", \"at\": [1.801, 0, 0]}}],"
+        "\"start\": {\"positions\": {\"th1\": 1, \"a2\": {\"guess\": -0.5}, \"th3\": {\"guess\": "
+        "1.5}}}}";
+    hn_model m;
+    hn_model_open_text(&m, json, NULL);
+    assert_int_equal(m.status, HN_ERR_UNREACHABLE);
+    assert_near(m.assembly.gap, 1e-3 / sqrt(2),
+                1e-9); // the offset turns with the rocker: second order
+    assert_non_null(strstr(m.diags.item[0].message, "cannot be closed: a gap of 0.0005 m is left"));
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reference_four_bar_starts_where_two_independent_solutions_start),
@@ -460,6 +491,7 @@ int main(void) {
         cmocka_unit_test(a_dyad_that_just_reaches_assembles_at_its_dead_point),
         cmocka_unit_test(two_pins_on_one_freedom_are_told),
         cmocka_unit_test(contradictory_rates_are_told),
+        cmocka_unit_test(two_closures_a_millimetre_apart_are_unreachable_with_half_of_it_in_each),
         cmocka_unit_test(a_pin_on_the_joint_that_closes_the_loop_is_refused),
         cmocka_unit_test(free_rates_change_least_by_mass),
         cmocka_unit_test(redundant_loop_rows_are_counted_and_harmless),
