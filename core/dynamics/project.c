@@ -21,7 +21,7 @@ static const double NEAR =
 // a step this small that gains nothing meets the rounding of phi itself, which grows with the extent of the mechanism
 static const double STEP_ROUNDING = 1e-12;
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
-// of (1 + length) max |v_i| sqrt(nc): how far speeds are closed, and what will do where they close no further
+// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far speeds are closed, and what will do where they close no further
 static const double VELOCITY_TOL = 2e-16;
 static const double VELOCITY_ROUNDING = 4e-15;
 // A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic there, and a step
@@ -46,6 +46,8 @@ struct hn_projector {
 
     int have_factor, dense, rank;
     double factor_t, *factor_q;
+
+    double *speed_unit; // nv: what a speed of 1 may do to J v
 
     double *gap, *step, *multiplier; // nc, nv, nc
     double *best, *impulse, *closed; // nv; nc: sums over a velocity projection
@@ -115,6 +117,32 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     return HN_OK;
 }
 
+// Where all rows are lengths an angular speed counts by the length and nothing depends on the size of the mechanism.
+static void find_speed_units(hn_projector *p) {
+    int only_lengths = 1;
+    for (int i = 0; i < p->nc; i++) {
+        only_lengths &= hn_system_row_is_length(p->sys, i);
+    }
+    const int n_user = hn_system_get_info(p->sys).n_user;
+    for (int i = 0; i < p->nv; i++) {
+        const hn_scene *scene = hn_system_scene(p->sys);
+        const hn_unit_kind kind =
+            i < n_user ? scene->coordinates[hn_system_user_coordinate(p->sys, i)].kind : HN_OTHER;
+        p->speed_unit[i] = 1 + p->length;
+        if (only_lengths && kind != HN_OTHER) {
+            p->speed_unit[i] = kind == HN_ANGLE ? p->length : 1;
+        }
+    }
+}
+
+static double size_of_speeds(const hn_projector *p, const double *v) {
+    double most = 0;
+    for (int i = 0; i < p->nv; i++) {
+        most = fmax(most, p->speed_unit[i] * fabs(v[i]));
+    }
+    return most * sqrt(p->nc);
+}
+
 static hn_status create_parts(hn_projector *p, hn_arena *arena) {
     hn_status status = compile_tapes(p, arena);
     if (status == HN_OK) {
@@ -130,6 +158,7 @@ static hn_status create_parts(hn_projector *p, hn_arena *arena) {
     p->zero = hn_arena_doubles(arena, nv);
     p->factor_q = hn_arena_doubles(arena, nq);
     p->step = hn_arena_doubles(arena, nv);
+    p->speed_unit = hn_arena_doubles(arena, nv);
     p->best = hn_arena_doubles(arena, nq > nv ? nq : nv);
     p->gap = hn_arena_doubles(arena, nc);
     p->multiplier = hn_arena_doubles(arena, nc);
@@ -138,6 +167,7 @@ static hn_status create_parts(hn_projector *p, hn_arena *arena) {
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+    find_speed_units(p);
     hn_tape_prepare(p->phi_tape, p->phi_work);
     hn_tape_prepare(p->gap_tape, p->gap_work);
     return HN_OK;
@@ -419,7 +449,7 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
     if (p->nc == 0) {
         return HN_OK;
     }
-    double scale = (1 + p->length) * hn_norm_max(p->nv, v) * sqrt(p->nc);
+    double scale = size_of_speeds(p, v);
     info->iterations = 1;
     info->gap_before = info->gap = eval_velocity_gap(p, t, q, v);
     if (!isfinite(info->gap)) {
