@@ -130,24 +130,23 @@ static void put_methods(hn_strbuf *b, const hn_study *s) {
     hn_json_end_array(b);
 }
 
-static void put_place(hn_strbuf *b, const hn_study *s, const char *key, hn_place place,
-                      hn_cost_kind cost) {
+static void put_place(hn_strbuf *b, const hn_study *s, const char *key, hn_place place) {
     if (place.level >= 0) {
         const hn_wp_point *p = &s->wp->methods[place.method].point[place.level];
         hn_json_key(b, key);
         hn_json_object(b);
         hn_json_put_string(b, "method", s->wp->methods[place.method].spelling);
         hn_json_put_number(b, "size", p->size);
-        hn_json_put_number(b, "cost", hn_wp_cost(p, cost));
+        hn_json_put_number(b, "cost", place.cost);
         hn_json_end_object(b);
     }
 }
 
-static void put_band(hn_strbuf *b, const hn_study *s, const hn_pareto *p, const hn_band *band) {
+static void put_band(hn_strbuf *b, const hn_study *s, const hn_band *band) {
     hn_json_object(b);
     hn_json_put_number(b, "accuracy", band->accuracy);
-    put_place(b, s, "best", band->best, p->cost);
-    put_place(b, s, "next", band->next, p->cost);
+    put_place(b, s, "best", band->best);
+    put_place(b, s, "next", band->next);
     hn_json_key(b, "too_close_to_rank");
     hn_json_array(b);
     for (int i = 0; i < band->n_close; i++) {
@@ -181,7 +180,7 @@ static void put_paretos(hn_strbuf *b, const hn_study *s) {
             hn_json_key(b, "bands");
             hn_json_array(b);
             for (int i = 0; i < p.n_bands; i++) {
-                put_band(b, s, &p, &p.band[i]);
+                put_band(b, s, &p.band[i]);
             }
             hn_json_end_array(b);
             hn_json_end_object(b);
@@ -196,14 +195,17 @@ static void put_race(hn_strbuf *b, const hn_study *s) {
     hn_json_key(b, "race");
     hn_json_object(b);
     hn_json_put_numbers(b, "operations", race.cost, (size_t)race.n);
-    hn_json_key(b, "error");
+    hn_json_key(b, "methods");
     hn_json_array(b);
     for (int m = 0; m < s->wp->n_methods; m++) {
-        double e[HN_RACE_COSTS];
+        hn_json_array(b);
         for (int i = 0; i < race.n; i++) {
-            e[i] = race.error[i][m];
+            hn_json_object(b);
+            hn_json_put_number(b, "error", race.error[i][m]);
+            hn_json_put_bool(b, "or_less", race.is_bound[i][m]);
+            hn_json_end_object(b);
         }
-        hn_json_numbers(b, e, (size_t)race.n);
+        hn_json_end_array(b);
     }
     hn_json_end_array(b);
     hn_json_end_object(b);

@@ -220,8 +220,8 @@ static void put_race(hn_strbuf *b, const hn_study *s) {
     }
     hn_strbuf_add(
         b, "<h2>What equal cost buys</h2><p class=\"quiet\">Error of the coordinates for the "
-           "same number of operations, between measured points; – lies beyond "
-           "them.</p><div class=\"scroll\"><table><thead><tr><th>method</th>");
+           "same number of operations, between measured points; ≤: with fewer already; –: no "
+           "point is as cheap.</p><div class=\"scroll\"><table><thead><tr><th>method</th>");
     for (int i = 0; i < race.n; i++) {
         char text[HN_SI_TEXT];
         hn_si_format(race.cost[i], "op", 2, text);
@@ -234,6 +234,7 @@ static void put_race(hn_strbuf *b, const hn_study *s) {
         for (int i = 0; i < race.n; i++) {
             const double e = race.error[i][m];
             hn_strbuf_add(b, "<td class=\"n\">");
+            hn_strbuf_add(b, race.is_bound[i][m] ? "≤ " : "");
             hn_strbuf_printf(b, isfinite(e) ? "%.1e</td>" : "–</td>", e);
         }
         hn_strbuf_add(b, "</tr>");

@@ -151,13 +151,18 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
     } else if (c->kind == HN_CLASS_FLOOR) {
         snprintf(c->text, sizeof c->text, "at its floor of %.1e from the coarsest sizes on",
                  c->floor);
+    } else if (c->first >= 0 && c->last - c->first < 2) {
+        snprintf(c->text, sizeof c->text,
+                 "not in the asymptotic range: two points between 0.5 and the floor, slope %.1f "
+                 "(theory %g)%s",
+                 c->order, c->theory, floor);
     } else if (c->first >= 0) {
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s", c->low,
                  c->high, c->theory, floor);
     } else {
         snprintf(c->text, sizeof c->text,
-                 "not in the asymptotic range: too few points between 1 and the floor");
+                 "not in the asymptotic range: fewer than two points between 0.5 and the floor");
     }
 }
 

@@ -38,17 +38,35 @@ static int takes_part(const hn_wp *wp, const hn_class *classes, hn_error_kind er
            hn_wp_cost(p, cost) > 0 && isfinite(p->worst[error]);
 }
 
-/// Cheapest point of one method that reaches the accuracy, or level -1.
+/// y at x on the straight line in the logarithms through (x0, y0) and (x1, y1).
+static double between(double x, double x0, double y0, double x1, double y1) {
+    const double share = log(x / x0) / log(x1 / x0);
+    return exp(log(y0) + share * (log(y1) - log(y0)));
+}
+
+/// Where a method reaches the accuracy for the least, or level -1.
 static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
-                         hn_cost_kind cost, int m, double accuracy) {
-    hn_place best = {m, -1};
+                         hn_cost_kind kind, int m, double accuracy) {
+    hn_place best = {m, -1, 0};
+    const hn_wp_point *before = NULL;
     for (int k = 0; k < wp->n_levels; k++) {
         const hn_wp_point *p = &wp->methods[m].point[k];
-        if (takes_part(wp, classes, error, cost, m, k) && claimed(wp, p, error) <= accuracy &&
-            (best.level < 0 ||
-             hn_wp_cost(p, cost) < hn_wp_cost(&wp->methods[m].point[best.level], cost))) {
-            best.level = k;
+        if (!takes_part(wp, classes, error, kind, m, k)) {
+            continue;
         }
+        const double e = claimed(wp, p, error);
+        double cost = hn_wp_cost(p, kind);
+        if (e <= accuracy) {
+            if (before && claimed(wp, before, error) > accuracy &&
+                hn_wp_cost(before, kind) < cost) {
+                cost = between(accuracy, claimed(wp, before, error), hn_wp_cost(before, kind), e,
+                               cost);
+            }
+            if (best.level < 0 || cost < best.cost) {
+                best = (hn_place){m, k, cost};
+            }
+        }
+        before = p;
     }
     return best;
 }
@@ -58,36 +76,36 @@ static const hn_wp_point *at(const hn_wp *wp, hn_place place) {
 }
 
 /// 1 if the second cannot be told from the first: counts are exact, times are not.
-static int too_close(const hn_wp_point *a, const hn_wp_point *b, hn_cost_kind cost) {
+static int too_close(const hn_wp *wp, hn_place a, hn_place b, hn_cost_kind cost) {
     if (cost != HN_COST_TIME) {
-        return hn_wp_cost(a, cost) == hn_wp_cost(b, cost);
+        return b.cost <= a.cost;
     }
-    return b->median < HN_PARETO_CLOSE * a->median || b->low <= a->high;
+    const hn_wp_point *p = at(wp, a), *r = at(wp, b);
+    return b.cost < HN_PARETO_CLOSE * a.cost ||
+           b.cost * r->low / r->median <= a.cost * p->high / p->median;
 }
 
 static void fill_band(const hn_wp *wp, const hn_class *classes, const hn_pareto *p, hn_band *band) {
     hn_place place[HN_WP_METHODS];
-    band->best = band->next = (hn_place){-1, -1};
+    band->best = band->next = (hn_place){-1, -1, 0};
     for (int m = 0; m < wp->n_methods; m++) {
         place[m] = cheapest(wp, classes, p->error, p->cost, m, band->accuracy);
         if (place[m].level < 0) {
             continue;
         }
-        const double cost = hn_wp_cost(at(wp, place[m]), p->cost);
-        if (band->best.level < 0 || cost < hn_wp_cost(at(wp, band->best), p->cost)) {
+        if (band->best.level < 0 || place[m].cost < band->best.cost) {
             band->next = band->best;
             band->best = place[m];
-        } else if (band->next.level < 0 || cost < hn_wp_cost(at(wp, band->next), p->cost)) {
+        } else if (band->next.level < 0 || place[m].cost < band->next.cost) {
             band->next = place[m];
         }
     }
     if (band->next.level >= 0) {
-        band->ratio =
-            hn_wp_cost(at(wp, band->next), p->cost) / hn_wp_cost(at(wp, band->best), p->cost);
+        band->ratio = band->next.cost / band->best.cost;
     }
     for (int m = 0; m < wp->n_methods && band->best.level >= 0; m++) {
         if (m != band->best.method && place[m].level >= 0 &&
-            too_close(at(wp, band->best), at(wp, place[m]), p->cost)) {
+            too_close(wp, band->best, place[m], p->cost)) {
             band->close[band->n_close++] = m;
         }
     }
@@ -142,24 +160,27 @@ int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error
 
 // the race -------------------------------------------------------------------------------------------------------
 
-/// The error at a cost, from the cheapest pair of neighbours around it.
+/// The error at a cost; *is_bound when the cost is more than any point's.
 static double error_at(const hn_wp *wp, const hn_class *classes, hn_error_kind error, int m,
-                       double cost) {
-    int before = -1;
+                       double cost, int *is_bound) {
+    const hn_wp_point *before = NULL;
+    double smallest = HUGE_VAL;
+    *is_bound = 0;
     for (int k = 0; k < wp->n_levels; k++) {
+        const hn_wp_point *p = &wp->methods[m].point[k];
         if (!takes_part(wp, classes, error, HN_COST_OPS, m, k)) {
             continue;
         }
-        const hn_wp_point *p = &wp->methods[m].point[k];
-        if (p->cost.ops >= cost && before >= 0) {
-            const hn_wp_point *a = &wp->methods[m].point[before];
-            const double share = log(cost / a->cost.ops) / log(p->cost.ops / a->cost.ops);
-            const double ea = log(claimed(wp, a, error)), eb = log(claimed(wp, p, error));
-            return exp(ea + share * (eb - ea));
+        if (p->cost.ops >= cost) {
+            return before ? between(cost, before->cost.ops, claimed(wp, before, error), p->cost.ops,
+                                    claimed(wp, p, error))
+                          : (double)NAN;
         }
-        before = p->cost.ops < cost ? k : before;
+        smallest = fmin(smallest, claimed(wp, p, error));
+        before = p;
     }
-    return (double)NAN;
+    *is_bound = before != NULL;
+    return before ? smallest : (double)NAN;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -208,7 +229,7 @@ void hn_wp_race(const hn_wp *wp, const hn_class *classes, hn_error_kind error, h
     out->n = race_costs(wp, classes, error, out->cost);
     for (int i = 0; i < out->n; i++) {
         for (int m = 0; m < wp->n_methods; m++) {
-            out->error[i][m] = error_at(wp, classes, error, m, out->cost[i]);
+            out->error[i][m] = error_at(wp, classes, error, m, out->cost[i], &out->is_bound[i][m]);
         }
     }
 }
@@ -243,13 +264,13 @@ static void put_sentence(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p, int 
                          wp->methods[coarse->close[i]].spelling);
     }
     hn_strbuf_add(b, coarse->n_close ? ", too close to rank: from " : ", ");
-    put_amount(b, hn_wp_cost(at(wp, coarse->best), p->cost), p->cost);
+    put_amount(b, coarse->best.cost, p->cost);
     if (first != last) {
         hn_strbuf_add(b, " to ");
-        put_amount(b, hn_wp_cost(at(wp, fine->best), p->cost), p->cost);
+        put_amount(b, fine->best.cost, p->cost);
     }
     if (coarse->n_close == 0 && fine->next.level >= 0) {
-        hn_strbuf_printf(b, "; next %s at %.2g times that", wp->methods[fine->next.method].spelling,
+        hn_strbuf_printf(b, "; next %s at %.3g times that", wp->methods[fine->next.method].spelling,
                          fine->ratio);
     } else if (fine->next.level < 0) {
         hn_strbuf_add(b, "; no other method gets there");

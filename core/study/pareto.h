@@ -14,10 +14,12 @@ double hn_wp_cost(const hn_wp_point *p, hn_cost_kind kind); ///< NaN where it wa
 enum { HN_PARETO_BANDS = 14, HN_RACE_COSTS = 3 };
 
 typedef struct hn_place {
-    int method, level; ///< -1: none
+    int method, level; ///< the point that reaches it; -1: none
+    double cost;       ///< of just reaching it
 } hn_place;
 
-/// The cheapest points whose error is `accuracy` or less.
+/// Who reaches an accuracy for the least. What just reaching it costs is read off between the points around it, by a straight line in the
+/// logarithms, so that the grain of a ladder decides nothing; the coarsest point of a method is never undercut.
 typedef struct hn_band {
     double accuracy;
     hn_place best; ///< -1: nobody reaches it
@@ -43,11 +45,12 @@ int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error
                    int m, int k);
 
 /// What each method reaches for the same number of operations: between two of its points by a straight line in the logarithms,
-/// never beyond them (NaN).
+/// never before them (NaN). Behind the dearest point the smallest error so far is a bound.
 typedef struct hn_race {
     int n;
     double cost[HN_RACE_COSTS]; ///< operations
     double error[HN_RACE_COSTS][HN_WP_METHODS];
+    int is_bound[HN_RACE_COSTS][HN_WP_METHODS]; ///< 1: this or less
 } hn_race;
 void hn_wp_race(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_race *out);
 

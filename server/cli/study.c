@@ -149,7 +149,8 @@ static hn_exit study_model(const hn_args *args, const hn_model *model) {
     hn_progress_end(&progress);
     sigaction(SIGINT, &before, NULL);
     if (status != HN_OK) {
-        return hn_report_diags(args, status, &diags);
+        const hn_exit told = hn_report_diags(args, status, &diags);
+        return interrupted ? HN_EXIT_ENDED : told;
     }
     tell_end(study, keeps ? folder : NULL);
     hn_exit result = write_results(args, study);

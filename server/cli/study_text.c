@@ -242,10 +242,15 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
         hn_table_cell(&t, "%s", glyph_of(m));
         hn_table_cell(&t, "%s", wp->methods[m].spelling);
         for (int i = 0; i < race.n; i++) {
-            put_error(&t, wp, HN_ERROR_Q, race.error[i][m]);
+            if (race.is_bound[i][m]) {
+                hn_table_cell(&t, "\xe2\x89\xa4 %.1e", race.error[i][m]);
+            } else {
+                put_error(&t, wp, HN_ERROR_Q, race.error[i][m]);
+            }
         }
     }
-    hn_strbuf_add(b, "\nWhat equal cost buys (between measured points; -: beyond them)\n");
+    hn_strbuf_add(b, "\nWhat equal cost buys (between measured points; \xe2\x89\xa4: with fewer "
+                     "already; -: no point is as cheap)\n");
     hn_table_write(b, &t);
     hn_table_reset(&t);
 }

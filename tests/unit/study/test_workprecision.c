@@ -195,6 +195,9 @@ static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
         assert_int_equal(p.band[i].n_close, 0);
         assert_near(p.band[i].ratio, 2, 1e-12);
     }
+    // accuracies between the points are read off: 1e-3 lies halfway from 1 s to 2 s in the logarithms
+    assert_near(p.band[2].best.cost, sqrt(2), 1e-12);
+    assert_near(p.band[0].best.cost, 1, 0); // nothing cheaper was measured
     assert_int_equal(p.band[0].best.level, 0);
     assert_int_equal(p.band[5].best.level, 2);
     hn_strbuf b;
@@ -259,8 +262,15 @@ static void equal_cost_is_read_off_between_the_points(void **state) {
         const double expected = 1e-2 * pow(1e-2, log2(race.cost[i] / 1000));
         assert_true(race.cost[i] > 1000 && race.cost[i] < 4000);
         assert_near(race.error[i][0] / expected, 1, 1e-9);
-        assert_true(isnan(race.error[i][2]));
+        assert_true(isnan(race.error[i][2]) && !race.is_bound[i][0]);
     }
+    // a method that stops getting dearer before: what it had reached is a bound
+    for (int k = 0; k < 3; k++) {
+        w.methods[1].point[k].cost.ops /= 100;
+    }
+    hn_wp_race(&w.wp, w.classes, HN_ERROR_Q, &race);
+    assert_true(race.cost[0] > 40 && race.is_bound[0][1]);
+    assert_near(race.error[0][1], 1e-6, 0);
 }
 
 // real ladders -----------------------------------------------------------------------------------------------------

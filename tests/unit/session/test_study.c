@@ -1,0 +1,190 @@
+// What is kept of studies: taken up where it was cut, never trusted halfway.
+#include "support/near.h"
+
+#include "session/study.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const METHODS[] = {"projection@rk4", "projection@dopri5"};
+
+typedef struct place {
+    hn_library *lib;
+    hn_model *model;
+    char folder[64];
+} place;
+
+static void open_place(place *p, const char *scene) {
+    hn_diag diag = {0};
+    hn_diags diags = {0};
+    const hn_model_source source = {.name = scene};
+    assert_int_equal(hn_library_open(".", &p->lib, &diag), HN_OK);
+    assert_int_equal(hn_model_load(p->lib, &source, &p->model, &diags), HN_OK);
+    strcpy(p->folder, "/tmp/hn-study-XXXXXX");
+    assert_non_null(mkdtemp(p->folder));
+}
+
+/// Path of the first file that begins like this, "" when there is none.
+static void find_file(const place *p, const char *begin, char out[400]) {
+    DIR *dir = opendir(p->folder);
+    out[0] = 0;
+    for (struct dirent *e; (e = readdir(dir)) != NULL;) {
+        if (strncmp(e->d_name, begin, strlen(begin)) == 0) {
+            snprintf(out, 400, "%s/%s", p->folder, e->d_name);
+        }
+    }
+    closedir(dir);
+}
+
+static void close_place(place *p) {
+    char path[400];
+    for (find_file(p, "re", path); path[0]; find_file(p, "re", path)) {
+        assert_int_equal(remove(path), 0);
+    }
+    for (find_file(p, "st", path); path[0]; find_file(p, "st", path)) {
+        assert_int_equal(remove(path), 0);
+    }
+    assert_int_equal(rmdir(p->folder), 0);
+    hn_model_free(p->model);
+    hn_library_free(p->lib);
+}
+
+static int stop_after(void *user) {
+    return --*(int *)user < 0;
+}
+
+static hn_study *open_study(const place *p, int *questions) {
+    hn_study *study = NULL;
+    hn_diags diags = {0};
+    hn_study_request r = hn_study_request_default();
+    r.methods = METHODS;
+    r.n_methods = 2;
+    r.time = 0.5;
+    r.levels = 3;
+    r.samples = -1;
+    r.folder = p->folder;
+    if (questions) {
+        r.hooks = (hn_wp_hooks){.user = questions, .stop = stop_after};
+    }
+    if (hn_study_open(p->model, &r, &study, &diags) != HN_OK) {
+        fail_msg("%s", diags.item[0].message);
+    }
+    return study;
+}
+
+static int points_done(const hn_study *study) {
+    const hn_wp *wp = hn_study_wp(study);
+    int n = 0;
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            n += wp->methods[m].point[k].state == HN_WP_DONE;
+        }
+    }
+    return n;
+}
+
+/// A study cut short; how many points it had.
+static int cut_short(const place *p) {
+    int questions = 60; // more than the reference asks
+    hn_study *study = open_study(p, &questions);
+    questions = 3;
+    assert_false(hn_study_run(study));
+    const int done = points_done(study);
+    assert_true(done > 0 && done < 6);
+    hn_study_free(study);
+    return done;
+}
+
+static void a_study_goes_on_where_it_was_cut(void **state) {
+    (void)state;
+    place p;
+    char path[400];
+    open_place(&p, "fb0");
+    const int done = cut_short(&p);
+    hn_study *study = open_study(&p, NULL);
+    assert_int_equal(hn_study_resumed(study), done);
+    assert_true(hn_study_kept_reference(study));
+    assert_true(hn_study_run(study));
+    assert_int_equal(points_done(study), 6);
+    hn_study_free(study);
+    find_file(&p, "study", path);
+    assert_string_equal(path, ""); // nothing is left of a finished one
+    close_place(&p);
+}
+
+static void a_torn_line_costs_one_point_and_no_more(void **state) {
+    (void)state;
+    place p;
+    char path[400];
+    open_place(&p, "fb0");
+    const int done = cut_short(&p);
+    find_file(&p, "study", path);
+    FILE *f = fopen(path, "rb+");
+    assert_int_equal(fseek(f, -7, SEEK_END), 0);
+    assert_int_equal(ftruncate(fileno(f), ftell(f)), 0);
+    fclose(f);
+    hn_study *study = open_study(&p, NULL);
+    assert_int_equal(hn_study_resumed(study), done - 1);
+    assert_true(hn_study_run(study));
+    assert_int_equal(points_done(study), 6);
+    hn_study_free(study);
+    close_place(&p);
+}
+
+static void lines_of_another_hand_are_not_taken(void **state) {
+    (void)state;
+    place p;
+    char path[400];
+    open_place(&p, "fb0");
+    cut_short(&p);
+    find_file(&p, "study", path);
+    static const char *const lines[] = {
+        "{}\n",
+        "[1,2]\n",
+        "{\"m\":0,\"k\":99}\n",
+        "{\"m\":1e9,\"k\":0,\"cpu\":1}\n",
+        "{\"m\":0,\"k\":2,\"state\":1,\"status\":0,\"reason\":\"\",\"numbers\":[1]}\n",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        FILE *f = fopen(path, "wb");
+        fputs(lines[i], f);
+        fclose(f);
+        hn_study *study = open_study(&p, NULL);
+        assert_int_equal(hn_study_resumed(study), 0);
+        assert_int_equal(points_done(study), 0);
+        hn_study_free(study);
+    }
+    close_place(&p);
+}
+
+static void the_same_study_twice_at_once_is_refused(void **state) {
+    (void)state;
+    place p;
+    hn_diags diags = {0};
+    hn_study *second = NULL;
+    open_place(&p, "fb0");
+    hn_study *first = open_study(&p, NULL);
+    hn_study_request r = hn_study_request_default();
+    r.methods = METHODS;
+    r.n_methods = 2;
+    r.time = 0.5;
+    r.levels = 3;
+    r.folder = p.folder;
+    assert_int_equal(hn_study_open(p.model, &r, &second, &diags), HN_ERR_IO);
+    assert_null(second);
+    hn_study_free(first);
+    close_place(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_study_goes_on_where_it_was_cut),
+        cmocka_unit_test(a_torn_line_costs_one_point_and_no_more),
+        cmocka_unit_test(lines_of_another_hand_are_not_taken),
+        cmocka_unit_test(the_same_study_twice_at_once_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
