@@ -34,7 +34,8 @@ typedef enum hn_run_state {
     X(HN_INCIDENT_ILL_CONDITIONED, "ill-conditioned")     \
     X(HN_INCIDENT_MULTIPLIERS, "multipliers-grow")        \
     X(HN_INCIDENT_SOLVER, "solver-fallback")              \
-    X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")
+    X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")             \
+    X(HN_INCIDENT_NEWTON_FAILED, "newton-failed")
 
 typedef enum hn_incident_code {
 #define HN_INCIDENT_ENUM(code, name) code,

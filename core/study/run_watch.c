@@ -393,12 +393,19 @@ void hn_run_tell_step_limit(hn_run *run) {
     snprintf(i->remedy[1], sizeof i->remedy[1], "h=%.3g", 0.1 * limit / rate);
 }
 
-static hn_incident_code code_of(hn_status status) {
+// who failed to converge: an integrator that takes the constraints itself has no projection behind it
+static hn_incident_code code_of_iteration(const hn_run *run) {
+    return hn_method_form(run->spec.formulation, run->spec.stepper) == HN_FORM_ODE
+               ? HN_INCIDENT_PROJECTION_FAILED
+               : HN_INCIDENT_NEWTON_FAILED;
+}
+
+static hn_incident_code code_of(const hn_run *run, hn_status status) {
     switch (status) {
     case HN_ERR_CHART:
         return HN_INCIDENT_CHART_LOST;
     case HN_ERR_NO_CONVERGENCE:
-        return HN_INCIDENT_PROJECTION_FAILED;
+        return code_of_iteration(run);
     case HN_ERR_STEP_UNDERFLOW:
         return HN_INCIDENT_STEP_UNDERFLOW;
     case HN_ERR_BUDGET:
@@ -445,7 +452,7 @@ static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident 
 }
 
 void hn_run_tell_failure(hn_run *run, hn_status status) {
-    const hn_incident_code code = code_of(status);
+    const hn_incident_code code = code_of(run, status);
     // the end of a run is always told, even when the list is full
     if (run->n_incidents == HN_RUN_MAX_INCIDENTS) {
         run->n_incidents--;

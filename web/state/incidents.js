@@ -39,6 +39,10 @@ export const INCIDENTS = {
     name: "projection did not close the loop",
     rule: "Projection looks for the nearest closed pose; from too far away, or where none exists, it does not arrive.",
   },
+  "newton-failed": {
+    name: "Newton's method found no step",
+    rule: "An implicit step is found by iteration. From a step that is too long, or near a pose where the loop loses rank, it does not arrive.",
+  },
   diverged: {
     name: "diverged",
     rule: "An explicit step beyond its stability limit multiplies errors at every step.",
