@@ -134,12 +134,17 @@ static void put_with_generation(hn_strbuf *b, const hn_live *live, const hn_strb
     b->failed |= object->failed;
 }
 
-/// The incidents that are new since the last frame, an event each.
+/// The incidents that are new since the last frame, or whose message has grown (what became of the run there), an event each.
 static void publish_incidents(hn_live *live) {
     for (int i = 0; i < hn_comparison_n_methods(live->bench.comparison); i++) {
         const hn_incident *list;
         int n = hn_run_incidents(hn_comparison_run(live->bench.comparison, i), &list);
-        for (int k = live->bench.told[i]; k < n; k++) {
+        for (int k = 0; k < n; k++) {
+            const size_t length = strlen(list[k].message);
+            if (k < live->bench.told[i] && length == live->bench.told_length[i][k]) {
+                continue;
+            }
+            live->bench.told_length[i][k] = length;
             hn_strbuf incident, event;
             hn_strbuf_init(&incident);
             hn_strbuf_init(&event);

@@ -13,6 +13,9 @@ typedef struct hn_bench {
     hn_model *model;
     hn_comparison *comparison;
     int told[HN_COMPARISON_MAX_METHODS]; ///< incidents told already, per method
+    size_t told_length
+        [HN_COMPARISON_MAX_METHODS]
+        [HN_RUN_MAX_INCIDENTS]; ///< of their messages then: one that has grown since is told again
 } hn_bench;
 
 struct hn_live {

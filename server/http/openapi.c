@@ -167,13 +167,16 @@ static const struct {
      "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\","
      "\"status\"],\"properties\":{"
      "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"t\":{\"type\":\"number\"},"
+     "\"q\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
      "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
      ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy_change\":" MAYBE_NUMBER
      ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
      "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
     {"Incident",
-     "{\"type\":\"object\",\"description\":\"data of the event "
-     "incident\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
+     "{\"type\":\"object\",\"description\":\"data of the event incident; told again with the same "
+     "method, code and t when the run has shown what became of "
+     "it\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
      "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
      "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
      "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT

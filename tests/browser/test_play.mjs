@@ -524,3 +524,34 @@ test("a link opens the same comparison at the same frame with the same numbers",
   assert.deepEqual(other.faults, []);
   await other.close();
 });
+
+test("a singular pose is counted down, and then told with what became of each method there", async () => {
+  const page = await open();
+  await page.selectOption("#scene", "parallelogram");
+  await until(page, (data) => data.scene.id === "parallelogram" && data.history.count > 0);
+  await page.focus("#play");
+  while (!(await read(page, (data) => data.incidents.some(({ code }) => code === "rank-ahead")))) {
+    await page.keyboard.press("ArrowRight");
+  }
+  await page.waitForFunction(() =>
+    /J loses rank in 0\.\d\d s/.test(document.querySelector(".ahead").textContent),
+  );
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest.t > 0.5);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  const met = await read(page, (data) =>
+    data.incidents.filter(({ code, t }) => code === "near-singular" && t < 0.5),
+  );
+  assert.deepEqual(
+    met.map(({ method }) => method),
+    [0, 1, 2],
+  );
+  for (const { message } of met) {
+    assert.match(message, /two branches of motion cross; the run (went straight on|turned off)/);
+  }
+  const told = await page.evaluate(() =>
+    [...document.querySelectorAll(".incidents .message")].map((node) => node.textContent),
+  );
+  assert.equal(told.filter((text) => /the run (went straight on|turned off)/.test(text)).length, 3);
+});

@@ -149,9 +149,17 @@ export function createSession(store) {
     if (incident.generation !== undefined && incident.generation !== data.generation) {
       return;
     }
-    data.incidents.push(incident);
-    data.incidents.splice(0, data.incidents.length - MOST_INCIDENTS);
-    store.emit("incident");
+    const same = data.incidents.findIndex(
+      ({ method, code, t }) =>
+        method === incident.method && code === incident.code && t === incident.t,
+    );
+    if (same >= 0) {
+      data.incidents[same] = incident; // what became of the run is known by now
+    } else {
+      data.incidents.push(incident);
+      data.incidents.splice(0, data.incidents.length - MOST_INCIDENTS);
+    }
+    store.emit("incident", { incident, again: same >= 0 });
   }
 
   /** @type {Record<string, (detail: any) => void>} */

@@ -137,7 +137,7 @@ export function createHappening(el, store, actions) {
     const words = INCIDENTS[incident.code];
     return h(
       "li",
-      { class: method ? `slot-${method.slot}` : "" },
+      { class: method ? `slot-${method.slot}` : "", "data-key": keyOf(incident) },
       h(
         "details",
         {},
@@ -152,7 +152,7 @@ export function createHappening(el, store, actions) {
           ),
           h("span", { class: "why-word" }, "Why?"),
         ),
-        h("p", {}, sentenceOf(incident.message)),
+        h("p", { class: "message" }, sentenceOf(incident.message)),
         words ? h("p", { class: "rule" }, words.rule) : "",
         tryButtons(incident.remedies.map(tryOfRemedy)),
       ),
@@ -164,8 +164,21 @@ export function createHappening(el, store, actions) {
     list.replaceChildren(...kept.map(incidentItem).reverse());
   }
 
-  function addIncident() {
-    list.prepend(incidentItem(data.incidents[data.incidents.length - 1]));
+  /** @param {import("../state/store.js").Incident} incident what tells it from others */
+  const keyOf = ({ method, code, t }) => `${method} ${code} ${t}`;
+
+  /** @param {{incident: import("../state/store.js").Incident, again: boolean}} told */
+  function addIncident({ incident, again }) {
+    if (again) {
+      const items = /** @type {HTMLElement[]} */ ([...list.children]);
+      const item = items.find(({ dataset }) => dataset.key === keyOf(incident));
+      const message = item?.querySelector(".message");
+      if (message) {
+        say(message, sentenceOf(incident.message));
+      }
+      return;
+    }
+    list.prepend(incidentItem(incident));
     while (list.children.length > MOST_SHOWN) {
       list.lastElementChild?.remove();
     }
