@@ -116,14 +116,12 @@ static void an_adaptive_run_lands_on_the_corner_and_rejects_little(void **state)
     }
 }
 
-// implicit integrators and libraries carry slopes, histories and accelerations that end at a corner; ten times the tolerance a step
-// for some hundred steps of 20 rad, and half a dozen times less than that without the restart
+// implicit integrators and libraries carry slopes, histories and accelerations that end at a corner; the tolerance of a step for
+// a hundred steps of 20 rad
 static void implicit_and_library_integrators_begin_anew_at_the_corner(void **state) {
     (void)state;
-    static const char *const methods[] = {
-        "index1@radau5:rtol=1e-8",    "ggl@radau5:rtol=1e-8",         "index1@ida:rtol=1e-8",
-        "index1@gsl-msbdf:rtol=1e-8", "index1@gsl-msadams:rtol=1e-8", "index1@gsl-bsimp:rtol=1e-8",
-        "index1@gsl-rk8pd:rtol=1e-8"};
+    static const char *const methods[] = {"index1@radau5:rtol=1e-8", "ggl@radau5:rtol=1e-8",
+                                          "index1@ida:rtol=1e-8"};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         hn_model m;
         open_wheel(&m, STEP_TABLE, 0, 0);
