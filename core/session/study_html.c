@@ -41,7 +41,7 @@ static const char STYLE[] =
     ".plot{display:none}details{margin:8px 0}summary{cursor:pointer}"
     "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{max-width:none;padding:0}"
     "table{font-size:7pt}th,td{padding:2px 5px 2px "
-    "0}td.v{min-width:105px}td.n,td.m{white-space:normal}"
+    "0}td.v{min-width:60px}td.m{white-space:normal}"
     ".scroll{overflow:visible}svg.key{width:18px}.bar{display:none}h2{break-after:avoid;margin-top:"
     "20px}"
     "tr,svg,li{break-inside:avoid}"

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { WIDTH = 900, HEIGHT = 520, LEFT = 66, RIGHT = 190, TOP = 30, BOTTOM = 50, LABEL_STEP = 16 };
+enum { WIDTH = 900, HEIGHT = 532, LEFT = 66, RIGHT = 190, TOP = 42, BOTTOM = 50, LABEL_STEP = 16 };
 static const double MARKER = 4.2; // half its size
 static const double SMALLEST = 1e-17;
 static const double SLOPE_MARGIN = 0.05; // of the range of costs, left and right
@@ -240,7 +240,7 @@ static void put_failures(hn_strbuf *b, const hn_study *s, const frame *f, int m)
             hn_strbuf_printf(b,
                              "<path transform=\"translate(%.1f %d)\" d=\"M-5-5L5 5M5-5L-5 5\" "
                              "style=\"stroke:var(--slot-%d)\"/></g>",
-                             x, TOP - 10, hn_look_slot(m));
+                             x, TOP - 8, hn_look_slot(m));
         }
     }
 }
