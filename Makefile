@@ -204,13 +204,15 @@ help:
 	@echo 'make survival     the ladder of four-bars through its flat poses: which step sizes survive, kept in tests/survival/results.txt'
 	@echo 'make steps        steps and evaluations of adaptive integrators beside GSL and IDA, kept in tests/reference/steps.txt'
 	@echo 'make orders       orders of every formulation with every fixed-step integrator, beside theory, kept in tests/orders/results.txt'
+	@echo 'make every-method every shipped scene by every method: tests/tables/every_method.csv, and a summary'
+	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -250,6 +252,17 @@ orders: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/orders/table.py $(PROGRAM) >build/orders.txt || { cat build/orders.txt; exit 1; }
 	@cp build/orders.txt tests/orders/results.txt && cat tests/orders/results.txt
+
+# ten minutes and more on one processor
+every-method: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/tables/every_method.py $(PROGRAM) >build/every_method.csv
+	@cp build/every_method.csv tests/tables/every_method.csv && python3 tests/tables/summary.py
+
+rings: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/tables/ring.py $(PROGRAM) >build/ring.txt
+	@cp build/ring.txt tests/tables/ring.txt && cat tests/tables/ring.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone
