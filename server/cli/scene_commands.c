@@ -96,13 +96,28 @@ static void put_vector(hn_strbuf *b, const char *title, const cJSON *document, c
     }
 }
 
-/// Force and moment of each, in world axes; a star where redundant rows leave it undetermined.
+/// Largest entry of `key` in the list.
+static double largest_of(const cJSON *list, const char *key) {
+    const cJSON *item, *number;
+    double largest = 0;
+    cJSON_ArrayForEach(item, list) {
+        cJSON_ArrayForEach(number, hn_document_get(item, key)) {
+            largest = fmax(largest, fabs(cJSON_GetNumberValue(number)));
+        }
+    }
+    return largest;
+}
+
+/// Force and moment of each, in world axes; a star where redundant rows leave it undetermined. What is rounding beside the
+/// largest is shown as 0.
 static void put_reactions(hn_strbuf *b, const cJSON *list) {
     static const char *const keys[] = {"force", "moment"};
     const cJSON *item;
     if (!list) {
         return;
     }
+    const double force = largest_of(list, "force"), moment = largest_of(list, "moment");
+    const double rounding[] = {1e-12 * force, 1e-12 * fmax(force, moment)};
     hn_strbuf_add(b, "reactions on the child, world axes\n");
     cJSON_ArrayForEach(item, list) {
         hn_strbuf_printf(b, "  %-16s", hn_document_text(item, "name"));
@@ -110,7 +125,8 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
             const cJSON *part = hn_document_get(item, keys[k]), *number;
             hn_strbuf_add(b, k ? "  moment" : "  force");
             cJSON_ArrayForEach(number, part) {
-                hn_strbuf_printf(b, " %12.6g", cJSON_GetNumberValue(number));
+                const double x = cJSON_GetNumberValue(number);
+                hn_strbuf_printf(b, " %12.6g", fabs(x) > rounding[k] ? x : 0);
             }
             hn_strbuf_add(b, k ? " N m" : " N");
         }
