@@ -273,7 +273,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(process.wait(), DONE)
         process.stdout.close()
         os.close(terminal)
-        self.assertRegex(seen.decode(), r"running +\d+ %")
+        self.assertRegex(seen.decode(), r"running \[[#.]+\] +\d+ %")
 
     def test_without_its_scenes_the_program_says_where_it_looked(self):
         done = call("list", "scenes", environment={"HOLONOM_HOME": "/nowhere"})
