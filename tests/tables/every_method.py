@@ -20,6 +20,8 @@ LONGEST = 2.0  # [s]
 TOO_LONG = 120  # [s]
 FIRST_INTEGRATOR = ("rk4", "radau5", "hem4", "trapezoidal")
 FIRST_FORMULATION = ("projection", "index1", "ggl", "index2", "index3")
+# a state that is mended after each step makes these begin anew each step
+KEEPS_HISTORY = ("gsl-msadams", "gsl-msbdf")
 REFERENCES = (
     "projection@dop853:rtol=1e-12",
     "partitioning@dop853:rtol=1e-12",
@@ -47,7 +49,8 @@ def methods(program):
         pairs.append((f["name"], next((s for s in FIRST_INTEGRATOR if s in served), served[0])))
     for name, s in steppers.items():
         if name not in (p[1] for p in pairs):
-            formulation = next((f for f in FIRST_FORMULATION if f in s["serves"]), s["serves"][0])
+            first = FIRST_FORMULATION[1:] if name in KEEPS_HISTORY else FIRST_FORMULATION
+            formulation = next((f for f in first if f in s["serves"]), s["serves"][0])
             pairs.append((formulation, name))
     return [(f, s, steppers[s]["adaptive"]) for f, s in pairs]
 
