@@ -220,6 +220,9 @@ static hn_status take_option(hn_args *args, const hn_command *command, int argc,
     if (!o) {
         return tell_unknown(command, word, diag);
     }
+    if (add_word(&args->given, o->name, diag) != HN_OK) {
+        return HN_ERR_LIMIT;
+    }
     if (o->kind == OPTION_FLAG) {
         return word[n] ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes no value", o->name)
                        : read_value(args, o, "", diag);
@@ -276,6 +279,18 @@ hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc, char
                            args->words.n < command->min_words ? "'%s' needs %s"
                                                               : "too many words for '%s' %s",
                            command->name, command->words);
+    }
+    return HN_OK;
+}
+
+hn_status hn_args_allow_only(const hn_args *args, const char *options, const char *whose,
+                             hn_diags *diags) {
+    for (int i = 0; i < args->given.n; i++) {
+        const char *name = args->given.word[i];
+        if (strcmp(name, "--json") != 0 && !lists(options, name)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, NULL, options, "%s does not read %s", whose,
+                                name);
+        }
     }
     return HN_OK;
 }

@@ -32,6 +32,7 @@ typedef struct hn_numbers {
 /// Options of all commands; a command reads those it lists. Numbers that were not given are NaN, texts NULL.
 typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
+    hn_words given; ///< names of the options that were given, as in the table
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *out, *host, *theme, *view, *loops, *key;
@@ -60,6 +61,9 @@ HN_MUST_CHECK hn_status hn_args_parse(hn_args *args, const hn_command *command, 
 void hn_args_reset(hn_args *args);
 /// "--set NAME=VALUE   a parameter that differs ...", a line an option of the command.
 void hn_args_describe(hn_strbuf *b, const hn_command *command);
+/// HN_ERR_INPUT when an option was given that is not one of `options` (separated by spaces): `whose` does not read it.
+HN_MUST_CHECK hn_status hn_args_allow_only(const hn_args *args, const char *options,
+                                           const char *whose, hn_diags *diags);
 /// A finite number and nothing behind it; 0 otherwise.
 int hn_number_parse(const char *text, double *out);
 

@@ -1,0 +1,40 @@
+#ifndef HN_STUDY_SPECTRUM_H
+#define HN_STUDY_SPECTRUM_H
+// What an integrator will meet at a state, before a step is taken: the spectrum of the motion on the loops.
+//
+//     N spans ker J, N'N = 1
+//     (s^2 M_r + s C_r + K_r) x = 0,   M_r = N'M N,   C_r = N'C N,
+//     K_r = N'((M a)_q - f_q - (J'lambda)_q) N    at fixed a and lambda, with both from the saddle system         (1)
+//
+// It is the spectrum on the loops that limits a step, not that of the free links: a stiff spring may be softened, or made
+// stiffer, by what the loops allow.
+// Source: Hairer and Wanner 1996, Solving Ordinary Differential Equations II, section IV.2, for the regions.
+
+#include "base/arena.h"
+#include "dynamics/system.h"
+#include "integrators/stepper.h"
+
+typedef struct hn_eigenvalue {
+    double re, im; ///< [1/s]
+} hn_eigenvalue;
+
+typedef struct hn_spectrum hn_spectrum;
+/// Memory from `arena`, tapes owned by it (hn_spectrum_free). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena,
+                                           hn_spectrum **out);
+void hn_spectrum_free(hn_spectrum *s); ///< NULL is legal
+/// The 2 r eigenvalues at (t, q, v) in system coordinates, fastest (largest modulus) first; *n of them (borrowed until the next call). Fails:
+/// HN_ERR_SINGULAR where M_r or J has lost rank, HN_ERR_DIVERGED.
+HN_MUST_CHECK hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const double *v,
+                                         const hn_eigenvalue **out, int *n);
+
+/// |R(z)|: the largest growth factor of one step of the integrator on y' = s y at z = h s; for a partitioned one, on
+/// x'' = -|s|^2 x - 2 re(s).. x' with that pair of eigenvalues. NaN: not an integrator with a region of its own (a multistep library code, one that serves
+/// only differential-algebraic forms).
+double hn_stability_growth(const hn_stepper *stepper, double z_re, double z_im);
+/// The largest step h at which no eigenvalue grows: the smallest over the eigenvalues with re <= 0 of the first h on the ray where |R(h s)| = 1.
+/// Eigenvalues of the motion itself (re > 0) are left out. HUGE_VAL: no limit. NaN as above.
+double hn_stability_limit(const hn_stepper *stepper, const hn_eigenvalue *s, int n);
+/// The pair that Baumgarte's terms add on each row: roots of s^2 + 2 alpha s + beta^2 = 0.
+void hn_stability_baumgarte(double alpha, double beta, hn_eigenvalue out[2]);
+#endif

@@ -1,0 +1,124 @@
+// holonom study SCENE work-precision: what accuracy costs, method by method.
+#include "cli/study.h"
+#include "cli/study_text.h"
+#include "session/study.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void show_progress(void *user, double share) {
+    hn_progress_tell(user, "work-precision", share);
+}
+
+/// What a file of this name holds; NULL: nothing this command writes.
+static void (*writer_of(const char *path))(hn_strbuf *, const hn_study *) {
+    return hn_path_ends_in(path, ".html")   ? hn_study_html
+           : hn_path_ends_in(path, ".json") ? hn_study_json
+           : hn_path_ends_in(path, ".csv")  ? hn_study_csv
+                                            : NULL;
+}
+
+static hn_status check_args(const hn_args *args, hn_diags *diags) {
+    if (args->out && !writer_of(args->out)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .html, .json or .csv",
+                            "what to write into '%.200s' cannot be told from its name", args->out);
+    }
+    if (args->json && args->csv) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
+                            "standard output cannot be JSON and CSV at once");
+    }
+    return HN_OK;
+}
+
+static int whole(double value) {
+    return isnan(value) ? 0 : (int)fmin(value, 1000);
+}
+
+static hn_study_request request_of(const hn_args *args, const char *folder, hn_progress *progress) {
+    hn_study_request r = hn_study_request_default();
+    r.methods = args->methods.n > 0 ? args->methods.word : NULL;
+    r.n_methods = args->methods.n;
+    r.time = args->time;
+    r.budget = args->budget;
+    r.levels = whole(args->levels);
+    r.samples = isnan(args->samples) ? 0 : args->samples == 0 ? -1 : whole(args->samples);
+    r.folder = folder;
+    r.hooks = (hn_wp_hooks){.user = progress, .stop = hn_is_interrupted, .progress = show_progress};
+    return r;
+}
+
+/// What a person should know of how it ended.
+static void tell_end(const hn_study *study, const char *folder) {
+    const hn_wp *wp = hn_study_wp(study);
+    const char *kept = folder ? "; the same command goes on from here" : "";
+    if (wp->stopped) {
+        fprintf(stderr, "holonom: stopped on request after %.3g s%s\n", wp->elapsed, kept);
+    } else if (wp->out_of_time) {
+        fprintf(stderr, "holonom: the budget of %g s left points or samples out%s\n",
+                wp->opts.budget, kept);
+    }
+}
+
+/// Into the file first, so that a broken pipe does not cost it.
+static hn_exit write_results(const hn_args *args, const hn_study *study) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->out) {
+        writer_of(args->out)(&b, study);
+        const hn_exit written = hn_cli_write_file(args, args->out, &b);
+        if (written != HN_EXIT_DONE) {
+            return written;
+        }
+    }
+    if (args->json) {
+        hn_study_json(&b, study);
+    } else if (args->csv) {
+        hn_study_csv(&b, study);
+    } else {
+        hn_study_text(&b, study);
+    }
+    return hn_cli_print(&b);
+}
+
+static hn_exit study_model(const hn_args *args, const hn_model *model) {
+    char folder[400];
+    hn_diags diags = {0};
+    hn_study *study = NULL;
+    hn_progress progress = {0};
+    const int keeps = hn_find_cache(folder);
+    if (!keeps && !args->json) {
+        fprintf(stderr, "holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
+    }
+    hn_interrupt_begin();
+    const hn_study_request request = request_of(args, keeps ? folder : NULL, &progress);
+    const hn_status status = hn_study_open(model, &request, &study, &diags);
+    if (status == HN_OK) {
+        if (hn_study_resumed(study) > 0 && !args->json) {
+            fprintf(stderr, "holonom: going on with %d points from before\n",
+                    hn_study_resumed(study));
+        }
+        hn_study_run(study);
+    }
+    hn_progress_end(&progress);
+    hn_interrupt_end();
+    if (status != HN_OK) {
+        const hn_exit told = hn_report_diags(args, status, &diags);
+        return hn_is_interrupted(NULL) ? HN_EXIT_ENDED : told;
+    }
+    tell_end(study, keeps ? folder : NULL);
+    hn_exit result = write_results(args, study);
+    if (result == HN_EXIT_DONE && hn_study_wp(study)->stopped) {
+        result = HN_EXIT_ENDED;
+    }
+    hn_study_free(study);
+    return result;
+}
+
+const hn_study_kind hn_study_kind_work_precision = {
+    .name = "work-precision",
+    .about =
+        "error against cost; --out FILE.html, .json or .csv; steps and tolerances are laddered",
+    .options = "--set --methods --time --budget --levels --samples --csv --out -o",
+    .check = check_args,
+    .run = study_model,
+};
