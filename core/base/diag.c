@@ -96,6 +96,17 @@ static int edit_distance(const char *a, int na, const char *b, int nb) {
     return last[nb];
 }
 
+/// The first name that the word is a part of, where it is long enough to mean something: 'stewart' is 'stewart-6-3'.
+static const char *first_that_holds(const char *word, size_t length, const char *const *names,
+                                    int n) {
+    for (int i = 0; length >= 4 && i < n; i++) {
+        if (strstr(names[i], word)) {
+            return names[i];
+        }
+    }
+    return NULL;
+}
+
 const char *hn_nearest_name(const char *word, const char *const *names, int n) {
     HN_ASSERT(word != NULL && (names != NULL || n == 0));
     const size_t length = strlen(word);
@@ -116,5 +127,5 @@ const char *hn_nearest_name(const char *word, const char *const *names, int n) {
             best = names[i];
         }
     }
-    return best;
+    return best ? best : first_that_holds(word, length, names, n);
 }

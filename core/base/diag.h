@@ -30,8 +30,8 @@ hn_status hn_diags_add(hn_diags *d, hn_status status, const char *pointer, const
 hn_status hn_diag_set(hn_diag *d, hn_status status, const char *pointer, const char *hint,
                       const char *format, ...) HN_PRINTF(5, 6);
 
-/// The candidate nearest to `word` by edit distance (transpositions count 1, case ignored), or NULL if none
-/// is within max(1, strlen(word) / 3). `names` holds n strings.
+/// The candidate nearest to `word` by edit distance (transpositions count 1, case ignored), within
+/// max(1, strlen(word) / 3); failing that the first that has the word, of four letters or more, in it; else NULL. `names` holds n strings.
 const char *hn_nearest_name(const char *word, const char *const *names, int n);
 
 #endif

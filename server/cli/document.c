@@ -146,6 +146,7 @@ static void put_lines(hn_strbuf *b, const cJSON *array, int indent) {
 static void put_line(hn_strbuf *b, const cJSON *array) {
     char text[HN_TABLE_CELL];
     const cJSON *item;
+    hn_strbuf_add(b, array->child ? "" : "none");
     cJSON_ArrayForEach(item, array) {
         if (cJSON_IsArray(item)) {
             hn_strbuf_add(b, "[");

@@ -80,6 +80,8 @@ static void the_nearest_name_forgives_small_slips_only(void **state) {
     assert_string_equal(hn_nearest_name("fixde", names, 5), "fixed");
     assert_string_equal(hn_nearest_name("th3", names, 5), "th1");
     assert_null(hn_nearest_name("spherical", names, 5));
+    assert_string_equal(hn_nearest_name("olute", names, 5), "revolute");
+    assert_null(hn_nearest_name("lut", names, 5));
     assert_null(hn_nearest_name("x", names, 5));
     assert_null(hn_nearest_name("", names, 5));
     assert_null(hn_nearest_name("th1", names, 0));
