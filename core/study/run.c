@@ -15,6 +15,9 @@
 // A trial that failed outright adds FAILED_TRIAL, a good step takes 1 away: steps that keep running into the end of a
 // chart shrink for ever without reaching it, and stop here.
 enum { FAILED_TRIAL = 8, TROUBLE_LIMIT = 200 };
+// Where Newton's method fails at every other step the step grows back slowly, lest it runs into the same wall each time.
+enum { TROUBLE_SEEN = 2 * FAILED_TRIAL };
+#define GROWTH_IN_TROUBLE 1.02
 #define UNDERFLOW_EPS 3.6e-15 // 16 eps: smaller steps no longer move t reliably
 
 hn_run_opts hn_run_opts_default(void) {
@@ -249,6 +252,9 @@ static hn_status step_adaptive(hn_run *run) {
         const double err = try_adaptive(run, h, rtol, atol, &changed, &status);
         run->h_next = fmin(h * hn_step_factor(&run->control, err, k), largest_step(run));
         if (err <= 1) {
+            if (run->trouble >= TROUBLE_SEEN) {
+                run->h_next = fmin(run->h_next, GROWTH_IN_TROUBLE * h);
+            }
             run->trouble -= run->trouble > 0;
             if (at_corner) {
                 run->h_next = 0; // chosen anew for what begins here
