@@ -23,17 +23,24 @@ typedef struct hn_spectrum hn_spectrum;
 HN_MUST_CHECK hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena,
                                            hn_spectrum **out);
 void hn_spectrum_free(hn_spectrum *s); ///< NULL is legal
-/// The 2 r eigenvalues at (t, q, v) in system coordinates, fastest (largest modulus) first; *n of them (borrowed until the next call). Fails:
-/// HN_ERR_SINGULAR where M_r or J has lost rank, HN_ERR_DIVERGED.
+/// The 2 r eigenvalues at (t, q, v) in system coordinates, fastest (largest modulus) first; *n of them (borrowed until the next
+/// call). Rows that always depend on others do no harm. Fails: HN_ERR_SINGULAR where M_r or J has lost rank, HN_ERR_DIVERGED
+/// (an entry is not finite), HN_ERR_NO_CONVERGENCE; *n is then 0.
 HN_MUST_CHECK hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const double *v,
                                          const hn_eigenvalue **out, int *n);
 
-/// |R(z)|: the largest growth factor of one step of the integrator on y' = s y at z = h s; for a partitioned one, on
-/// x'' = -|s|^2 x - 2 re(s).. x' with that pair of eigenvalues. NaN: not an integrator with a region of its own (a multistep library code, one that serves
-/// only differential-algebraic forms).
+// --- regions: what a step makes of an eigenvalue (stability_region.c) ---------------------------------------------------
+
+/// |R(z)|: the largest growth factor of one step of the integrator on y' = s y at z = h s, found by stepping; for a partitioned
+/// one, on x'' = -|s|^2 x + 2 re(s) x'. NaN: not an integrator with a region of its own, see hn_stability_why_not().
 double hn_stability_growth(const hn_stepper *stepper, double z_re, double z_im);
-/// The largest step h at which no eigenvalue grows: the smallest over the eigenvalues with re <= 0 of the first h on the ray where |R(h s)| = 1.
-/// Eigenvalues of the motion itself (re > 0) are left out. HUGE_VAL: no limit. NaN as above.
+/// Why it has none ("a multistep method: ..."), NULL when it has one.
+const char *hn_stability_why_not(const hn_stepper *stepper);
+/// The largest step h [s] at which no eigenvalue grows: the smallest over the eigenvalues of the first h on the ray where
+/// |R(h s)| = 1. Growth of the motion itself is left out: eigenvalues with re > 0, but for oscillations that grow by less than a
+/// tenth of their frequency (a stiff spring on links that turn), which count as undamped. In a partitioned integrator real
+/// eigenvalues act in pairs, the fastest with the slowest, as those of an overdamped mode do. HUGE_VAL: no limit; 0: an
+/// undamped oscillation grows at any step. NaN as above.
 double hn_stability_limit(const hn_stepper *stepper, const hn_eigenvalue *s, int n);
 /// The pair that Baumgarte's terms add on each row: roots of s^2 + 2 alpha s + beta^2 = 0.
 void hn_stability_baumgarte(double alpha, double beta, hn_eigenvalue out[2]);
