@@ -3,7 +3,7 @@
 // which no formula can spell.
 #include "dynamics/linearise.h"
 
-#include "dynamics/system_impl.h"
+#include "dynamics/direction.h"
 #include "expr/tape.h"
 
 #include <math.h>
@@ -115,40 +115,11 @@ static void put_column(builder *b, hn_linear_term term, int j, int n, double sig
     }
 }
 
-// q' when speed j alone is 1: the entries of q that move, and their rates; returns how many. Of a ball, the quaternion
-// (w, u) turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of the speed.
-static int direction(const builder *b, int j, int *symbols, hn_ex *seed) {
-    const hn_system *sys = b->sys;
-    const int position = hn_system_position_of(sys, j);
-    if (position >= 0) {
-        symbols[0] = sys->q_symbols[position];
-        seed[0] = hn_num(1);
-        return 1;
-    }
-    int k = 0;
-    while (j < sys->balls[k].speed || j >= sys->balls[k].speed + 3) {
-        k++;
-        HN_ASSERT(k < sys->n_balls);
-    }
-    const hn_ball *ball = &sys->balls[k];
-    const int x = j - ball->speed, y = (x + 1) % 3, z = (x + 2) % 3;
-    const hn_ex *w = sys->q + ball->position, *u = w + 1;
-    for (int i = 0; i < 4; i++) {
-        symbols[i] = sys->q_symbols[ball->position + i];
-    }
-    seed[0] = hn_scale(-0.5, u[x]);
-    seed[1 + x] = hn_scale(0.5, *w);
-    seed[1 + y] = hn_scale(0.5, u[z]);
-    seed[1 + z] = hn_scale(-0.5, u[y]);
-    return 4;
-}
-
 static void differentiate_by_position(builder *b, unsigned terms, int j) {
-    enum { MOST = 4 };
     const hn_system *sys = b->sys;
-    int symbols[MOST];
-    hn_ex seed[MOST];
-    const int n = direction(b, j, symbols, seed);
+    int symbols[HN_DIRECTION_MOST];
+    hn_ex seed[HN_DIRECTION_MOST];
+    const int n = hn_direction_of_speed(sys, j, symbols, seed);
     if (terms & HN_LINEAR_K) {
         hn_diff_forward(b->g, b->residual, sys->nv, symbols, seed, n, b->column);
         put_column(b, HN_LINEAR_K, j, sys->nv, 1);

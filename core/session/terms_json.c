@@ -2,6 +2,7 @@
 #include "dynamics/eval.h"
 #include "session/model.h"
 #include "session/reactions_json.h"
+#include "session/reduced_json.h"
 
 #include <math.h>
 #include <string.h>
@@ -206,7 +207,7 @@ static void put_solution(hn_strbuf *b, const terms *w) {
     }
 }
 
-static void put_terms(hn_strbuf *b, const terms *w) {
+static hn_status put_terms(hn_strbuf *b, const terms *w) {
     int nu = w->info.n_user, m = w->info.nc;
     const double *energy = hn_eval_get(w->eval, HN_TERM_ENERGY),
                  *phi = hn_eval_get(w->eval, HN_TERM_PHI);
@@ -227,11 +228,13 @@ static void put_terms(hn_strbuf *b, const terms *w) {
     if (w->reactions) {
         hn_reaction_writer_put(b, w->reactions);
     }
+    const hn_status status = hn_reduced_put(b, w->model, w->arena, w->t, w->q, w->v);
     hn_json_put_number(b, "gap", norm(phi, m));
     hn_json_put_number(b, "velocity_gap", velocity_gap(w));
     hn_json_put_number(b, "kinetic", energy[0]);
     hn_json_put_number(b, "potential", energy[1]);
     hn_json_end_object(b);
+    return status;
 }
 
 static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
@@ -257,7 +260,7 @@ static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
         if (w.reactions && w.accel_status == HN_OK) {
             w.accel_status = hn_reaction_writer_eval(w.reactions, t, w.q, w.v);
         }
-        put_terms(b, &w);
+        status = put_terms(b, &w);
     }
     destroy(&w);
     return status;

@@ -136,6 +136,50 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
     }
 }
 
+/// The equations left on the free motion, or why there are none.
+static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
+    static const struct {
+        const char *title, *key;
+        int matrix;
+    } parts[] = {{"M_r = Phi' M Phi", "M_r", 1},
+                 {"C_r, so that M_r' - 2 C_r is skew", "C_r", 1},
+                 {"v_r", "v_r", 0},
+                 {"d_r, closures that move", "d_r", 0},
+                 {"g_r = Phi' g, gravity and springs", "g_r", 0},
+                 {"tau_r = Phi' tau, motors and other loads", "tau_r", 0},
+                 {"a_r", "a_r", 0}};
+    const cJSON *independent = hn_document_get(d, "independent"), *name;
+    if (!cJSON_IsTrue(hn_document_get(d, "exists"))) {
+        hn_strbuf_printf(b, "reduced coordinates: none here: %s\n", hn_document_text(d, "why"));
+        return;
+    }
+    hn_strbuf_printf(b, "reduced coordinates: %s\nindependent:", hn_document_text(d, "equations"));
+    cJSON_ArrayForEach(name, independent) {
+        hn_strbuf_printf(b, "%s %s", name == independent->child ? "" : ",", name->valuestring);
+    }
+    hn_strbuf_printf(b, " (%s)\n", hn_document_text(d, "chosen_by"));
+    const double gap = hn_document_number(d, "speed_gap");
+    if (!isnan(gap)) {
+        hn_strbuf_printf(b,
+                         "the speeds given do not fit the loops (by %.3g); below, the others "
+                         "follow from v_r\n",
+                         gap);
+    }
+    if (cJSON_GetArraySize(independent) == 0) {
+        return;
+    }
+    hn_document_matrix(b, "Phi, v = Phi v_r", hn_document_get(d, "Phi"), names, independent);
+    put_vector(b, "s, speeds at v_r = 0", d, "s", names);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (parts[i].matrix) {
+            hn_document_matrix(b, parts[i].title, hn_document_get(d, parts[i].key), independent,
+                               independent);
+        } else {
+            put_vector(b, parts[i].title, d, parts[i].key, independent);
+        }
+    }
+}
+
 static void put_terms(hn_strbuf *b, const cJSON *d) {
     static const struct {
         const char *title, *key;
@@ -161,6 +205,7 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
             put_vector(b, parts[i].title, d, parts[i].key, row_names);
         }
     }
+    put_reduced(b, hn_document_get(d, "reduced"), names);
     put_reactions(b, hn_document_get(d, "reactions"));
     hn_strbuf_printf(b, "rank %g, gap %.3g, velocity gap %.3g, energy %.9g J\n",
                      hn_document_number(d, "rank"), hn_document_number(d, "gap"),

@@ -98,6 +98,23 @@ class Stateless(driver.ServerCase):
         for k in range(len(t["rows"])):
             self.assertAlmostEqual(sum(t["J"][k][j] * t["a"][j] for j in range(len(t["a"]))), -t["gamma"][k], delta=1e-9)
 
+    def test_reduced_terms_follow_from_the_whole_ones(self):
+        for scene in ("four-bar", "five-bar", "3-rrr"):
+            t = self.post("terms", {"scene": scene}).json()
+            n, red = len(t["coordinates"]), t["reduced"]
+            phi, r = red["Phi"], len(red["independent"])
+            self.assertEqual([t["coordinates"].index(name) for name in red["independent"]],
+                             [i for j in range(r) for i in range(n) if phi[i] == [float(k == j) for k in range(r)]])
+            for i in range(r):
+                for j in range(r):
+                    mass = sum(phi[a][i] * t["M"][a][b] * phi[b][j] for a in range(n) for b in range(n))
+                    self.assertAlmostEqual(red["M_r"][i][j], mass, delta=1e-12 * (1 + abs(mass)))
+                left = sum(red["M_r"][i][j] * red["a_r"][j] + red["C_r"][i][j] * red["v_r"][j] for j in range(r))
+                self.assertAlmostEqual(left + red["g_r"][i], red["tau_r"][i], delta=1e-11 * (1 + abs(red["tau_r"][i])))
+                self.assertAlmostEqual(red["a_r"][i], t["a"][t["coordinates"].index(red["independent"][i])], delta=1e-10)
+            for row, v in zip(phi, t["v"], strict=True):
+                self.assertAlmostEqual(sum(p * u for p, u in zip(row, red["v_r"], strict=True)), v, delta=1e-12)
+
     def test_terms_tell_what_joints_carry(self):
         self.assertNotIn("reactions", self.post("terms", {"scene": "four-bar"}).json())
         t = self.post("terms", {"scene": "four-bar", "reactions": True}).json()

@@ -72,6 +72,21 @@ class CommandLine(unittest.TestCase):
         moved = strict(self.assert_exit(call("terms", "pendulum", "--json", "--q", name + "=0.5", "--t", "2"), DONE))
         self.assertEqual((moved["q"][0], moved["t"]), (0.5, 2))
 
+    def test_terms_show_the_equations_left_on_the_free_motion(self):
+        text = self.assert_exit(call("terms", "five-bar"), DONE)
+        self.assertIn("independent: th1, th2 (the motors)", text)
+        for title in ("Phi, v = Phi v_r", "M_r = Phi' M Phi", "C_r", "g_r", "tau_r", "a_r"):
+            self.assertIn(title, text)
+        moving = self.assert_exit(call("terms", "driven-crank"), DONE)
+        self.assertIn("M_r a_r + C_r v_r + d_r + g_r = tau_r", moving)
+        self.assertIn("s, speeds at v_r = 0", moving)
+        ball = strict(self.assert_exit(call("terms", "heavy-top", "--json"), DONE))["reduced"]
+        self.assertFalse(ball["exists"])
+        self.assertIn("a ball has none of its own", ball["why"])
+        self.assertIn("a ball has none of its own", self.assert_exit(call("terms", "heavy-top"), DONE))
+        unfit = self.assert_exit(call("terms", "five-bar", "--v", "w1=1"), DONE)
+        self.assertIn("the speeds given do not fit the loops", unfit)
+
     def test_raw_multipliers_come_when_asked_for_and_where_there_are_some(self):
         words = ("run", "four-bar", "--method", "ggl@radau5:h=0.01", "--time", "0.1", "--every", "0.05")
         plain = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]

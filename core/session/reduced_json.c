@@ -1,0 +1,89 @@
+#include "session/reduced_json.h"
+
+#include "methods/reduced_terms.h"
+
+#define SPEED_TOL 1e-9 // of the largest speed: below, the speeds given fit the loops
+
+static const hn_coordinate *coordinate_of(const hn_model *model, int user) {
+    return &hn_model_scene(model)
+                ->coordinates[hn_system_user_coordinate(hn_model_system(model), user)];
+}
+
+static void put_names(hn_strbuf *b, const hn_model *model, const hn_reduced_terms *w) {
+    hn_json_key(b, "independent");
+    hn_json_array(b);
+    for (int j = 0; j < w->r; j++) {
+        hn_json_string(b, coordinate_of(model, w->ind[j])->name);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "rates");
+    hn_json_array(b);
+    for (int j = 0; j < w->r; j++) {
+        hn_json_string(b, coordinate_of(model, w->ind[j])->rate);
+    }
+    hn_json_end_array(b);
+    hn_json_put_string(b, "chosen_by", hn_reduced_choice_text(w->choice));
+}
+
+static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows, int cols) {
+    hn_json_key(b, key);
+    hn_json_array(b);
+    for (int i = 0; i < rows; i++) {
+        hn_json_numbers(b, A + i * cols, (size_t)cols);
+    }
+    hn_json_end_array(b);
+}
+
+static double largest(const double *x, int n) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+        most = x[i] > most ? x[i] : (-x[i] > most ? -x[i] : most);
+    }
+    return most;
+}
+
+static void put_terms(hn_strbuf *b, const hn_model *model, const hn_reduced_terms *w) {
+    const size_t r = (size_t)w->r;
+    hn_json_put_bool(b, "exists", 1);
+    hn_json_put_string(b, "equations",
+                       w->is_moved ? "v = Phi v_r + s, M_r a_r + C_r v_r + d_r + g_r = tau_r"
+                                   : "v = Phi v_r, M_r a_r + C_r v_r + g_r = tau_r");
+    put_names(b, model, w);
+    hn_json_put_numbers(b, "v_r", w->v_r, r);
+    put_matrix(b, "Phi", w->Phi, w->nv, w->r);
+    put_matrix(b, "M_r", w->M_r, w->r, w->r);
+    put_matrix(b, "C_r", w->C_r, w->r, w->r);
+    hn_json_put_numbers(b, "g_r", w->g_r, r);
+    hn_json_put_numbers(b, "tau_r", w->tau_r, r);
+    if (w->is_moved) {
+        hn_json_put_numbers(b, "s", w->s, (size_t)w->nv);
+        hn_json_put_numbers(b, "d_r", w->d_r, r);
+    }
+    hn_json_put_numbers(b, "a_r", w->a_r, r);
+    if (w->speed_gap > SPEED_TOL * (1 + largest(w->v_r, w->r))) {
+        hn_json_put_number(b, "speed_gap", w->speed_gap);
+    }
+}
+
+hn_status hn_reduced_put(hn_strbuf *b, const hn_model *model, hn_arena *arena, double t,
+                         const double *q, const double *v) {
+    hn_reduced_terms w;
+    hn_status status = hn_reduced_terms_init(&w, hn_model_system(model), arena, NULL);
+    if (status != HN_OK) {
+        hn_reduced_terms_destroy(&w);
+        return status;
+    }
+    hn_json_key(b, "reduced");
+    hn_json_object(b);
+    status = hn_reduced_terms_eval(&w, t, q, v, hn_model_assembly(model)->freedoms);
+    if (status == HN_OK) {
+        put_terms(b, model, &w);
+    } else {
+        const char *why = hn_reduced_terms_why(&w);
+        hn_json_put_bool(b, "exists", 0);
+        hn_json_put_string(b, "why", why ? why : hn_status_text(status));
+    }
+    hn_json_end_object(b);
+    hn_reduced_terms_destroy(&w);
+    return HN_OK;
+}
