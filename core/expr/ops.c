@@ -2,17 +2,20 @@
 
 #include "expr/graph.h"
 
-#include <math.h>
 #include <string.h>
+#include <tgmath.h> // one expression gives a value in double and one in long double
 
 // values ---------------------------------------------------------------------------------------------------
 
-#define VALUE_1(fn, expression)         \
-    static double fn(const double *x) { \
-        return expression;              \
+#define VALUE_1(fn, expression)                          \
+    static double fn(const double *x) {                  \
+        return expression;                               \
+    }                                                    \
+    static long double fn##_long(const long double *x) { \
+        return expression;                               \
     }
 
-VALUE_1(value_recip, 1.0 / x[0])
+VALUE_1(value_recip, 1 / x[0])
 VALUE_1(value_sqrt, sqrt(x[0]))
 VALUE_1(value_sin, sin(x[0]))
 VALUE_1(value_cos, cos(x[0]))
@@ -26,8 +29,8 @@ VALUE_1(value_tanh, tanh(x[0]))
 VALUE_1(value_exp, exp(x[0]))
 VALUE_1(value_log, log(x[0]))
 VALUE_1(value_abs, fabs(x[0]))
-VALUE_1(value_sign, isnan(x[0]) ? x[0] : (double)((x[0] > 0) - (x[0] < 0)))
-VALUE_1(value_step, isnan(x[0]) ? x[0] : (double)(x[0] >= 0))
+VALUE_1(value_sign, isnan(x[0]) ? x[0] : (x[0] > 0) - (x[0] < 0))
+VALUE_1(value_step, isnan(x[0]) ? x[0] : x[0] >= 0)
 VALUE_1(value_mul, x[0] * x[1])
 VALUE_1(value_atan2, atan2(x[0], x[1]))
 VALUE_1(value_pow, pow(x[0], x[1]))
@@ -138,13 +141,15 @@ PARTIALS(partials_max) { // the first where a - b >= 0
 // the table ------------------------------------------------------------------------------------------------------
 
 #define value_none NULL
+#define value_none_long NULL
 #define partials_none NULL
 #define partials_sign partials_flat
 #define partials_step partials_flat
 
 static const hn_op_info infos[HN_OP_COUNT] = {
-#define INFO(code, name, arity, typed, parity, fn, latex, c_form) \
-    [code] = {name, arity, typed, HN_PARITY_##parity, value_##fn, partials_##fn, latex, c_form},
+#define INFO(code, name, arity, typed, parity, fn, latex, c_form)                             \
+    [code] = {name,          arity, typed, HN_PARITY_##parity, value_##fn, value_##fn##_long, \
+              partials_##fn, latex, c_form},
     HN_OP_LIST(INFO)
 #undef INFO
 };

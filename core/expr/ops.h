@@ -48,20 +48,23 @@ typedef enum hn_parity { HN_PARITY_NONE, HN_PARITY_ODD, HN_PARITY_EVEN } hn_pari
 /// Value of the operator; `x` holds its arguments. Takes the one-sided convention at a kink: sign(0) = 0,
 /// step(0) = 1. NaN in gives NaN out.
 typedef double (*hn_op_value)(const double *x);
+/// The same in extended precision.
+typedef long double (*hn_op_value_long)(const long double *x);
 /// Writes d f / d args[i] to partial[i]; `self` is f(args) itself, so that exp, tan or sqrt reuse it.
 /// abs' = sign, sign' = step' = 0, and of two equal arguments min and max follow the first.
 typedef void (*hn_op_partials)(struct hn_graph *g, const struct hn_ex *self,
                                const struct hn_ex *args, struct hn_ex *partial);
 
 typedef struct hn_op_info {
-    const char *name;        ///< as typed
-    int arity;               ///< -1: any number
-    int typed;               ///< 1: people may write name(...) in a formula
-    hn_parity parity;        ///< of a function of one argument
-    hn_op_value value;       ///< NULL for one, symbol and sum
-    hn_op_partials partials; ///< NULL for one, symbol and sum
-    const char *latex;       ///< macro or form of a function
-    const char *c_name;      ///< expression form in C with #1 and #2 for the arguments
+    const char *name;            ///< as typed
+    int arity;                   ///< -1: any number
+    int typed;                   ///< 1: people may write name(...) in a formula
+    hn_parity parity;            ///< of a function of one argument
+    hn_op_value value;           ///< NULL for one, symbol and sum
+    hn_op_value_long value_long; ///< likewise
+    hn_op_partials partials;     ///< NULL for one, symbol and sum
+    const char *latex;           ///< macro or form of a function
+    const char *c_name;          ///< expression form in C with #1 and #2 for the arguments
 } hn_op_info;
 
 /// The row of an operator; static, never NULL.

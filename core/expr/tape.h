@@ -38,6 +38,11 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
 void hn_tape_run(const hn_tape *tape, double *work);
 const uint16_t *hn_tape_output_slots(const hn_tape *tape);
 
+/// The same instructions in extended precision: `work` holds hn_tape_work_size() long doubles, and outputs stand at the same slots.
+/// Constants are those of the double tape, so both evaluate one and the same model. About five times as slow.
+void hn_tape_prepare_long(const hn_tape *tape, long double *work);
+void hn_tape_run_long(const hn_tape *tape, long double *work);
+
 struct hn_strbuf;
 /// One instruction a line, for tests and the curious.
 void hn_tape_list(const hn_tape *tape, struct hn_strbuf *b);

@@ -208,7 +208,7 @@ typedef struct hn_scene {
     double duration, step;      ///< suggested [s]
     const char *const *methods; ///< suggested method spellings
     int n_methods;
-    uint64_t hash; ///< of the normalised text and the present parameter values
+    uint64_t hash; ///< of what moves and the present parameter values: not of words or drawing
 } hn_scene;
 
 /// One changed parameter, as from --set l1=1.2.

@@ -159,14 +159,40 @@ static void read_root(hn_reader *r, const cJSON *root, const char *id) {
 
 // the whole -----------------------------------------------------------------------------------------
 
-/// Of the normalised text and the present values.
+/// Removes what is only said or shown, at any depth.
+static void strip_words(cJSON *node) {
+    static const char *const words[] = {"title", "about", "draw"};
+    for (size_t i = 0; cJSON_IsObject(node) && i < sizeof words / sizeof *words; i++) {
+        cJSON_DeleteItemFromObjectCaseSensitive(node, words[i]);
+    }
+    for (cJSON *child = node->child; child; child = child->next) {
+        if (!child->string ||
+            strcmp(child->string, "start") != 0) { // there, members are coordinates
+            strip_words(child);
+        }
+    }
+}
+
+/// Of what moves, normalised, and the present values of the parameters: not of words, drawing, what is compared by default, or bounds
+/// of parameters.
 static int calc_hash(hn_reader *r, const cJSON *root) {
-    char *text = cJSON_PrintUnformatted(root);
+    static const char *const shown[] = {"id",       "name", "look_for",  "methods",
+                                        "duration", "step", "parameters"};
+    cJSON *meaning = cJSON_Duplicate(root, 1);
+    for (size_t i = 0; meaning && i < sizeof shown / sizeof *shown; i++) {
+        cJSON_DeleteItemFromObjectCaseSensitive(meaning, shown[i]);
+    }
+    if (meaning) {
+        strip_words(meaning);
+    }
+    char *text = meaning ? cJSON_PrintUnformatted(meaning) : NULL;
+    cJSON_Delete(meaning);
     if (!text) {
         return 0;
     }
     uint64_t hash = hn_hash_text(HN_HASH_START, text);
     for (int i = 0; i < r->scene->n_params; i++) {
+        hash = hn_hash_text(hash, r->scene->params[i].name);
         hash = hn_hash_double(hash, r->scene->params[i].value);
     }
     r->scene->hash = hn_hash_mix(hash);

@@ -1,5 +1,8 @@
 #include "study/reference.h"
 
+#include "study/precise.h"
+
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,13 +10,24 @@
 #define SMALLEST 1e-300 // a scale that would be 0 is 1 instead
 #define MOST_DIGITS 16.0
 
-/// In the order they are tried; neighbours share neither formulation nor integrator.
-static const char *const MEANS[] = {
-    "projection@dop853:rtol=1e-13",
-    "nullspace@gsl-rk8pd:rtol=1e-13",
-    "ggl@radau5:rtol=1e-12",
+/// In the order they are tried; any two have nothing but the scene's equations in common, or differ in formulation and integrator.
+typedef struct mean {
+    int precise; ///< 1: in extended precision, `kind`
+    hn_precise_kind kind;
+    const char *spelling; ///< of a method otherwise
+} mean;
+static const mean MEANS[] = {
+    {1, HN_PRECISE_SADDLE, NULL},           {1, HN_PRECISE_NULLSPACE, NULL},
+    {0, 0, "projection@dop853:rtol=1e-13"}, {0, 0, "nullspace@gsl-rk8pd:rtol=1e-13"},
+    {0, 0, "ggl@radau5:rtol=1e-12"},
 };
 enum { N_MEANS = sizeof MEANS / sizeof *MEANS };
+// of the computing time that each computation may take: what the first leave is for those in double
+static const double PRECISE_SHARE = 0.4;
+
+static const char *name_of(const mean *m) {
+    return m->precise ? hn_precise_name(m->kind) : m->spelling;
+}
 
 hn_ref_opts hn_ref_opts_default(void) {
     return (hn_ref_opts){.n = HN_REF_TIMES};
@@ -75,7 +89,7 @@ static int record(void *user, int k, const hn_sample *s) {
         memcpy(ref->lambda + (size_t)k * nc, s->lambda, nc * sizeof(double));
     }
     ref->energy[k] = s->energy;
-    r->kinetic = fmax(r->kinetic, s->kinetic);
+    r->kinetic = k == 0 ? s->kinetic : fmax(r->kinetic, s->kinetic);
     r->low = k == 0 ? s->potential : fmin(r->low, s->potential);
     r->high = k == 0 ? s->potential : fmax(r->high, s->potential);
     for (size_t i = 0; i < nu; i++) {
@@ -86,10 +100,10 @@ static int record(void *user, int k, const hn_sample *s) {
     return 1;
 }
 
-/// One computation into `ref`. HN_ERR_BUDGET and the like with the reason in diag.
-static hn_status compute(const hn_system *sys, const char *spelling, const double *q,
-                         const double *v, const hn_walk_limits *limits, recorder *r,
-                         hn_walk_end *end, hn_diag *diag) {
+/// One computation in double into `ref`. HN_ERR_BUDGET and the like with the reason in diag.
+static hn_status compute_double(const hn_system *sys, const char *spelling, const double *q,
+                                const double *v, const hn_walk_limits *limits, recorder *r,
+                                hn_walk_end *end, hn_diag *diag) {
     hn_method_spec spec;
     hn_run *run = NULL;
     hn_sample start;
@@ -118,6 +132,17 @@ static hn_status compute(const hn_system *sys, const char *spelling, const doubl
     return status;
 }
 
+static hn_status compute(const hn_system *sys, const mean *m, const double *q, const double *v,
+                         const hn_walk_limits *limits, recorder *r, hn_walk_end *end,
+                         hn_diag *diag) {
+    hn_walk_limits part = *limits;
+    if (!m->precise) {
+        return compute_double(sys, m->spelling, q, v, limits, r, end, diag);
+    }
+    part.seconds *= PRECISE_SHARE;
+    return hn_precise_walk(m->kind, sys, q, v, r->ref->T, r->ref->n, &part, record, r, end, diag);
+}
+
 static double or_one(double scale) {
     return scale > SMALLEST && isfinite(scale) ? scale : 1;
 }
@@ -140,6 +165,15 @@ static double worse(double a, double b) {
     return isnan(a) || isnan(b) ? (double)NAN : fmax(a, b);
 }
 
+/// What storing numbers as doubles costs by itself: nothing below it can be told apart.
+static double rounding(const hn_ref *ref, int k, hn_error_kind kind) {
+    double most = 1;
+    for (int i = 0; kind == HN_ERROR_Q && i < ref->n_user; i++) {
+        most = fmax(most, fabs(ref->q[(size_t)k * (size_t)ref->n_user + (size_t)i]));
+    }
+    return DBL_EPSILON / 2 * most;
+}
+
 static void compare(hn_ref *ref, const hn_ref *other, hn_errors *errors) {
     for (int k = 0; k <= ref->n; k++) {
         const hn_state_seen a = hn_ref_at(ref, k), b = hn_ref_at(other, k);
@@ -147,6 +181,9 @@ static void compare(hn_ref *ref, const hn_ref *other, hn_errors *errors) {
         hn_errors_calc(errors, &b, &a, &ref->scales, e);
         e[HN_ERROR_GAP] = e[HN_ERROR_VELOCITY_GAP] = 0; // gaps are measured, not compared
         for (int i = 0; i < HN_ERROR_COUNT; i++) {
+            if (i != HN_ERROR_GAP && i != HN_ERROR_VELOCITY_GAP) {
+                e[i] = worse(e[i], rounding(ref, k, (hn_error_kind)i));
+            }
             ref->error[i] = worse(ref->error[i], e[i]);
         }
     }
@@ -159,12 +196,15 @@ static void note_refusal(char refused[320], const char *means, const hn_diag *di
 
 /// The first two computations that come to the end, kept[0] and kept[1].
 static hn_status find_two(const hn_system *sys, const double *q, const double *v, double T, int n,
-                          const hn_walk_limits *limits, hn_ref *kept[2], recorder seen[2],
+                          const hn_ref_opts *opts, hn_ref *kept[2], recorder seen[2],
                           char refused[320], hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     int found = 0;
     for (int i = 0; i < N_MEANS && found < HN_REF_MEANS; i++) {
         hn_walk_end end;
+        if (opts->skip_precise && MEANS[i].precise) {
+            continue;
+        }
         if (!kept[found]) {
             kept[found] = hn_ref_blank(hn_system_scene(sys)->hash, T, n, info.n_user, info.nc);
         }
@@ -172,16 +212,17 @@ static hn_status find_two(const hn_system *sys, const double *q, const double *v
             return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
         }
         seen[found] = (recorder){.ref = kept[found]};
-        const hn_status status = compute(sys, MEANS[i], q, v, limits, &seen[found], &end, diag);
+        const hn_status status =
+            compute(sys, &MEANS[i], q, v, &opts->limits, &seen[found], &end, diag);
         if (status == HN_OK) {
-            snprintf(kept[found]->means[0], HN_SPEC_MAX, "%s", MEANS[i]);
+            snprintf(kept[found]->means[0], HN_SPEC_MAX, "%s", name_of(&MEANS[i]));
             found++;
         } else if (status == HN_ERR_MEMORY || end == HN_WALK_STOPPED) {
             return end == HN_WALK_STOPPED
                        ? hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request")
                        : status;
         } else {
-            note_refusal(refused, MEANS[i], diag);
+            note_refusal(refused, name_of(&MEANS[i]), diag);
         }
     }
     return found == HN_REF_MEANS
@@ -206,8 +247,8 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
     hn_errors *errors = NULL;
     hn_status status = arena ? hn_errors_create(sys, arena, &errors) : HN_ERR_MEMORY;
     if (status == HN_OK) {
-        status = find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o.limits, kept, seen,
-                          refused, diag);
+        status =
+            find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o, kept, seen, refused, diag);
     }
     if (status == HN_OK) {
         set_scales(kept[0], errors, sys, &seen[0]);

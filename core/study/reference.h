@@ -3,9 +3,11 @@
 // A reference solution: what the motion of a scene is, by two computations that share nothing but the scene's equations,
 // and how far these are apart. That difference is the reference's own error: no error below it is ever claimed.
 //
-// Computations differ in formulation and in integrator. The first two of a fixed list that come to the end are taken:
-// accelerations and multipliers together with projection, by our Dormand-Prince 8; the equations on the null space of J by
+// The first two of a fixed list that come to the end are taken. First stand the two in extended precision of study/precise.h; then, in
+// double, accelerations and multipliers together with projection by our Dormand-Prince 8; the equations on the null space of J by
 // GSL's Prince-Dormand; the loops at position and speed level, with multipliers, by Radau IIA collocation.
+//
+// Numbers are stored as doubles, so the error of a coordinate is never called less than half a unit of its last place.
 
 #include "study/errors.h"
 #include "study/walk.h"
@@ -31,7 +33,8 @@ typedef struct hn_ref {
 
 typedef struct hn_ref_opts {
     int n;                 ///< intervals; 0: HN_REF_TIMES
-    hn_walk_limits limits; ///< of each computation
+    hn_walk_limits limits; ///< of each computation; those in extended precision get 0.4 of the time
+    int skip_precise;      ///< 1: those in double alone
 } hn_ref_opts;
 hn_ref_opts hn_ref_opts_default(void);
 

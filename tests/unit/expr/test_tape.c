@@ -1,6 +1,7 @@
 #include "support/near.h"
 
 #include "base/strbuf.h"
+#include "expr/parse.h"
 #include "expr/tape.h"
 #include "support/alloc.h"
 
@@ -109,6 +110,115 @@ static void random_graphs_agree_with_the_graph_itself(void **state) {
             }
         }
         free(work);
+        hn_tape_free(tape);
+        hn_graph_free(g);
+    }
+}
+
+/// The pool's last n values in long double at x.
+static void eval_long(const hn_tape *tape, const double *x, int n, long double *out) {
+    long double *work = malloc((hn_tape_work_size(tape) + 1) * sizeof *work);
+    assert_non_null(work);
+    hn_tape_prepare_long(tape, work);
+    for (int i = 0; i < N_SYMBOLS; i++) {
+        work[i] = (long double)x[i];
+    }
+    hn_tape_run_long(tape, work);
+    for (int i = 0; i < n; i++) {
+        out[i] = work[hn_tape_output_slots(tape)[i]];
+    }
+    free(work);
+}
+
+// one operation of each kind on moderate numbers: the double is the rounded long double, to an operation's rounding or two
+static void single_operations_in_long_double_round_to_the_double_ones(void **state) {
+    (void)state;
+    for (int op = HN_OP_MUL; op < HN_OP_COUNT; op++) {
+        hn_graph *g = hn_graph_create();
+        hn_ex x[N_SYMBOLS];
+        make_symbols(g, x);
+        const hn_ex out[1] = {hn_apply(g, (hn_op)op, x)};
+        hn_tape *tape = compile(g, out, 1);
+        double *work = workspace(tape), in[N_SYMBOLS], value;
+        unsigned seed = 7;
+        for (int k = 0; k < 50; k++) {
+            long double precise;
+            for (int i = 0; i < N_SYMBOLS; i++) {
+                in[i] = random_between(&seed, 0.1, 0.9); // inside every domain
+            }
+            hn_tape_eval(tape, in, &value, work);
+            eval_long(tape, in, 1, &precise);
+            assert_rel(value, (double)precise, 5e-16);
+        }
+        free(work);
+        hn_tape_free(tape);
+        hn_graph_free(g);
+    }
+}
+
+// sums of products of sines: no cancellation, so 1e-15 of the double is left
+static void random_graphs_in_long_double_agree_with_double(void **state) {
+    (void)state;
+    for (unsigned seed = 1; seed <= 100; seed++) {
+        unsigned s = seed;
+        hn_graph *g = hn_graph_create();
+        hn_ex pool[N_POOL];
+        grow_pool(g, &s, pool);
+        hn_tape *tape = compile(g, pool, N_POOL);
+        double *work = workspace(tape), x[N_SYMBOLS], out[N_POOL];
+        long double precise[N_POOL];
+        for (int i = 0; i < N_SYMBOLS; i++) {
+            x[i] = random_between(&s, -2, 2);
+        }
+        hn_tape_eval(tape, x, out, work);
+        eval_long(tape, x, N_POOL, precise);
+        for (int i = 0; i < N_SYMBOLS + 5; i++) { // few operations: nothing is amplified yet
+            assert_near(out[i], (double)precise[i], 1e-15 * (1 + fabs(out[i])));
+        }
+        for (int i = 0; i < N_POOL; i++) { // as against the graph itself
+            assert_near(out[i], (double)precise[i], 1e-9 * (1 + fabs(out[i])));
+        }
+        free(work);
+        hn_tape_free(tape);
+        hn_graph_free(g);
+    }
+}
+
+static int find_symbol(void *user, const char *name, hn_ex *out) {
+    const hn_ex *x = user;
+    if (name[0] != 'x' || name[1] < '0' || name[1] >= '0' + N_SYMBOLS) {
+        return 0;
+    }
+    *out = x[name[1] - '0'];
+    return 1;
+}
+
+// (sin^2 + cos^2 - 1) cancels to the rounding of the precision: the double leaves 1e-16, these leave 1e-19
+static void closed_forms_hold_to_eighteen_digits(void **state) {
+    (void)state;
+    const char *const formulas[] = {
+        "sin(x0)*sin(x0) + cos(x0)*cos(x0) - 1", // sine and cosine in one instruction
+        "sin(2*x0) - 2*sin(x0)*cos(x0)",
+        "sqrt(x1*x1) - x1",
+        "exp(log(x1)) - x1",
+        "tan(atan(x1)) - x1",
+        "atan2(sin(x1), cos(x1)) - x1",
+        "cosh(x1)*cosh(x1) - sinh(x1)*sinh(x1) - 1",
+    };
+    for (size_t k = 0; k < sizeof formulas / sizeof *formulas; k++) {
+        hn_graph *g = hn_graph_create();
+        hn_ex x[N_SYMBOLS], out[1];
+        hn_diag diag = {0};
+        make_symbols(g, x);
+        const hn_parse_opts opts = {.lookup = find_symbol, .user = x};
+        if (hn_parse(g, formulas[k], &opts, &out[0], &diag) != HN_OK) {
+            fail_msg("%s", diag.message);
+        }
+        hn_tape *tape = compile(g, out, 1);
+        const double in[N_SYMBOLS] = {0.7, 0.3, 0, 0, 0};
+        long double value = 999;
+        eval_long(tape, in, 1, &value);
+        assert_true(value == 0 || fabsl(value) <= 1e-18L);
         hn_tape_free(tape);
         hn_graph_free(g);
     }
@@ -267,6 +377,9 @@ static void out_of_memory_is_told_and_leaks_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_graphs_agree_with_the_graph_itself),
+        cmocka_unit_test(single_operations_in_long_double_round_to_the_double_ones),
+        cmocka_unit_test(random_graphs_in_long_double_agree_with_double),
+        cmocka_unit_test(closed_forms_hold_to_eighteen_digits),
         cmocka_unit_test(fewer_outputs_give_the_same_values_in_fewer_slots),
         cmocka_unit_test(evaluation_allocates_nothing_and_repeats_to_the_bit),
         cmocka_unit_test(operations_are_counted_exactly),

@@ -163,7 +163,7 @@ static void the_tilted_four_bar_has_unit_axes_and_the_inertia_of_thin_rods(void 
     hn_scene_free(s);
 }
 
-static void the_hash_tells_text_and_values_apart_but_not_white_space(void **state) {
+static void the_hash_is_of_what_moves_not_of_words_or_white_space(void **state) {
     (void)state;
     hn_setting same = {"l1", 1}, other = {"l1", 1.25};
     hn_scene *a = load_set(LESSON "fb0.json", NULL, 0), *b = load_set(LESSON "fb0.json", &same, 1),
@@ -174,11 +174,13 @@ static void the_hash_tells_text_and_values_apart_but_not_white_space(void **stat
     assert_near(c->params[0].initial, 1, 0);
     hn_scene *d = load_text(HEAD ONE_BODY ONE_JOINT "}"),
              *e = load_text(HEAD "\n\t" ONE_BODY "\n" ONE_JOINT "\n}\n");
-    hn_scene *f = load_text(HEAD "\"title\":\"y\", " ONE_BODY ONE_JOINT "}");
+    hn_scene *f = load_text(HEAD "\"title\":\"y\", \"duration\": 3, " ONE_BODY ONE_JOINT "}");
+    hn_scene *g = load_text(HEAD ONE_BODY ONE_JOINT ", \"gravity\": [0, -1, 0]}");
     assert_true(d->hash == e->hash);
-    assert_true(d->hash != f->hash);
-    hn_scene *all[] = {a, b, c, d, e, f};
-    for (int i = 0; i < 6; i++) {
+    assert_true(d->hash == f->hash);
+    assert_true(d->hash != g->hash);
+    hn_scene *all[] = {a, b, c, d, e, f, g};
+    for (int i = 0; i < 7; i++) {
         hn_scene_free(all[i]);
     }
 }
@@ -440,7 +442,7 @@ int main(void) {
         cmocka_unit_test(fb0_has_the_numbers_of_the_reference),
         cmocka_unit_test(the_ladder_grows_with_its_parameter),
         cmocka_unit_test(the_tilted_four_bar_has_unit_axes_and_the_inertia_of_thin_rods),
-        cmocka_unit_test(the_hash_tells_text_and_values_apart_but_not_white_space),
+        cmocka_unit_test(the_hash_is_of_what_moves_not_of_words_or_white_space),
         cmocka_unit_test(energy_and_loop_of_fb0_are_those_of_its_reference_motion),
         cmocka_unit_test(parameters_may_be_formulas_of_each_other_in_any_order),
         cmocka_unit_test(parameters_that_bounds_of_repetitions_need_are_structural),
