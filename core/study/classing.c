@@ -12,7 +12,8 @@ static const double FLAT = 0.35;     // of theory's order: slopes below it belon
 static const double ABOVE_FLOOR = 3; // times the floor, for a point that is fitted
 static const double WANDER =
     0.1; // errors at a floor differ by less than this factor from the first there
-static const double ROUNDING = 4e-15;  // no error below it is trusted to have a slope
+// no error below it is trusted to have a slope: what thousands of steps in double add up to
+static const double ROUNDING = 1e-13;
 static const double LEAST_ORDER = 0.5; // below it nothing converges
 
 static const char *const names[HN_CLASS_COUNT] = {
