@@ -68,7 +68,7 @@ HEADERS        := $(sort $(wildcard core/*/*.h server/*.h server/*/*.h tests/sup
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
-TABLE_SOURCES  := tests/survival/survival.c
+TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
                   $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES)
 
@@ -123,7 +123,7 @@ $(OUT)/tests/bench/%: $(OUT)/tests/bench/%.o $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
-$(OUT)/tests/survival/%: $(OUT)/tests/survival/%.o $(call archive,support) $(LIBRARY)
+$(TABLES): %: %.o $(call archive,support) $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -206,6 +206,7 @@ help:
 	@echo 'make orders       orders of every formulation with every fixed-step integrator, beside theory, kept in tests/orders/results.txt'
 	@echo 'make every-method every shipped scene by every method: tests/tables/every_method.csv, and a summary'
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
+	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
@@ -213,7 +214,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings figures pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -267,6 +268,12 @@ rings: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/tables/ring.py $(PROGRAM) >build/ring.txt
 	@cp build/ring.txt tests/tables/ring.txt && cat tests/tables/ring.txt
+
+# a quarter of an hour on one processor, most of it in runs of ten million steps
+figures: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(TABLES)
+	@$(OUT)/tests/tables/figures >build/figures.txt || { cat build/figures.txt; exit 1; }
+	@cp build/figures.txt tests/tables/figures.txt && cat tests/tables/figures.txt
 
 # HOLONOM tells the scripts which program to drive
 # a locale that writes a comma in its numbers, for the tests alone
