@@ -28,6 +28,9 @@ extern const hn_stepper hn_stepper_implicit_euler, hn_stepper_midpoint, hn_stepp
     { "h0", 0, 0, 100, "s", "first step; 0: chosen from the slope", NULL, 0, 0 }
 #define HN_SETTING_LARGEST_STEP \
     { "hmax", 0, 0, 100, "s", "largest step; 0: no limit", NULL, 0, 0 }
+/// Of adaptive ones that can be held to a step.
+#define HN_SETTING_FIXED_STEP \
+    { "h", 0, 0, 100, "s", "fixed step; 0: chosen from rtol and atol", NULL, 0, 0 }
 #define HN_SETTINGS_ADAPTIVE HN_SETTING_TOLERANCES, HN_SETTING_FIRST_STEP, HN_SETTING_LARGEST_STEP
 
 #endif
