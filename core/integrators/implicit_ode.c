@@ -13,11 +13,13 @@
 
 typedef struct implicit_ode {
     hn_stages nw;
+    hn_arena *arena;
     const hn_ode *ode; // during a step
     int n;
     double rtol, atol, weight;                   // weight: of the error estimate
     double *y0, *slope0, *stage, *base, *column; // n
-    double *jacobian, *real, *scale;             // n x n, n x n, n
+    double *jacobian, *real,
+        *scale; // n x n, n x n, n; with those below NULL where the formulation solves
     hn_complex *complex_matrix, *packed;
     int *pivot[2];
     double *guess;     // stages x n: Z of the last accepted step
@@ -42,6 +44,9 @@ static hn_status residual(void *self, int stage, double t, const double *u, cons
 static hn_status factor(void *self, int which, double re, double im) {
     implicit_ode *s = self;
     const int n = s->n;
+    if (s->ode->newton) {
+        return s->ode->newton->factor(s->ode->self, which, re, im);
+    }
     if (which == 0) {
         for (int i = 0; i < n * n; i++) {
             s->real[i] = -s->jacobian[i];
@@ -63,6 +68,15 @@ static hn_status factor(void *self, int which, double re, double im) {
 
 static void solve(void *self, hn_parts r) {
     implicit_ode *s = self;
+    if (s->ode->newton) {
+        for (int part = 0; part < r.n; part++) {
+            for (int i = 0; i < s->n; i++) {
+                r.at[part][i] = -r.at[part][i];
+            }
+        }
+        s->ode->newton->solve(s->ode->self, r.n, r.at);
+        return;
+    }
     if (r.n == 1) {
         for (int i = 0; i < s->n; i++) {
             r.at[0][i] = -r.at[0][i];
@@ -102,6 +116,9 @@ static hn_status differences(implicit_ode *s, const hn_ode *ode, double t, doubl
 }
 
 static hn_status find_jacobian(implicit_ode *s, double t, double *y, const double *base) {
+    if (s->ode->newton) {
+        return s->ode->newton->at(s->ode->self, t, y);
+    }
     return s->ode->jacobian ? s->ode->jacobian(s->ode->self, t, y, s->jacobian)
                             : differences(s, s->ode, t, y, base);
 }
@@ -109,11 +126,30 @@ static hn_status find_jacobian(implicit_ode *s, double t, double *y, const doubl
 static hn_status relinearise(void *self, double t, const double *u, const double *rate) {
     implicit_ode *s = self;
     (void)rate;
+    hn_status status = HN_OK;
     for (int i = 0; i < s->n; i++) {
         s->stage[i] = s->y0[i] + u[i];
     }
-    const hn_status status = s->ode->rhs(s->ode->self, t, s->stage, s->base);
+    if (!s->ode->newton && !s->ode->jacobian) {
+        status = s->ode->rhs(s->ode->self, t, s->stage, s->base);
+    }
     return status == HN_OK ? find_jacobian(s, t, s->stage, s->base) : status;
+}
+
+// full matrices, for formulations that do not solve themselves: they are large, and most do
+static hn_status allocate_full(implicit_ode *s) {
+    const size_t w = (size_t)s->n;
+    if (s->jacobian) {
+        return HN_OK;
+    }
+    s->real = hn_arena_doubles(s->arena, w * w);
+    s->scale = hn_arena_doubles(s->arena, w);
+    s->complex_matrix = hn_arena_get(s->arena, (w * w + 1) * sizeof *s->complex_matrix);
+    s->packed = hn_arena_get(s->arena, (w + 1) * sizeof *s->packed);
+    s->pivot[0] = hn_arena_ints(s->arena, w);
+    s->pivot[1] = hn_arena_ints(s->arena, w);
+    s->jacobian = hn_arena_doubles(s->arena, w * w);
+    return hn_arena_failed(s->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
 void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) {
@@ -122,7 +158,7 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
     if (!s) {
         return NULL;
     }
-    *s = (implicit_ode){.n = n};
+    *s = (implicit_ode){.n = n, .arena = arena};
     const hn_stage_equations eq = {.self = s,
                                    .n_diff = n,
                                    .residual = residual,
@@ -134,13 +170,6 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
     s->stage = hn_arena_doubles(arena, w);
     s->base = hn_arena_doubles(arena, w);
     s->column = hn_arena_doubles(arena, w);
-    s->jacobian = hn_arena_doubles(arena, w * w);
-    s->real = hn_arena_doubles(arena, w * w);
-    s->scale = hn_arena_doubles(arena, w);
-    s->complex_matrix = hn_arena_get(arena, (w * w + 1) * sizeof *s->complex_matrix);
-    s->packed = hn_arena_get(arena, (w + 1) * sizeof *s->packed);
-    s->pivot[0] = hn_arena_ints(arena, w);
-    s->pivot[1] = hn_arena_ints(arena, w);
     s->guess = hn_arena_doubles(arena, (size_t)col->stages * w);
     const hn_status status = hn_stages_init(&s->nw, col, &eq, arena);
     return status == HN_OK && !hn_arena_failed(arena) ? s : NULL;
@@ -230,7 +259,10 @@ hn_status hn_implicit_ode_step(void *self, const hn_ode *ode, double t, double h
     s->h = 0;
     s->nw.why[0] = '\0';
     memcpy(s->y0, y, (size_t)s->n * sizeof *y);
-    hn_status status = ode->rhs(ode->self, t, y, s->slope0);
+    hn_status status = ode->newton ? HN_OK : allocate_full(s);
+    if (status == HN_OK) {
+        status = ode->rhs(ode->self, t, y, s->slope0);
+    }
     if (status == HN_OK) {
         status = find_jacobian(s, t, s->y0, s->slope0);
     }
@@ -276,6 +308,9 @@ void hn_implicit_ode_add_cost(const void *self, hn_cost *cost) {
     cost->factorisations += s->nw.factorisations;
     cost->solves += s->nw.solves;
     cost->newton += s->nw.iterations;
+    if (!s->jacobian) {
+        return; // the formulation counts what it solves
+    }
     cost->ops +=
         weight * ((double)s->nw.factorisations * per_factor + (double)s->nw.solves * per_solve);
 }

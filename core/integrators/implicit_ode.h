@@ -1,7 +1,8 @@
 #ifndef HN_INTEGRATORS_IMPLICIT_ODE_H
 #define HN_INTEGRATORS_IMPLICIT_ODE_H
 // Collocation methods on an ordinary differential equation y' = F(t, y): one engine, whose functions fit the slots of
-// hn_stepper. The Jacobian is the formulation's own where it gives one, else differences of F.
+// hn_stepper. Newton's systems are solved by the formulation where it offers to (hn_ode_newton); else the Jacobian is the
+// formulation's own where it gives one, else differences of F.
 
 #include "integrators/implicit_tableau.h"
 #include "integrators/stepper.h"

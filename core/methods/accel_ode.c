@@ -10,6 +10,9 @@ hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgar
     const hn_system_info info = hn_system_get_info(sys);
     const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 0, .solver = solver};
     ode->sys = sys;
+    ode->baumgarte = baumgarte;
+    ode->arena = arena;
+    ode->unit = hn_arena_doubles(arena, (size_t)info.nq);
     ode->nq = info.nq;
     ode->nv = info.nv;
     ode->nc = info.nc;
@@ -24,7 +27,9 @@ hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgar
 void hn_accel_ode_destroy(void *self) {
     hn_accel_ode *ode = self;
     hn_accel_free(ode->accel);
+    hn_accel_jacobian_free(ode->slopes);
     ode->accel = NULL;
+    ode->slopes = NULL;
 }
 
 static void tell_failure(hn_accel_ode *ode, hn_status status, double t) {
@@ -35,7 +40,7 @@ static void tell_failure(hn_accel_ode *ode, hn_status status, double t) {
 
 hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) {
     hn_accel_ode *ode = self;
-    const double *q = y, *v = y + ode->nq;
+    const double *q = hn_unit_positions(ode->sys, y, ode->unit), *v = y + ode->nq;
     const hn_status status =
         hn_accel_eval(ode->accel, t, q, v, ode->alpha, ode->beta, ydot + ode->nq, NULL, NULL);
     ode->cost.evals++;
@@ -43,7 +48,7 @@ hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot) 
         tell_failure(ode, status, t);
         return status;
     }
-    hn_system_kinematics(ode->sys, q, v, ydot);
+    hn_system_kinematics(ode->sys, y, v, ydot);
     return HN_OK;
 }
 
@@ -54,13 +59,55 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return HN_OK;
 }
 
+// --- derivatives, for implicit integrators ----------------------------------------------------------------------
+
+static hn_status take_slopes(void *self, double t, const double *y) {
+    hn_accel_ode *ode = self;
+    hn_status status = HN_OK;
+    if (!ode->slopes) {
+        // alpha and beta may be changed while running
+        const hn_accel_law law = {ode->baumgarte, ode->baumgarte, 0};
+        status = hn_accel_jacobian_create(ode->sys, &law, ode->arena, &ode->slopes);
+    }
+    if (status == HN_OK) {
+        const hn_accel_law law = {ode->baumgarte ? ode->alpha : 0, ode->baumgarte ? ode->beta : 0,
+                                  0};
+        status = hn_accel_jacobian_at(ode->slopes, t, y, y + ode->nq, &law);
+    }
+    if (status != HN_OK) {
+        snprintf(ode->why, sizeof ode->why, "derivatives of the accelerations at t = %.6g s: %s", t,
+                 hn_status_text(status));
+    }
+    return status;
+}
+
+static hn_status jacobian(void *self, double t, const double *y, double *jac) {
+    hn_accel_ode *ode = self;
+    const hn_status status = take_slopes(self, t, y);
+    return status == HN_OK ? hn_accel_jacobian_fill(ode->slopes, jac) : status;
+}
+
+static hn_status factor(void *self, int which, double re, double im) {
+    const hn_accel_ode *ode = self;
+    return hn_accel_jacobian_factor(ode->slopes, which, re, im);
+}
+
+static void solve(void *self, int parts, double *const *x) {
+    const hn_accel_ode *ode = self;
+    hn_accel_jacobian_solve(ode->slopes, parts, x);
+}
+
+static const hn_ode_newton newton = {take_slopes, factor, solve};
+
 void hn_accel_ode_get(void *self, hn_ode *out) {
     const hn_accel_ode *ode = self;
     *out = (hn_ode){.n_pos = ode->nq,
                     .n_vel = ode->nv,
                     .self = self,
                     .rhs = hn_accel_ode_rhs,
-                    .kinematics = kinematics};
+                    .kinematics = kinematics,
+                    .jacobian = jacobian,
+                    .newton = &newton};
 }
 
 hn_status hn_accel_ode_set_state(void *self, double t, const double *q, const double *v,
@@ -97,6 +144,10 @@ void hn_accel_ode_add_cost(const void *self, hn_cost *cost) {
     cost->fallbacks += dense;
     cost->refinements += hn_accel_refinements(ode->accel);
     cost->ops += hn_accel_ops(ode->accel);
+    if (ode->slopes) {
+        cost->evals += hn_accel_jacobian_evals(ode->slopes);
+        cost->ops += hn_accel_jacobian_ops(ode->slopes);
+    }
 }
 
 const char *hn_accel_ode_why(const void *self) {

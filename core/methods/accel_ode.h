@@ -7,6 +7,7 @@
 // A formulation's instance begins with an hn_accel_ode, so that the functions below fit its table.
 
 #include "dynamics/eval.h"
+#include "methods/accel_jacobian.h"
 #include "methods/method.h"
 
 enum { HN_WHY_TEXT = 240 };
@@ -15,8 +16,12 @@ typedef struct hn_accel_ode {
     const hn_system *sys;
     int nq, nv, nc;
     hn_accel *accel;
+    int baumgarte;
     double alpha, beta; ///< [1/s], used with baumgarte
-    hn_cost cost;       ///< what the evaluator does not count itself
+    double *unit;       ///< nq: positions with quaternions of length 1
+    hn_arena *arena;
+    hn_accel_jacobian *slopes; ///< NULL until an implicit integrator asks
+    hn_cost cost;              ///< what the evaluator does not count itself
     char why[HN_WHY_TEXT];
 } hn_accel_ode;
 

@@ -105,6 +105,12 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     return HN_OK;
 }
 
+// of the limit that the turns of (1) approach
+static hn_accel_law law(const void *self) {
+    const hn_penalised *p = self;
+    return (hn_accel_law){p->xi * p->omega, p->omega, 0};
+}
+
 static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
                         hn_diag *diag) {
     augmented *al = hn_arena_get(arena, sizeof *al);
@@ -113,6 +119,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = al;
     al->p.ode.accelerate = accelerate;
+    al->p.ode.law = law;
     al->iterations = (int)settings[SET_ITERATIONS];
     const hn_status status = hn_penalised_init(&al->p, sys, settings, arena, diag);
     if (status != HN_OK) {

@@ -12,6 +12,8 @@ hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_ga
     const hn_system_info info = hn_system_get_info(sys);
     const unsigned gap = with_gap ? HN_TERM_PHI | HN_TERM_PHI_T : 0;
     ode->sys = sys;
+    ode->arena = arena;
+    ode->unit = hn_arena_doubles(arena, (size_t)info.nq);
     ode->nq = info.nq;
     ode->nv = info.nv;
     ode->nc = info.nc;
@@ -35,7 +37,9 @@ hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_ga
 void hn_dense_ode_destroy(void *self) {
     hn_dense_ode *ode = self;
     hn_eval_free(ode->eval);
+    hn_accel_jacobian_free(ode->slopes);
     ode->eval = NULL;
+    ode->slopes = NULL;
 }
 
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
@@ -83,7 +87,7 @@ const char *hn_dense_ode_name(const hn_dense_ode *ode, int i) {
 
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_dense_ode *ode = self;
-    const double *q = y, *v = y + ode->nq;
+    const double *q = hn_unit_positions(ode->sys, y, ode->unit), *v = y + ode->nq;
     ode->cost.evals++;
     hn_eval_run(ode->eval, t, q, v);
     const hn_status status = ode->accelerate(self, t, v, ydot + ode->nq);
@@ -94,7 +98,7 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
         snprintf(ode->why, sizeof ode->why, "the accelerations at t = %.6g s are not finite", t);
         return HN_ERR_DIVERGED;
     }
-    hn_system_kinematics(ode->sys, q, v, ydot);
+    hn_system_kinematics(ode->sys, y, v, ydot);
     return HN_OK;
 }
 
@@ -105,10 +109,54 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return HN_OK;
 }
 
+// --- derivatives, for implicit integrators ----------------------------------------------------------------------
+
+static hn_status take_slopes(void *self, double t, const double *y) {
+    hn_dense_ode *ode = self;
+    const hn_accel_law law = ode->law ? ode->law(self) : (hn_accel_law){0};
+    hn_status status = HN_OK;
+    if (!ode->slopes) {
+        // alpha and beta may be changed while running
+        const hn_accel_law any = {ode->law != NULL, ode->law != NULL, law.give};
+        status = hn_accel_jacobian_create(ode->sys, &any, ode->arena, &ode->slopes);
+    }
+    if (status == HN_OK) {
+        status = hn_accel_jacobian_at(ode->slopes, t, y, y + ode->nq, &law);
+    }
+    if (status != HN_OK) {
+        snprintf(ode->why, sizeof ode->why, "derivatives of the accelerations at t = %.6g s: %s", t,
+                 hn_status_text(status));
+    }
+    return status;
+}
+
+static hn_status jacobian(void *self, double t, const double *y, double *jac) {
+    hn_dense_ode *ode = self;
+    const hn_status status = take_slopes(self, t, y);
+    return status == HN_OK ? hn_accel_jacobian_fill(ode->slopes, jac) : status;
+}
+
+static hn_status factor(void *self, int which, double re, double im) {
+    const hn_dense_ode *ode = self;
+    return hn_accel_jacobian_factor(ode->slopes, which, re, im);
+}
+
+static void solve(void *self, int parts, double *const *x) {
+    const hn_dense_ode *ode = self;
+    hn_accel_jacobian_solve(ode->slopes, parts, x);
+}
+
+static const hn_ode_newton newton = {take_slopes, factor, solve};
+
 void hn_dense_ode_get(void *self, hn_ode *out) {
     const hn_dense_ode *ode = self;
-    *out = (hn_ode){
-        .n_pos = ode->nq, .n_vel = ode->nv, .self = self, .rhs = rhs, .kinematics = kinematics};
+    *out = (hn_ode){.n_pos = ode->nq,
+                    .n_vel = ode->nv,
+                    .self = self,
+                    .rhs = rhs,
+                    .kinematics = kinematics,
+                    .jacobian = jacobian,
+                    .newton = &newton};
 }
 
 hn_status hn_dense_ode_set_state(void *self, double t, const double *q, const double *v,
@@ -139,6 +187,10 @@ void hn_dense_ode_add_cost(const void *self, hn_cost *cost) {
     const hn_dense_ode *ode = self;
     hn_cost_add(cost, &ode->cost);
     cost->ops += (double)ode->cost.evals * hn_eval_info(ode->eval).ops;
+    if (ode->slopes) {
+        cost->evals += hn_accel_jacobian_evals(ode->slopes);
+        cost->ops += hn_accel_jacobian_ops(ode->slopes);
+    }
 }
 
 const char *hn_dense_ode_why(const void *self) {

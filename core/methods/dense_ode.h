@@ -8,6 +8,7 @@
 // A formulation's instance begins with an hn_dense_ode, so that the functions below fit its table.
 
 #include "dynamics/eval.h"
+#include "methods/accel_jacobian.h"
 #include "methods/method.h"
 
 enum { HN_DENSE_WHY_TEXT = 200 };
@@ -23,7 +24,12 @@ typedef struct hn_dense_ode {
     const int *M_row, *M_col, *J_row, *J_col;
     /// Fills a (nv) from the terms. Allocates nothing. Fails with its reason in `why`; counts its own work.
     hn_status (*accelerate)(void *self, double t, const double *v, double *a);
-    hn_cost cost; ///< what the evaluator does not count itself
+    /// The law that the accelerations obey, for their derivatives; NULL: that of index-1. Entries that are zero at first stay so.
+    hn_accel_law (*law)(const void *self);
+    double *unit; ///< nq: positions with quaternions of length 1
+    hn_arena *arena;
+    hn_accel_jacobian *slopes; ///< NULL until an implicit integrator asks
+    hn_cost cost;              ///< what the evaluator does not count itself
     char why[HN_DENSE_WHY_TEXT];
 } hn_dense_ode;
 

@@ -34,6 +34,17 @@ typedef struct hn_cost {
     long long rejected; ///< trials that an integrator with a step control of its own turned down
 } hn_cost;
 
+/// Newton's systems of an implicit integrator by the structure of the equations, which dF/dy, a full matrix, does not show.
+/// `self` is that of the hn_ode. The first call takes memory from the formulation's arena.
+typedef struct hn_ode_newton {
+    /// Takes derivatives at (t, y); fails as rhs does.
+    hn_status (*at)(void *self, double t, const double *y);
+    /// Factors s - dF/dy with s = (re, im); which = 0: real, 1: complex. Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED.
+    hn_status (*factor)(void *self, int which, double re, double im);
+    /// x (n_pos + n_vel, in 1 or 2 parts: real and imaginary) <- (s - dF/dy)^-1 x with that factor
+    void (*solve)(void *self, int parts, double *const *x);
+} hn_ode_newton;
+
 typedef struct hn_ode {
     int n_pos, n_vel;
     void *self;
@@ -42,7 +53,9 @@ typedef struct hn_ode {
     /// only the position part of y' (partitioned integrators call it with new speeds)
     hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
     /// dF/dy at (t, y), (n_pos + n_vel) square, row-major, for implicit integrators; fails as rhs does. NULL: by differences.
+    /// Of a quaternion, whose length no motion changes, along turns. The first call takes memory from the formulation's arena.
     hn_status (*jacobian)(void *self, double t, const double *y, double *jac);
+    const hn_ode_newton *newton; ///< NULL: not offered
 } hn_ode;
 
 /// How a formulation hands the constraints over: as an ordinary differential equation (hn_ode), or to integrators that take the

@@ -25,6 +25,12 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     return HN_OK;
 }
 
+// lambda = -a (J acc + gamma + ...) gives (1) the form of accel_jacobian.h
+static hn_accel_law law(const void *self) {
+    const hn_penalised *p = self;
+    return (hn_accel_law){p->xi * p->omega, p->omega, 1 / p->a};
+}
+
 static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
                         hn_diag *diag) {
     hn_penalised *p = hn_arena_get(arena, sizeof *p);
@@ -33,6 +39,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = p;
     p->ode.accelerate = accelerate;
+    p->ode.law = law;
     return hn_penalised_init(p, sys, settings, arena, diag);
 }
 
