@@ -408,6 +408,10 @@ void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const doubl
     memcpy(da, j->packed, (size_t)j->nv * sizeof *da);
 }
 
+void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows) {
+    hn_linear_apply(j->terms, HN_LINEAR_V, dx, rows);
+}
+
 // what turning ball k does to q': columns of its four entries and three speeds; and its part of dv'/dq from that by turns
 static void fill_ball(const hn_accel_jacobian *j, const hn_ball_place *b, double *jac) {
     const int n = j->nq + j->nv;

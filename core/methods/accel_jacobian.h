@@ -45,6 +45,8 @@ HN_MUST_CHECK hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, con
 HN_MUST_CHECK hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j);
 /// da (nv) of (2) along dx and dv (nv each, NULL: zero).
 void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const double *dv, double *da);
+/// rows (nc) = (J v + phi_t)_q dx; made with alpha or beta not zero only.
+void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows);
 /// d(q', v')/d(q, v), (nq + nv) square, row-major. Fails as hn_accel_jacobian_prepare().
 HN_MUST_CHECK hn_status hn_accel_jacobian_fill(hn_accel_jacobian *j, double *jac);
 /// Factors (3) with s = (re, im); which = 0: real, 1: complex. Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED.

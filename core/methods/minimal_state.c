@@ -8,6 +8,7 @@
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
     const size_t nv = (size_t)hn_system_get_info(sys).nv;
+    s->arena = arena;
     s->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
     s->v = hn_arena_doubles(arena, nv);
     s->last_v = hn_arena_doubles(arena, nv);
@@ -22,6 +23,7 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
 void hn_minimal_destroy(void *self) {
     hn_minimal_state *s = self;
     hn_chart_destroy(&s->chart);
+    hn_chart_jacobian_free(&s->slopes);
 }
 
 // `here` goes to the closed pose with the independent entries of y
@@ -60,13 +62,27 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return HN_OK;
 }
 
+static hn_status jacobian(void *self, double t, const double *y, double *jac) {
+    hn_minimal_state *s = self;
+    hn_status status = place(s, t, y, HN_CHART_TOL);
+    if (status == HN_OK) {
+        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.r, s->v);
+        status = hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v);
+    }
+    if (status == HN_OK) {
+        hn_chart_jacobian_minimal(&s->slopes, &s->chart, jac);
+    }
+    return status;
+}
+
 void hn_minimal_ode(void *self, hn_ode *out) {
     const hn_minimal_state *s = self;
     *out = (hn_ode){.n_pos = s->chart.r,
                     .n_vel = s->chart.r,
                     .self = self,
                     .rhs = rhs,
-                    .kinematics = kinematics};
+                    .kinematics = kinematics,
+                    .jacobian = jacobian};
 }
 
 hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
@@ -150,6 +166,7 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
 void hn_minimal_add_cost(const void *self, hn_cost *cost) {
     const hn_minimal_state *s = self;
     hn_chart_add_cost(&s->chart, cost);
+    hn_chart_jacobian_add_cost(&s->slopes, cost);
 }
 
 const char *hn_minimal_why(const void *self) {

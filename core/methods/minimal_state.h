@@ -5,9 +5,12 @@
 // that cannot be, the scene is refused. Every right-hand side closes the loops first, by Newton from a tangent prediction, so no gap can open.
 
 #include "methods/chart.h"
+#include "methods/chart_jacobian.h"
 
 typedef struct hn_minimal_state {
     hn_chart chart;
+    hn_chart_jacobian slopes;
+    hn_arena *arena;
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step
     double *last_v;             ///< nv

@@ -8,6 +8,8 @@
 hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, int with_rate, int orthonormal,
                           hn_arena *arena, hn_diag *diag) {
     s->orthonormal = orthonormal;
+    s->with_rate = with_rate;
+    s->arena = arena;
     s->v = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nv);
     if (!s->v) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -18,6 +20,7 @@ hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, int with_ra
 void hn_tangent_destroy(void *self) {
     hn_tangent_state *s = self;
     hn_chart_destroy(&s->chart);
+    hn_chart_jacobian_free(&s->slopes);
 }
 
 static double column_dot(const double *N, int nv, int r, int i, int j) {
@@ -89,13 +92,33 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return status;
 }
 
+static hn_status jacobian(void *self, double t, const double *y, double *jac) {
+    hn_tangent_state *s = self;
+    hn_status status = locate(s, &s->chart.here, t, y);
+    if (status == HN_OK) {
+        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
+        status = hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v);
+    }
+    if (status == HN_OK) {
+        hn_chart_jacobian_speeds(&s->slopes, &s->chart, jac);
+    }
+    return status;
+}
+
+// The form that leaves out the rate of the basis has accelerations of its own, an orthonormal basis turns by a rule of its own, and the
+// positions of balls are not moved one speed at a time: these are left to differences.
+static int has_derivatives(const hn_tangent_state *s) {
+    return s->with_rate && !s->orthonormal && s->chart.nq == s->chart.nv;
+}
+
 void hn_tangent_ode(void *self, hn_ode *out) {
     const hn_tangent_state *s = self;
     *out = (hn_ode){.n_pos = s->chart.nq,
                     .n_vel = s->chart.r,
                     .self = self,
                     .rhs = rhs,
-                    .kinematics = kinematics};
+                    .kinematics = kinematics,
+                    .jacobian = has_derivatives(s) ? jacobian : NULL};
 }
 
 // u such that N u + s = v for a v that J allows, else the nearest in the sense of the basis
@@ -168,6 +191,7 @@ hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
 void hn_tangent_add_cost(const void *self, hn_cost *cost) {
     const hn_tangent_state *s = self;
     hn_chart_add_cost(&s->chart, cost);
+    hn_chart_jacobian_add_cost(&s->slopes, cost);
 }
 
 const char *hn_tangent_why(const void *self) {

@@ -4,9 +4,13 @@
 // at any q. Positions drift inside a step only: at its end the dependent coordinates are closed by Newton.
 
 #include "methods/chart.h"
+#include "methods/chart_jacobian.h"
 
 typedef struct hn_tangent_state {
     hn_chart chart;
+    hn_chart_jacobian slopes;
+    hn_arena *arena;
+    int with_rate; ///< see hn_tangent_init
     int orthonormal; ///< 1: the columns of N have length 1 and are orthogonal, 0: N = [I; -J_d^-1 J_i]
     double *v;       ///< nv, scratch
 } hn_tangent_state;

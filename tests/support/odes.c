@@ -22,7 +22,11 @@ static hn_status oscillator_kinematics(void *self, double t, const double *y, do
 }
 
 hn_ode hn_test_oscillator_ode(hn_test_oscillator *self) {
-    return (hn_ode){1, 1, self, oscillator_rhs, oscillator_kinematics, NULL};
+    return (hn_ode){.n_pos = 1,
+                    .n_vel = 1,
+                    .self = self,
+                    .rhs = oscillator_rhs,
+                    .kinematics = oscillator_kinematics};
 }
 
 static hn_status kepler_rhs(void *self, double t, const double *y, double *ydot) {
@@ -45,7 +49,7 @@ static hn_status kepler_kinematics(void *self, double t, const double *y, double
 }
 
 hn_ode hn_test_kepler_ode(void) {
-    return (hn_ode){2, 2, NULL, kepler_rhs, kepler_kinematics, NULL};
+    return (hn_ode){.n_pos = 2, .n_vel = 2, .rhs = kepler_rhs, .kinematics = kepler_kinematics};
 }
 
 void hn_test_kepler_exact(double e, double t, double y[4]) {
