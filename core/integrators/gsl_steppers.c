@@ -223,6 +223,12 @@ static const char *why(const void *self) {
     return s->why[0] ? s->why : NULL;
 }
 
+static hn_status prepare(void *self, const hn_ode *ode) {
+    const gsl_stepper *s = self;
+    const int with_jacobian = s->type == gsl_odeiv2_step_msbdf || s->type == gsl_odeiv2_step_bsimp;
+    return with_jacobian && ode->prepare ? ode->prepare(ode->self) : HN_OK;
+}
+
 // --- the four -------------------------------------------------------------------------------------------------
 
 static void *create_rk8pd(int n_pos, int n_vel, hn_arena *arena) {
@@ -257,6 +263,7 @@ static void *create_bsimp(int n_pos, int n_vel, hn_arena *arena) {
                                               .create = create_##NAME,            \
                                               .destroy = destroy,                 \
                                               .configure = configure,             \
+                                              .prepare = prepare,                 \
                                               .advance = advance,                 \
                                               .accepted = accepted,               \
                                               .add_cost = add_cost,               \

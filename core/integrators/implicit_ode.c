@@ -183,6 +183,11 @@ void hn_implicit_ode_set_tolerance(void *self, double rtol, double atol) {
     s->nw.tol = rtol > 0 ? hn_collocation_newton_share(rtol) : 0;
 }
 
+hn_status hn_implicit_ode_prepare(void *self, const hn_ode *ode) {
+    const hn_status status = ode->newton ? HN_OK : allocate_full(self);
+    return status == HN_OK && ode->prepare ? ode->prepare(ode->self) : status;
+}
+
 static void set_scale(implicit_ode *s, const hn_ode *ode) {
     const double size_pos = 1 + hn_norm_max(ode->n_pos, s->y0);
     const double size_vel = 1 + hn_norm_max(ode->n_vel, s->y0 + ode->n_pos);

@@ -11,6 +11,7 @@
 void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena);
 /// Tolerances of an adaptive method, that its Newton iterations stop by and its estimate is filtered by; rtol 0: to rounding.
 void hn_implicit_ode_set_tolerance(void *self, double rtol, double atol);
+hn_status hn_implicit_ode_prepare(void *self, const hn_ode *ode);
 hn_status hn_implicit_ode_step(void *self, const hn_ode *ode, double t, double h, const double *y,
                                double *y_new, double *err);
 void hn_implicit_ode_accepted(void *self, int changed);

@@ -8,9 +8,9 @@
 
 /// Slots of both engines that need nothing of the method itself.
 #define HN_IMPLICIT_ODE_SLOTS                                             \
-    .step = hn_implicit_ode_step, .accepted = hn_implicit_ode_accepted,   \
-    .dense = hn_implicit_ode_dense, .add_cost = hn_implicit_ode_add_cost, \
-    .why = hn_implicit_ode_why
+    .prepare = hn_implicit_ode_prepare, .step = hn_implicit_ode_step,     \
+    .accepted = hn_implicit_ode_accepted, .dense = hn_implicit_ode_dense, \
+    .add_cost = hn_implicit_ode_add_cost, .why = hn_implicit_ode_why
 
 #define HN_IMPLICIT_DAE_SLOTS                                                 \
     .destroy = hn_implicit_dae_destroy, .start = hn_implicit_dae_start,       \

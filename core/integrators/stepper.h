@@ -30,6 +30,9 @@ typedef struct hn_stepper {
     void (*destroy)(void *self); ///< what is not from the arena; NULL: nothing
     /// Settings in table order, once after create. NULL: it needs none.
     void (*configure)(void *self, const double *settings);
+    /// Takes the memory that steps on this equation will need, so that they allocate nothing; done by the first step where it has not
+    /// been. NULL: none.
+    hn_status (*prepare)(void *self, const hn_ode *ode);
     /// One trial step of size h from (t, y) to y_new; err (n) receives the embedded error estimate when adaptive. Does not
     /// change y. Fails with the right-hand side's status.
     hn_status (*step)(void *self, const hn_ode *ode, double t, double h, const double *y,

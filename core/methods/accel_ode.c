@@ -61,14 +61,16 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
 
 // --- derivatives, for implicit integrators ----------------------------------------------------------------------
 
+static hn_status prepare(void *self) {
+    hn_accel_ode *ode = self;
+    // alpha and beta may be changed while running
+    const hn_accel_law law = {ode->baumgarte, ode->baumgarte, 0};
+    return ode->slopes ? HN_OK : hn_accel_jacobian_create(ode->sys, &law, ode->arena, &ode->slopes);
+}
+
 static hn_status take_slopes(void *self, double t, const double *y) {
     hn_accel_ode *ode = self;
-    hn_status status = HN_OK;
-    if (!ode->slopes) {
-        // alpha and beta may be changed while running
-        const hn_accel_law law = {ode->baumgarte, ode->baumgarte, 0};
-        status = hn_accel_jacobian_create(ode->sys, &law, ode->arena, &ode->slopes);
-    }
+    hn_status status = prepare(self);
     if (status == HN_OK) {
         const hn_accel_law law = {ode->baumgarte ? ode->alpha : 0, ode->baumgarte ? ode->beta : 0,
                                   0};
@@ -107,7 +109,8 @@ void hn_accel_ode_get(void *self, hn_ode *out) {
                     .rhs = hn_accel_ode_rhs,
                     .kinematics = kinematics,
                     .jacobian = jacobian,
-                    .newton = &newton};
+                    .newton = &newton,
+                    .prepare = prepare};
 }
 
 hn_status hn_accel_ode_set_state(void *self, double t, const double *q, const double *v,

@@ -5,9 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static hn_status create(hn_chart_jacobian *c, const hn_chart *chart, hn_arena *arena) {
+hn_status hn_chart_jacobian_prepare(hn_chart_jacobian *c, const hn_chart *chart, hn_arena *arena) {
     const hn_accel_law carrying = {1, 1, 0}; // V of (1) is among its terms
     const size_t nv = (size_t)chart->nv;
+    if (c->slopes) {
+        return HN_OK;
+    }
     c->dx = hn_arena_doubles(arena, nv);
     c->dv = hn_arena_doubles(arena, nv);
     c->da = hn_arena_doubles(arena, nv);
@@ -22,7 +25,7 @@ hn_status hn_chart_jacobian_at(hn_chart_jacobian *c, hn_chart *chart, hn_arena *
                                const double *v) {
     const hn_accel_law law = {0};
     const hn_chart_point *p = &chart->here;
-    hn_status status = c->slopes ? HN_OK : create(c, chart, arena);
+    hn_status status = hn_chart_jacobian_prepare(c, chart, arena);
     if (status == HN_OK) {
         status = hn_accel_jacobian_at(c->slopes, p->t, p->q, v, &law);
     }

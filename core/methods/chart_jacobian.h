@@ -17,7 +17,10 @@ typedef struct hn_chart_jacobian {
     double *rows;              ///< nc
 } hn_chart_jacobian;
 
-/// Takes the derivatives at `here` of the chart with speeds v (nv). The first call takes memory from `arena`. Fails as
+/// Takes the memory from `arena`, once. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_chart_jacobian_prepare(hn_chart_jacobian *c, const hn_chart *chart,
+                                                  hn_arena *arena);
+/// Takes the derivatives at `here` of the chart with speeds v (nv), prepared if need be. Fails as
 /// hn_accel_jacobian_at() and _prepare() do, told in chart->why.
 HN_MUST_CHECK hn_status hn_chart_jacobian_at(hn_chart_jacobian *c, hn_chart *chart, hn_arena *arena,
                                              const double *v);

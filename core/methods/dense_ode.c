@@ -111,15 +111,21 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
 
 // --- derivatives, for implicit integrators ----------------------------------------------------------------------
 
+static hn_accel_law law_of(const hn_dense_ode *ode) {
+    return ode->law ? ode->law(ode) : (hn_accel_law){0};
+}
+
+static hn_status prepare(void *self) {
+    hn_dense_ode *ode = self;
+    // alpha and beta may be changed while running
+    const hn_accel_law law = {ode->law != NULL, ode->law != NULL, law_of(ode).give};
+    return ode->slopes ? HN_OK : hn_accel_jacobian_create(ode->sys, &law, ode->arena, &ode->slopes);
+}
+
 static hn_status take_slopes(void *self, double t, const double *y) {
     hn_dense_ode *ode = self;
-    const hn_accel_law law = ode->law ? ode->law(self) : (hn_accel_law){0};
-    hn_status status = HN_OK;
-    if (!ode->slopes) {
-        // alpha and beta may be changed while running
-        const hn_accel_law any = {ode->law != NULL, ode->law != NULL, law.give};
-        status = hn_accel_jacobian_create(ode->sys, &any, ode->arena, &ode->slopes);
-    }
+    const hn_accel_law law = law_of(ode);
+    hn_status status = prepare(self);
     if (status == HN_OK) {
         status = hn_accel_jacobian_at(ode->slopes, t, y, y + ode->nq, &law);
     }
@@ -156,7 +162,8 @@ void hn_dense_ode_get(void *self, hn_ode *out) {
                     .rhs = rhs,
                     .kinematics = kinematics,
                     .jacobian = jacobian,
-                    .newton = &newton};
+                    .newton = &newton,
+                    .prepare = prepare};
 }
 
 hn_status hn_dense_ode_set_state(void *self, double t, const double *q, const double *v,

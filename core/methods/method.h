@@ -35,7 +35,7 @@ typedef struct hn_cost {
 } hn_cost;
 
 /// Newton's systems of an implicit integrator by the structure of the equations, which dF/dy, a full matrix, does not show.
-/// `self` is that of the hn_ode. The first call takes memory from the formulation's arena.
+/// `self` is that of the hn_ode.
 typedef struct hn_ode_newton {
     /// Takes derivatives at (t, y); fails as rhs does.
     hn_status (*at)(void *self, double t, const double *y);
@@ -53,9 +53,11 @@ typedef struct hn_ode {
     /// only the position part of y' (partitioned integrators call it with new speeds)
     hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
     /// dF/dy at (t, y), (n_pos + n_vel) square, row-major, for implicit integrators; fails as rhs does. NULL: by differences.
-    /// Of a quaternion, whose length no motion changes, along turns. The first call takes memory from the formulation's arena.
+    /// Of a quaternion, whose length no motion changes, along turns.
     hn_status (*jacobian)(void *self, double t, const double *y, double *jac);
     const hn_ode_newton *newton; ///< NULL: not offered
+    /// Takes the memory that these two need from the formulation's arena; done by their first call where it has not been. NULL: none.
+    hn_status (*prepare)(void *self);
 } hn_ode;
 
 /// How a formulation hands the constraints over: as an ordinary differential equation (hn_ode), or to integrators that take the

@@ -62,6 +62,11 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return HN_OK;
 }
 
+static hn_status prepare(void *self) {
+    hn_minimal_state *s = self;
+    return hn_chart_jacobian_prepare(&s->slopes, &s->chart, s->arena);
+}
+
 static hn_status jacobian(void *self, double t, const double *y, double *jac) {
     hn_minimal_state *s = self;
     hn_status status = place(s, t, y, HN_CHART_TOL);
@@ -82,7 +87,8 @@ void hn_minimal_ode(void *self, hn_ode *out) {
                     .self = self,
                     .rhs = rhs,
                     .kinematics = kinematics,
-                    .jacobian = jacobian};
+                    .jacobian = jacobian,
+                    .prepare = prepare};
 }
 
 hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,

@@ -92,6 +92,11 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return status;
 }
 
+static hn_status prepare(void *self) {
+    hn_tangent_state *s = self;
+    return hn_chart_jacobian_prepare(&s->slopes, &s->chart, s->arena);
+}
+
 static hn_status jacobian(void *self, double t, const double *y, double *jac) {
     hn_tangent_state *s = self;
     hn_status status = locate(s, &s->chart.here, t, y);
@@ -118,7 +123,8 @@ void hn_tangent_ode(void *self, hn_ode *out) {
                     .self = self,
                     .rhs = rhs,
                     .kinematics = kinematics,
-                    .jacobian = has_derivatives(s) ? jacobian : NULL};
+                    .jacobian = has_derivatives(s) ? jacobian : NULL,
+                    .prepare = has_derivatives(s) ? prepare : NULL};
 }
 
 // u such that N u + s = v for a v that J allows, else the nearest in the sense of the basis

@@ -82,7 +82,10 @@ static hn_status start_ode(hn_run *run, hn_run_engine *e, double t, const double
     if (e->stepper && stepper->configure) {
         stepper->configure(e->stepper, run->spec.stepper_set);
     }
-    return e->stepper ? HN_OK : HN_ERR_MEMORY;
+    if (!e->stepper) {
+        return HN_ERR_MEMORY;
+    }
+    return stepper->prepare ? stepper->prepare(e->stepper, &e->ode) : HN_OK;
 }
 
 hn_status hn_engine_start(hn_run *run, hn_run_engine *e, double t, const double *q,
