@@ -81,7 +81,12 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
     if (stepper->configure) {
         stepper->configure(p->self, settings);
     }
-    p->ode = (hn_ode){1, 1, &p->problem, slope, speed, matrix};
+    p->ode = (hn_ode){.n_pos = 1,
+                      .n_vel = 1,
+                      .self = &p->problem,
+                      .rhs = slope,
+                      .kinematics = speed,
+                      .jacobian = matrix};
     p->grows = isfinite(stepper->real_limit) ? GROWS : GROWS_IMPLICIT;
     return 1;
 }
