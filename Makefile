@@ -207,6 +207,7 @@ help:
 	@echo 'make every-method every shipped scene by every method: tests/tables/every_method.csv, and a summary'
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
+	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
@@ -214,7 +215,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings figures pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings figures references pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -263,6 +264,9 @@ every-method: build/.packages-test
 
 pictures: all
 	@python3 tests/scenes/pictures.py $(PROGRAM)
+
+references: all
+	@python3 tests/scenes/references.py $(PROGRAM)
 
 rings: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)

@@ -9,7 +9,23 @@ struct hn_model {
     hn_arena *arena;
     double *q, *v;
     hn_assembly assembly;
+    const char *reference; ///< where its shipped reference stands, NULL: it is no shipped scene
 };
+
+/// lessons/NN-topic/scenes/ID.json has its reference in lessons/NN-topic/references/ID.json.
+static const char *find_reference(hn_arena *arena, const hn_library *lib, const char *id) {
+    static const char from[] = "/scenes/", to[] = "/references/";
+    const char *path = lib && id ? hn_library_scene_path(lib, id) : NULL, *last = NULL;
+    for (const char *at = path; at && (at = strstr(at, from)) != NULL; at++) {
+        last = at;
+    }
+    const size_t size = last ? strlen(path) + sizeof to : 0;
+    char *out = last ? hn_arena_get(arena, size) : NULL;
+    if (out) {
+        snprintf(out, size, "%.*s%s%s", (int)(last - path), path, to, last + strlen(from));
+    }
+    return out;
+}
 
 static hn_status load_shipped(const hn_library *lib, const hn_model_source *source,
                               hn_scene **scene, hn_diags *diags) {
@@ -78,6 +94,7 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
         hn_model_free(model);
         return status;
     }
+    model->reference = find_reference(arena, lib, model->scene->id);
     *out = model;
     return HN_OK;
 }
@@ -92,6 +109,10 @@ void hn_model_free(hn_model *model) {
 
 const hn_scene *hn_model_scene(const hn_model *model) {
     return model->scene;
+}
+
+const char *hn_model_reference_path(const hn_model *model) {
+    return model->reference;
 }
 
 const hn_system *hn_model_system(const hn_model *model) {

@@ -26,6 +26,8 @@ HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_sour
                                       hn_model **out, hn_diags *diags);
 void hn_model_free(hn_model *model);
 const hn_scene *hn_model_scene(const hn_model *model);
+/// Where the reference solution of the shipped scene of this id would stand (references.h); NULL: no shipped scene has its id.
+const char *hn_model_reference_path(const hn_model *model);
 const hn_system *hn_model_system(const hn_model *model);
 const hn_assembly *hn_model_assembly(const hn_model *model);
 const double *hn_model_q(const hn_model *model); ///< assembled start, system coordinates

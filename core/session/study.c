@@ -1,3 +1,4 @@
+#include "session/references.h"
 #include "session/study_internal.h"
 
 #include <math.h>
@@ -56,23 +57,15 @@ static hn_status check_times(const hn_study_request *r, hn_diags *diags) {
 
 static hn_status find_reference(hn_study *s, hn_diags *diags) {
     const hn_study_request *r = &s->request;
-    hn_diag diag = {0};
-    s->ref = r->folder ? hn_store_read_ref(r->folder, s->model, r->time, HN_REF_TIMES) : NULL;
-    if (s->ref) {
-        s->kept_reference = 1;
-        return HN_OK;
-    }
-    hn_ref_opts opts = hn_ref_opts_default();
-    opts.limits = (hn_walk_limits){REFERENCE_SHARE * r->budget, r->hooks.stop, r->hooks.user};
-    const hn_status status = hn_ref_create(hn_model_system(s->model), hn_model_q(s->model),
-                                           hn_model_v(s->model), r->time, &opts, &s->ref, &diag);
-    if (status != HN_OK) {
-        return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
-    }
-    if (r->folder) {
-        hn_store_write_ref(r->folder, s->ref); // without it the next study computes it again
-    }
-    return HN_OK;
+    hn_ref_request request = hn_ref_request_default();
+    hn_ref_source source;
+    request.time = r->time;
+    request.folder = r->folder;
+    request.opts.limits =
+        (hn_walk_limits){REFERENCE_SHARE * r->budget, r->hooks.stop, r->hooks.user};
+    const hn_status status = hn_reference_get(s->model, &request, &s->ref, &source, diags);
+    s->kept_reference = status == HN_OK && source != HN_REF_COMPUTED;
+    return status;
 }
 
 static hn_status set_up(hn_study *s, hn_diags *diags) {

@@ -18,11 +18,6 @@ struct hn_study {
     int log_failed;     ///< a line could not be written: nothing more is
 };
 
-/// FOLDER/reference-HASH.json. NULL: there is none, or it is not this one.
-hn_ref *hn_store_read_ref(const char *folder, const hn_model *model, double T, int n);
-/// 1 when it was written.
-int hn_store_write_ref(const char *folder, const hn_ref *ref);
-
 /// Opens the log of this study, reads what it holds into the study, and goes on behind its last whole line. HN_ERR_IO: another program has it.
 HN_MUST_CHECK hn_status hn_store_open_log(hn_study *study, hn_diags *diags);
 void hn_store_close_log(hn_study *study, int finished); ///< a finished one is deleted

@@ -1,10 +1,9 @@
-// What is kept of studies between two runs of the program. A file that does not fit is not used, never trusted halfway: a reference
-// is written beside its place and moved there; a log is read up to its last whole line.
+// What is kept of an unfinished study between two runs of the program: a log that is read up to its last whole line.
+#include "session/stored_json.h"
 #include "session/study_internal.h"
 
 #include "base/hash.h"
 
-#include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,158 +11,15 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { FORMAT = 1, MOST_BYTES = 256 << 20 }; // FORMAT counts up when the meaning of a line changes
-
-// files ------------------------------------------------------------------------------------------------------------
-
-/// The whole text, owned; NULL when there is none.
-static char *read_all(FILE *f, size_t *n) {
-    if (fseek(f, 0, SEEK_END) != 0) {
-        return NULL;
-    }
-    const long size = ftell(f);
-    rewind(f);
-    char *text = size >= 0 && size <= MOST_BYTES ? malloc((size_t)size + 1) : NULL;
-    if (text) {
-        *n = fread(text, 1, (size_t)size, f);
-        text[*n] = 0;
-    }
-    return text;
-}
-
-static int get_numbers(const cJSON *object, const char *key, double *out, size_t n) {
-    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
-    if (!cJSON_IsArray(list) || (size_t)cJSON_GetArraySize(list) != n) {
-        return 0;
-    }
-    size_t i = 0;
-    cJSON_ArrayForEach(item, list) {
-        if (!cJSON_IsNumber(item) && !cJSON_IsNull(item)) {
-            return 0;
-        }
-        out[i++] = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
-    }
-    return 1;
-}
-
-static int get_number(const cJSON *object, const char *key, double *out) {
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-    *out = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
-    return cJSON_IsNumber(item) || cJSON_IsNull(item);
-}
-
-static int get_text(const cJSON *object, const char *key, char *out, size_t size) {
-    const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
-    return text && (size_t)snprintf(out, size, "%s", text) < size;
-}
-
-// references -------------------------------------------------------------------------------------------------------
-
-static uint64_t ref_key(uint64_t scene, double T, int n) {
-    uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene, sizeof scene);
-    hash = hn_hash_double(hash, T);
-    return hn_hash_mix(hn_hash_double(hash, n + 1000.0 * FORMAT));
-}
-
-static int ref_path(const char *folder, uint64_t scene, double T, int n, const char *suffix,
-                    char out[512]) {
-    char hex[17];
-    hn_hash_hex(ref_key(scene, T, n), hex);
-    return snprintf(out, 512, "%s/reference-%s.json%s", folder, hex, suffix) < 512;
-}
-
-static int fill_ref(hn_ref *ref, const cJSON *o) {
-    const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
-    const cJSON *means = cJSON_GetObjectItemCaseSensitive(o, "means");
-    double scales[4];
-    for (int i = 0; i < HN_REF_MEANS; i++) {
-        const char *text = cJSON_GetStringValue(cJSON_GetArrayItem(means, i));
-        if (!text) {
-            return 0;
-        }
-        snprintf(ref->means[i], HN_SPEC_MAX, "%s", text);
-    }
-    if (!get_numbers(o, "scales", scales, 4)) {
-        return 0;
-    }
-    ref->scales = (hn_scales){scales[0], scales[1], scales[2], scales[3]};
-    return get_text(o, "refused", ref->refused, sizeof ref->refused) &&
-           get_numbers(o, "error", ref->error, HN_ERROR_COUNT) &&
-           get_numbers(o, "q", ref->q, rows * nu) && get_numbers(o, "v", ref->v, rows * nu) &&
-           get_numbers(o, "lambda", ref->lambda, rows * nc) &&
-           get_numbers(o, "energy", ref->energy, rows) &&
-           get_numbers(o, "between", ref->between, rows * HN_ERROR_COUNT);
-}
-
-hn_ref *hn_store_read_ref(const char *folder, const hn_model *model, double T, int n) {
-    const uint64_t scene = hn_model_scene(model)->hash;
-    const hn_system_info info = hn_system_get_info(hn_model_system(model));
-    char path[512];
-    size_t size = 0;
-    FILE *f = ref_path(folder, scene, T, n, "", path) ? fopen(path, "rb") : NULL;
-    char *text = f ? read_all(f, &size) : NULL;
-    cJSON *o = text ? cJSON_Parse(text) : NULL;
-    hn_ref *ref = o ? hn_ref_blank(scene, T, n, info.n_user, info.nc) : NULL;
-    if (ref && !fill_ref(ref, o)) {
-        hn_ref_free(ref);
-        ref = NULL;
-    }
-    cJSON_Delete(o);
-    free(text);
-    if (f) {
-        fclose(f);
-    }
-    return ref;
-}
-
-static void put_ref(hn_strbuf *b, const hn_ref *ref) {
-    const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
-    const double scales[4] = {ref->scales.length, ref->scales.rate, ref->scales.reaction,
-                              ref->scales.energy};
-    hn_json_object(b);
-    hn_json_put_number(b, "T", ref->T);
-    hn_json_key(b, "means");
-    hn_json_array(b);
-    for (int i = 0; i < HN_REF_MEANS; i++) {
-        hn_json_string(b, ref->means[i]);
-    }
-    hn_json_end_array(b);
-    hn_json_put_string(b, "refused", ref->refused);
-    hn_json_put_numbers(b, "scales", scales, 4);
-    hn_json_put_numbers(b, "error", ref->error, HN_ERROR_COUNT);
-    hn_json_put_numbers(b, "q", ref->q, rows * nu);
-    hn_json_put_numbers(b, "v", ref->v, rows * nu);
-    hn_json_put_numbers(b, "lambda", ref->lambda, rows * nc);
-    hn_json_put_numbers(b, "energy", ref->energy, rows);
-    hn_json_put_numbers(b, "between", ref->between, rows * HN_ERROR_COUNT);
-    hn_json_end_object(b);
-}
-
-int hn_store_write_ref(const char *folder, const hn_ref *ref) {
-    char path[512], beside[512], suffix[32];
-    hn_strbuf b;
-    snprintf(suffix, sizeof suffix, ".%ld", (long)getpid());
-    if (!ref_path(folder, ref->scene, ref->T, ref->n, "", path) ||
-        !ref_path(folder, ref->scene, ref->T, ref->n, suffix, beside)) {
-        return 0;
-    }
-    hn_strbuf_init(&b);
-    put_ref(&b, ref);
-    FILE *f = b.failed ? NULL : fopen(beside, "wb");
-    int ok = f && fwrite(hn_strbuf_text(&b), 1, b.n, f) == b.n;
-    ok = f && fclose(f) == 0 && ok && rename(beside, path) == 0;
-    if (f && !ok) {
-        remove(beside);
-    }
-    hn_strbuf_reset(&b);
-    return ok;
-}
+enum { FORMAT = 1 }; // FORMAT counts up when the meaning of a line changes
 
 // the log of an unfinished study -----------------------------------------------------------------------------------
 
 /// All that decides what the points are: everything but the budget.
 static uint64_t study_key(const hn_study *s) {
-    uint64_t hash = ref_key(s->ref->scene, s->ref->T, s->ref->n);
+    uint64_t hash = hn_hash_bytes(HN_HASH_START, &s->ref->scene, sizeof s->ref->scene);
+    hash = hn_hash_double(hash, s->ref->T);
+    hash = hn_hash_double(hash, s->ref->n + 1000.0 * FORMAT);
     hash = hn_hash_double(hash, s->wp->n_levels);
     hash = hn_hash_double(hash, s->wp->opts.step);
     for (int m = 0; m < s->wp->n_methods; m++) {
@@ -228,13 +84,13 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
 /// A point line into the study; 0 when it is not one.
 static int take_point(hn_study *s, const cJSON *o, hn_wp_point *p) {
     double state, status, numbers[5], counts[N_COUNTS];
-    if (!get_number(o, "state", &state) || !get_number(o, "status", &status) ||
-        !get_text(o, "reason", p->reason, sizeof p->reason) ||
-        !get_numbers(o, "numbers", numbers, 5) ||
-        !get_numbers(o, "worst", p->worst, HN_ERROR_COUNT) ||
-        !get_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
-        !get_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||
-        !get_numbers(o, "cost", counts, N_COUNTS) ||
+    if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
+        !hn_stored_text(o, "reason", p->reason, sizeof p->reason) ||
+        !hn_stored_numbers(o, "numbers", numbers, 5) ||
+        !hn_stored_numbers(o, "worst", p->worst, HN_ERROR_COUNT) ||
+        !hn_stored_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
+        !hn_stored_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||
+        !hn_stored_numbers(o, "cost", counts, N_COUNTS) ||
         (state != HN_WP_DONE && state != HN_WP_FAILED)) {
         return 0;
     }
@@ -264,12 +120,12 @@ static int take_sample_line(hn_wp_point *p, double cpu, double busy) {
 static int take_line(hn_study *s, const char *line) {
     cJSON *o = cJSON_Parse(line);
     double m = -1, k = -1, cpu, busy;
-    int ok = get_number(o, "m", &m) && get_number(o, "k", &k) && m >= 0 && k >= 0 &&
+    int ok = hn_stored_number(o, "m", &m) && hn_stored_number(o, "k", &k) && m >= 0 && k >= 0 &&
              m < s->wp->n_methods && k < s->wp->n_levels;
     if (ok) {
         hn_wp_point *p = &s->wp->methods[(int)m].point[(int)k];
         ok = cJSON_HasObjectItem(o, "cpu")
-                 ? get_number(o, "cpu", &cpu) && get_number(o, "busy", &busy) &&
+                 ? hn_stored_number(o, "cpu", &cpu) && hn_stored_number(o, "busy", &busy) &&
                        take_sample_line(p, cpu, busy)
                  : take_point(s, o, p);
     }
@@ -311,7 +167,7 @@ hn_status hn_store_open_log(hn_study *s, hn_diags *diags) {
                             "wait for it, or change the time or the methods",
                             "another program is at this very study");
     }
-    char *text = read_all(s->log, &n);
+    char *text = hn_stored_text_of(s->log, &n);
     const size_t used = text ? take_lines(s, text) : 0;
     free(text);
     // what comes next is written behind the last whole line

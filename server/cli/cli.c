@@ -32,6 +32,10 @@ static const hn_command COMMANDS[] = {
      "error against cost; --out FILE.html, .json or .csv; steps and tolerances are laddered",
      MODEL_OPTIONS " --methods --time --budget --levels --samples --csv --out -o", 1, 2,
      hn_command_study},
+    {"reference", "SCENE",
+     "the reference solution: by two means, the digits they share; --out writes it as it is "
+     "shipped",
+     MODEL_OPTIONS " --time --budget --again --hold --out -o", 1, 1, hn_command_reference},
     {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
      MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
      hn_command_snapshot},

@@ -39,6 +39,7 @@ typedef struct hn_args {
     double time, every, t, port, width, height, seed, frame_dt;
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
+    int again, hold;
     int json, csv, open, help, raw_lambda, reactions;
 } hn_args;
 
@@ -101,6 +102,7 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
