@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const char MOTION_METHOD[] = "projection@dop853:rtol=1e-12";
+static const char MOTION_METHOD[] = "projection@dop853:rtol=1e-13";
 enum { STEPS_BETWEEN_CLOCKS = 64 };
 static const double SAME_TIME = 1e-12; // relative
 

@@ -194,6 +194,7 @@ double hn_reference_horizon(const hn_ref *ref, double digits) {
     if (k == ref->n || k == 0) {
         return k == 0 ? 0 : ref->T;
     }
-    const double unit = pow(10, floor(log10(t)) - 1);
-    return floor(t / unit + 1e-9) * unit;
+    // two digits, as they are typed: 28 / 10, not 28 * 0.1
+    const double power = floor(log10(t)) - 1, unit = pow(10, fabs(power));
+    return power < 0 ? floor(t * unit + 1e-9) / unit : floor(t / unit + 1e-9) * unit;
 }

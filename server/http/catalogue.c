@@ -8,8 +8,11 @@
 #include "session/comparison.h"
 #include "session/lists.h"
 #include "session/model.h"
+#include "session/references.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /// A bound with what it bounds, for the index.
@@ -131,7 +134,8 @@ static hn_status see_setting(void *user, const char *value) {
     return hn_scene_order_add(q->order, value, n, x, q->diags);
 }
 
-void hn_handle_scene(hn_request *r) {
+/// The scene in the path with the settings of the query; NULL with a problem as reply.
+static hn_model *load_scene(hn_request *r, int allow_open) {
     hn_diags diags = {0};
     hn_scene_order order = {.name = strdup(r->parts[0])};
     hn_model *model = NULL;
@@ -144,23 +148,114 @@ void hn_handle_scene(hn_request *r) {
                  near ? near : " lists them");
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, hint, "no scene is called '%.80s'", order.name);
         hn_scene_order_reset(&order);
-        return;
+        return NULL;
     }
     hn_status status =
         order.name ? hn_request_each_query(r, "set", see_setting, &settings) : HN_ERR_MEMORY;
     if (status == HN_OK) {
-        status = hn_scene_order_load(&order, r->server->lib, 1, &model, &diags);
+        status = hn_scene_order_load(&order, r->server->lib, allow_open, &model, &diags);
     }
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    if (status == HN_OK) {
+    hn_scene_order_reset(&order);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return NULL;
+    }
+    return model;
+}
+
+void hn_handle_scene(hn_request *r) {
+    hn_model *model = load_scene(r, 1);
+    if (model) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
         hn_model_json(&b, model);
         hn_reply_json(r, MHD_HTTP_OK, &b);
-    } else {
-        hn_reply_diags(r, status, &diags);
+        hn_model_free(model);
+    }
+}
+
+// reference solutions ----------------------------------------------------------------------------------------------
+
+/// A number of the query above 0 and at most `most`, NaN when it was not given.
+static hn_status read_number(const hn_request *r, const char *name, double most, double *out,
+                             hn_diags *diags) {
+    const char *text = hn_request_query(r, name);
+    char *end = NULL, pointer[32];
+    *out = text ? strtod(text, &end) : (double)NAN;
+    if (text && (end == text || *end || !(*out > 0) || !(*out <= most))) {
+        snprintf(pointer, sizeof pointer, "/%s", name);
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                            "'%.40s' is not a time above 0 and at most %g s", text, most);
+    }
+    return HN_OK;
+}
+
+static int is_stopping(void *user) {
+    const hn_server *server = user;
+    return atomic_load(&server->stopping);
+}
+
+typedef struct reference_order {
+    hn_ref_request request;
+    double every; ///< NaN: no motion between
+    hn_walk_limits limits;
+} reference_order;
+
+static hn_status read_reference_order(hn_request *r, reference_order *o, hn_diags *diags) {
+    const char *compute = hn_request_query(r, "compute");
+    o->limits = (hn_walk_limits){r->server->opts.max_run_cpu, is_stopping, r->server};
+    o->request = hn_ref_request_default();
+    o->request.opts.limits = o->limits;
+    o->request.only_stored = !compute || strcmp(compute, "true") != 0;
+    if (compute && strcmp(compute, "true") != 0 && strcmp(compute, "false") != 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/compute", "compute=true",
+                            "'%.40s' is neither true nor false", compute);
+    }
+    const hn_status status =
+        read_number(r, "time", r->server->opts.max_duration, &o->request.time, diags);
+    return status == HN_OK ? read_number(r, "every", r->server->opts.max_duration, &o->every, diags)
+                           : status;
+}
+
+static hn_status write_reference(hn_strbuf *b, const hn_model *model, const reference_order *o,
+                                 hn_diags *diags) {
+    hn_ref *ref = NULL;
+    hn_ref_source source;
+    hn_status status = hn_reference_get(model, &o->request, &ref, &source, diags);
+    if (status == HN_OK && isnan(o->every)) {
+        hn_reference_json(b, model, ref, source);
+    } else if (status == HN_OK) {
+        status = hn_reference_motion_json(b, model, ref, source, o->every, &o->limits, diags);
+    }
+    hn_ref_free(ref);
+    return status;
+}
+
+void hn_handle_reference(hn_request *r) {
+    hn_model *model = load_scene(r, 0);
+    reference_order order;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    if (!model) {
+        return;
+    }
+    hn_strbuf_init(&b);
+    hn_status status = read_reference_order(r, &order, &diags);
+    if (status == HN_OK) {
+        status = write_reference(&b, model, &order, &diags);
     }
     hn_model_free(model);
-    hn_scene_order_reset(&order);
+    if (status == HN_OK) {
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+        return;
+    }
+    hn_strbuf_reset(&b);
+    if (status == HN_ERR_UNSUPPORTED && order.request.only_stored) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "compute=true computes it, within run_cpu_s",
+                         "%s", diags.item[0].message);
+        return;
+    }
+    hn_reply_diags(r, status, &diags);
 }
 
 /// Handlers whose whole work is one document.

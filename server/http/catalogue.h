@@ -8,6 +8,7 @@ void hn_handle_index(struct hn_request *r);
 void hn_handle_health(struct hn_request *r);
 void hn_handle_scenes(struct hn_request *r);
 void hn_handle_scene(struct hn_request *r);
+void hn_handle_reference(struct hn_request *r);
 void hn_handle_methods(struct hn_request *r);
 void hn_handle_look(struct hn_request *r);
 void hn_handle_lessons(struct hn_request *r);

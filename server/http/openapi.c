@@ -149,6 +149,14 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
      "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
     {"Equations", "{\"type\":\"object\",\"properties\":{\"format\":" TEXT ",\"text\":" TEXT "}}"},
+    {"Reference",
+     "{\"type\":\"object\",\"required\":[\"scene\",\"scene_hash\",\"source\",\"time\",\"means\","
+     "\"digits\",\"error\",\"coordinates\",\"t\",\"q\",\"v\",\"lambda\",\"energy\"],"
+     "\"properties\":{\"scene\":" TEXT ",\"scene_hash\":" TEXT ",\"source\":" TEXT
+     ",\"means\":" TEXTS
+     ",\"time\":{\"type\":\"number\"},\"digits\":{\"type\":\"number\"},\"error\":{\"type\":"
+     "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS
+     ",\"motion\":{\"type\":\"object\"}}}"},
     {"Run", "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
             "reached\",\"coordinates\",\"samples\","
             "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"

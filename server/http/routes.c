@@ -194,6 +194,13 @@ static const hn_field CHANGE[] = {
 
 static const hn_route_query SCENE_QUERY[] = {{"set", "string", "parameter:value, may be repeated"},
                                              {NULL, NULL, NULL}};
+static const hn_route_query REFERENCE_QUERY[] = {
+    {"set", "string", "parameter:value, may be repeated"},
+    {"time", "number", "end [s]; that of the stored one when left out"},
+    {"every", "number", "the motion between the stored times too, at this interval [s]"},
+    {"compute", "boolean",
+     "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
+    {NULL, NULL, NULL}};
 static const hn_route_query EVENTS_QUERY[] = {
     {"mode", "string",
      "complete (every frame) or live (a slow reader skips frames, never incidents)"},
@@ -215,6 +222,9 @@ static const hn_route ROUTES[] = {
      "Every shipped scene", NULL},
     {"GET", "/api/v1/scenes/{id}", HN_WORK_HEAVY, hn_handle_scene, NULL, JSON, "200", "Scene",
      "One scene, assembled: what a page needs to draw it", SCENE_QUERY},
+    {"GET", "/api/v1/scenes/{id}/reference", HN_WORK_HEAVY, hn_handle_reference, NULL, JSON, "200",
+     "Reference", "The reference solution of a scene: by two means, with the digits they share",
+     REFERENCE_QUERY},
     {"GET", "/api/v1/methods", HN_WORK_LIGHT, hn_handle_methods, NULL, JSON, "200", "Methods",
      "The catalogue of formulations and integrators", NULL},
     {"GET", "/api/v1/look", HN_WORK_LIGHT, hn_handle_look, NULL, JSON, "200", "Document",

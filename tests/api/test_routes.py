@@ -247,6 +247,7 @@ class Document(driver.ServerCase):
         self.validate(self.server.ask("GET", "/api/v1/scenes").json(), "Scenes")
         self.validate(self.server.ask("GET", "/api/v1/scenes/four-bar").json(), "Scene")
         self.validate(self.server.ask("GET", "/api/v1/methods").json(), "Methods")
+        self.validate(self.server.ask("GET", "/api/v1/scenes/four-bar/reference?every=0.5").json(), "Reference")
         self.validate(self.server.ask("GET", "/api/v1/nothing").json(), "Problem")
         run = {"scene": "four-bar", "method": METHODS[0], "time": 0.1}
         self.validate(self.server.ask("POST", "/api/v1/runs", run).json(), "Run")
