@@ -129,6 +129,13 @@ hn_status hn_engine_finish(hn_run *run, hn_run_engine *e) {
 
 hn_status hn_engine_mend(hn_run *run, hn_run_engine *e, double t, double *y, int *changed) {
     const hn_formulation *f = run->spec.formulation;
+    if (e->unmended) {
+        e->unmended->t = t;
+        const hn_status status = hn_engine_read(run, e, t, y, e->unmended->q, e->unmended->v);
+        if (status != HN_OK) {
+            return status;
+        }
+    }
     if (dae_of(run)) {
         *changed |= hn_system_normalise(run->sys, y);
         return HN_OK;

@@ -14,6 +14,8 @@ typedef struct hn_run_engine {
     void *formulation, *stepper; ///< stepper: of an hn_stepper or an hn_dae_stepper
     hn_ode ode; ///< with a differential-algebraic pair y' for a first step size only
     double *y, *y_new, *err;
+    struct hn_run_state_at *
+        unmended; ///< gets the state before it is mended, for an account of the step; NULL: nobody asks
 } hn_run_engine;
 
 typedef struct hn_run_state_at {

@@ -10,6 +10,7 @@
 
 static const hn_study_kind *const KINDS[] = {
     &hn_study_kind_work_precision,
+    &hn_study_kind_budget,
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 

@@ -13,7 +13,7 @@ typedef struct hn_study_kind {
     hn_exit (*run)(const hn_args *args, const hn_model *model);
 } hn_study_kind;
 
-extern const hn_study_kind hn_study_kind_work_precision;
+extern const hn_study_kind hn_study_kind_work_precision, hn_study_kind_budget;
 
 /// From here to the end Ctrl-C asks a study to stop instead of ending the program.
 void hn_interrupt_begin(void);

@@ -1,0 +1,256 @@
+// From the end of a run back to its start: what each step's parts have become by then.
+#include "study/account_internal.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TRANSPORT_TOL 1e-11 // of flows whose difference is a derivative
+#define NUDGE 1e-6          // of a length or a radian, for that difference
+#define REFERENCE "projection@dop853:rtol=1e-13"
+
+/// Splits a displacement at the state of `linear` and `saddle`: what leads off the loops replaces `d`'s copy in b->split, the rest stays in d.
+static hn_status split_off(hn_books *b, double *d) {
+    const int nv = b->info.nv, nc = b->info.nc;
+    double *off = b->split;
+    memset(off, 0, (size_t)b->nd * sizeof *off);
+    if (nc == 0) {
+        return HN_OK;
+    }
+    const double *J = hn_linear_get(b->linear, HN_LINEAR_J);
+    const double *V = hn_linear_get(b->linear, HN_LINEAR_V);
+    hn_saddle_info info = {0};
+    hn_mat_vec(nc, nv, J, d, b->gap);
+    for (int i = 0; i < nc; i++) {
+        b->gap[i] = -b->gap[i];
+    }
+    hn_status status = hn_saddle_apply(b->zero, b->gap, off, b->lambda, &info, b->saddle);
+    hn_axpy(nv, -1, off, d);
+    for (int i = 0; i < nc; i++) {
+        b->gap[i] = -hn_dot(nv, J + i * nv, d + nv) - hn_dot(nv, V + i * nv, d);
+    }
+    if (status == HN_OK) {
+        status = hn_saddle_apply(b->zero, b->gap, off + nv, b->lambda, &info, b->saddle);
+    }
+    hn_axpy(nv, -1, off + nv, d + nv);
+    return status;
+}
+
+static hn_status prepare_split(hn_books *b, double t, const double *y) {
+    hn_saddle_opts opts = hn_saddle_opts_default();
+    hn_saddle_info info;
+    opts.residual_tol =
+        HUGE_VAL; // a displacement need not lie in the range of rows that depend on others
+    hn_linear_run(b->linear, t, y, y + b->info.nq, NULL, NULL);
+    return hn_saddle_factor(b->info.nv, b->info.nc, hn_linear_get(b->linear, HN_LINEAR_M),
+                            hn_linear_get(b->linear, HN_LINEAR_J), &info, &opts, b->saddle);
+}
+
+/// Adds what the parts of step k have become at T, w being the derivative of the coordinate there by the state at the step's end.
+static hn_status settle(hn_books *b, size_t k, const double *y_end) {
+    static const hn_cause cause_of[HN_PARTS] = {HN_CAUSE_TRUNCATION, HN_CAUSE_FORMULATION,
+                                                HN_CAUSE_PROJECTION};
+    double *r = hn_books_record(b, k), *part = r + 2 + b->ny;
+    hn_status status = prepare_split(b, r[0] + r[1], y_end);
+    for (int p = 0; status == HN_OK && p < HN_PARTS; p++) {
+        double *d = part + p * b->nd;
+        status = split_off(b, d);
+        b->out->part[cause_of[p]] += hn_dot(b->nd, b->w, d);
+        b->out->part[HN_CAUSE_DRIFT] += hn_dot(b->nd, b->w, b->split);
+    }
+    return status;
+}
+
+static void nudge(const hn_books *b, const double *y, int i, double size, double *out) {
+    memcpy(out, y, (size_t)b->ny * sizeof *y);
+    if (i >= b->info.nv) {
+        out[b->info.nq + i - b->info.nv] += size;
+        return;
+    }
+    memset(b->a, 0, (size_t)b->info.nv * sizeof *b->a);
+    b->a[i] = size;
+    hn_system_move(b->sys, out, b->a);
+}
+
+/// w <- A' w with A the derivative of the flow I over step k by its start, column by column.
+static hn_status carry_back(hn_books *b, size_t k) {
+    const double *r = hn_books_record(b, k), *y = r + 2;
+    double *w_new = b->column;
+    for (int i = 0; i < b->nd; i++) {
+        const double size = b->step_size[i];
+        nudge(b, y, i, size, b->up);
+        nudge(b, y, i, -size, b->down);
+        hn_status status = hn_flow_run(b->flow, &b->plain, TRANSPORT_TOL, r[0], r[1], b->up, b->up);
+        if (status == HN_OK) {
+            status = hn_flow_run(b->flow, &b->plain, TRANSPORT_TOL, r[0], r[1], b->down, b->down);
+        }
+        if (status != HN_OK) {
+            return status;
+        }
+        hn_books_difference(b, b->down, b->up, b->split);
+        w_new[i] = hn_dot(b->nd, b->w, b->split) / (2 * size);
+    }
+    b->column = b->w;
+    b->w = w_new;
+    return HN_OK;
+}
+
+static hn_status settle_all(hn_books *b, hn_diag *diag) {
+    const double *y_end = b->y; // of the last step
+    hn_status status = HN_OK;
+    hn_books_present(b, b->y);
+    for (size_t k = b->kept; status == HN_OK && k-- > 0;) {
+        if (k % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
+            hn_books_asked_to_stop(b, 0.4 + 0.6 * (1 - (double)k / (double)b->kept))) {
+            return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
+        }
+        status = settle(b, k, y_end);
+        status = status == HN_OK && k > 0 ? carry_back(b, k) : status;
+        y_end = hn_books_record(b, k) + 2;
+    }
+    return status == HN_OK
+               ? HN_OK
+               : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                             "the parts of the error could not be carried to the end: %s",
+                             hn_status_text(status));
+}
+
+/// How large a nudge of each unknown is: by its unit, and rates by the fastest rate of the run.
+static void choose_nudges(hn_books *b) {
+    const int nv = b->info.nv;
+    const hn_scene *scene = hn_system_scene(b->sys);
+    double fastest = 1 / b->run->now.t;
+    for (int i = 0; i < nv; i++) {
+        int is_length = 0;
+        memset(b->a, 0, (size_t)nv * sizeof *b->a);
+        b->a[i] = 1;
+        hn_system_rates_to_user(b->sys, b->a, b->column);
+        for (int k = 0; k < b->info.n_user; k++) {
+            is_length |= b->column[k] != 0 &&
+                         scene->coordinates[hn_system_user_coordinate(b->sys, k)].kind == HN_LENGTH;
+        }
+        b->step_size[i] = NUDGE * (is_length ? hn_system_length(b->sys) : 1);
+        for (size_t k = 0; k < b->kept; k++) {
+            const double v = hn_books_record(b, k)[2 + b->info.nq + i];
+            fastest = fmax(fastest, fabs(v) * NUDGE / b->step_size[i]);
+        }
+    }
+    for (int i = 0; i < nv; i++) {
+        b->step_size[nv + i] = b->step_size[i] * fastest;
+    }
+}
+
+/// The end of another run to the same time, user coordinates into `out`; 0 when it did not get there.
+static int end_of(const hn_books *b, const hn_method_spec *spec, double T, double *out) {
+    hn_run *run = NULL;
+    hn_sample sample;
+    const hn_run_opts opts = hn_run_opts_default();
+    int arrived = 0;
+    if (hn_run_create(b->sys, spec, b->run->start.q, b->run->start.v, &opts, &run, NULL) == HN_OK) {
+        hn_run_watch(run, 0);
+        const double early = hn_method_is_adaptive(spec) ? 0 : 1e-9 * run->h_next;
+        arrived =
+            hn_run_advance(run, T - early) == HN_OK && hn_run_sample(run, T, &sample) == HN_OK;
+        if (arrived) {
+            memcpy(out, sample.q, (size_t)b->info.n_user * sizeof *out);
+        }
+    }
+    hn_run_free(run);
+    return arrived;
+}
+
+/// Error of every user coordinate at the end, its largest as the account's; w begins as that coordinate's derivative.
+static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag *diag) {
+    const int n = b->info.n_user, nv = b->info.nv;
+    double *q = b->up, *delta = b->split, *user = b->column;
+    const hn_scene *scene = hn_system_scene(b->sys);
+    double worst = -1;
+    hn_system_from_user(b->sys, reference, q);
+    hn_system_difference(b->sys, q, b->run->now.q, delta);
+    hn_system_rates_to_user(b->sys, delta, user);
+    for (int i = 0; i < n; i++) {
+        const int length =
+            scene->coordinates[hn_system_user_coordinate(b->sys, i)].kind == HN_LENGTH;
+        const double size = fabs(user[i]) / (length ? hn_system_length(b->sys) : 1);
+        if (size > worst) {
+            worst = size;
+            b->out->coordinate = i;
+            b->out->error = user[i];
+        }
+    }
+    if (b->out->coordinate < 0) {
+        return hn_diag_set(diag, HN_ERR_DIVERGED, NULL, NULL, "the end of the run is not finite");
+    }
+    memset(b->w, 0, (size_t)b->nd * sizeof *b->w);
+    for (int i = 0; i < nv; i++) {
+        memset(b->a, 0, (size_t)nv * sizeof *b->a);
+        b->a[i] = 1;
+        hn_system_rates_to_user(b->sys, b->a, user);
+        b->w[i] = user[b->out->coordinate];
+    }
+    return HN_OK;
+}
+
+/// The same run with one setting changed: how far apart the ends are in the coordinate; NaN where there is no such setting or the
+/// run chooses its steps, which would change with it.
+static double told_by(const hn_books *b, const char *key, double value, double T) {
+    hn_method_spec spec = *hn_run_spec(b->run);
+    int found = 0;
+    double *end = b->up, *delta = b->split, *q = b->down, *user = b->column;
+    for (int i = 0; i < spec.formulation->n_settings; i++) {
+        if (strcmp(spec.formulation->settings[i].key, key) == 0) {
+            found = spec.formulation_set[i] != value;
+            spec.formulation_set[i] = value;
+        }
+    }
+    for (int i = 0; i < spec.stepper->n_settings; i++) {
+        if (strcmp(spec.stepper->settings[i].key, key) == 0) {
+            found = spec.stepper_set[i] != value;
+            spec.stepper_set[i] = value;
+        }
+    }
+    if (!found || b->run->adaptive || !end_of(b, &spec, T, end)) {
+        return (double)NAN;
+    }
+    hn_system_from_user(b->sys, end, q);
+    hn_system_difference(b->sys, q, b->run->now.q, delta);
+    hn_system_rates_to_user(b->sys, delta, user);
+    return user[b->out->coordinate];
+}
+
+static void separate_rounding(hn_books *b, double T) {
+    hn_account *out = b->out;
+    out->part[HN_CAUSE_ROUNDING] = told_by(b, "sum", 1, T);
+    out->part[HN_CAUSE_SOLVE] = told_by(b, "solver", HN_SOLVER_DENSE, T);
+    for (int i = 0; i < HN_CAUSE_COUNT; i++) {
+        out->sum += isfinite(out->part[i]) && i != HN_CAUSE_ROUNDING && i != HN_CAUSE_SOLVE
+                        ? out->part[i]
+                        : 0;
+    }
+    for (int i = HN_CAUSE_SOLVE; i <= HN_CAUSE_ROUNDING; i++) {
+        out->part[HN_CAUSE_TRUNCATION] -= isfinite(out->part[i]) ? out->part[i] : 0;
+    }
+}
+
+hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag) {
+    hn_method_spec exact;
+    hn_status status = hn_method_parse(REFERENCE, &exact, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    double *reference = b->y_own;
+    if (!end_of(b, &exact, T, reference)) {
+        return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                           "the exact motion (%s) did not come to t = %g s", REFERENCE, T);
+    }
+    status = choose_coordinate(b, reference, diag);
+    if (status == HN_OK) {
+        choose_nudges(b);
+        status = settle_all(b, diag);
+    }
+    if (status == HN_OK) {
+        separate_rounding(b, T);
+    }
+    return status;
+}
