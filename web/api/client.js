@@ -76,6 +76,15 @@ export const api = {
   look: () => request("GET", `${BASE}/look`),
   /** @param {string} id */
   scene: (id) => request("GET", `${BASE}/scenes/${id}`),
+  /** @param {string} id @param {Record<string, number>} settings @param {number} every [s] @param {boolean} compute */
+  reference: (id, settings, every, compute) => {
+    const query = new URLSearchParams({ every: String(every) });
+    Object.entries(settings).forEach(([name, value]) => query.append("set", `${name}:${value}`));
+    if (compute) {
+      query.set("compute", "true");
+    }
+    return request("GET", `${BASE}/scenes/${id}/reference?${query}`);
+  },
   /** @param {string} scene @param {Record<string, number>} settings */
   equations: (scene, settings) =>
     request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),

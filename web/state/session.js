@@ -5,6 +5,7 @@ import { Problem, api, sentenceOf } from "../api/client.js";
 import { createStream } from "../api/stream.js";
 import { niceBelow } from "./format.js";
 import { createReactionFeed } from "./reaction-feed.js";
+import { createReferenceFeed } from "./reference.js";
 import { decodeLink, encodeLink, fits } from "./link.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
@@ -54,6 +55,7 @@ export function createSession(store) {
   /** the speed that was asked for and not answered yet, or 0: quick presses count from it */
   let asked = 0;
   const endReactions = createReactionFeed(store);
+  const reference = createReferenceFeed(store);
   const wantedSpeed = () => asked || data.speed;
 
   /** @param {string} text */
@@ -500,10 +502,13 @@ export function createSession(store) {
       Object.assign(data.view, change);
       store.emit("view");
     },
+    /** For parameters of one's own. */
+    computeReference: () => reference.compute(),
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
     notice,
     dispose() {
       endReactions();
+      reference.dispose();
       stream?.dispose();
       if (data.id) {
         api.abandonComparison(data.id);

@@ -31,6 +31,7 @@ export const EVENTS = [
   "state", // running, paused, finished, speed
   "stream",
   "reactions", // what the joints carry, as last asked for
+  "reference", // the reference solution of the scene, or why there is none
   "notice", // a sentence for the status line
   "theme",
 ];
@@ -64,6 +65,7 @@ function initialData() {
     /** Forces in the joints of a method at a time; `point`: the drawn point at the joint, or -1; null until they are asked for.
      * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], reason: string} | null} */
     reactions: null,
+    /** null until it is asked for @type {import("./reference.js").Reference | null} */ reference: null,
     stream: { state: "connecting", id: "" },
     notice: "",
     /** @type {"light" | "dark"} */ theme: "light",
@@ -73,6 +75,7 @@ function initialData() {
       /** index into the history, or -1: the latest */ shown: -1,
       labels: true,
       traces: false,
+      /** the reference solution is drawn */ reference: true,
       /** the table of forces is open */ reactions: false,
       /** forces are drawn */ arrows: false,
       /** where one looks from; null: as the scene is best seen @type {{right: number[], up: number[]} | null} */ look: null,

@@ -1,6 +1,7 @@
 // @ts-check
 // The mechanism: supports once, one ghost per method, the selected method opaque and on top.
 import { lookOf } from "../state/look.js";
+import { referenceAt } from "../state/reference.js";
 import { arrowScale, sizeOf, zeroOf } from "../state/reactions.js";
 import { listen } from "../state/store.js";
 import { quantity } from "../state/format.js";
@@ -22,7 +23,7 @@ const SHORTEST_ARROW = 3; // [px]
 export function createDrawing(el, store, actions) {
   const data = store.data;
   const layers = Object.fromEntries(
-    ["fixed", "traces", "ghosts", "tears", "arrows", "labels", "scale"].map((name) => [
+    ["fixed", "traces", "truth", "ghosts", "tears", "arrows", "labels", "scale"].map((name) => [
       name,
       s("g", { class: name }),
     ]),
@@ -39,6 +40,7 @@ export function createDrawing(el, store, actions) {
   const caption = h("p", { class: "caption" });
   const labels = toggle("labels", "labels");
   const traces = toggle("traces", "paths");
+  const reference = toggle("reference", "reference");
   const describe = h(
     "button",
     { type: "button", class: "quiet", onclick: tellDrawing },
@@ -48,12 +50,14 @@ export function createDrawing(el, store, actions) {
   el.replaceChildren(
     stage,
     title,
-    h("div", { class: "under" }, caption, h("div", { class: "choices" }, labels, traces, describe)),
+    h("div", { class: "under" }, caption, h("div", { class: "choices" }, labels, traces, reference, describe)),
     spoken,
   );
 
   /** @type {ReturnType<typeof makeGhost>[]} */
   let ghosts = [];
+  /** @type {ReturnType<typeof piecesOf>} */
+  let truth = [];
   let drawnFor = ""; // which methods are drawn, and which of them opaque
   const viewKey = () => JSON.stringify([data.view.selected, ...data.view.hidden]);
   let camera = createCamera([-1, -1, 1, 1], 100, 100);
@@ -165,6 +169,19 @@ export function createDrawing(el, store, actions) {
     update();
   }
 
+  /** Says what there is, on the button that shows it. */
+  function makeReference() {
+    const { reference: known, scene } = data;
+    const ready = known?.state === "ready";
+    truth = ready && scene ? piecesOf(scene, "together") : [];
+    const digits = ready ? `${known.digits.toFixed(1)} digits to ${known.time} s` : "";
+    reference.title = ready
+      ? `the reference solution, grey: ${known.means.join(" and ")} agree to ${digits}`
+      : (known?.reason ?? "");
+    set(reference, { "aria-disabled": ready ? null : "true" });
+    update();
+  }
+
   // ---- every frame -----------------------------------------------------------------------------------------------
 
   /** What lies farther away comes first. */
@@ -183,6 +200,21 @@ export function createDrawing(el, store, actions) {
     if (ghost.sorted) {
       sortPieces(ghost, points);
     }
+  }
+
+  /** Thin and grey, beneath the methods. @param {number} now */
+  function drawReference(now) {
+    const points = data.view.reference
+      ? referenceAt(data.reference, data.history.frameAt(now))
+      : null;
+    layers.truth.replaceChildren(
+      ...(points ? truth : []).map(({ shapes: drawn, layer }) =>
+        s("path", {
+          d: drawn.map((shape) => pen.outline(shape, points)).join(""),
+          class: layer,
+        }),
+      ),
+    );
   }
 
   function drawTears(points) {
@@ -312,6 +344,7 @@ export function createDrawing(el, store, actions) {
         ghost.group.classList.toggle("ended", data.history.ended[m] <= data.history.t[now]);
       }
     });
+    drawReference(now);
     const points = data.history.pointsAt(data.view.selected, now);
     drawTears(points);
     const arrows = drawArrows(points);
@@ -335,9 +368,11 @@ export function createDrawing(el, store, actions) {
     },
     methods: makeGhosts,
     reactions: update,
+    reference: makeReference,
     view: () => {
       set(labels, { "aria-pressed": String(data.view.labels) });
       set(traces, { "aria-pressed": String(data.view.traces) });
+      set(reference, { "aria-pressed": String(data.view.reference) });
       if (camera.look !== lookOf(data)) {
         fit();
       }

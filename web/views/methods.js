@@ -1,6 +1,7 @@
 // @ts-check
 // The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state in words.
 import { quantity } from "../state/format.js";
+import { offReference } from "../state/reference.js";
 import { MOST_METHODS } from "../state/session.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
@@ -99,6 +100,10 @@ export function createMethods(el, store, actions, openDialog) {
       gap: h("span", { class: "number" }),
       trend: h("span", { class: "trend" }),
       energy: h("span", { class: "number" }),
+      off: h("span", {
+        class: "sub number",
+        title: "distance of the drawn point that is farthest from the reference solution",
+      }),
       cost: h("span", { class: "number" }),
       ops: h("span", { class: "sub number" }),
       why: h(
@@ -138,7 +143,7 @@ export function createMethods(el, store, actions, openDialog) {
       h("td", { role: "cell", class: "check" }, parts.check),
       name,
       h("td", { role: "cell", "data-label": "gap" }, parts.gap, parts.trend),
-      h("td", { role: "cell", "data-label": "energy change" }, parts.energy),
+      h("td", { role: "cell", "data-label": "energy change" }, parts.energy, parts.off),
       h("td", { role: "cell", "data-label": "cost per step" }, parts.cost, parts.ops),
       h("td", { role: "cell", class: "more" }, parts.why, parts.edit),
     );
@@ -212,6 +217,15 @@ export function createMethods(el, store, actions, openDialog) {
     return i;
   }
 
+  /** Between samples, and past the reference's end, there is nothing to say. @param {number} m @param {number} i */
+  function offWords(m, i) {
+    const { history, reference } = data;
+    const off = offReference(reference, history.frameAt(i), history.pointsAt(m, i));
+    return Number.isNaN(off) || !reference
+      ? ""
+      : `off ${off <= reference.own ? "< " : ""}${quantity(off, "m", 2)}`;
+  }
+
   function paint() {
     const history = data.history;
     const now = data.view.shown < 0 ? (history?.count ?? 0) - 1 : data.view.shown;
@@ -229,6 +243,7 @@ export function createMethods(el, store, actions, openDialog) {
       say(parts.trend, loops || trend.tone === "bad" ? `${trend.arrow} ${trend.word}` : "");
       row.dataset.tone = trend.tone;
       say(parts.energy, quantity(column.energy_change[last], "J"));
+      say(parts.off, offWords(m, last));
       say(parts.cost, steps > 0 ? `${quantity(column.cpu[last] / steps, "s")}` : "–");
       say(parts.ops, steps > 0 ? `${Math.round(column.ops[last] / steps)} ops` : "");
     });
@@ -246,7 +261,7 @@ export function createMethods(el, store, actions, openDialog) {
     }
   }
 
-  const stop = listen(store, { methods: rebuild, view: showView });
+  const stop = listen(store, { methods: rebuild, view: showView, reference: paint });
   return {
     update,
     dispose() {

@@ -1,7 +1,9 @@
 // @ts-check
-// Four curves over one clock: loop gap, velocity error, energy change, cost; each with a table as its twin.
+// Four curves over one clock: loop gap, speed gap or distance from the reference, energy change, cost; each with a table as its
+// twin. What the reference solution does, or may itself be off, is grey.
 import { niceAbove, quantity } from "../state/format.js";
 import { thin } from "../state/history.js";
+import { createGrowing, offReference } from "../state/reference.js";
 import { listen } from "../state/store.js";
 import { createPlot } from "../widgets/plot.js";
 import { h, icon, say } from "../widgets/dom.js";
@@ -26,11 +28,29 @@ const COSTS = [
   },
   { column: "cpu", word: "time", about: "processor time so far", title: "Cost, s", unit: "s" },
 ];
+const MOTIONS = [
+  {
+    column: "velocity_gap",
+    word: "‖Jv‖",
+    about: "‖Jv‖: how fast the loops come apart",
+    title: "Speed gap, m/s",
+    unit: "m/s",
+    loop: true,
+  },
+  {
+    column: "off",
+    word: "error",
+    about: "distance of the drawn point that is farthest from the reference solution",
+    title: "Off the reference, m",
+    unit: "m",
+    loop: false,
+  },
+];
 const PLOTS = [
-  { column: "gap", title: "Loop gap ‖φ‖, m", unit: "m", log: true, loop: true },
-  { column: "velocity_gap", title: "Velocity error ‖Jv‖, m/s", unit: "m/s", log: true, loop: true },
-  { column: "energy_change", title: "Energy change |ΔE|, J", unit: "J", log: true },
-  { ...COSTS[0], log: false, costs: true },
+  { column: "gap", title: "Loop gap ‖φ‖, m", unit: "m", log: true, loop: true, choices: [] },
+  { ...MOTIONS[0], log: true, choices: MOTIONS },
+  { column: "energy_change", title: "Energy change |ΔE|, J", unit: "J", log: true, choices: [] },
+  { ...COSTS[0], log: false, choices: COSTS },
 ];
 
 /**
@@ -52,7 +72,7 @@ export function createPlots(el, store, actions) {
     const empty = h(
       "p",
       { class: "no-curve", hidden: true },
-      "this mechanism has no loop that could open",
+      "",
     );
     canvas.append(empty);
     const table = h("div", { class: "twin", tabindex: "0", hidden: true });
@@ -63,21 +83,19 @@ export function createPlots(el, store, actions) {
       icon("table"),
       "table",
     );
-    const choices = kind.costs
-      ? COSTS.map((cost) =>
-          h(
-            "button",
-            {
-              type: "button",
-              class: "quiet",
-              "aria-pressed": String(cost.column === kind.column),
-              title: cost.about,
-              onclick: () => chooseCost(cost),
-            },
-            cost.word,
-          ),
-        )
-      : [];
+    const choices = kind.choices.map((choice) =>
+      h(
+        "button",
+        {
+          type: "button",
+          class: "quiet",
+          "aria-pressed": String(choice.column === kind.column),
+          title: choice.about,
+          onclick: () => choose(choice),
+        },
+        choice.word,
+      ),
+    );
     const figure = h(
       "figure",
       { class: "plot" },
@@ -96,11 +114,13 @@ export function createPlots(el, store, actions) {
       paint();
     }
 
-    function chooseCost(cost) {
-      Object.assign(kind, cost);
-      options.unit = cost.unit;
-      say(title, cost.title);
-      choices.forEach((node, i) => node.setAttribute("aria-pressed", String(COSTS[i] === cost)));
+    function choose(choice) {
+      Object.assign(kind, choice);
+      options.unit = choice.unit;
+      say(title, choice.title);
+      choices.forEach((node, i) =>
+        node.setAttribute("aria-pressed", String(kind.choices[i] === choice)),
+      );
       setSeries(true);
       paint();
     }
@@ -133,17 +153,77 @@ export function createPlots(el, store, actions) {
         present: true,
       };
     });
-    figures.forEach(({ plot }) =>
+    figures.forEach(({ kind, plot }) =>
       plot.setSeries(
-        series.map((one) => ({ ...one })),
+        [...series.map((one) => ({ ...one })), ...greySeries(kind)],
         inks(),
         anew,
         niceAbove(Math.min(1, data.duration || 1)),
       ),
     );
-    figures.forEach(({ kind, empty }) => (empty.hidden = !(kind.loop && data.scene?.m === 0)));
+    figures.forEach(tellEmpty);
     painted = 0;
     update();
+  }
+
+  /** The reference among the methods' curves: its energy, or what it may itself be off. */
+  function hasGrey(kind) {
+    return (
+      data.reference?.state === "ready" && ["energy_change", "off"].includes(kind.column)
+    );
+  }
+
+  function greySeries(kind) {
+    const { dash } = data.look.reference;
+    const colour = data.look.reference[data.theme];
+    const label = kind.column === "off" ? "its own error" : "reference";
+    return hasGrey(kind)
+      ? [{ label, colour, dash, width: 1.5, ended: NaN, present: false }]
+      : [];
+  }
+
+  /** Its values over the kept frames; none past its end, and none where it is not drawn. */
+  function greyColumn(kind) {
+    const { history, reference } = data;
+    return Float64Array.from({ length: history.count }, (_, i) => {
+      const k = history.frameAt(i) / reference.stride;
+      const known = Number.isInteger(k) && k < reference.points.length;
+      return !known || !data.view.reference
+        ? NaN
+        : kind.column === "off"
+          ? reference.own
+          : reference.energy[k] - reference.energy[0];
+    });
+  }
+
+  /** Why there is no curve, and what gives one. */
+  function tellEmpty({ kind, empty }) {
+    const { reference } = data;
+    const lacks = kind.column === "off" && reference?.state !== "ready";
+    const loopless = kind.loop && data.scene?.m === 0;
+    empty.hidden = !lacks && !loopless;
+    const compute = h(
+      "button",
+      { type: "button", class: "quiet", onclick: () => actions.computeReference() },
+      "compute it",
+    );
+    empty.replaceChildren(
+      lacks
+        ? `no reference solution: ${reference?.reason ?? "it is asked for"} `
+        : "this mechanism has no loop that could open",
+      ...(lacks && reference?.state === "none" ? [compute] : []),
+    );
+  }
+
+  const offColumns = createGrowing((m, i) =>
+    offReference(data.reference, data.history.frameAt(i), data.history.pointsAt(m, i)),
+  );
+
+  /** A quantity of every method. @param {string} name @returns {Float64Array[]} */
+  function columnsOf(name) {
+    return name === "off"
+      ? offColumns(data.history, data.reference)
+      : data.history.columns.map((column) => column[name]);
   }
 
   function shown() {
@@ -168,12 +248,24 @@ export function createPlots(el, store, actions) {
         ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
         : (v) => (Number.isNaN(v) ? null : v);
       const empty = new Float64Array(history.count).fill(NaN);
-      const columns = history.columns.map((column, m) =>
-        data.view.hidden.has(m) ? empty : column[kind.column],
+      const columns = columnsOf(kind.column).map((column, m) =>
+        data.view.hidden.has(m) ? empty : column,
       );
+      const grey = hasGrey(kind);
+      if (grey) {
+        columns.push(greyColumn(kind));
+      }
       plot.setEnded(
-        [...history.ended],
-        data.methods.map((_, m) => !data.view.hidden.has(m) && !(kind.loop && data.scene.m === 0)),
+        [...history.ended, ...(grey ? [NaN] : [])],
+        [
+          ...data.methods.map(
+            (_, m) =>
+              !data.view.hidden.has(m) &&
+              !(kind.loop && data.scene.m === 0) &&
+              !(kind.column === "off" && !grey),
+          ),
+          ...(grey ? [false] : []),
+        ],
       );
       plot.draw(thin(history.t, columns, history.count, BUCKETS, map), last, now);
     }
@@ -189,6 +281,7 @@ export function createPlots(el, store, actions) {
         rows.push(i);
       }
     }
+    const columns = columnsOf(kind.column);
     const visible = data.methods
       .map((method, m) => ({ method, m }))
       .filter(({ m }) => !data.view.hidden.has(m));
@@ -217,7 +310,7 @@ export function createPlots(el, store, actions) {
               {},
               h("th", { scope: "row" }, history.t[i].toFixed(2)),
               ...visible.map(({ m }) =>
-                h("td", {}, quantity(history.columns[m][kind.column][i], kind.unit)),
+                h("td", {}, quantity(columns[m][i], kind.unit)),
               ),
             ),
           ),
@@ -245,6 +338,7 @@ export function createPlots(el, store, actions) {
     },
     view: () => setSeries(false),
     theme: () => setSeries(false),
+    reference: () => setSeries(false),
   });
   return {
     update,

@@ -19,6 +19,7 @@ export function createTheme(store) {
       look.slots.forEach((slot, i) =>
         document.documentElement.style.setProperty(`--slot-${i}`, slot[theme]),
       );
+      document.documentElement.style.setProperty("--reference", look.reference[theme]);
     }
     store.emit("theme");
   }
