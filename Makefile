@@ -82,7 +82,7 @@ UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
 TABLES        := $(call programs,$(TABLE_SOURCES))
-SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_*))
+SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/lessons/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
 # ---- building -------------------------------------------------------------------------------------------------
@@ -144,7 +144,8 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev \
                  libxml2-dev ca-certificates node:nodejs npm:npm
-TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium
+TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium \
+                 slurmctld slurmd slurm-client munge parallel
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile

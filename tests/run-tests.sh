@@ -2,7 +2,8 @@
 # usage: run-tests.sh PROGRAM...
 # Runs each program from the project's root, prints one line for it and the failures in full, and ends with
 # "N passed, N failed". A program speaks cmocka's text or TAP; a crash, a time-out, a test that was planned
-# and not run, or no test at all count as a failure. Exit status 1 if anything failed.
+# and not run, or no test at all count as a failure. What a test skips stands below the line of its program. Exit status 1 if
+# anything failed.
 set -u
 LIMIT=${TEST_TIMEOUT:-600}
 work=$(mktemp -d) || exit 1
@@ -33,6 +34,8 @@ for program in "$@"; do
     failed=$((failed + bad))
     printf '%-4s %4d passed %3d failed %7d ms  %s\n' \
         "$([ "$bad" -eq 0 ] && echo ok || echo FAIL)" "$ok" "$bad" "$ms" "$program"
+    # what was not tried is said aloud
+    grep '# *SKIP' "$work/out" | sed 's/^/     /'
     if [ "$bad" -ne 0 ]; then
         sed 's/^/    /' "$work/out"
         sed 1d "$work/count" >>"$work/failures"

@@ -208,6 +208,8 @@ typedef struct hn_scene {
     double duration, step;      ///< suggested [s]
     const char *const *methods; ///< suggested method spellings
     int n_methods;
+    const char *
+        text; ///< the scene file without its spaces: with the parameter values it is this very scene
     uint64_t hash; ///< of what moves and the present parameter values: not of words or drawing
 } hn_scene;
 

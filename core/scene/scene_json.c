@@ -200,13 +200,20 @@ static int calc_hash(hn_reader *r, const cJSON *root) {
     return 1;
 }
 
+static int keep_text(hn_reader *r, const cJSON *root) {
+    char *text = cJSON_PrintUnformatted(root);
+    r->scene->text = hn_arena_strdup(r->arena, text);
+    cJSON_free(text);
+    return r->scene->text != NULL;
+}
+
 static hn_status read_tree(hn_reader *r, const cJSON *root, const char *id) {
     r->graph = hn_graph_create();
     if (!r->graph) {
         return HN_ERR_MEMORY;
     }
     read_root(r, root, id);
-    if (r->n_faults == 0 && !r->oom && !calc_hash(r, root)) {
+    if (r->n_faults == 0 && !r->oom && !(calc_hash(r, root) && keep_text(r, root))) {
         r->oom = 1;
     }
     if (r->oom || hn_arena_failed(r->arena) || hn_graph_failed(r->graph)) {

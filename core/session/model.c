@@ -52,7 +52,7 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
     if (source->path) {
         return hn_scene_load_file(source->path, source->settings, source->n_settings, scene, diags);
     }
-    return hn_scene_load_json(source->text, source->n_text, NULL, source->settings,
+    return hn_scene_load_json(source->text, source->n_text, source->id, source->settings,
                               source->n_settings, scene, diags);
 }
 

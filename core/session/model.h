@@ -17,6 +17,8 @@ typedef struct hn_model_source {
     const char *name, *path;
     const char *text; ///< scene JSON
     size_t n_text;
+    const char
+        *id; ///< of a text: what the scene is called when it does not say itself; may be NULL
     const hn_setting *settings;
     int n_settings;
     int allow_open; ///< 1: a scene that cannot be assembled is still a model (for inspect); its report says why

@@ -47,14 +47,12 @@ static int fill(hn_ref *ref, const cJSON *o) {
            hn_stored_numbers(o, "between", ref->between, rows * HN_ERROR_COUNT);
 }
 
-/// The reference in a file if it is this model's, over n intervals and to T (NaN: any).
-static hn_ref *read_ref(const char *path, const hn_model *model, double T, int n) {
+hn_ref *hn_reference_take(const cJSON *o, const hn_model *model, double T, int n) {
     const hn_system_info info = hn_system_get_info(hn_model_system(model));
     const uint64_t hash = hn_model_scene(model)->hash;
     char mine[17], its[17];
     double format, time, intervals;
     hn_hash_hex(hash, mine);
-    cJSON *o = hn_stored_open(path);
     const int fits = o && hn_stored_number(o, "reference", &format) && format == FORMAT &&
                      hn_stored_text(o, "scene_hash", its, sizeof its) && strcmp(mine, its) == 0 &&
                      hn_stored_number(o, "T", &time) && time > 0 && (isnan(T) || time == T) &&
@@ -64,13 +62,20 @@ static hn_ref *read_ref(const char *path, const hn_model *model, double T, int n
         hn_ref_free(ref);
         ref = NULL;
     }
+    return ref;
+}
+
+/// The reference in a file, as hn_reference_take().
+static hn_ref *read_ref(const char *path, const hn_model *model, double T, int n) {
+    cJSON *o = hn_stored_open(path);
+    hn_ref *ref = hn_reference_take(o, model, T, n);
     cJSON_Delete(o);
     return ref;
 }
 
 // writing ----------------------------------------------------------------------------------------------------------
 
-static void put_ref(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
+void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
     const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
     const double scales[4] = {ref->scales.length, ref->scales.rate, ref->scales.reaction,
                               ref->scales.energy};
@@ -104,7 +109,7 @@ hn_status hn_reference_save(const char *path, const hn_model *model, const hn_re
     char beside[600];
     hn_strbuf b;
     hn_strbuf_init(&b);
-    put_ref(&b, model, ref);
+    hn_reference_put(&b, model, ref);
     hn_strbuf_add(&b, "\n");
     const int named =
         snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid()) < (int)sizeof beside;

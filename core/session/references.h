@@ -28,6 +28,10 @@ double hn_reference_horizon(const hn_ref *ref, double digits);
 /// As it is shipped: one JSON object, compact. HN_ERR_IO with the reason.
 HN_MUST_CHECK hn_status hn_reference_save(const char *path, const hn_model *model,
                                           const hn_ref *ref, hn_diag *diag);
+/// The same object into a document, and back: owned; NULL where it is not this model's over n intervals to T (NaN: any).
+void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref);
+struct cJSON;
+hn_ref *hn_reference_take(const struct cJSON *o, const hn_model *model, double T, int n);
 
 /// {"scene","scene_hash","source","time","means","refused","digits","error","scales","coordinates","rows","t","q","v","lambda","energy",
 /// "digits_at"}: columns over the stored times, a row a time.

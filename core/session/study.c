@@ -82,7 +82,11 @@ static hn_status set_up(hn_study *s, hn_diags *diags) {
     if (status != HN_OK) {
         return status;
     }
-    const hn_wp_opts opts = {.n_levels = r->levels, .n_samples = r->samples, .budget = r->budget};
+    const hn_wp_opts opts = {.n_levels = r->levels,
+                             .n_samples = r->samples,
+                             .budget = r->budget,
+                             .shard = r->shard,
+                             .n_shards = r->n_shards};
     status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
                           s->ref, specs, r->n_methods, &opts, &s->wp, &diag);
     if (status != HN_OK) {
@@ -118,6 +122,7 @@ void hn_study_free(hn_study *s) {
         hn_store_close_log(s, 0);
         hn_wp_free(s->wp);
         hn_ref_free(s->ref);
+        hn_model_free(s->own_model);
         free(s);
     }
 }

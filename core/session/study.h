@@ -15,8 +15,11 @@ typedef struct hn_study_request {
     double time;                ///< [s]; NaN: the scene's
     double budget;              ///< wall time [s]; NaN: 60; 0: none
     int levels;                 ///< sizes per method; 0: 7
-    int samples;                ///< of time per point; 0: 9; -1: none
-    const char *folder;         ///< where references and unfinished studies are kept; NULL: nowhere
+    int samples;                ///< of time per point; 0: HN_WP_SAMPLES; -1: none
+    int shard, n_shards;        ///< part 1..n_shards of the study (study/shards.h); 0, 0: the whole
+    const char *
+        build; ///< what the program calls itself: work of another build is not gone on with; NULL: not told
+    const char *folder; ///< where references and unfinished studies are kept; NULL: nowhere
     hn_wp_hooks
         hooks; ///< `stop` and `progress` are asked and told, also while the reference is computed
 } hn_study_request;
@@ -32,6 +35,22 @@ HN_MUST_CHECK hn_status hn_study_open(const hn_model *model, const hn_study_requ
 void hn_study_free(hn_study *study); ///< NULL is legal; what was kept of an unfinished study stays
 /// Runs what is left. Returns 1 when the study is finished, and then nothing of it is kept but the reference; 0: stopped, or out of its budget.
 int hn_study_run(hn_study *study);
+
+// parts
+/// What a part of a study has to hand over: JSON that holds the scene, the request, the reference and this part's points.
+void hn_study_part(hn_strbuf *b, const hn_study *study);
+
+typedef struct hn_study_part_text {
+    const char *name; ///< of the file, for messages
+    const char *text;
+    size_t n;
+} hn_study_part_text;
+/// The study that these parts are of, as hn_study_run() would have left it: the same numbers (but a clock's) however it was split,
+/// whatever the order, and as often as one is given. Overlapping parts are allowed. Fails: HN_ERR_INPUT, told: a text that is no part, parts
+/// that contradict each other (in which field), parts that are missing or unfinished (which). HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_study_merge(const hn_study_part_text *parts, int n, hn_study **out,
+                                       hn_diags *diags);
+
 const hn_wp *hn_study_wp(const hn_study *study);
 const hn_class *hn_study_classes(const hn_study *study); ///< one per method, after a run
 const hn_model *hn_study_model(const hn_study *study);

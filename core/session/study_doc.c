@@ -62,6 +62,7 @@ static void put_times(hn_strbuf *b, const hn_wp_point *p) {
     hn_json_put_number(b, "spread", p->spread);
     hn_json_put_number(b, "low", p->low);
     hn_json_put_number(b, "high", p->high);
+    hn_json_put_numbers(b, "halves", p->half, 2);
     hn_json_put_int(b, "samples", p->n_samples);
     hn_json_put_int(b, "busy", p->busy);
     hn_json_end_object(b);
@@ -145,12 +146,13 @@ static void put_place(hn_strbuf *b, const hn_study *s, const char *key, hn_place
 static void put_band(hn_strbuf *b, const hn_study *s, const hn_band *band) {
     hn_json_object(b);
     hn_json_put_number(b, "accuracy", band->accuracy);
+    hn_json_put_string(b, "ranking", hn_ranking_name(band->ranking));
     put_place(b, s, "best", band->best);
     put_place(b, s, "next", band->next);
     hn_json_key(b, "too_close_to_rank");
     hn_json_array(b);
     for (int i = 0; i < band->n_close; i++) {
-        hn_json_string(b, s->wp->methods[band->close[i]].spelling);
+        hn_json_string(b, s->wp->methods[band->close[i].method].spelling);
     }
     hn_json_end_array(b);
     hn_json_end_object(b);
@@ -175,7 +177,7 @@ static void put_paretos(hn_strbuf *b, const hn_study *s) {
             hn_json_object(b);
             hn_json_put_string(b, "error", hn_error_name((hn_error_kind)error));
             hn_json_put_string(b, "cost", hn_cost_name((hn_cost_kind)cost));
-            hn_json_put_bool(b, "ranked", !p.few);
+            hn_json_put_bool(b, "ranked", !p.few && !p.clocks_differ);
             put_sentences(b, s, &p);
             hn_json_key(b, "bands");
             hn_json_array(b);
@@ -224,7 +226,8 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     hn_json_put_bool(b, "finished", !s->wp->out_of_time && !s->wp->stopped);
     hn_json_put_bool(b, "stopped", s->wp->stopped);
     hn_json_put_number(b, "budget", s->request.budget);
-    hn_json_put_number(b, "elapsed", s->wp->elapsed);
+    // where nothing is timed the document holds nothing that a clock said: two of them are the same bytes
+    hn_json_put_number(b, "elapsed", s->wp->opts.n_samples > 0 ? s->wp->elapsed : (double)NAN);
     put_reference(b, s);
     put_methods(b, s);
     put_paretos(b, s);
@@ -275,6 +278,8 @@ static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     put_cell(b, p->cost.ops);
     put_cell(b, p->median);
     put_cell(b, p->spread);
+    put_cell(b, p->half[0]);
+    put_cell(b, p->half[1]);
     put_cell(b, p->n_samples);
     put_cell(b, p->busy);
     hn_strbuf_printf(b, ",%s,", hn_class_name(s->classes[m].kind));
@@ -290,7 +295,8 @@ void hn_study_csv(hn_strbuf *b, const hn_study *s) {
             hn_strbuf_printf(b, ",%s_%s", when[w], hn_error_name((hn_error_kind)i));
         }
     }
-    hn_strbuf_add(b, ",steps,rejected,evaluations,operations,cpu_median,cpu_spread,samples,busy,"
+    hn_strbuf_add(b, ",steps,rejected,evaluations,operations,cpu_median,cpu_spread,cpu_first_half,"
+                     "cpu_second_half,samples,busy,"
                      "class,reason\n");
     for (int m = 0; m < s->wp->n_methods; m++) {
         for (int k = 0; k < s->wp->n_levels; k++) {

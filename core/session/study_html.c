@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/units.h"
 #include "render/look.h"
+#include "study/timing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -406,9 +407,15 @@ static void put_measures(hn_strbuf *b, const hn_study *s) {
         "ms or more, taken in rounds over all points. Spread is the distance of the quartiles over "
         "the median; “busy” marks points whose wall time exceeded the CPU time by more than %.0f "
         "%%. "
-        "Methods within %.0f %%, or with quartiles that overlap, are not ranked. Evaluations and "
-        "operations are exact.</p>\n",
-        HN_WP_SAMPLES, 1e3 * HN_WP_BATCH, 100 * (HN_WP_BUSY - 1), 100 * (HN_PARETO_CLOSE - 1));
+        "Halfway every run is made anew, so that the samples are two measurements. Times are "
+        "ranked "
+        "only where the medians of both halves agree within %.0f %%, and the methods differ by "
+        "more "
+        "than %.0f %% and by more than their quartiles and halves do. Evaluations and operations "
+        "are "
+        "exact.</p>\n",
+        HN_WP_SAMPLES, 1e3 * HN_TIMING_BATCH, 100 * (HN_WP_BUSY - 1), 100 * (HN_PARETO_STEADY - 1),
+        100 * (HN_PARETO_CLOSE - 1));
 }
 
 void hn_study_html(hn_strbuf *b, const hn_study *s) {

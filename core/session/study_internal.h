@@ -1,13 +1,20 @@
 #ifndef HN_SESSION_STUDY_INTERNAL_H
 #define HN_SESSION_STUDY_INTERNAL_H
-// The inside of a study: study.c (life), study_store.c (files), study_doc.c and study_html.c (documents).
+// The inside of a study: study.c (life), study_store.c (files), study_part.c and study_merge.c (parts), study_doc.c and study_html.c
+// (documents).
 
 #include "session/study.h"
 
 #include <stdio.h>
 
+#define HN_PART_STUDY "part of work-precision" ///< what a part says it is
+enum { HN_PART_FORMAT = 1 }; // counts up when the meaning of a part's fields changes
+
+struct cJSON;
+
 struct hn_study {
     const hn_model *model;
+    hn_model *own_model; ///< put together from parts: the scene came with them
     hn_study_request request;
     hn_ref *ref;
     hn_wp *wp;
@@ -21,6 +28,13 @@ struct hn_study {
 /// Opens the log of this study, reads what it holds into the study, and goes on behind its last whole line. HN_ERR_IO: another program has it.
 HN_MUST_CHECK hn_status hn_store_open_log(hn_study *study, hn_diags *diags);
 void hn_store_close_log(hn_study *study, int finished); ///< a finished one is deleted
+/// What of a point is no clock's: members of the open object. `q`: n_user values.
+void hn_store_put_point(hn_strbuf *b, const hn_study *study, int m, int k);
+/// The same back; 0 when it is none, and then the point is not to be used.
+int hn_store_take_point(const hn_study *study, const struct cJSON *o, hn_wp_point *p);
+/// One more sample of time; 0 when it cannot be one.
+int hn_store_take_sample(hn_wp_point *p, double cpu, double busy);
+
 void hn_store_log_point(hn_study *study, int m, int k);
 void hn_store_log_sample(hn_study *study, int m, int k);
 #endif

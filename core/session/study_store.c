@@ -11,11 +11,13 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { FORMAT = 1 }; // FORMAT counts up when the meaning of a line changes
+// counted up when the meaning of a line changes
+enum { FORMAT = 2 };
+static const double LARGEST_COUNT = 9e15; // whole numbers are exact up to here
 
 // the log of an unfinished study -----------------------------------------------------------------------------------
 
-/// All that decides what the points are: everything but the budget.
+/// All that decides what the points are: everything but the budget. A part of a study has a log of its own.
 static uint64_t study_key(const hn_study *s) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &s->ref->scene, sizeof s->ref->scene);
     hash = hn_hash_double(hash, s->ref->T);
@@ -27,11 +29,15 @@ static uint64_t study_key(const hn_study *s) {
         hn_wp_spelling(s->wp, m, 0, spelling);
         hash = hn_hash_text(hash, spelling);
     }
+    hash = hn_hash_text(hash, s->request.build ? s->request.build : "");
+    if (s->wp->opts.n_shards > 1) {
+        hash = hn_hash_double(hash, s->wp->opts.shard + 1e-3 * s->wp->opts.n_shards);
+    }
     return hn_hash_mix(hash);
 }
 
 /// The counters of a cost, in the order they are written.
-enum { N_COUNTS = 11 };
+enum { N_COUNTS = 11, ENERGY = 8 }; // ENERGY is no count, and need not be finite
 static void counts_of(const hn_cost *c, double out[N_COUNTS]) {
     const double list[N_COUNTS] = {(double)c->evals,
                                    (double)c->factorisations,
@@ -61,53 +67,57 @@ static hn_cost cost_of(const double n[N_COUNTS]) {
                      .rejected = (long long)n[10]};
 }
 
-static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
+void hn_store_put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp_point *p = &s->wp->methods[m].point[k];
     double counts[N_COUNTS];
     counts_of(&p->cost, counts);
-    const double numbers[] = {p->t_reached, p->own, (double)p->steps, (double)p->rejected,
-                              p->first_cpu};
-    hn_json_object(b);
+    const double numbers[] = {p->t_reached, (double)p->steps, (double)p->rejected};
     hn_json_put_int(b, "m", m);
     hn_json_put_int(b, "k", k);
     hn_json_put_int(b, "state", p->state);
     hn_json_put_int(b, "status", p->status);
     hn_json_put_string(b, "reason", p->reason);
-    hn_json_put_numbers(b, "numbers", numbers, 5);
+    hn_json_put_numbers(b, "numbers", numbers, 3);
     hn_json_put_numbers(b, "worst", p->worst, HN_ERROR_COUNT);
     hn_json_put_numbers(b, "end", p->end, HN_ERROR_COUNT);
     hn_json_put_numbers(b, "q", p->end_q, (size_t)s->ref->n_user);
     hn_json_put_numbers(b, "cost", counts, N_COUNTS);
-    hn_json_end_object(b);
 }
 
-/// A point line into the study; 0 when it is not one.
-static int take_point(hn_study *s, const cJSON *o, hn_wp_point *p) {
-    double state, status, numbers[5], counts[N_COUNTS];
+/// 1 when all are what a counter can hold.
+static int are_counts(const double *n, int count) {
+    int ok = 1;
+    for (int i = 0; i < count; i++) {
+        ok = ok && fabs(n[i]) <= LARGEST_COUNT; // false for NaN too
+    }
+    return ok;
+}
+
+int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
+    double state, status, numbers[3], counts[N_COUNTS];
     if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
         !hn_stored_text(o, "reason", p->reason, sizeof p->reason) ||
-        !hn_stored_numbers(o, "numbers", numbers, 5) ||
+        !hn_stored_numbers(o, "numbers", numbers, 3) ||
         !hn_stored_numbers(o, "worst", p->worst, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "end", p->end, HN_ERROR_COUNT) ||
         !hn_stored_numbers(o, "q", p->end_q, (size_t)s->ref->n_user) ||
-        !hn_stored_numbers(o, "cost", counts, N_COUNTS) ||
-        (state != HN_WP_DONE && state != HN_WP_FAILED)) {
+        !hn_stored_numbers(o, "cost", counts, N_COUNTS) || !are_counts(numbers + 1, 2) ||
+        !are_counts(counts, ENERGY) || !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
+        !(status >= 0 && status < HN_STATUS_COUNT) ||
+        (state != HN_WP_DONE && state != HN_WP_FAILED && state != HN_WP_SKIPPED)) {
         return 0;
     }
     p->state = (hn_wp_state)state;
     p->status = (hn_status)status;
     p->t_reached = numbers[0];
-    p->own = numbers[1];
-    p->steps = (long long)numbers[2];
-    p->rejected = (long long)numbers[3];
-    p->first_cpu = numbers[4];
+    p->steps = (long long)numbers[1];
+    p->rejected = (long long)numbers[2];
     p->cost = cost_of(counts);
-    s->resumed++;
     return 1;
 }
 
-static int take_sample_line(hn_wp_point *p, double cpu, double busy) {
-    if (p->state != HN_WP_DONE || p->n_samples >= HN_WP_SAMPLES || !(cpu >= 0)) {
+int hn_store_take_sample(hn_wp_point *p, double cpu, double busy) {
+    if (p->n_samples >= HN_WP_SAMPLES || !(cpu > 0) || !(busy >= 0 && busy <= HN_WP_SAMPLES)) {
         return 0;
     }
     p->sample[p->n_samples++] = cpu;
@@ -116,18 +126,33 @@ static int take_sample_line(hn_wp_point *p, double cpu, double busy) {
     return 1;
 }
 
-/// One line of the log; 0 when it is none, or torn.
+/// A line of a point: 0 when it is not one.
+static int take_point_line(hn_study *s, const cJSON *o, hn_wp_point *p) {
+    const int ok = hn_stored_number(o, "first_cpu", &p->first_cpu) &&
+                   hn_store_take_point(s, o, p) && p->state != HN_WP_SKIPPED;
+    s->resumed += ok;
+    return ok;
+}
+
+static int take_sample_line(hn_wp_point *p, const cJSON *o) {
+    double cpu, busy;
+    return hn_stored_number(o, "cpu", &cpu) && hn_stored_number(o, "busy", &busy) &&
+           hn_store_take_sample(p, cpu, busy);
+}
+
+/// One line of the log; 0 when it is none, or torn. m = -1 is the yardstick.
 static int take_line(hn_study *s, const char *line) {
     cJSON *o = cJSON_Parse(line);
-    double m = -1, k = -1, cpu, busy;
-    int ok = hn_stored_number(o, "m", &m) && hn_stored_number(o, "k", &k) && m >= 0 && k >= 0 &&
+    const int is_sample = cJSON_HasObjectItem(o, "cpu");
+    double m = -2, k = -1;
+    int ok = hn_stored_number(o, "m", &m) && hn_stored_number(o, "k", &k) && m >= -1 && k >= 0 &&
              m < s->wp->n_methods && k < s->wp->n_levels;
-    if (ok) {
+    if (ok && m < 0) {
+        ok = is_sample && take_sample_line(&s->wp->yardstick, o);
+    } else if (ok) {
         hn_wp_point *p = &s->wp->methods[(int)m].point[(int)k];
-        ok = cJSON_HasObjectItem(o, "cpu")
-                 ? hn_stored_number(o, "cpu", &cpu) && hn_stored_number(o, "busy", &busy) &&
-                       take_sample_line(p, cpu, busy)
-                 : take_point(s, o, p);
+        ok =
+            is_sample ? p->state == HN_WP_DONE && take_sample_line(p, o) : take_point_line(s, o, p);
     }
     cJSON_Delete(o);
     return ok;
@@ -199,12 +224,15 @@ static void write_line(hn_study *s, hn_strbuf *b) {
 void hn_store_log_point(hn_study *s, int m, int k) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    put_point(&b, s, m, k);
+    hn_json_object(&b);
+    hn_store_put_point(&b, s, m, k);
+    hn_json_put_number(&b, "first_cpu", s->wp->methods[m].point[k].first_cpu);
+    hn_json_end_object(&b);
     write_line(s, &b);
 }
 
 void hn_store_log_sample(hn_study *s, int m, int k) {
-    const hn_wp_point *p = &s->wp->methods[m].point[k];
+    const hn_wp_point *p = m < 0 ? &s->wp->yardstick : &s->wp->methods[m].point[k];
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);

@@ -1,10 +1,11 @@
 #include "study/workprecision.h"
 
+#include "study/shards.h"
+#include "study/timing.h"
+
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { DEFAULT_LEVELS = 7, RESERVED_SAMPLES = 5, RETRIES = 1 };
 static const double FIRST_RTOL = 3, LAST_RTOL = 12; // powers of ten
@@ -15,14 +16,8 @@ static const double POINT_SHARE = 0.2; // of the budget that one run may take
 static const char *const state_names[] = {"pending", "done", "failed", "skipped"};
 
 const char *hn_wp_state_name(hn_wp_state state) {
-    HN_ASSERT((int)state >= 0 && state <= HN_WP_SKIPPED);
+    HN_ASSERT((int)state >= 0 && state < HN_WP_STATES);
     return state_names[state];
-}
-
-static double wall_seconds(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
 }
 
 static double *setting_of(hn_method_spec *spec, const char *key) {
@@ -91,6 +86,7 @@ static hn_status set_up_method(hn_wp *wp, const hn_method_spec *spec, int i, hn_
         m->point[k].own = (double)NAN;
         m->point[k].median = m->point[k].spread = (double)NAN;
         m->point[k].low = m->point[k].high = (double)NAN;
+        m->point[k].half[0] = m->point[k].half[1] = (double)NAN;
         m->point[k].end_q = hn_arena_doubles(wp->arena, (size_t)wp->ref->n_user);
     }
     return HN_OK;
@@ -114,6 +110,12 @@ static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag 
                            "a study takes at most %d samples of time, a step above 0 and a budget "
                            "that is not negative",
                            HN_WP_SAMPLES);
+    }
+    if (o->n_shards < 0 || o->n_shards > HN_WP_SHARDS || o->shard > o->n_shards ||
+        o->shard < (o->n_shards > 0)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/shard", "as 2/4: the second of four",
+                           "part %d of %d was asked for; a study has 1 to %d parts", o->shard,
+                           o->n_shards, HN_WP_SHARDS);
     }
     return HN_OK;
 }
@@ -139,9 +141,11 @@ hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, c
                   .ref = ref,
                   .opts = o,
                   .n_methods = n,
-                  .n_levels = o.n_levels};
+                  .n_levels = o.n_levels,
+                  .clocks_apart = 1};
     wp->methods = hn_arena_get(arena, (size_t)n * sizeof *wp->methods);
     wp->runs = hn_arena_get(arena, (size_t)(n * o.n_levels) * sizeof *wp->runs);
+    wp->shard = hn_arena_ints(arena, (size_t)(n * o.n_levels));
     status = hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_errors_create(sys, arena, &wp->errors);
     for (int i = 0; i < n && status == HN_OK; i++) {
         status = set_up_method(wp, &specs[i], i, diag);
@@ -153,8 +157,13 @@ hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, c
         hn_wp_free(wp);
         return status;
     }
+    hn_wp_split(wp, o.n_shards > 0 ? o.n_shards : 1, wp->shard);
     *out = wp;
     return HN_OK;
+}
+
+int hn_wp_is_mine(const hn_wp *wp, int m, int k) {
+    return wp->opts.n_shards == 0 || wp->shard[m * wp->n_levels + k] == wp->opts.shard;
 }
 
 static void drop_run(hn_wp *wp, int m, int k) {
@@ -162,11 +171,17 @@ static void drop_run(hn_wp *wp, int m, int k) {
     wp->runs[m * wp->n_levels + k] = NULL;
 }
 
+static void drop_runs(hn_wp *wp) {
+    for (int i = 0; wp->methods && wp->runs && i < wp->n_methods * wp->n_levels; i++) {
+        drop_run(wp, i / wp->n_levels, i % wp->n_levels);
+    }
+    hn_run_free(wp->yardstick_run);
+    wp->yardstick_run = NULL;
+}
+
 void hn_wp_free(hn_wp *wp) {
     if (wp) {
-        for (int i = 0; wp->methods && wp->runs && i < wp->n_methods * wp->n_levels; i++) {
-            hn_run_free(wp->runs[i]);
-        }
+        drop_runs(wp);
         hn_errors_free(wp->errors);
         hn_arena_free(wp->arena);
     }
@@ -174,8 +189,7 @@ void hn_wp_free(hn_wp *wp) {
 
 // one point ------------------------------------------------------------------------------------------------------
 
-static hn_run *run_of(hn_wp *wp, int m, int k, hn_diag *diag) {
-    hn_run **run = &wp->runs[m * wp->n_levels + k];
+static hn_run *make_run(hn_wp *wp, int m, int k, hn_run **run, hn_diag *diag) {
     if (!*run) {
         hn_method_spec spec = wp->methods[m].spec;
         *setting_of(&spec, size_key(&wp->methods[m])) = wp->methods[m].point[k].size;
@@ -188,6 +202,10 @@ static hn_run *run_of(hn_wp *wp, int m, int k, hn_diag *diag) {
         hn_run_watch(*run, 0); // the study looks itself
     }
     return *run;
+}
+
+static hn_run *run_of(hn_wp *wp, int m, int k, hn_diag *diag) {
+    return make_run(wp, m, k, &wp->runs[m * wp->n_levels + k], diag);
 }
 
 typedef struct looker {
@@ -237,14 +255,16 @@ static void keep_counts(hn_wp_point *p, const hn_run *run) {
     p->first_cpu = s.cpu_seconds;
 }
 
-/// How far the end is from that of the next coarser point that reached it.
-static void compare_with_coarser(hn_wp *wp, int m, int k) {
-    for (int j = k - 1; j >= 0; j--) {
-        const hn_wp_point *coarser = &wp->methods[m].point[j];
-        if (coarser->state == HN_WP_DONE) {
+void hn_wp_compare_ends(hn_wp *wp) {
+    for (int m = 0; m < wp->n_methods; m++) {
+        const hn_wp_point *coarser = NULL;
+        for (int k = 0; k < wp->n_levels; k++) {
             hn_wp_point *p = &wp->methods[m].point[k];
-            p->own = hn_errors_between(wp->errors, p->end_q, coarser->end_q);
-            return;
+            if (p->state == HN_WP_DONE) {
+                p->own =
+                    coarser ? hn_errors_between(wp->errors, p->end_q, coarser->end_q) : (double)NAN;
+                coarser = p;
+            }
         }
     }
 }
@@ -278,27 +298,37 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     }
     p->state = HN_WP_DONE;
     p->t_reached = wp->ref->T;
-    compare_with_coarser(wp, m, k);
     return 1;
 }
 
 // the budget -----------------------------------------------------------------------------------------------------
 
-/// CPU time that the next point of a method will take, from the coarser ones; 0: not known.
-static double expected_cpu(const hn_wp_method *m, int k) {
-    if (k == 0 || m->point[k - 1].state != HN_WP_DONE) {
+/// The next coarser point that is run here, or -1: a part has not all of them.
+static int coarser_mine(const hn_wp *wp, int m, int k) {
+    do {
+        k--;
+    } while (k >= 0 && !hn_wp_is_mine(wp, m, k));
+    return k;
+}
+
+/// CPU time that a point will take, from the coarser ones; 0: not known.
+static double expected_cpu(const hn_wp *wp, int m, int k) {
+    const hn_wp_method *method = &wp->methods[m];
+    const int j = coarser_mine(wp, m, k);
+    if (j < 0 || method->point[j].state != HN_WP_DONE) {
         return 0;
     }
-    const double last = m->point[k - 1].first_cpu;
-    double growth = m->adaptive ? GROWTH : 2;
-    if (m->adaptive && k > 1 && m->point[k - 2].state == HN_WP_DONE) {
-        growth = fmax(1, last / m->point[k - 2].first_cpu);
+    const double last = method->point[j].first_cpu;
+    const int i = coarser_mine(wp, m, j);
+    double growth = method->adaptive ? GROWTH : 2;
+    if (method->adaptive && i >= 0 && method->point[i].state == HN_WP_DONE) {
+        growth = fmax(1, pow(last / method->point[i].first_cpu, 1.0 / (j - i)));
     }
-    return last * growth;
+    return last * pow(growth, k - j);
 }
 
 static double sample_cost(double cpu) {
-    return fmax(HN_WP_BATCH, cpu);
+    return fmax(HN_TIMING_BATCH, cpu);
 }
 
 /// Time kept for samples of the points that are done.
@@ -322,15 +352,16 @@ static int fits(hn_wp *wp, int m, int k, double started) {
     if (!(wp->opts.budget > 0)) {
         return 1;
     }
-    if (k > 0 && wp->methods[m].point[k - 1].state == HN_WP_SKIPPED) {
+    const int coarser = coarser_mine(wp, m, k);
+    if (coarser >= 0 && wp->methods[m].point[coarser].state == HN_WP_SKIPPED) {
         set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET,
                    "left out, as the coarser size before it, to keep the budget");
         return 0;
     }
-    const double cpu = expected_cpu(&wp->methods[m], k);
+    const double cpu = expected_cpu(wp, m, k);
     const double sampling = wp->opts.n_samples > 0 ? RESERVED_SAMPLES * sample_cost(cpu) : 0;
     const double needed = 2 * cpu + sampling;
-    const double left = wp->opts.budget - (wall_seconds() - started) - reserved(wp);
+    const double left = wp->opts.budget - (hn_wall_seconds() - started) - reserved(wp);
     char text[256];
     if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
         return 1;
@@ -344,70 +375,51 @@ static int fits(hn_wp *wp, int m, int k, double started) {
 
 // time -----------------------------------------------------------------------------------------------------------
 
-static int by_size(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/// Linear interpolation between order statistics.
-static double quantile(const double *sorted, int n, double share) {
-    const double at = share * (n - 1);
-    const int i = (int)floor(at);
-    return i + 1 < n ? sorted[i] + (at - i) * (sorted[i + 1] - sorted[i]) : sorted[n - 1];
+/// In ascending order, and where the middle is.
+static double sort_and_halve(double *list, int n) {
+    hn_timing_sort(list, n);
+    return hn_timing_quantile(list, n, 0.5);
 }
 
 void hn_wp_point_statistics(hn_wp_point *p) {
     double sorted[HN_WP_SAMPLES];
-    if (p->n_samples < 1) {
+    const int n = p->n_samples, half = (n + 1) / 2;
+    p->half[0] = p->half[1] = (double)NAN;
+    if (n < 1) {
         return;
     }
-    memcpy(sorted, p->sample, (size_t)p->n_samples * sizeof *sorted);
-    qsort(sorted, (size_t)p->n_samples, sizeof *sorted, by_size);
-    p->median = quantile(sorted, p->n_samples, 0.5);
-    p->low = quantile(sorted, p->n_samples, 0.25);
-    p->high = quantile(sorted, p->n_samples, 0.75);
+    if (n >= HN_WP_ENOUGH) {
+        memcpy(sorted, p->sample, (size_t)n * sizeof *sorted);
+        p->half[0] = sort_and_halve(sorted, half);
+        p->half[1] = sort_and_halve(sorted + half, n - half);
+    }
+    memcpy(sorted, p->sample, (size_t)n * sizeof *sorted);
+    p->median = sort_and_halve(sorted, n);
+    p->low = hn_timing_quantile(sorted, n, 0.25);
+    p->high = hn_timing_quantile(sorted, n, 0.75);
     p->spread = p->median > 0 ? (p->high - p->low) / p->median : 0;
 }
 
-/// One batch: CPU seconds of a run, and wall over CPU time in *load. 0: stopped or failed.
-static int take_batch(hn_wp *wp, hn_run *run, double first_cpu, const hn_walk_limits *limits,
-                      double *seconds, double *load) {
-    const int n = (int)fmin(1e6, ceil(HN_WP_BATCH / fmax(1e-8, first_cpu)));
-    double cpu = 0, wall = 0;
-    for (int i = 0; i < n || cpu < HN_WP_BATCH; i++) {
-        if (hn_run_reset(run) != HN_OK) {
-            return 0;
-        }
-        const double w = wall_seconds(), c = hn_thread_seconds();
-        // straight through: clocks between steps would be part of what is measured
-        const hn_status status = hn_run_advance(run, wp->ref->T);
-        cpu += hn_thread_seconds() - c;
-        wall += wall_seconds() - w;
-        *seconds = cpu / (i + 1);
-        if (status != HN_OK || (limits->stop && limits->stop(limits->user))) {
-            return 0;
-        }
-    }
-    *load = wall / cpu;
-    return 1;
+double hn_wp_point_halves_apart(const hn_wp_point *p) {
+    return fmax(p->half[0], p->half[1]) / fmin(p->half[0], p->half[1]);
 }
 
-static int take_sample(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
-    hn_wp_point *p = &wp->methods[m].point[k];
-    hn_diag diag = {0};
-    hn_run *run = run_of(wp, m, k, &diag);
+static int is_stopped(const hn_wp_hooks *hooks) {
+    return hooks->stop && hooks->stop(hooks->user);
+}
+
+/// A sample of a run that is known to come to its end, told as that of point (m, k). 0: stopped or failed.
+static int take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
+                       const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {0, hooks->stop, hooks->user};
     double seconds = 0, load = 0;
-    for (int i = 0; run && i <= RETRIES; i++) {
-        if (!take_batch(wp, run, p->first_cpu, &limits, &seconds, &load)) {
+    for (int i = 0; i <= RETRIES; i++) {
+        if (!hn_timing_batch(run, wp->ref->T, p->first_cpu, &limits, &seconds, &load)) {
             return 0;
         }
         if (load <= HN_WP_BUSY) {
             break;
         }
-    }
-    if (!run) {
-        return 0;
     }
     p->busy += load > HN_WP_BUSY;
     p->sample[p->n_samples++] = seconds;
@@ -418,11 +430,38 @@ static int take_sample(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     return 1;
 }
 
-// the whole ------------------------------------------------------------------------------------------------------
-
-static int is_stopped(const hn_wp_hooks *hooks) {
-    return hooks->stop && hooks->stop(hooks->user);
+static int sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
+    hn_diag diag = {0};
+    hn_run *run = run_of(wp, m, k, &diag);
+    return run && take_sample(wp, &wp->methods[m].point[k], run, m, k, hooks);
 }
+
+/// The coarsest run of the first method that comes to the end of the study: the same one in every part. 0: none does.
+static int find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
+    const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
+    for (int m = 0; m < wp->n_methods && !is_stopped(hooks); m++) {
+        hn_diag diag = {0};
+        hn_run *run = make_run(wp, m, 0, &wp->yardstick_run, &diag);
+        if (run && hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL) == HN_WALK_DONE) {
+            wp->yardstick.first_cpu = hn_run_get_summary(run).cpu_seconds;
+            wp->yardstick_method = m;
+            return 1;
+        }
+        hn_run_free(wp->yardstick_run);
+        wp->yardstick_run = NULL;
+    }
+    return 0;
+}
+
+static int sample_yardstick(hn_wp *wp, int round, const hn_wp_hooks *hooks) {
+    if (wp->opts.n_shards == 0 || wp->yardstick.n_samples > round ||
+        (!wp->yardstick_run && !find_yardstick(wp, hooks))) {
+        return 1;
+    }
+    return take_sample(wp, &wp->yardstick, wp->yardstick_run, -1, 0, hooks);
+}
+
+// the whole ------------------------------------------------------------------------------------------------------
 
 /// Share done: points count for what their finer sizes cost, samples for the rest.
 static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double started) {
@@ -430,8 +469,10 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             const hn_wp_point *p = &wp->methods[m].point[k];
-            const double cpu =
-                p->state == HN_WP_DONE ? p->first_cpu : expected_cpu(&wp->methods[m], k);
+            if (!hn_wp_is_mine(wp, m, k)) {
+                continue;
+            }
+            const double cpu = p->state == HN_WP_DONE ? p->first_cpu : expected_cpu(wp, m, k);
             const double timing = p->state == HN_WP_PENDING || p->state == HN_WP_DONE
                                       ? sample_cost(cpu) * fmax(0, wp->opts.n_samples)
                                       : 0;
@@ -441,7 +482,7 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     }
     double share = all > 0 ? done / all : 0;
     if (wp->opts.budget > 0) { // whichever end comes first
-        share = fmax(share, (wall_seconds() - started) / wp->opts.budget);
+        share = fmax(share, (hn_wall_seconds() - started) / wp->opts.budget);
     }
     if (hooks->progress) {
         hooks->progress(hooks->user, fmin(1, share));
@@ -455,11 +496,12 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
             hn_wp_point *p = &wp->methods[m].point[k];
             if (p->state == HN_WP_SKIPPED) {
                 p->state = HN_WP_PENDING; // another try, with a budget of its own
+                p->reason[0] = 0;
             }
             if (is_stopped(hooks)) {
                 return 0;
             }
-            if (p->state != HN_WP_PENDING) {
+            if (p->state != HN_WP_PENDING || !hn_wp_is_mine(wp, m, k)) {
                 continue;
             }
             if (fits(wp, m, k, started) && !measure_point(wp, m, k, hooks)) {
@@ -477,18 +519,21 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
 
 /// Sample number `round` of every point that has fewer. 0: stopped or out of time.
 static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double started) {
+    if (!sample_yardstick(wp, round, hooks)) {
+        return 0;
+    }
     for (int k = 0; k < wp->n_levels; k++) {
         for (int m = 0; m < wp->n_methods; m++) {
             hn_wp_point *p = &wp->methods[m].point[k];
-            if (p->state != HN_WP_DONE || p->n_samples > round) {
+            if (p->state != HN_WP_DONE || p->n_samples > round || !hn_wp_is_mine(wp, m, k)) {
                 continue;
             }
-            const double left = wp->opts.budget - (wall_seconds() - started);
+            const double left = wp->opts.budget - (hn_wall_seconds() - started);
             if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
                 wp->out_of_time = 1;
                 return 0;
             }
-            if (!take_sample(wp, m, k, hooks)) {
+            if (!sample_point(wp, m, k, hooks)) {
                 return 0;
             }
             tell_progress(wp, hooks, started);
@@ -500,13 +545,18 @@ static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double star
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     static const hn_wp_hooks nobody = {0};
     const hn_wp_hooks *h = hooks ? hooks : &nobody;
-    const double started = wall_seconds();
+    const double started = hn_wall_seconds();
     wp->out_of_time = 0;
     int going = run_points(wp, h, started);
     for (int round = 0; going && round < wp->opts.n_samples; round++) {
+        if (round == (wp->opts.n_samples + 1) / 2) {
+            drop_runs(
+                wp); // the second half finds other memory, as a second start of the program does
+        }
         going = run_round(wp, round, h, started);
     }
+    hn_wp_compare_ends(wp);
     wp->stopped = is_stopped(h);
-    wp->elapsed = wall_seconds() - started;
+    wp->elapsed = hn_wall_seconds() - started;
     return going && !wp->out_of_time;
 }

@@ -6,21 +6,26 @@
 // First every method's coarsest point, then the next finer ones, so that a budget that runs out has served all alike. Then
 // time: samples are taken in rounds over all points (ABAB, not AABB), each a batch of runs that lasts 20 ms or more, so
 // that what disturbs the machine for a while disturbs all alike. A sample whose wall time exceeds its CPU time by 5 % is
-// taken again. A point that fails, or that the budget leaves out, stays with its reason.
+// taken again. Halfway all runs are made anew: the first half of the samples and the second are two measurements, apart in
+// time and in memory, and what they disagree on is not ranked (pareto.h). A point that fails, or that the budget leaves
+// out, stays with its reason.
+//
+// A study may be one part of several (shards.h): then only its own points are run, and one more run is timed in every round, the
+// yardstick. It is the same in all parts, so that parts whose clocks ran differently are found out.
 
 #include "study/errors.h"
 #include "study/reference.h"
 
-enum { HN_WP_METHODS = 24, HN_WP_LEVELS = 10, HN_WP_SAMPLES = 9, HN_WP_ENOUGH = 3 };
-#define HN_WP_BATCH 0.02         ///< shortest sample [s]
+enum { HN_WP_METHODS = 24, HN_WP_LEVELS = 10, HN_WP_SAMPLES = 10, HN_WP_ENOUGH = 4 };
 #define HN_WP_BUSY 1.05          ///< wall over CPU time beyond which the machine is busy
 #define HN_WP_ABOVE_REFERENCE 10 ///< errors below this times the reference's own are bounds
 
 typedef enum hn_wp_state {
     HN_WP_PENDING,
     HN_WP_DONE,
-    HN_WP_FAILED, ///< the run ended early, or the method cannot serve the scene: status and reason
-    HN_WP_SKIPPED ///< left out to keep the budget: reason
+    HN_WP_FAILED,  ///< the run ended early, or the method cannot serve the scene: status and reason
+    HN_WP_SKIPPED, ///< left out to keep the budget: reason
+    HN_WP_STATES
 } hn_wp_state;
 const char *hn_wp_state_name(hn_wp_state state); ///< "done"
 
@@ -44,6 +49,7 @@ typedef struct hn_wp_point {
     int busy;                     ///< samples that were kept although the machine was busy
     double median, spread;        ///< [s]; (q75 - q25) / median
     double low, high;             ///< quartiles [s]
+    double half[2];               ///< medians of the first and the second half [s]; NaN: too few
 } hn_wp_point;
 
 typedef struct hn_wp_method {
@@ -58,7 +64,8 @@ typedef struct hn_wp_opts {
     int n_samples; ///< of time; 0: HN_WP_SAMPLES; -1: none
     double
         step; ///< the coarsest fixed step is the next below this that divides the reference's intervals [s]; 0: the scene's, times 4
-    double budget; ///< wall time [s]; 0: none
+    double budget;       ///< wall time [s]; 0: none
+    int shard, n_shards; ///< part 1..n_shards; 0, 0: the whole
 } hn_wp_opts;
 
 /// Told as things happen; any may be NULL.
@@ -67,7 +74,8 @@ typedef struct hn_wp_hooks {
     int (*stop)(void *user);                    ///< 1: stop now; what is done is kept
     void (*progress)(void *user, double share); ///< of the whole study
     void (*point)(void *user, int m, int k);    ///< a point is done or failed
-    void (*sample)(void *user, int m, int k);   ///< a sample of time was added to a point
+    void (*sample)(void *user, int m,
+                   int k); ///< a sample of time was added to a point; m = -1: to the yardstick
 } hn_wp_hooks;
 
 typedef struct hn_wp {
@@ -79,7 +87,13 @@ typedef struct hn_wp {
     hn_wp_opts opts;
     int n_methods, n_levels;
     hn_wp_method *methods;
-    hn_run **runs;   ///< n_methods x n_levels, made when a point is first run
+    int *shard;            ///< n_methods x n_levels: the part that a point belongs to
+    hn_run **runs;         ///< n_methods x n_levels, made when a point is first run
+    hn_wp_point yardstick; ///< of a part: samples of a run that is the same in all parts
+    int yardstick_method;
+    hn_run *yardstick_run;
+    double
+        clocks_apart; ///< put together from parts: the slowest yardstick over the fastest; NaN: not known; 1: one clock
     int out_of_time; ///< 1: the budget left something out
     int stopped;     ///< 1: stopped on request
     double elapsed;  ///< wall time of hn_wp_run() [s]
@@ -94,8 +108,14 @@ void hn_wp_free(hn_wp *wp); ///< NULL is legal
 /// Runs what is pending: points that are done, failed or timed already (as read from a file) are left as they are. Returns 1 when nothing is
 /// left, 0 when stopped or out of time.
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
-/// Median, quartiles and spread from the samples.
+/// 1 if the point is run here: of the whole, or of this part.
+int hn_wp_is_mine(const hn_wp *wp, int m, int k);
+/// Median, quartiles, spread and the halves' medians from the samples.
 void hn_wp_point_statistics(hn_wp_point *p);
+/// The larger of the halves' medians over the smaller; NaN while there are fewer than HN_WP_ENOUGH samples.
+double hn_wp_point_halves_apart(const hn_wp_point *p);
+/// `own` of every point, from the ends: how far each is from the next coarser one that came to its end.
+void hn_wp_compare_ends(hn_wp *wp);
 /// The spelling of one point, with its size.
 void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]);
 /// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own; otherwise it is a bound.

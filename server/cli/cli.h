@@ -35,7 +35,7 @@ typedef struct hn_args {
     hn_words given; ///< names of the options that were given, as in the table
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme, *view, *loops, *key;
+    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard;
     double time, every, t, port, width, height, seed, frame_dt;
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
@@ -103,6 +103,7 @@ hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_merge(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);

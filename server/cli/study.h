@@ -15,6 +15,11 @@ typedef struct hn_study_kind {
 
 extern const hn_study_kind hn_study_kind_work_precision, hn_study_kind_budget;
 
+struct hn_study;
+/// A work-precision study where --out, --json and --csv say, or as text; and the faults of these options, before anything is computed.
+hn_exit hn_study_write(const hn_args *args, const struct hn_study *study);
+HN_MUST_CHECK hn_status hn_study_check_output(const hn_args *args, hn_diags *diags);
+
 /// From here to the end Ctrl-C asks a study to stop instead of ending the program.
 void hn_interrupt_begin(void);
 void hn_interrupt_end(void);

@@ -186,10 +186,11 @@ class Events:
 class TapResult(unittest.TestResult):
     """Prints a TAP line for each test as it ends."""
 
-    def _say(self, test, good, reason=""):
+    def _say(self, test, good, reason="", skipped=""):
         self.number = getattr(self, "number", 0) + 1
         name = test.id().split(".", 1)[1] if test.id().startswith("__main__.") else test.id()
-        print(f"{'ok' if good else 'not ok'} {self.number} - {name.replace('_', ' ')}", flush=True)
+        name = name.replace("_", " ") + (f" # SKIP {skipped}" if skipped else "")
+        print(f"{'ok' if good else 'not ok'} {self.number} - {name}", flush=True)
         for line in reason.splitlines():
             print("# " + line, flush=True)
 
@@ -211,7 +212,7 @@ class TapResult(unittest.TestResult):
 
     def addSkip(self, test, reason):
         super().addSkip(test, reason)
-        self._say(test, True, "")
+        self._say(test, True, skipped=reason)
 
 
 class ServerCase(unittest.TestCase):

@@ -184,6 +184,14 @@ static hn_pareto front_of(written *w, double factor) {
     return p;
 }
 
+static void assert_sentences(const written *w, const hn_pareto *p, const char *expected) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_pareto_sentences(&b, &w->wp, p);
+    assert_string_equal(hn_strbuf_text(&b), expected);
+    hn_strbuf_reset(&b);
+}
+
 static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
     (void)state;
     written w;
@@ -200,12 +208,9 @@ static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
     assert_near(p.band[0].best.cost, 1, 0); // nothing cheaper was measured
     assert_int_equal(p.band[0].best.level, 0);
     assert_int_equal(p.band[5].best.level, 2);
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_pareto_sentences(&b, &w.wp, &p);
-    assert_string_equal(hn_strbuf_text(&b), "Errors of 1e-01 to 1e-06: index1@rk4, 1.0 s to 4.0 s; "
-                                            "next projection@rk4 at 2 times that.\n");
-    hn_strbuf_reset(&b);
+    assert_sentences(&w, &p,
+                     "Errors of 1e-01 to 1e-06: index1@rk4, 1.0 s to 4.0 s; next projection@rk4 at "
+                     "2 times that.\n");
 }
 
 static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
@@ -213,12 +218,112 @@ static void times_that_cannot_be_told_apart_are_not_ranked(void **state) {
     written w;
     const hn_pareto p = front_of(&w, 1.05);
     assert_int_equal(p.band[0].n_close, 1);
-    assert_int_equal(p.band[0].close[0], 1);
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_pareto_sentences(&b, &w.wp, &p);
-    assert_non_null(strstr(hn_strbuf_text(&b), "too close to rank"));
-    hn_strbuf_reset(&b);
+    assert_int_equal(p.band[0].close[0].method, 1);
+    assert_int_equal(p.band[0].ranking, HN_RANKING_CLOSE);
+    assert_sentences(&w, &p,
+                     "Errors of 1e-01 to 1e-06: not ranked by time: index1@rk4 4.0 s and "
+                     "projection@rk4 4.2 s are too close to rank; by operations: index1@rk4 and "
+                     "projection@rk4 alike, 1.0 kop to 4.0 kop.\n");
+}
+
+/// Ten samples of a clock that was disturbed: the first half of one value, the second of another.
+static void disturb(hn_wp_point *p, double first, double second) {
+    double samples[HN_WP_SAMPLES];
+    for (int i = 0; i < HN_WP_SAMPLES; i++) {
+        samples[i] = i < HN_WP_SAMPLES / 2 ? first : second;
+    }
+    set_time(p, samples, HN_WP_SAMPLES);
+}
+
+static void halves_are_the_earlier_samples_and_the_later_ones(void **state) {
+    (void)state;
+    hn_wp_point p = {0};
+    const double samples[7] = {1, 3, 2, 2, 8, 9, 7}; // four, then three
+    set_time(&p, samples, 7);
+    assert_near(p.half[0], 2, 0);
+    assert_near(p.half[1], 8, 0);
+    assert_near(hn_wp_point_halves_apart(&p), 4, 0);
+    set_time(&p, samples, HN_WP_ENOUGH - 1);
+    assert_true(isnan(hn_wp_point_halves_apart(&p)));
+}
+
+static void a_clock_that_changed_its_pace_ranks_nothing_and_counts_do(void **state) {
+    (void)state;
+    written w;
+    hn_pareto p = front_of(&w, 3);
+    assert_int_equal(p.band[5].ranking, HN_RANKING_CLEAR);
+    // the second method costs a little more operations, and the clock ran 20 % slower in its second half
+    for (int k = 0; k < 3; k++) {
+        w.methods[1].point[k].cost.ops *= 1.5;
+        disturb(&w.methods[1].point[k], 3.0 * (1 << k), 3.6 * (1 << k));
+    }
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    for (int i = 0; i < p.n_bands; i++) {
+        assert_int_equal(p.band[i].ranking, HN_RANKING_UNSTEADY);
+        assert_int_equal(p.band[i].unsteady.method, 1);
+        assert_int_equal(p.band[i].n_close,
+                         0); // it is far from the best, but by how much is not known
+    }
+    assert_sentences(
+        &w, &p,
+        "Errors of 1e-01 to 1e-06: not ranked by time: the two halves of the timing of "
+        "projection@rk4 differ by 20 %, 12 s and 14 s; by operations: index1@rk4, "
+        "1.0 kop to 4.0 kop; next projection@rk4 at 1.5 times that.\n");
+    // within 10 % a second measurement says the same
+    for (int k = 0; k < 3; k++) {
+        disturb(&w.methods[1].point[k], 3.0 * (1 << k), 3.27 * (1 << k));
+    }
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_int_equal(p.band[5].ranking, HN_RANKING_CLEAR);
+}
+
+static void the_winner_too_must_be_as_fast_the_second_time(void **state) {
+    (void)state;
+    written w;
+    hn_pareto p;
+    front_of(&w, 3);
+    disturb(&w.methods[0].point[1], 2.0, 1.7);
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    // errors of 1e-3 and 1e-5 are read off between that point and a neighbour; 1e-1 and 1e-6 need it not
+    const hn_ranking expected[6] = {HN_RANKING_CLEAR,    HN_RANKING_CLEAR,    HN_RANKING_UNSTEADY,
+                                    HN_RANKING_UNSTEADY, HN_RANKING_UNSTEADY, HN_RANKING_CLEAR};
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(p.band[i].ranking, expected[i]);
+    }
+}
+
+static void what_was_met_in_either_half_widens_what_cannot_be_told_apart(void **state) {
+    (void)state;
+    written w;
+    hn_pareto p = front_of(&w, 1.15);
+    assert_int_equal(p.band[5].ranking, HN_RANKING_CLEAR);
+    // the first half of the other overlaps the best one's time
+    for (int k = 0; k < 3; k++) {
+        disturb(&w.methods[1].point[k], 1.0 * (1 << k), 1.3 * (1 << k));
+    }
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_int_equal(p.band[5].ranking, HN_RANKING_CLOSE);
+}
+
+static void parts_whose_yardsticks_differ_are_not_ranked_by_time(void **state) {
+    (void)state;
+    written w;
+    hn_pareto p;
+    front_of(&w, 2);
+    w.wp.clocks_apart = 1.4;
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_true(p.clocks_differ);
+    assert_sentences(&w, &p,
+                     "Not ranked by time: the same run took 40 % longer in one part than in "
+                     "another.\n");
+    w.wp.clocks_apart = (double)NAN;
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_true(p.clocks_differ);
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_OPS, &p);
+    assert_false(p.clocks_differ);
+    w.wp.clocks_apart = 1.04;
+    hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
+    assert_false(p.clocks_differ);
 }
 
 static void times_taken_too_seldom_are_not_ranked(void **state) {
@@ -438,6 +543,11 @@ int main(void) {
         cmocka_unit_test(the_cheapest_method_of_each_accuracy_is_named),
         cmocka_unit_test(times_that_cannot_be_told_apart_are_not_ranked),
         cmocka_unit_test(times_taken_too_seldom_are_not_ranked),
+        cmocka_unit_test(halves_are_the_earlier_samples_and_the_later_ones),
+        cmocka_unit_test(a_clock_that_changed_its_pace_ranks_nothing_and_counts_do),
+        cmocka_unit_test(the_winner_too_must_be_as_fast_the_second_time),
+        cmocka_unit_test(what_was_met_in_either_half_widens_what_cannot_be_told_apart),
+        cmocka_unit_test(parts_whose_yardsticks_differ_are_not_ranked_by_time),
         cmocka_unit_test(what_converges_to_something_else_takes_no_part),
         cmocka_unit_test(equal_cost_is_read_off_between_the_points),
         cmocka_unit_test(counts_are_the_same_the_second_time),
