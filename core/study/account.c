@@ -278,7 +278,7 @@ static hn_status create_parts(hn_books *b) {
         status = hn_flow_create(b->info.nq, b->info.nv, b->arena, &b->flow);
     }
     b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
-    b->plain = (hn_ode){b->info.nq, b->info.nv, b, plain_rhs, NULL, NULL};
+    b->plain = (hn_ode){.n_pos = b->info.nq, .n_vel = b->info.nv, .self = b, .rhs = plain_rhs};
     return status == HN_OK && !b->saddle ? HN_ERR_MEMORY : status;
 }
 
