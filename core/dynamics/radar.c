@@ -10,6 +10,7 @@
 
 static const double LOST = 1e-8;     // ratio below which rows count as lost
 static const double RANK_TOL = 1e-8; // of the QR that answers where the factor cannot
+static const double PARTED = 0.05; // pivot, of the largest, of a row that has become independent
 static const double DENSE_BUDGET =
     2e5; // operations a look may cost on average where only the QR answers
 // prediction: a look becomes an anchor when sigma has fallen this much since the last; the lowest value of the parabola must be
@@ -174,13 +175,27 @@ static void fill_qr(hn_radar *r) {
     }
 }
 
+static double diagonal(const hn_radar *r, int k) {
+    return fabs(r->qr.a[(size_t)k * (size_t)r->nv + (size_t)k]);
+}
+
+/// Rows that depended on the others at the first look part from them a little where loops stand open: they count once they stand
+/// out by more than any gap that is not told would make them.
+static void leave_out_blur(hn_radar *r) {
+    while (r->qr.rank > r->start_rank && diagonal(r, r->qr.rank - 1) < PARTED * diagonal(r, 0)) {
+        r->qr.rank--;
+    }
+    r->start_rank = r->qr.rank > r->start_rank ? r->qr.rank : r->start_rank;
+}
+
 static void look_densely(hn_radar *r, hn_radar_info *info) {
     fill_qr(r);
     hn_qr_factor(&r->qr, r->nv, r->nc, RANK_TOL);
-    const int rank = r->qr.rank;
     if (r->first) {
-        r->start_rank = rank;
+        r->start_rank = r->qr.rank;
     }
+    leave_out_blur(r);
+    const int rank = r->qr.rank;
     hn_qr_sigma(&r->qr, &info->sigma_min, &info->sigma_max);
     if (rank < r->start_rank) {
         info->sigma_min = 0;
@@ -331,10 +346,6 @@ static hn_branches count_branches(hn_radar *r, double t, const double *q, const 
         return size == 0 ? HN_BRANCHES_UNKNOWN : HN_BRANCHES_CUSP;
     }
     return disc > 0 ? HN_BRANCHES_CROSS : HN_BRANCHES_NONE;
-}
-
-static double diagonal(const hn_radar *r, int k) {
-    return fabs(r->qr.a[(size_t)k * (size_t)r->nv + (size_t)k]);
 }
 
 /// The rows with the largest parts in the combination in y.

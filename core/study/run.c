@@ -70,7 +70,7 @@ static hn_status fail(hn_run *run, hn_status status) {
     }
     run->summary.state = HN_RUN_FAILED;
     run->summary.status = status;
-    if (status == HN_ERR_DIVERGED) {
+    if (status == HN_ERR_DIVERGED && !run->summary.reason[0]) {
         snprintf(run->summary.reason, sizeof run->summary.reason,
                  "after t = %.6g s the state stopped being finite or grew beyond %g", run->now.t,
                  STATE_BOUND);
@@ -343,7 +343,7 @@ static hn_status step_until(hn_run *run, double t_end, int one) {
         if (status == HN_OK && watch_is_due(run)) {
             stop_clock(run);
             ticking = 0;
-            hn_run_watch_look(run);
+            status = hn_run_watch_look(run);
         }
     } while (status == HN_OK && !one);
     if (ticking) {

@@ -35,7 +35,8 @@ typedef enum hn_run_state {
     X(HN_INCIDENT_MULTIPLIERS, "multipliers-grow")        \
     X(HN_INCIDENT_SOLVER, "solver-fallback")              \
     X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")             \
-    X(HN_INCIDENT_NEWTON_FAILED, "newton-failed")
+    X(HN_INCIDENT_NEWTON_FAILED, "newton-failed")         \
+    X(HN_INCIDENT_ENERGY_DRIFT, "energy-drift")
 
 typedef enum hn_incident_code {
 #define HN_INCIDENT_ENUM(code, name) code,
@@ -58,14 +59,20 @@ typedef struct hn_incident {
 enum { HN_RUN_MAX_INCIDENTS = 64 };
 
 #define HN_RUN_WARN_GAP 1e-3   ///< gap / characteristic length that is told
+/// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so with pins half of it apart they
+/// point up to 30 degrees away from where they would; what is computed with them is no motion of this mechanism.
+#define HN_RUN_LOST_GAP 0.5
 #define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is told as near-singular
 #define HN_RUN_WARN_ENERGY \
     1e-2 ///< energy change in one step / (T + range of V), conservative scenes only
+#define HN_RUN_WARN_DRIFT \
+    1e-2 ///< energy change since the start / (largest T + range of V), conservative scenes only
 #define HN_RUN_WARN_CONDITION \
     1e8 ///< of the equilibrated K: half the digits of the multipliers are gone
 #define HN_RUN_LOST_CONDITION 1e13  ///< no digit is left
 #define HN_RUN_WARN_MULTIPLIERS 1e3 ///< growth against the largest seen away from singular poses
 #define HN_RUN_WARN_TURN 0.5 ///< [rad] between the direction of motion and its smooth continuation
+#define HN_RUN_WARN_JUMP 0.5 ///< part of a step's motion that its speeds do not explain
 #define HN_RUN_WARN_MODE \
     0.1 ///< change of the assembly-mode value that a jump to the other branch makes at least
 

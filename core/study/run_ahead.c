@@ -28,9 +28,10 @@ hn_status hn_run_ahead_create(hn_run *run) {
     hn_run_ahead *a = ahead_of(run);
     hn_run_heading *headings[] = {&a->older, &a->last, &a->now};
     for (int i = 0; i < 3; i++) {
-        headings[i]->e = hn_arena_doubles(run->arena, (size_t)run->info.nv);
+        headings[i]->e = hn_arena_doubles(run->arena, (size_t)run->info.nv + 1);
     }
     a->entered = hn_arena_doubles(run->arena, (size_t)run->info.nq);
+    a->smooth = hn_arena_doubles(run->arena, (size_t)run->info.nv + 1);
     return hn_arena_failed(run->arena) ? HN_ERR_MEMORY
                                        : hn_radar_create(run->sys, run->arena, &a->radar);
 }
@@ -44,7 +45,8 @@ void hn_run_ahead_start(hn_run *run) {
     hn_radar_reset(a->radar);
     a->info = (hn_radar_info){.ratio = 1, .ahead = HUGE_VAL};
     a->largest = a->multiplier = 0;
-    a->n_headings = a->passing = a->inside = 0;
+    a->n_headings = a->passing = a->inside = a->driven = 0;
+    a->fastest = 0;
     a->fallbacks = 0;
 }
 
@@ -108,23 +110,42 @@ void hn_run_describe_pose(hn_run *run, hn_incident *i) {
 }
 
 // --- the heading ----------------------------------------------------------------------------------------------------
+// With one freedom the direction of motion is a matter of the pose alone, and smooth on a branch; it is a line, since a motion
+// may turn back. A mechanism without freedoms that is driven has its speeds by pose and time, whose direction belongs to it:
+// there the heading has time as one more entry, as long as the fastest speeds seen, and it is an arrow.
 
-/// Angle between two lines: a motion that turns back keeps its line.
-static double angle_between(int n, const double *x, const double *y) {
-    const double c = fabs(hn_dot(n, x, y)) / (hn_norm2(n, x) * hn_norm2(n, y));
-    return acos(fmin(1, c));
+static int freedoms(const hn_run *run) {
+    return run->info.nv - run->watch.start_rank;
 }
 
-static void take_heading(hn_run *run, hn_run_heading *h) {
-    const double *scale = hn_radar_scale(ahead_of(run)->radar);
+static int has_heading(hn_run *run) {
+    hn_run_ahead *a = ahead_of(run);
+    a->driven |= hn_norm_max(run->info.nc, hn_eval_get(run->watch.eval, HN_TERM_PHI_T)) > 0;
+    return freedoms(run) == (a->driven ? 0 : 1);
+}
+
+static double angle_between(const hn_run *run, const double *x, const double *y) {
+    const int n = run->info.nv + 1;
+    const double c = hn_dot(n, x, y) / (hn_norm2(n, x) * hn_norm2(n, y));
+    return acos(fmin(1, fmax(-1, c)));
+}
+
+/// 0 when nothing moves.
+static int take_heading(hn_run *run, hn_run_heading *h) {
+    hn_run_ahead *a = ahead_of(run);
+    const int n = run->info.nv;
+    const double *scale = hn_radar_scale(a->radar);
     h->t = run->now.t;
-    for (int i = 0; i < run->info.nv; i++) {
+    for (int i = 0; i < n; i++) {
         h->e[i] = run->now.v[i] / scale[i];
     }
-    const double size = hn_norm2(run->info.nv, h->e);
-    for (int i = 0; i < run->info.nv && size > 0; i++) {
+    a->fastest = fmax(a->fastest, hn_norm2(n, h->e));
+    h->e[n] = freedoms(run) == 0 ? a->fastest : 0;
+    const double size = hn_norm2(n + 1, h->e);
+    for (int i = 0; i <= n && size > 0; i++) {
         h->e[i] /= size;
     }
+    return size > 0;
 }
 
 static void align(int n, const double *with, double *e) {
@@ -171,10 +192,6 @@ static void tell_branch(hn_run *run, double angle) {
     }
 }
 
-static int has_one_freedom(const hn_run *run) {
-    return run->info.nv - run->watch.start_rank == 1 && !run->info.has_time;
-}
-
 /// How far the motion since `entered` would have opened a loop with one of its coordinates alone, over the length.
 static double wandered(hn_run *run) {
     const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
@@ -194,7 +211,7 @@ static double wandered(hn_run *run) {
 // into a motion of which they are all that there is: some of its links folded onto each other.
 static void look_at_stay(hn_run *run) {
     hn_run_ahead *a = ahead_of(run);
-    if (!has_one_freedom(run) || !(a->info.sigma_min < INSIDE * a->largest)) {
+    if (a->driven || freedoms(run) != 1 || !(a->info.sigma_min < INSIDE * a->largest)) {
         a->inside = 0;
         return;
     }
@@ -219,24 +236,29 @@ static void look_at_stay(hn_run *run) {
     }
 }
 
-// With one freedom the direction of motion is a matter of the pose alone, and smooth on a branch.
+/// Whether the heading may be compared with its continuation: past a singular pose, or when the step itself looks like a jump.
+static int is_suspect(const hn_run *run) {
+    const hn_run_ahead *a = &run->watch.ahead;
+    return a->passing || a->info.sigma_min < RANGE * a->largest ||
+           hn_run_unexplained_motion(run) > HN_RUN_WARN_JUMP;
+}
+
 static void look_at_heading(hn_run *run) {
     hn_run_ahead *a = ahead_of(run);
-    const int n = run->info.nv;
-    double *smooth = run->watch.a;
-    if (!has_one_freedom(run) || a->info.sigma_min < CLOSE * a->largest) {
+    const int n = run->info.nv + 1;
+    if (!has_heading(run) || a->info.sigma_min < CLOSE * a->largest ||
+        !take_heading(run, &a->now)) {
         return;
     }
-    take_heading(run, &a->now);
-    if (hn_norm2(n, a->now.e) == 0) {
-        return;
-    }
-    if (a->n_headings > 0) {
+    if (a->n_headings > 0 && freedoms(run) == 1) {
         align(n, a->last.e, a->now.e);
     }
-    if (a->n_headings == 2 && (a->passing || a->info.sigma_min < RANGE * a->largest)) {
-        const double change = continue_heading(a, n, smooth);
-        const double angle = change < CHANGE ? angle_between(n, smooth, a->now.e) : 0;
+    if (a->n_headings == 2 && is_suspect(run)) {
+        const double change = continue_heading(a, n, a->smooth);
+        if (freedoms(run) == 1) {
+            align(n, a->now.e, a->smooth);
+        }
+        const double angle = change < CHANGE ? angle_between(run, a->smooth, a->now.e) : 0;
         if (angle > HN_RUN_WARN_TURN) {
             tell_branch(run, angle);
         } else {

@@ -26,7 +26,7 @@ typedef struct hn_run_state_at {
 /// The direction of motion, in speeds scaled by the masses and of unit length.
 typedef struct hn_run_heading {
     double t;
-    double *e; ///< nv
+    double *e; ///< nv, and time where the mechanism is driven and has no freedom of its own, else 0
 } hn_run_heading;
 
 /// What the watch knows of singular poses on the way.
@@ -36,6 +36,9 @@ typedef struct hn_run_ahead {
     double largest;                  ///< sigma_min so far
     hn_run_heading older, last, now; ///< the first two away from singular poses
     int n_headings;
+    double fastest;      ///< largest scaled speeds so far
+    double *smooth;      ///< nv + 1: a heading continued
+    int driven;          ///< the rows move with time
     double multiplier;   ///< largest |lambda| away from singular poses
     long long fallbacks; ///< of the method, as told so far
     double *entered;     ///< nq: where J all but lost rank, as long as it stays so
@@ -53,8 +56,8 @@ typedef struct hn_run_watch_state {
     double *a, *lambda, *speed_gap;
     hn_run_ahead ahead;
     double *row_size; ///< nc: largest length of each row of J so far
-    double start_energy, last_energy, v_min, v_max;
-    double last_mode;
+    double start_energy, last_energy, v_min, v_max, t_max; ///< t_max: largest kinetic energy so far
+    double *modes, *last_modes; ///< per loop
     int start_rank;
     int conservative;
     hn_limits *limits;           ///< coordinates with limits
@@ -132,8 +135,11 @@ double hn_run_step_short_of(double from, double to);
 void hn_run_look_at_limits(hn_run *run);
 /// Forgets the past and looks at the start.
 void hn_run_watch_start(hn_run *run);
-/// Looks at the state the run has reached.
-void hn_run_watch_look(hn_run *run);
+/// Looks at the state the run has reached. Fails with HN_ERR_DIVERGED, the reason in the summary, when what has been reached is no state
+/// of the mechanism any more (HN_RUN_LOST_GAP).
+HN_MUST_CHECK hn_status hn_run_watch_look(hn_run *run);
+/// How much of the last step's motion its speeds do not explain: 0 for smooth motion, about 1 or more for a jump.
+double hn_run_unexplained_motion(const hn_run *run);
 /// Shortest row of J against the largest that row has been, at the state last measured.
 double hn_run_shortest_row(const hn_run *run);
 /// Tells when a condition begins to hold, not at every step while it does; `hn_run_over` when it ceases. NULL: known already, or

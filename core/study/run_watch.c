@@ -131,6 +131,12 @@ hn_status hn_run_watch_create(hn_run *run) {
     if (status == HN_OK) {
         status = hn_mode_watch_create(run->sys, run->arena, &w->mode);
     }
+    if (status == HN_OK) {
+        const size_t loops = (size_t)hn_mode_watch_count(w->mode);
+        w->modes = hn_arena_doubles(run->arena, loops);
+        w->last_modes = hn_arena_doubles(run->arena, loops);
+        status = hn_arena_failed(run->arena) ? HN_ERR_MEMORY : HN_OK;
+    }
     return status == HN_OK ? hn_run_ahead_create(run) : status;
 }
 
@@ -180,20 +186,7 @@ static void look_at_gap(hn_run *run, double gap) {
     }
 }
 
-static void look_at_energy(hn_run *run, double kinetic, double potential) {
-    hn_run_watch_state *w = &run->watch;
-    const double energy = kinetic + potential, change = energy - w->last_energy;
-    w->v_min = fmin(w->v_min, potential);
-    w->v_max = fmax(w->v_max, potential);
-    w->last_energy = energy;
-    const double limit = HN_RUN_WARN_ENERGY * (kinetic + (w->v_max - w->v_min)) * w->every;
-    if (!w->conservative || !(fabs(change) > limit) || limit == 0) {
-        hn_run_over(run, HN_INCIDENT_ENERGY_JUMP);
-        return;
-    }
-    hn_incident *i =
-        hn_run_tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
-                    "the energy changed by %.3g J in one step, more than %.3g J", change, limit);
+static void remedies_of_energy(hn_run *run, hn_incident *i) {
     if (!i) {
         return;
     }
@@ -201,6 +194,39 @@ static void look_at_energy(hn_run *run, double kinetic, double potential) {
     if (run->spec.formulation->model_error) {
         hn_run_remedy_formulation(run, "nullspace", i->remedy[1]);
     }
+}
+
+// little by little, a method can lose all the energy there is without a jump
+static void look_at_drift(hn_run *run, double change) {
+    const hn_run_watch_state *w = &run->watch;
+    const double limit = HN_RUN_WARN_DRIFT * (w->t_max + (w->v_max - w->v_min));
+    if (!w->conservative || !(fabs(change) > limit) || limit == 0) {
+        hn_run_over(run, HN_INCIDENT_ENERGY_DRIFT);
+        return;
+    }
+    remedies_of_energy(run,
+                       hn_run_tell(run, HN_INCIDENT_ENERGY_DRIFT, "energy change", change, limit,
+                                   "the energy has changed by %.3g J since the start, more than "
+                                   "%.3g J, and no load does work",
+                                   change, limit));
+}
+
+static void look_at_energy(hn_run *run, double kinetic, double potential) {
+    hn_run_watch_state *w = &run->watch;
+    const double energy = kinetic + potential, change = energy - w->last_energy;
+    w->v_min = fmin(w->v_min, potential);
+    w->v_max = fmax(w->v_max, potential);
+    w->t_max = fmax(w->t_max, kinetic);
+    w->last_energy = energy;
+    look_at_drift(run, energy - w->start_energy);
+    const double limit = HN_RUN_WARN_ENERGY * (kinetic + (w->v_max - w->v_min)) * w->every;
+    if (!w->conservative || !(fabs(change) > limit) || limit == 0) {
+        hn_run_over(run, HN_INCIDENT_ENERGY_JUMP);
+        return;
+    }
+    remedies_of_energy(
+        run, hn_run_tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
+                         "the energy changed by %.3g J in one step, more than %.3g J", change, limit));
 }
 
 // Where all links of a loop lie on one line a whole row dies away: the pivots of K, each measured against its own row, do not
@@ -232,10 +258,10 @@ static void look_at_rank(hn_run *run, int at_start) {
     }
     const hn_status status =
         hn_run_accelerations(run, run->now.t, run->now.q, run->now.v, w->a, w->lambda, &info);
-    hn_run_ahead_look(run, status == HN_OK ? w->lambda : NULL);
     if (at_start) {
         w->start_rank = status == HN_OK ? info.rank : run->info.nc;
     }
+    hn_run_ahead_look(run, status == HN_OK ? w->lambda : NULL);
     if (status == HN_OK && info.rank < (at_start ? run->info.nc : w->start_rank)) {
         hn_incident *i =
             hn_run_tell(run, HN_INCIDENT_RANK_LOSS, "rank of J", info.rank, run->info.nc,
@@ -272,8 +298,7 @@ static void look_at_rank(hn_run *run, int at_start) {
     }
 }
 
-// How much of the last step's motion its speeds do not explain: 0 for smooth motion, about 1 or more for a jump.
-static double unexplained_motion(const hn_run *run) {
+double hn_run_unexplained_motion(const hn_run *run) {
     const double half = 0.5 * (run->now.t - run->before.t);
     double moved = 0, rest = 0, *step = run->watch.a;
     hn_system_difference(run->sys, run->before.q, run->now.q, step);
@@ -284,17 +309,32 @@ static double unexplained_motion(const hn_run *run) {
     return moved > 0 ? rest / moved : 0;
 }
 
+/// The loop whose mode changed its sign by most since the last look, -1: none changed it by more than what is told.
+static int find_flipped_loop(const hn_run_watch_state *w) {
+    double most = HN_RUN_WARN_MODE;
+    int loop = -1;
+    for (int k = 0; k < hn_mode_watch_count(w->mode); k++) {
+        const double jump = fabs(w->modes[k] - w->last_modes[k]);
+        if (w->modes[k] * w->last_modes[k] < 0 && jump > most) {
+            most = jump;
+            loop = k;
+        }
+    }
+    return loop;
+}
+
 // A change of sign in smooth motion is a dead point that was passed; with a jump it is the other branch.
 static void look_at_mode(hn_run *run) {
     hn_run_watch_state *w = &run->watch;
-    const double mode = hn_mode_watch_value(w->mode, run->now.t, run->now.q);
-    const double jump = fabs(mode - w->last_mode), limit = HN_RUN_WARN_MODE;
-    const int flipped = mode * w->last_mode < 0 && jump > limit && unexplained_motion(run) > 0.5;
-    if (flipped) {
+    hn_mode_watch_values(w->mode, run->now.t, run->now.q, w->modes);
+    const int loop = find_flipped_loop(w);
+    const int named = !hn_system_scene(run->sys)->is_lagrangian; // formulas share their loops
+    if (loop >= 0 && hn_run_unexplained_motion(run) > HN_RUN_WARN_JUMP) {
         hn_incident *i = hn_run_tell(
-            run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", mode, limit,
-            "the loop went from one assembly mode to the other in one step (%.2g to %.2g)",
-            w->last_mode, mode);
+            run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
+            "the loop%s%s went from one assembly mode to the other in one step (%.2g to %.2g)",
+            named ? " " : "", named ? hn_system_loop_name(run->sys, loop) : "", w->last_modes[loop],
+            w->modes[loop]);
         if (i) {
             hn_run_remedy_finer(run, 0.25, i->remedy[0]);
             hn_run_remedy_formulation(run, "projection", i->remedy[1]);
@@ -302,7 +342,22 @@ static void look_at_mode(hn_run *run) {
     } else {
         hn_run_over(run, HN_INCIDENT_BRANCH_FLIP);
     }
-    w->last_mode = mode;
+    double *const seen = w->last_modes;
+    w->last_modes = w->modes;
+    w->modes = seen;
+}
+
+/// What is left of a mechanism whose loops stand this far open is another one.
+static hn_status judge_gap(hn_run *run, double gap) {
+    const double limit = HN_RUN_LOST_GAP * run->length;
+    if (!(gap > limit)) {
+        return HN_OK;
+    }
+    snprintf(run->summary.reason, sizeof run->summary.reason,
+             "at t = %.6g s the loops stand open by %.3g m, more than half the characteristic length "
+             "of %.3g m: what moves there is no longer this mechanism",
+             run->now.t, gap, run->length);
+    return HN_ERR_DIVERGED;
 }
 
 void hn_run_watch_start(hn_run *run) {
@@ -316,7 +371,8 @@ void hn_run_watch_start(hn_run *run) {
     hn_run_measure(run, run->now.t, run->now.q, run->now.v, &gap, &speed_gap, &kinetic, &potential);
     w->start_energy = w->last_energy = kinetic + potential;
     w->v_min = w->v_max = potential;
-    w->last_mode = hn_mode_watch_value(w->mode, run->now.t, run->now.q);
+    w->t_max = kinetic;
+    hn_mode_watch_values(w->mode, run->now.t, run->now.q, w->last_modes);
     run->summary.worst_gap = gap;
     run->summary.worst_velocity_gap = speed_gap;
     look_at_rank(run, 1);
@@ -324,7 +380,7 @@ void hn_run_watch_start(hn_run *run) {
     hn_run_look_at_limits(run);
 }
 
-void hn_run_watch_look(hn_run *run) {
+hn_status hn_run_watch_look(hn_run *run) {
     double gap = 0, speed_gap = 0, kinetic = 0, potential = 0;
     hn_run_summary *s = &run->summary;
     run->watch.since = 0;
@@ -338,6 +394,7 @@ void hn_run_watch_look(hn_run *run) {
     look_at_rank(run, 0);
     look_at_mode(run);
     hn_run_look_at_limits(run);
+    return judge_gap(run, gap);
 }
 
 // --- what the run itself tells ----------------------------------------------------------------------------

@@ -23,6 +23,10 @@ export const INCIDENTS = {
     name: "energy jumped",
     rule: "A closed mechanism without loads keeps its energy. A jump means the step misses the motion, closed or not.",
   },
+  "energy-drift": {
+    name: "energy drifted",
+    rule: "A closed mechanism without loads keeps its energy. What a method loses or gains little by little is its own error, and the motion slows or speeds up with it.",
+  },
   "chart-change": {
     name: "changed its coordinates",
     rule: "Minimal coordinates serve one part of the motion. At a turning point of the chosen one another must take over.",
