@@ -34,6 +34,7 @@ struct hn_accel {
     const int *M_row, *M_col, *J_row, *J_col;
     hn_kkt *kkt;
     double *gamma, *dense_a, *dense_lambda;
+    double *row_unit; ///< nc: the characteristic length for rows in metres, else 1
     // refinement of what the tape's order gives
     hn_factor *factor;
     double *rest, *step; ///< nv + nc each
@@ -126,8 +127,12 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     s->gamma = hn_arena_doubles(arena, (size_t)s->nc);
     s->dense_a = hn_arena_doubles(arena, (size_t)s->nv);
     s->dense_lambda = hn_arena_doubles(arena, (size_t)s->nc);
+    s->row_unit = hn_arena_doubles(arena, (size_t)s->nc);
     if (!s->kkt || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < s->nc; i++) {
+        s->row_unit[i] = hn_system_row_is_length(sys, i) ? hn_system_length(sys) : 1;
     }
     hn_status status = hn_eval_create(sys, terms, arena, &s->terms);
     if (status != HN_OK) {
@@ -242,13 +247,13 @@ static double stabilise(hn_accel *s, const double *v, double alpha, double beta)
     return gap;
 }
 
-/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the pivots' blur.
+/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the relative gap of the loops.
 static double eval_terms(hn_accel *s, double t, const double *q, const double *v, double alpha,
                          double beta) {
     hn_eval_run(s->terms, t, q, v);
     s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
-    return hn_blur_of(stabilise(s, v, alpha, beta));
+    return stabilise(s, v, alpha, beta);
 }
 
 // refinement ---------------------------------------------------------------------------------------------------------
@@ -368,18 +373,20 @@ static double dense_ops(const hn_accel *s) {
     return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
 }
 
-static hn_kkt_opts dense_opts(double blur, int want_cond) {
+/// A row that is short at a pose says little there, also where the loops are closed to rounding: stretched, rounding is all it says.
+static hn_kkt_opts dense_opts(const hn_accel *s, double gap, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
-    opts.row_floor = blur > opts.rank_tol ? HN_BLUR_ROW_FLOOR : 0;
-    opts.rank_tol = fmax(opts.rank_tol, blur);
-    opts.residual_tol = fmax(opts.residual_tol, blur);
+    opts.row_floor = HN_BLUR_ROW_FLOOR;
+    opts.row_unit = s->row_unit;
+    opts.rank_tol = fmax(opts.rank_tol, hn_blur_of(gap));
+    opts.residual_tol = fmax(opts.residual_tol, hn_blur_of_sides(gap));
     opts.want_cond = want_cond;
     return opts;
 }
 
-static hn_status solve_dense(hn_accel *s, hn_solver solver, double blur, double *a, double *lambda,
+static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *a, double *lambda,
                              hn_accel_info *info) {
-    hn_kkt_opts opts = dense_opts(blur, 0);
+    hn_kkt_opts opts = dense_opts(s, gap, 0);
     if (info->row_ratio < HN_ROW_LOST) {
         // what speeds and pose leave of such a row is rounding and the error of the step
         opts.row_floor = 1;
@@ -446,7 +453,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
         s->fallbacks++;
         return HN_ERR_DIVERGED;
     }
-    const double blur = eval_terms(s, t, q, v, alpha, beta);
+    const double gap = eval_terms(s, t, q, v, alpha, beta);
     if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
         return HN_OK;
     }
@@ -456,7 +463,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     }
     info->fallback = solver == HN_SOLVER_AUTO;
     s->fallbacks += info->fallback;
-    return solve_dense(s, solver == HN_SOLVER_AUTO ? HN_SOLVER_LEAST_NORM : solver, blur, a, lambda,
+    return solve_dense(s, solver == HN_SOLVER_AUTO ? HN_SOLVER_LEAST_NORM : solver, gap, a, lambda,
                        info);
 }
 
@@ -467,7 +474,7 @@ hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const doubl
     if (!all_finite(s->in.x, s->in.n)) {
         return HN_ERR_DIVERGED;
     }
-    const hn_kkt_opts opts = dense_opts(eval_terms(s, t, q, v, 0, 0), 1);
+    const hn_kkt_opts opts = dense_opts(s, eval_terms(s, t, q, v, 0, 0), 1);
     const hn_status status =
         hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
                      hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,

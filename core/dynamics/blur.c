@@ -10,6 +10,10 @@ double hn_blur_of(double gap) {
     return fmin(BLUR * gap, BLUR_MAX);
 }
 
+double hn_blur_of_sides(double gap) {
+    return fmin(BLUR * gap, 1);
+}
+
 double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *v, double *rate,
                    double *size) {
     const hn_system_info info = hn_system_get_info(sys);

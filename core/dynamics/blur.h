@@ -23,5 +23,8 @@ double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *
                    double *size);
 /// The size, of unit rows, below which pivots of J are blur where the loops stand open by `gap` (relative).
 double hn_blur_of(double gap);
+/// How much dependent rows may disagree there about the accelerations, relative to these: what is more than the gap explains is a
+/// contradiction of the scene.
+double hn_blur_of_sides(double gap);
 
 #endif

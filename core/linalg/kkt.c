@@ -270,6 +270,7 @@ static hn_status solve_by_saddle(hn_kkt *k, const double *M, const double *J, co
     opts.rank_tol = k->opts.rank_tol;
     opts.residual_tol = k->opts.residual_tol;
     opts.row_floor = k->opts.row_floor;
+    opts.row_unit = k->opts.row_unit;
     opts.max_refine = k->opts.max_refine;
     opts.want_cond = k->opts.want_cond;
     hn_status status = hn_saddle_factor(k->nv, k->nc, M, J, &saddle, &opts, k->saddle);

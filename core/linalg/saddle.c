@@ -103,6 +103,10 @@ static hn_status scale_coordinates(hn_saddle_ws *ws) {
     return HN_OK;
 }
 
+static double row_unit(const hn_saddle_ws *ws, int i) {
+    return ws->opts.row_unit ? ws->opts.row_unit[i] : 1;
+}
+
 /// R makes every row of J D of unit length, short ones less (row_floor); qr.a receives (R J D)' (whose columns are the rows of J).
 static void scale_rows(hn_saddle_ws *ws) {
     int nv = ws->nv;
@@ -114,10 +118,10 @@ static void scale_rows(hn_saddle_ws *ws) {
             col[j] = row[j] * ws->d[j];
         }
         ws->r[i] = hn_norm2(nv, col);
-        longest = fmax(longest, ws->r[i]);
+        longest = fmax(longest, ws->r[i] / row_unit(ws, i));
     }
     for (int i = 0; i < ws->nc; i++) {
-        double norm = fmax(ws->r[i], ws->opts.row_floor * longest);
+        double norm = fmax(ws->r[i], ws->opts.row_floor * longest * row_unit(ws, i));
         ws->r[i] = norm > 0 ? 1 / norm : 1;
         for (int j = 0; j < nv; j++) {
             ws->qr.a[(size_t)i * nv + j] *= ws->r[i];

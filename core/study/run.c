@@ -78,6 +78,9 @@ static hn_status fail(hn_run *run, hn_status status) {
         snprintf(run->summary.reason, sizeof run->summary.reason, "%s",
                  why ? why : hn_status_text(status));
     }
+    if (status == HN_ERR_NO_CONVERGENCE || status == HN_ERR_INCONSISTENT) {
+        hn_run_explain_pose(run);
+    }
     hn_run_tell_failure(run, status);
     return status;
 }

@@ -55,6 +55,18 @@ int hn_run_is_near_singular(const hn_run *run) {
     return run->info.nc > 0 && a->info.sigma_min < CLOSE * a->largest;
 }
 
+void hn_run_explain_pose(hn_run *run) {
+    const hn_run_ahead *a = ahead_of(run);
+    char *reason = run->summary.reason;
+    const size_t used = strlen(reason);
+    if (run->info.nc > 0 && a->info.sigma_min < INSIDE * a->largest) {
+        snprintf(reason + used, sizeof run->summary.reason - used,
+                 "; J all but loses rank there (sigma_min %.2g of %.2g), and what the step has to "
+                 "solve with it",
+                 a->info.sigma_min, a->largest);
+    }
+}
+
 // --- what waits there -----------------------------------------------------------------------------------------------
 
 static void add(hn_incident *i, const char *format, ...) HN_PRINTF(2, 3);
@@ -181,10 +193,14 @@ static void finish_passing(hn_run *run, double angle) {
 }
 
 static void tell_branch(hn_run *run, double angle) {
+    const hn_run_ahead *a = &run->watch.ahead;
+    const int passed = a->passing || a->info.sigma_min < RANGE * a->largest;
     hn_incident *i = hn_run_tell(
         run, HN_INCIDENT_BRANCH_FLIP, "turn", angle, HN_RUN_WARN_TURN,
-        "the run came out of a singular pose on another branch: its direction turned by %.2g rad "
-        "from the smooth continuation",
+        passed ? "the run came out of a singular pose on another branch: its direction turned by "
+                 "%.2g rad from the smooth continuation"
+               : "the last step jumped to another branch: its direction turned by %.2g rad from the "
+                 "smooth continuation, and its speeds do not explain how far it went",
         angle);
     if (i) {
         hn_run_remedy_robust(run, i->remedy[0]);

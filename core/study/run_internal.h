@@ -162,6 +162,8 @@ void hn_run_ahead_start(hn_run *run);
 void hn_run_ahead_look(hn_run *run, const double *lambda);
 /// 1 when the present state is close to a singular pose.
 int hn_run_is_near_singular(const hn_run *run);
+/// Adds to the reason of a failure that the pose is singular, where it is.
+void hn_run_explain_pose(hn_run *run);
 /// Adds to the message of incident i what waits at the pose: rows, bodies, freedoms, branches.
 void hn_run_describe_pose(hn_run *run, hn_incident *i);
 /// Tells a failure as an incident.

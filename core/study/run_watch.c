@@ -391,8 +391,8 @@ hn_status hn_run_watch_look(hn_run *run) {
     s->worst_energy_change = fmax(s->worst_energy_change, change);
     look_at_gap(run, gap);
     look_at_energy(run, kinetic, potential);
-    look_at_rank(run, 0);
     look_at_mode(run);
+    look_at_rank(run, 0);
     hn_run_look_at_limits(run);
     return judge_gap(run, gap);
 }
@@ -450,11 +450,13 @@ void hn_run_tell_step_limit(hn_run *run) {
     snprintf(i->remedy[1], sizeof i->remedy[1], "h=%.3g", 0.1 * limit / rate);
 }
 
-// who failed to converge: an integrator that takes the constraints itself has no projection behind it
+// who failed to converge: where the integrator gives the reason it was its own iteration, else the formulation's projection
 static hn_incident_code code_of_iteration(const hn_run *run) {
-    return hn_method_form(run->spec.formulation, run->spec.stepper) == HN_FORM_ODE
-               ? HN_INCIDENT_PROJECTION_FAILED
-               : HN_INCIDENT_NEWTON_FAILED;
+    const hn_stepper *stepper = run->spec.stepper;
+    const int is_ode = hn_method_form(run->spec.formulation, stepper) == HN_FORM_ODE;
+    const int stepper_says =
+        run->main.stepper && is_ode && stepper->why && stepper->why(run->main.stepper);
+    return is_ode && !stepper_says ? HN_INCIDENT_PROJECTION_FAILED : HN_INCIDENT_NEWTON_FAILED;
 }
 
 static hn_incident_code code_of(const hn_run *run, hn_status status) {
@@ -498,6 +500,14 @@ static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident 
     case HN_INCIDENT_STEP_UNDERFLOW:
         hn_run_remedy_robust(run, i->remedy[0]);
         hn_run_remedy_finer(run, 100, i->remedy[1]);
+        break;
+    case HN_INCIDENT_NEWTON_FAILED:
+    case HN_INCIDENT_PROJECTION_FAILED:
+        if (hn_run_is_near_singular(run)) {
+            hn_run_remedy_robust(run, i->remedy[0]);
+            break;
+        }
+        hn_run_remedy_finer(run, 0.25, i->remedy[0]);
         break;
     default:
         hn_run_remedy_finer(run, 0.25, i->remedy[0]);

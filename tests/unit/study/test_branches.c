@@ -32,8 +32,8 @@ static void a_jump_to_the_other_assembly_mode_is_told_with_a_ball_in_the_loop(vo
         hn_model m;
         hn_model_open_closed(&m, scenes[k], NULL);
         assert_int_equal(m.info.nq - m.info.nv, k);
-        // a step of a turn's eighth by Euler's method throws the coupler across
-        hn_run *coarse = hn_motion_start(&m, "baumgarte:alpha=5,beta=5@euler:h=0.15");
+        // a step of a turn's tenth by Euler's method throws the coupler across
+        hn_run *coarse = hn_motion_start(&m, "baumgarte:alpha=8,beta=8@euler:h=0.12");
         (void)hn_run_advance(coarse, 2.1);
         assert_non_null(find(coarse, HN_INCIDENT_BRANCH_FLIP, "assembly mode"));
         hn_run_free(coarse);
