@@ -10,7 +10,7 @@
 
 static const double LOST = 1e-8;     // ratio below which rows count as lost
 static const double RANK_TOL = 1e-8; // of the QR that answers where the factor cannot
-static const double PARTED = 0.05; // pivot, of the largest, of a row that has become independent
+static const double PARTED = 0.05;   // pivot, of the largest, of a row that has become independent
 static const double DENSE_BUDGET =
     2e5; // operations a look may cost on average where only the QR answers
 // prediction: a look becomes an anchor when sigma has fallen this much since the last; the lowest value of the parabola must be

@@ -30,9 +30,9 @@ typedef struct hn_saddle_opts {
     double
         row_floor; ///< rows of J D shorter than this times the longest are not brought to unit length but left as small as they are against it [-]; 0
     const double *row_unit; ///< nc: units in which those lengths are compared, borrowed; NULL: 1
-    double refine_tol; ///< refine until the correction is below this * the solution [-]; 2 eps
-    int max_refine;    ///< 4; 0 switches refinement off
-    int want_cond;     ///< estimate the condition number too: about five more solves
+    double refine_tol;      ///< refine until the correction is below this * the solution [-]; 2 eps
+    int max_refine;         ///< 4; 0 switches refinement off
+    int want_cond;          ///< estimate the condition number too: about five more solves
 } hn_saddle_opts;
 
 /// What happened. rank and pivot_ratio are set unless an input was not finite or M has a negative diagonal entry.

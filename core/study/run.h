@@ -58,7 +58,7 @@ typedef struct hn_incident {
 } hn_incident;
 enum { HN_RUN_MAX_INCIDENTS = 64 };
 
-#define HN_RUN_WARN_GAP 1e-3   ///< gap / characteristic length that is told
+#define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is told
 /// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so with pins half of it apart they
 /// point up to 30 degrees away from where they would; what is computed with them is no motion of this mechanism.
 #define HN_RUN_LOST_GAP 0.5

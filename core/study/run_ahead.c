@@ -197,10 +197,11 @@ static void tell_branch(hn_run *run, double angle) {
     const int passed = a->passing || a->info.sigma_min < RANGE * a->largest;
     hn_incident *i = hn_run_tell(
         run, HN_INCIDENT_BRANCH_FLIP, "turn", angle, HN_RUN_WARN_TURN,
-        passed ? "the run came out of a singular pose on another branch: its direction turned by "
-                 "%.2g rad from the smooth continuation"
-               : "the last step jumped to another branch: its direction turned by %.2g rad from the "
-                 "smooth continuation, and its speeds do not explain how far it went",
+        passed
+            ? "the run came out of a singular pose on another branch: its direction turned by "
+              "%.2g rad from the smooth continuation"
+            : "the last step jumped to another branch: its direction turned by %.2g rad from the "
+              "smooth continuation, and its speeds do not explain how far it went",
         angle);
     if (i) {
         hn_run_remedy_robust(run, i->remedy[0]);

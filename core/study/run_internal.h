@@ -57,7 +57,7 @@ typedef struct hn_run_watch_state {
     hn_run_ahead ahead;
     double *row_size; ///< nc: largest length of each row of J so far
     double start_energy, last_energy, v_min, v_max, t_max; ///< t_max: largest kinetic energy so far
-    double *modes, *last_modes; ///< per loop
+    double *modes, *last_modes;                            ///< per loop
     int start_rank;
     int conservative;
     hn_limits *limits;           ///< coordinates with limits

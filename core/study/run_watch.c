@@ -224,9 +224,10 @@ static void look_at_energy(hn_run *run, double kinetic, double potential) {
         hn_run_over(run, HN_INCIDENT_ENERGY_JUMP);
         return;
     }
-    remedies_of_energy(
-        run, hn_run_tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
-                         "the energy changed by %.3g J in one step, more than %.3g J", change, limit));
+    remedies_of_energy(run,
+                       hn_run_tell(run, HN_INCIDENT_ENERGY_JUMP, "energy change", change, limit,
+                                   "the energy changed by %.3g J in one step, more than %.3g J",
+                                   change, limit));
 }
 
 // Where all links of a loop lie on one line a whole row dies away: the pivots of K, each measured against its own row, do not
@@ -353,10 +354,11 @@ static hn_status judge_gap(hn_run *run, double gap) {
     if (!(gap > limit)) {
         return HN_OK;
     }
-    snprintf(run->summary.reason, sizeof run->summary.reason,
-             "at t = %.6g s the loops stand open by %.3g m, more than half the characteristic length "
-             "of %.3g m: what moves there is no longer this mechanism",
-             run->now.t, gap, run->length);
+    snprintf(
+        run->summary.reason, sizeof run->summary.reason,
+        "at t = %.6g s the loops stand open by %.3g m, more than half the characteristic length "
+        "of %.3g m: what moves there is no longer this mechanism",
+        run->now.t, gap, run->length);
     return HN_ERR_DIVERGED;
 }
 

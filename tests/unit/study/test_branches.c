@@ -133,6 +133,69 @@ static void a_platform_carried_through_its_singular_yaw_is_warned_before(void **
     hn_model_close(&m);
 }
 
+static void a_platform_that_comes_back_from_its_singular_yaw_says_so(void **state) {
+    (void)state;
+    static const struct {
+        const char *method;
+        double height; // of the platform at 2 s
+    } runs[] = {{"projection@rk4:h=2e-3", 1}, {"projection@dopri5:rtol=1e-8", 1.366}};
+    hn_model m;
+    hn_model_open_closed(&m, "stewart-turning", NULL);
+    for (int k = 0; k < 2; k++) {
+        hn_run *run = hn_motion_start(&m, runs[k].method);
+        const hn_sample s = hn_motion_at(run, 2);
+        assert_near(s.q[hn_model_user(&m, "Y")], runs[k].height, 1e-3);
+        const hn_incident *flip = find(run, HN_INCIDENT_BRANCH_FLIP, "on another branch");
+        assert_int_equal(flip != NULL, k == 1);
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
+static void loops_that_stand_open_by_half_the_mechanism_end_a_run(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "bennett", NULL);
+    hn_run *run = hn_motion_start(&m, "index2@ida:rtol=1e-6");
+    assert_int_equal(hn_run_advance(run, 2), HN_ERR_DIVERGED);
+    const hn_run_summary s = hn_run_get_summary(run);
+    assert_non_null(strstr(s.reason, "no longer this mechanism"));
+    assert_true(s.worst_gap > 0.5 * hn_system_length(m.sys) && s.worst_gap < 0.6);
+    assert_non_null(find(run, HN_INCIDENT_DIVERGED, "the loops stand open"));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// where th1 passes pi, two of the five dependent rows of the linkage vanish, and it moves on as anywhere
+static void rows_that_vanish_beside_others_that_do_not_stop_nobody(void **state) {
+    (void)state;
+    static const char *const methods[] = {"projection@gauss2:h=1e-3", "projection@gauss3:h=1e-3",
+                                          "projection@gsl-bsimp:rtol=1e-6"};
+    hn_model m;
+    hn_model_open_closed(&m, "bennett", NULL);
+    for (int k = 0; k < 3; k++) {
+        hn_run *run = hn_motion_start(&m, methods[k]);
+        const hn_sample s = hn_motion_at(run, 1);
+        assert_true(fabs(s.energy_change) < 1e-6); // the tolerance of the last
+        assert_null(find(run, HN_INCIDENT_NEAR_SINGULAR, ""));
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
+static void energy_that_is_lost_little_by_little_is_told(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "bennett", NULL);
+    hn_run *run = hn_motion_start(&m, "penalty@rk4:h=4e-3");
+    const double lost = hn_motion_at(run, 2).energy_change;
+    assert_true(lost < -0.1); // of the 1.4 J it started with
+    assert_non_null(find(run, HN_INCIDENT_ENERGY_DRIFT, "since the start"));
+    assert_null(find(run, HN_INCIDENT_ENERGY_JUMP, ""));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 // other frames ------------------------------------------------------------------------------------------------------
 
 /// th1 of the reference four-bar after 1 s, every length (and gravity) times `scale`.
@@ -260,6 +323,10 @@ int main(void) {
         cmocka_unit_test(
             six_legs_lose_their_hold_towards_a_yaw_of_ninety_degrees_as_computed_elsewhere),
         cmocka_unit_test(a_platform_carried_through_its_singular_yaw_is_warned_before),
+        cmocka_unit_test(a_platform_that_comes_back_from_its_singular_yaw_says_so),
+        cmocka_unit_test(loops_that_stand_open_by_half_the_mechanism_end_a_run),
+        cmocka_unit_test(rows_that_vanish_beside_others_that_do_not_stop_nobody),
+        cmocka_unit_test(energy_that_is_lost_little_by_little_is_told),
         cmocka_unit_test(a_mechanism_of_micrometres_or_of_megametres_moves_as_one_of_metres),
         cmocka_unit_test(a_scene_put_elsewhere_in_space_moves_as_it_did),
     };
