@@ -1,3 +1,4 @@
+#include "dynamics/blur.h"
 #include "methods/accel_jacobian_internal.h"
 
 #include "dynamics/quaternion.h"
@@ -206,22 +207,33 @@ static double weigh_entry(const hn_accel_jacobian *j, int row, int col) {
     return J[(size_t)row * (size_t)j->nv + (size_t)col] / (m > 0 ? sqrt(m) : 1);
 }
 
-static double row_scale(const hn_accel_jacobian *j, int row) {
-    double sum = 0;
-    for (int k = 0; k < j->nv; k++) {
-        const double e = weigh_entry(j, row, k);
-        sum += e * e;
+// one over the length of each row, short ones stretched no more than the accelerations do (linalg/saddle.h, row_floor)
+static const double *scale_rows(const hn_accel_jacobian *j) {
+    double *scale = j->work[0][1], longest = 0;
+    for (int i = 0; i < j->nc; i++) {
+        double sum = 0;
+        for (int k = 0; k < j->nv; k++) {
+            const double e = weigh_entry(j, i, k);
+            sum += e * e;
+        }
+        scale[i] = sqrt(sum);
+        longest = fmax(longest, scale[i] / hn_accel_row_unit(j->sys, i));
     }
-    return sum > 0 ? 1 / sqrt(sum) : 1;
+    for (int i = 0; i < j->nc; i++) {
+        const double least = HN_BLUR_ROW_FLOOR * longest * hn_accel_row_unit(j->sys, i);
+        scale[i] = fmax(scale[i], least);
+        scale[i] = scale[i] > 0 ? 1 / scale[i] : 1;
+    }
+    return scale;
 }
 
 // rows in use: pivots of J'
 static void choose_rows(hn_accel_jacobian *j, int rank) {
     const int nv = j->nv, nc = j->nc;
+    const double *scale = scale_rows(j);
     for (int i = 0; i < nc; i++) {
-        const double scale = row_scale(j, i);
         for (int k = 0; k < nv; k++) {
-            j->qr.a[i * nv + k] = scale * weigh_entry(j, i, k);
+            j->qr.a[i * nv + k] = scale[i] * weigh_entry(j, i, k);
         }
     }
     hn_qr_factor(&j->qr, nv, nc, 0);
@@ -237,10 +249,10 @@ static void choose_rows(hn_accel_jacobian *j, int rank) {
 static void combine_rows(hn_accel_jacobian *j, int rank) {
     const int nv = j->nv, nc = j->nc;
     double *column = j->work[0][0];
+    const double *scale = scale_rows(j);
     for (int i = 0; i < nc; i++) {
-        const double scale = row_scale(j, i);
         for (int k = 0; k < nv; k++) {
-            j->qr.a[k * nc + i] = scale * weigh_entry(j, i, k);
+            j->qr.a[k * nc + i] = scale[i] * weigh_entry(j, i, k);
         }
     }
     hn_qr_factor(&j->qr, nc, nv, 0);
@@ -251,7 +263,7 @@ static void combine_rows(hn_accel_jacobian *j, int rank) {
         column[k] = 1;
         hn_qr_apply_q(&j->qr, column);
         for (int i = 0; i < nc; i++) {
-            j->W[i * j->n_kept + k] = column[i] * row_scale(j, i);
+            j->W[i * j->n_kept + k] = column[i] * scale[i];
         }
     }
     j->ops += hn_flops_qr(nv, nc);

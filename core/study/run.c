@@ -255,7 +255,7 @@ static hn_status step_adaptive(hn_run *run) {
         const double err = try_adaptive(run, h, rtol, atol, &changed, &status);
         run->h_next = fmin(h * hn_step_factor(&run->control, err, k), largest_step(run));
         if (err <= 1) {
-            if (run->trouble >= TROUBLE_SEEN) {
+            if (run->iterating && run->trouble >= TROUBLE_SEEN) {
                 run->h_next = fmin(run->h_next, GROWTH_IN_TROUBLE * h);
             }
             run->trouble -= run->trouble > 0;
@@ -265,7 +265,10 @@ static hn_status step_adaptive(hn_run *run) {
             }
             return accept(run, h, run->now.t + h, changed);
         }
-        run->trouble += status != HN_OK ? FAILED_TRIAL : 0;
+        if (status != HN_OK) {
+            run->trouble += FAILED_TRIAL;
+            run->iterating = status == HN_ERR_NO_CONVERGENCE; // no end of a chart lies ahead then
+        }
         run->summary.rejected++;
     }
 }

@@ -86,6 +86,7 @@ struct hn_run {
     double corner;  ///< next corner of a load, HUGE_VAL: none
     int restart;    ///< an integrator that paces itself forgets what was before a corner
     int trouble;    ///< trials that failed lately, see step_adaptive
+    int iterating;  ///< the last of them was an iteration that did not converge
     hn_step_control control;
     hn_run_summary summary;
     hn_cost cost_mark;
