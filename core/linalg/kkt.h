@@ -13,6 +13,12 @@
 //   proximal     [M J'; J -mu I], repeated: any J; lambda of least norm, the least-squares a where rows contradict each other
 //   least norm   rank-revealing QR (saddle.h): any J; refuses rows that contradict each other
 //
+// Which of the last two where rows depend on each other. Measured: copied rows, a Bennett linkage, a parallelogram flat and 1e-6
+// and 1e-3 rad from it: accelerations and J' lambda of both agree to 2e-16 of their size, so the iteration leaves nothing of its
+// shift, in the same time (1 to 2.6 us). Least norm is the automatic rung because it says more: the rank; multipliers that are
+// the shortest whatever the scales (the proximal ones are so in scaled rows: 3 % longer for Bennett); and where rows contradict
+// each other it says so, where the proximal iteration goes on with multipliers 1000 times too long.
+//
 // Source: Benzi, Golub & Liesen 2005; Carpentier, Budhiraja & Mansard 2021 (proximal); Higham 2002 (refinement, condition).
 
 #include "base/arena.h"

@@ -357,10 +357,11 @@ static void look_at_fallbacks(hn_run *run) {
                     HN_INCIDENT_SOLVER); // rows that always depend on others have been told as such
         return;
     }
-    hn_run_tell(run, HN_INCIDENT_SOLVER, "dense solves", (double)more, 0,
-                "the sparse solve lost a pivot; the dense least-norm solve answered in its place, "
-                "%lld times so far",
-                now);
+    hn_run_tell(
+        run, HN_INCIDENT_SOLVER, "dense solves", (double)more, 0,
+        "the sparse LDL' of the tape lost a pivot or a row; the dense least-norm solve, the "
+        "next rung, answered in its place, %lld times so far",
+        now);
 }
 
 void hn_run_ahead_look(hn_run *run, const double *lambda) {

@@ -213,6 +213,8 @@ static void repeated_rows_change_nothing_where_they_are_served(void **state) {
         assert_int_equal(x.status, HN_OK);
         assert_true(difference(x.a, plain.a) < 1e-12);
         assert_true(difference(x.force, plain.force) < 1e-12);
+        // two or three turns of the proximal iteration leave nothing of its shift
+        assert_true(difference(x.a, plain.a) < 1e-14);
         if (way == HN_KKT_LEAST_NORM) {
             assert_int_equal(x.info.rank, 2);
             least_norm = hn_norm2(4, x.lambda);
@@ -235,6 +237,10 @@ static void rows_that_contradict_each_other_are_met_as_well_as_can_be_or_refused
     }
     assert_near(hypot(left[0], left[1]), 7.0710678e-4, 1e-9);
     assert_near(left[0], -left[1], 1e-9);
+    // its multipliers grow by the contradiction over the shift each turn: why it is not the automatic choice
+    const four_bar plain = make_four_bar(2, 1.8);
+    const answer usual = solve(kkt_of(state), HN_KKT_PROXIMAL, &plain, 4);
+    assert_true(hn_norm2(3, x.lambda) > 100 * hn_norm2(2, usual.lambda));
     assert_int_equal(solve(kkt_of(state), HN_KKT_LEAST_NORM, &b, 4).status, HN_ERR_INCONSISTENT);
 }
 

@@ -166,6 +166,22 @@ static void loops_that_stand_open_by_half_the_mechanism_end_a_run(void **state) 
     hn_model_close(&m);
 }
 
+static void
+an_iteration_that_fails_at_a_flat_pose_is_told_with_the_pose_and_a_way_through(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "projection@gauss2:h=1e-3");
+    assert_int_equal(hn_run_advance(run, 2), HN_ERR_NO_CONVERGENCE);
+    const hn_incident *failed = find(run, HN_INCIDENT_NEWTON_FAILED, "all but loses rank");
+    assert_non_null(failed);
+    hn_run *through = hn_motion_start(&m, failed->remedy[0]);
+    assert_true(fabs(hn_motion_at(through, 2).energy_change) < 1e-3);
+    hn_run_free(through);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 // where th1 passes pi, two of the five dependent rows of the linkage vanish, and it moves on as anywhere
 static void rows_that_vanish_beside_others_that_do_not_stop_nobody(void **state) {
     (void)state;
@@ -325,6 +341,8 @@ int main(void) {
         cmocka_unit_test(a_platform_carried_through_its_singular_yaw_is_warned_before),
         cmocka_unit_test(a_platform_that_comes_back_from_its_singular_yaw_says_so),
         cmocka_unit_test(loops_that_stand_open_by_half_the_mechanism_end_a_run),
+        cmocka_unit_test(
+            an_iteration_that_fails_at_a_flat_pose_is_told_with_the_pose_and_a_way_through),
         cmocka_unit_test(rows_that_vanish_beside_others_that_do_not_stop_nobody),
         cmocka_unit_test(energy_that_is_lost_little_by_little_is_told),
         cmocka_unit_test(a_mechanism_of_micrometres_or_of_megametres_moves_as_one_of_metres),
