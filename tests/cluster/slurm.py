@@ -102,9 +102,10 @@ class Slurm:
     def wait_until(self, holds, what):
         deadline = time.monotonic() + PATIENCE
         while not holds():
-            ended = [d for d in self.daemons if d.poll() is not None]
+            ended = [d.args[0] for d in self.daemons if d.poll() is not None]
             if ended or time.monotonic() > deadline:
-                raise RuntimeError(f"{what}: not within {PATIENCE} s\n{self._logs()}")
+                why = f"{ended[0]} ended" if ended else f"not within {PATIENCE} s"
+                raise RuntimeError(f"{what}: {why}\n{self._logs()}")
             time.sleep(0.1)
 
     def wait_for_jobs(self):
@@ -118,6 +119,9 @@ class Slurm:
         controller, node = free_ports(2)
         with open(self.path("slurm.conf"), "w", encoding="ascii") as f:
             f.write(CONFIGURATION.format(folder=self.folder, host=socket.gethostname().split(".")[0], controller=controller, node=node, cpus=self.cpus))
+        # where nothing mounts control groups, to look for them would end slurmd
+        with open(self.path("cgroup.conf"), "w", encoding="ascii") as f:
+            f.write(f"CgroupPlugin=cgroup/v1\nCgroupMountpoint={self.folder}/cgroup\n")
         self._daemon("munged", "--foreground", "--key-file=" + self.path("munge/key"), "--socket=" + self.path("munge/socket"),
                      "--pid-file=" + self.path("munge/pid"), "--log-file=" + self.path("munge/log"), "--seed-file=" + self.path("munge/seed"))
         self.wait_until(lambda: os.path.exists(self.path("munge/socket")), "munged answers")
