@@ -55,14 +55,22 @@ static hn_status check_times(const hn_study_request *r, hn_diags *diags) {
     return HN_OK;
 }
 
+/// While the reference is computed there is something to see: nothing of the study is done.
+static int ask_and_tell(void *user) {
+    const hn_wp_hooks *hooks = user;
+    if (hooks->progress) {
+        hooks->progress(hooks->user, 0);
+    }
+    return hooks->stop && hooks->stop(hooks->user);
+}
+
 static hn_status find_reference(hn_study *s, hn_diags *diags) {
-    const hn_study_request *r = &s->request;
+    hn_study_request *r = &s->request;
     hn_ref_request request = hn_ref_request_default();
     hn_ref_source source;
     request.time = r->time;
     request.folder = r->folder;
-    request.opts.limits =
-        (hn_walk_limits){REFERENCE_SHARE * r->budget, r->hooks.stop, r->hooks.user};
+    request.opts.limits = (hn_walk_limits){REFERENCE_SHARE * r->budget, ask_and_tell, &r->hooks};
     const hn_status status = hn_reference_get(s->model, &request, &s->ref, &source, diags);
     s->kept_reference = status == HN_OK && source != HN_REF_COMPUTED;
     return status;

@@ -80,6 +80,8 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
 /// A line on standard error for what takes longer than a second, only if that is a terminal. Zeroed to begin with.
 typedef struct hn_progress {
     double started, last;
+    double begun,
+        first; ///< when the share began to rise, and from where: work taken up from before took no time now
     int shown;
 } hn_progress;
 void hn_progress_tell(hn_progress *p, const char *what, double share);

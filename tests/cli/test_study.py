@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import pty
 import random
 import re
 import signal
@@ -198,6 +199,36 @@ class Study(unittest.TestCase):
         self.assertEqual(text.returncode, DONE)
         found = re.search(rb"going on with (\d+) points", text.stderr)
         self.assertEqual(int(found.group(1)) if found else 0, done)
+
+    def test_time_left_is_shown_and_again_when_the_study_goes_on(self):
+        words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--budget", "0"]
+        argv, env = command(words, self.folder)
+
+        def watch(interrupt_after):
+            terminal, end = pty.openpty()
+            process = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=end, env=env)
+            os.close(end)
+            seen = b""
+            try:
+                while piece := os.read(terminal, 4096):
+                    seen += piece
+                    if interrupt_after and b" s left" in seen:
+                        process.send_signal(signal.SIGINT)
+                        interrupt_after = None
+            except OSError:  # the other end is closed
+                pass
+            os.close(terminal)
+            return process.wait(), seen.decode()
+
+        status, seen = watch(True)
+        self.assertEqual(status, ENDED)
+        self.assertRegex(seen, r"work-precision \[[#.]+\] +\d+ %, \d+ s left")
+        status, seen = watch(None)
+        self.assertEqual(status, DONE)
+        left = [(int(a), int(b)) for a, b in re.findall(r"(\d+) %, (\d+) s left", seen)]
+        self.assertTrue(left)
+        shares = [a for a, _ in left]
+        self.assertGreater(shares[-1], 90)
 
     def test_a_budget_is_kept_and_what_it_left_out_is_told(self):
         words = ["study", "fb0", "--time", "10", "--budget", "2", "--json"]
