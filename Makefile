@@ -209,6 +209,7 @@ help:
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
+	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
@@ -216,7 +217,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings figures references pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings extreme figures references pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -268,6 +269,11 @@ pictures: all
 
 references: all
 	@python3 tests/scenes/references.py $(PROGRAM)
+
+# fails where a prediction is not observed; LONG=--long for the trials that take minutes
+extreme: all
+	@$(PROGRAM) extreme $(LONG) >build/extreme.txt || { cat build/extreme.txt; exit 1; }
+	@cp build/extreme.txt tests/tables/extreme.txt && cat tests/tables/extreme.txt
 
 rings: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)

@@ -131,6 +131,7 @@ static hn_status give_up(hn_stages *nw, double t, double h, int n, double ratio)
 /// What an iteration has seen so far.
 typedef struct progress {
     double size, ratio; ///< of the last correction, and against the one before
+    double least;       ///< smallest correction so far
     int stalled, grown, relinearised;
 } progress;
 
@@ -148,8 +149,10 @@ static int is_done(const hn_stages *nw, const progress *p) {
 static void look(progress *p, double size, int first) {
     p->ratio = first ? HUGE_VAL : size / p->size;
     p->size = size;
-    p->stalled = !first && p->ratio > STALLED ? p->stalled + 1 : 0;
-    p->grown = !first && p->ratio >= HOPELESS ? p->grown + 1 : 0;
+    // rounding of stiff forces goes up and down at random: what counts is that it gets no smaller than it has been
+    p->stalled = !first && size > STALLED * p->least ? p->stalled + 1 : 0;
+    p->least = first ? size : fmin(size, p->least);
+    p->grown = !first && p->ratio >= HOPELESS && size > NEAR_ROUNDING ? p->grown + 1 : 0;
 }
 
 // on the way to rounding a slow iteration gets derivatives at the last stage it has

@@ -66,6 +66,7 @@ static const option OPTIONS[] = {
     {"--shard", "I/N", OPTION_TEXT, AT(shard),
      "part I of N of the study, for 'holonom merge' to put together"},
     {"--csv", NULL, OPTION_FLAG, AT(csv), "one row a point on standard output"},
+    {"--long", NULL, OPTION_FLAG, AT(run_long), "what takes minutes too"},
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
     {"--theme", "light|dark", OPTION_TEXT, AT(theme), "paper or slate"},

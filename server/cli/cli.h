@@ -40,7 +40,7 @@ typedef struct hn_args {
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
     int again, hold;
-    int json, csv, open, help, raw_lambda, reactions;
+    int json, csv, open, help, raw_lambda, reactions, run_long;
 } hn_args;
 
 typedef struct hn_command {
@@ -107,6 +107,7 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_merge(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
