@@ -181,6 +181,7 @@ const hn_tableau hn_tableau_dop853 = {
     .e2 = error3,
     .d = dense,
     .dense_rows = DENSE_ROWS,
+    .stiff_stage = STAGES - 1,
 };
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {
@@ -206,5 +207,6 @@ const hn_stepper hn_stepper_dop853 = {
     .finish = hn_explicit_rk_finish,
     .accepted = hn_explicit_rk_accepted,
     .dense = hn_explicit_rk_dense,
+    .stiffness = hn_explicit_rk_stiffness,
     .dense_order = 7,
 };

@@ -23,5 +23,6 @@ const hn_stepper hn_stepper_dopri5 = {
     .step = hn_explicit_rk_step,
     .accepted = hn_explicit_rk_accepted,
     .dense = hn_explicit_rk_dense,
+    .stiffness = hn_explicit_rk_stiffness,
     .dense_order = 4,
 };

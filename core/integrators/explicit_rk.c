@@ -15,10 +15,13 @@ typedef struct explicit_rk {
     double *y0;    // n, start of the last step
     double *y1;    // n, its end
     double *dense[MAX_DENSE_TERMS];
+    double *near;          // n: what the stiff stage was evaluated at
+    double near_h, rate_h; // of the step it belongs to; |h lambda| found from it
     double t, h;
     hn_compensated sum;
     int has_first; // k[0] belongs to the point the next step starts from
     int has_last;  // the slope at y1 is known
+    int has_near;  // the stiff stage of an accepted step waits for the slope at its end
 } explicit_rk;
 
 void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
@@ -34,6 +37,7 @@ void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
         rk->k[i] = hn_arena_doubles(arena, (size_t)n);
     }
     rk->stage = hn_arena_doubles(arena, (size_t)n);
+    rk->near = tableau->stiff_stage ? hn_arena_doubles(arena, (size_t)n) : NULL;
     for (int i = 0; tableau->d && i < HERMITE_TERMS + tableau->dense_rows; i++) {
         rk->dense[i] = hn_arena_doubles(arena, (size_t)n);
     }
@@ -89,6 +93,24 @@ static int last_stage(const hn_tableau *tab) {
     return tab->fsal ? tab->stages - 1 : tab->stages;
 }
 
+// |h lambda| from two slopes at the end of the last step: Hairer & Wanner 1996, eq. (IV.2.13)
+static void compare_slopes(explicit_rk *rk, const double *y) {
+    const double *slope = rk->k[rk->tab->stiff_stage];
+    double apart = 0, distance = 0;
+    for (int j = 0; j < rk->n; j++) {
+        const double d = rk->k[0][j] - slope[j], e = y[j] - rk->near[j];
+        apart += d * d;
+        distance += e * e;
+    }
+    rk->rate_h = distance > 0 ? rk->near_h * sqrt(apart / distance) : 0;
+    rk->has_near = 0;
+}
+
+double hn_explicit_rk_stiffness(const void *self) {
+    const explicit_rk *rk = self;
+    return rk->rate_h;
+}
+
 hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h, const double *y,
                               double *y_new, double *err) {
     explicit_rk *rk = self;
@@ -100,10 +122,16 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
         }
         rk->has_first = 1;
     }
+    if (rk->has_near) {
+        compare_slopes(rk, y);
+    }
     for (int i = 1; i < tab->stages; i++) {
         const hn_status status = eval_stage(rk, ode, i, t, h, y);
         if (status != HN_OK) {
             return status;
+        }
+        if (tab->stiff_stage == i) {
+            memcpy(rk->near, rk->stage, (size_t)rk->n * sizeof *rk->near);
         }
     }
     // the last stage of a FSAL method was evaluated at y1 itself: take that very point
@@ -169,6 +197,8 @@ void hn_explicit_rk_accepted(void *self, int changed) {
         rk->k[0] = k;
     }
     hn_compensated_accepted(&rk->sum, changed);
+    rk->has_near = rk->near && rk->h != 0;
+    rk->near_h = rk->h;
     rk->has_first = keep;
     rk->has_last = 0;
     rk->h = 0;

@@ -22,4 +22,6 @@ void hn_explicit_rk_configure(void *self, const double *settings);
 void hn_explicit_rk_accepted(void *self, int changed);
 void hn_explicit_rk_dense(void *self, double theta, double *y); ///< tableau with d only
 
+double hn_explicit_rk_stiffness(const void *self); ///< tableau with a stiff_stage only
+
 #endif

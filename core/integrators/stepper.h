@@ -45,6 +45,9 @@ typedef struct hn_stepper {
     /// Dense output in the step just accepted: y at t + theta h, theta in [0, 1]. NULL: none.
     void (*dense)(void *self, double theta, double *y);
     int dense_order;
+    /// |h lambda| of the step before the last one as the right-hand sides of that step showed it, lambda the fastest rate that they met;
+    /// 0: not known. NULL: it does not look. Source: Hairer & Wanner 1996, IV.2.
+    double (*stiffness)(const void *self);
     /// One step whose size the integrator chooses itself, from (t, y) to (*t_new, y_new), not beyond t_stop (HUGE_VAL: no
     /// bound); then `step` is not called and may be NULL. NULL: the run chooses the size.
     hn_status (*advance)(void *self, const hn_ode *ode, double t, double t_stop, const double *y,

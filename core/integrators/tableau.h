@@ -23,6 +23,9 @@ typedef struct hn_tableau {
     const double *e2; ///< stages, NULL without a second one
     const double *d;  ///< dense_rows x (stages + extra), NULL without dense output
     int dense_rows;
+    /// A stage at t + h beside y1: how far its slope is from F(t + h, y1), for the distance of the two, tells how fast the equation answers.
+    /// 0: none.
+    int stiff_stage;
 } hn_tableau;
 
 extern const hn_tableau hn_tableau_euler;  ///< 1 stage, order 1

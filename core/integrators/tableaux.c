@@ -107,4 +107,5 @@ const hn_tableau hn_tableau_dopri5 = {
     .e = dopri5_e,
     .d = dopri5_d,
     .dense_rows = 1,
+    .stiff_stage = 5,
 };

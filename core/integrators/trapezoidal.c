@@ -1,6 +1,7 @@
 #include "integrators/dae_base.h"
 #include "integrators/registry.h"
 #include "linalg/dense.h"
+#include "linalg/newton_matrix.h"
 #include "linalg/square.h"
 
 #include "dynamics/linearise.h"
@@ -27,6 +28,9 @@
 
 enum { FORM_WEIGHT, FORM_PROJECTIONS };
 enum { PROJECTIONS_ON, PROJECTIONS_OFF };
+enum {
+    SPARSE_FROM = 16
+}; // size of T; it holds no zeros on its diagonal and is half as large as other Newton matrices
 static const double LAST_TURN = 1e-11; // the first turns shrink faster than w lets the later ones
 static const double AUTO_CONTRACTION = 1e3; // w h^2 s / 4 aimed at where no weight is given
 
@@ -38,12 +42,16 @@ typedef struct trapezoidal {
     hn_dae_base base; // first
     int project;
     double given_weight;
-    hn_linear *matrices; // R, M, K, C, J, phi
-    hn_eval *rate;       // gamma
-    hn_square square;
+    hn_linear *matrices;      // R, M, K, C, J, phi
+    hn_eval *rate;            // gamma
+    hn_square square;         // T, small
+    hn_newton_matrix *sparse; // T, large; else NULL
+    const int *J_row,
+        *J_col; // the entries of J that are not identically zero, those of a row next to each other
+    int n_J;
     carried now, next;
-    double *D, *v1, *a1, *x, *E; // nv; E: M + h/2 C + h^2/4 K (nv x nv)
-    double *push, *raw;          // nc: -lambda* of the iteration, of the accepted step
+    double *D, *v1, *a1, *x, *part; // nv
+    double *push, *raw;             // nc: -lambda* of the iteration, of the accepted step
 } trapezoidal;
 
 static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
@@ -52,18 +60,47 @@ static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
     return c->a && c->lambda;
 }
 
+static int entries_of(const trapezoidal *s, hn_linear_term term) {
+    const int *rows, *cols;
+    return hn_linear_pattern(s->matrices, term, &rows, &cols);
+}
+
+// the last entry of J that stands in the row of entry e, and one more
+static int row_end(const trapezoidal *s, int e) {
+    int end = e;
+    while (end < s->n_J && s->J_row[end] == s->J_row[e]) {
+        end++;
+    }
+    return end;
+}
+
+static int create_tangent(trapezoidal *s, hn_arena *arena) {
+    const int nv = s->base.nv;
+    const int square =
+        entries_of(s, HN_LINEAR_M) + entries_of(s, HN_LINEAR_C) + entries_of(s, HN_LINEAR_K);
+    long long pairs = 0;
+    s->n_J = hn_linear_pattern(s->matrices, HN_LINEAR_J, &s->J_row, &s->J_col);
+    for (int e = 0, end; e < s->n_J; e = end) {
+        end = row_end(s, e);
+        pairs += (long long)(end - e) * (end - e);
+    }
+    if (nv < SPARSE_FROM || 2 * (square / 2 + pairs) > (long long)nv * nv) {
+        return hn_square_init(&s->square, arena, nv);
+    }
+    s->sparse = hn_newton_matrix_create(arena, HN_REAL, 1, nv, square + (int)pairs);
+    return s->sparse != NULL;
+}
+
 static hn_status allocate(trapezoidal *s, hn_arena *arena) {
     const size_t nv = (size_t)s->base.nv, nc = (size_t)s->base.nc;
-    double **of_nv[] = {&s->D, &s->v1, &s->a1, &s->x};
+    double **of_nv[] = {&s->D, &s->v1, &s->a1, &s->x, &s->part};
     for (size_t i = 0; i < sizeof of_nv / sizeof *of_nv; i++) {
         *of_nv[i] = hn_arena_doubles(arena, nv);
     }
-    s->E = hn_arena_doubles(arena, nv * nv);
     s->push = hn_arena_doubles(arena, nc);
     s->raw = hn_arena_doubles(arena, nc);
     const int good = carried_init(&s->now, arena, nv, nc) &&
-                     carried_init(&s->next, arena, nv, nc) &&
-                     hn_square_init(&s->square, arena, (int)nv);
+                     carried_init(&s->next, arena, nv, nc) && create_tangent(s, arena);
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
@@ -102,6 +139,8 @@ static void destroy(void *self) {
     trapezoidal *s = self;
     hn_linear_free(s->matrices);
     hn_eval_free(s->rate);
+    hn_newton_matrix_free(s->sparse);
+    s->sparse = NULL;
     s->matrices = NULL;
     s->rate = NULL;
     hn_dae_base_destroy(&s->base);
@@ -124,11 +163,13 @@ static double choose_weight(const trapezoidal *s, double h) {
     if (s->given_weight > 0) {
         return s->given_weight;
     }
-    for (int k = 0; k < b->nc; k++) {
-        const double *row = b->J + (size_t)k * b->nv;
+    for (int e = 0, end; e < s->n_J; e = end) {
+        const double *row = b->J + (size_t)s->J_row[e] * (size_t)b->nv;
         double sum = 0;
-        for (int j = 0; j < b->nv; j++) {
-            const double m = b->M[(size_t)j * b->nv + j];
+        end = row_end(s, e);
+        for (int i = e; i < end; i++) {
+            const int j = s->J_col[i];
+            const double m = b->M[(size_t)j * (size_t)b->nv + (size_t)j];
             sum += m > 0 ? row[j] * row[j] / m : 0;
         }
         least = sum > 0 ? fmin(least, sum) : least;
@@ -151,39 +192,72 @@ static void move_state(trapezoidal *s, double h, const double *y, double *q1) {
 // x <- x + scale J' y with J of the matrices last evaluated
 static void add_rows(const trapezoidal *s, double scale, const double *y, double *x) {
     const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
-    for (int k = 0; k < s->base.nc; k++) {
-        hn_axpy(s->base.nv, scale * y[k], J + (size_t)k * s->base.nv, x);
+    for (int e = 0; e < s->n_J; e++) {
+        const int row = s->J_row[e], col = s->J_col[e];
+        x[col] += scale * J[(size_t)row * (size_t)s->base.nv + (size_t)col] * y[row];
     }
 }
 
-// E and T at the matrices last evaluated; T factored
+static void put(trapezoidal *s, int row, int col, double e) {
+    if (s->sparse) {
+        hn_newton_matrix_put(s->sparse, row, col, e, 0);
+    } else {
+        s->square.lu[row * s->base.nv + col] += e;
+    }
+}
+
+static void put_term(trapezoidal *s, hn_linear_term term, double scale) {
+    const double *values = hn_linear_get(s->matrices, term);
+    const int *rows, *cols, n = hn_linear_pattern(s->matrices, term, &rows, &cols);
+    for (int e = 0; e < n; e++) {
+        put(s, rows[e], cols[e],
+            scale * values[(size_t)rows[e] * (size_t)s->base.nv + (size_t)cols[e]]);
+    }
+}
+
+// scale J' J: every two entries of a row of J meet in one of the product
+static void put_penalty(trapezoidal *s, double scale) {
+    const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
+    for (int e = 0, end; e < s->n_J; e = end) {
+        const double *row = J + (size_t)s->J_row[e] * (size_t)s->base.nv;
+        end = row_end(s, e);
+        for (int i = e; i < end; i++) {
+            for (int k = e; k < end; k++) {
+                put(s, s->J_col[i], s->J_col[k], scale * row[s->J_col[i]] * row[s->J_col[k]]);
+            }
+        }
+        s->base.cost.ops += 3.0 * (end - e) * (end - e);
+    }
+}
+
+// T at the matrices last evaluated, factored
 static hn_status factor_tangent(trapezoidal *s, double h, double weight) {
     hn_dae_base *b = &s->base;
     const int nv = b->nv;
-    const double *M = hn_linear_get(s->matrices, HN_LINEAR_M);
-    const double *K = hn_linear_get(s->matrices, HN_LINEAR_K);
-    const double *C = hn_linear_get(s->matrices, HN_LINEAR_C);
-    const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
-    for (int i = 0; i < nv * nv; i++) {
-        s->E[i] = M[i] + h / 2 * C[i] + h * h / 4 * K[i];
-        s->square.lu[i] = s->E[i];
+    if (s->sparse) {
+        hn_newton_matrix_begin(s->sparse, nv);
+    } else {
+        memset(s->square.lu, 0, (size_t)nv * (size_t)nv * sizeof *s->square.lu);
     }
-    for (int k = 0; k < b->nc; k++) {
-        const double *row = J + (size_t)k * nv;
-        for (int i = 0; i < nv; i++) {
-            if (row[i] != 0) {
-                hn_axpy(nv, h * h / 4 * weight * row[i], row, s->square.lu + (size_t)i * nv);
-            }
-        }
-    }
+    put_term(s, HN_LINEAR_M, 1);
+    put_term(s, HN_LINEAR_C, h / 2);
+    put_term(s, HN_LINEAR_K, h * h / 4);
+    put_penalty(s, h * h / 4 * weight);
     b->cost.factorisations++;
-    b->cost.ops += 2.0 / 3 * nv * nv * nv + 2.0 * b->nc * nv * nv + 6.0 * nv * nv;
+    if (s->sparse) {
+        return hn_newton_matrix_factor(s->sparse); // counts its own operations
+    }
+    b->cost.ops += 2.0 / 3 * nv * nv * nv;
     return hn_square_factor(&s->square, nv);
 }
 
 static void solve(trapezoidal *s, double *x) {
-    hn_square_solve(&s->square, x);
     s->base.cost.solves++;
+    if (s->sparse) {
+        hn_newton_matrix_solve(s->sparse, x);
+        return;
+    }
+    hn_square_solve(&s->square, x);
     s->base.cost.ops += 2.0 * s->base.nv * s->base.nv;
 }
 
@@ -239,7 +313,11 @@ static hn_status iterate(trapezoidal *s, double t1, double h, double weight, con
 // (3): z (nv) from z*, given (nc) phi_t or gamma
 static void project(trapezoidal *s, double h, double weight, const double *given, double *z) {
     const int nv = s->base.nv;
-    hn_mat_vec(nv, nv, s->E, z, s->x);
+    hn_linear_apply(s->matrices, HN_LINEAR_M, z, s->x);
+    hn_linear_apply(s->matrices, HN_LINEAR_C, z, s->part);
+    hn_axpy(nv, h / 2, s->part, s->x);
+    hn_linear_apply(s->matrices, HN_LINEAR_K, z, s->part);
+    hn_axpy(nv, h * h / 4, s->part, s->x);
     add_rows(s, -h * h / 4 * weight, given, s->x);
     solve(s, s->x);
     memcpy(z, s->x, (size_t)nv * sizeof *z);
@@ -293,7 +371,8 @@ static void add_cost(const void *self, hn_cost *cost) {
     const trapezoidal *s = self;
     hn_dae_base_add_cost(&s->base, cost);
     cost->ops += (double)hn_linear_count(s->matrices) * hn_linear_ops(s->matrices) +
-                 (double)hn_eval_count(s->rate) * hn_eval_info(s->rate).ops;
+                 (double)hn_eval_count(s->rate) * hn_eval_info(s->rate).ops +
+                 (s->sparse ? hn_newton_matrix_ops(s->sparse) : 0);
 }
 
 static const char *why(const void *self) {

@@ -259,6 +259,7 @@ static hn_status step_adaptive(hn_run *run) {
                 run->h_next = fmin(run->h_next, GROWTH_IN_TROUBLE * h);
             }
             run->trouble -= run->trouble > 0;
+            hn_run_look_at_stiffness(run, h);
             if (at_corner) {
                 run->h_next = 0; // chosen anew for what begins here
                 return accept_at_corner(run, h);
@@ -419,7 +420,7 @@ static void clear(hn_run *run) {
     const int every = run->watch.every;
     run->summary = (hn_run_summary){.t = run->opts.t0, .watched_every = every};
     run->n_incidents = 0;
-    run->has_step = run->dense_valid = run->trouble = 0;
+    run->has_step = run->dense_valid = run->trouble = run->held = run->free = 0;
     run->control = (hn_step_control){.last = 1};
     run->h_next = run->adaptive ? 0 : hn_method_setting(&run->spec, "h", 0);
     run->now.t = run->opts.t0;

@@ -87,6 +87,8 @@ struct hn_run {
     int restart;    ///< an integrator that paces itself forgets what was before a corner
     int trouble;    ///< trials that failed lately, see step_adaptive
     int iterating;  ///< the last of them was an iteration that did not converge
+    int held,
+        free; ///< steps at the stability limit lately, and since then others in a row: run_stiff.c
     hn_step_control control;
     hn_run_summary summary;
     hn_cost cost_mark;
@@ -130,6 +132,8 @@ const char *hn_engine_why(const hn_run *run, const hn_run_engine *e);
 /// Memory and evaluators of the watch.
 HN_MUST_CHECK hn_status hn_run_watch_create(hn_run *run);
 void hn_run_watch_free(hn_run *run);
+/// After an accepted step of size h: tells when stability has held the step for a while.
+void hn_run_look_at_stiffness(hn_run *run, double h);
 /// Size of a step towards a corner: it ends a few roundings before.
 double hn_run_step_short_of(double from, double to);
 /// Tells coordinates that have left their limits since the last look.

@@ -47,6 +47,10 @@ export const INCIDENTS = {
     name: "Newton's method found no step",
     rule: "An implicit step is found by iteration. From a step that is too long, or near a pose where the loop loses rank, it does not arrive.",
   },
+  stiff: {
+    name: "held back by a stiff part",
+    rule: "Something dies away much faster than the mechanism moves. An explicit step must follow it although nothing of it is left to see; an implicit one need not.",
+  },
   diverged: {
     name: "diverged",
     rule: "An explicit step beyond its stability limit multiplies errors at every step.",
