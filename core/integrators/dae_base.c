@@ -306,6 +306,21 @@ int hn_dae_close_setting(hn_dae_form form, const double *form_settings) {
     return form == HN_FORM_INDEX2 ? (int)form_settings[0] : HN_CLOSE_NEVER;
 }
 
+int hn_dae_projects_speeds(hn_dae_form form, const double *form_settings) {
+    return form == HN_FORM_INDEX3 && form_settings[0] > 0;
+}
+
+hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_settings,
+                                   const char *integrator, hn_diag *diag) {
+    if (!hn_dae_projects_speeds(form, form_settings)) {
+        return HN_OK;
+    }
+    return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take radau5, radau3 or implicit-euler",
+                       "%s does not take index3 with project=yes: its speeds belong to its own "
+                       "scheme, which a projection after each step would break",
+                       integrator);
+}
+
 int hn_dae_closes(int close, long long n, int dependent) {
     return close == HN_CLOSE_DEPENDENT ? dependent : close > 0 && n % close == 0;
 }

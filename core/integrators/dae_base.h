@@ -88,6 +88,11 @@ hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *wh
 enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
 /// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.
 int hn_dae_close_setting(hn_dae_form form, const double *form_settings);
+/// 1 when index 3 asks for speeds that are projected at the end of each step.
+int hn_dae_projects_speeds(hn_dae_form form, const double *form_settings);
+/// The refusal of an integrator that does not do that; HN_OK where it is not asked for.
+HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_settings,
+                                                 const char *integrator, hn_diag *diag);
 /// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent` says that rows were left out.
 int hn_dae_closes(int close, long long n, int dependent);
 

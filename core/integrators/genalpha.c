@@ -53,7 +53,10 @@ static void choose_coefficients(genalpha *s, double rho) {
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
                         const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    (void)form_settings;
+    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "genalpha", diag);
+    if (refused != HN_OK) {
+        return refused;
+    }
     genalpha *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

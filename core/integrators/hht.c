@@ -37,8 +37,10 @@ static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
                         const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    (void)form;
-    (void)form_settings;
+    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "hht", diag);
+    if (refused != HN_OK) {
+        return refused;
+    }
     hht *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

@@ -158,7 +158,11 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
                            "would begin anew each time");
     }
     take_settings(s, form, settings);
-    hn_status status = hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
+    hn_status status = hn_dae_refuse_projecting(form, form_settings, "ida", diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    status = hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
     if (status != HN_OK) {
         return status;
     }

@@ -372,13 +372,13 @@ static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     const int dependent = s->lin.n_kept < s->nc;
     const int closes =
         s->form == HN_FORM_INDEX2 && hn_dae_closes(s->opts.close, s->accepted + 1, dependent);
-    if (s->nc == 0 || (!(s->opts.rtol > 0) && !dependent && !closes)) {
+    if (s->nc == 0 || (!(s->opts.rtol > 0) && !dependent && !closes && !s->opts.projects)) {
         return HN_OK;
     }
     if (wants_phi(s->form) || closes) {
         status = hn_project_position(s->projector, t, q, CLOSED, NULL);
     }
-    if (status == HN_OK && wants_speed_gap(s->form)) {
+    if (status == HN_OK && (wants_speed_gap(s->form) || s->opts.projects)) {
         status = hn_project_velocity(s->projector, t, q, v, NULL);
     }
     if (status != HN_OK) {

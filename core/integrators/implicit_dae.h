@@ -15,7 +15,8 @@
 typedef struct hn_implicit_dae_opts {
     /// 1: the constraint is asked for at the end of the step instead of at the stages (one stage only).
     int at_end;
-    int close; ///< of index 2, see hn_dae_closes()
+    int close;    ///< of index 2, see hn_dae_closes()
+    int projects; ///< 1, index 3: the speeds are projected at the end of each step
     double rtol,
         atol; ///< of an adaptive method; rtol 0: Newton's method goes on to rounding, no error estimate
 } hn_implicit_dae_opts;

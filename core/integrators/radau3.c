@@ -19,7 +19,8 @@ static hn_status create_radau3_dae(const hn_system *sys, hn_dae_form form, const
                                    const double *form_settings, hn_arena *arena, void **self,
                                    hn_diag *diag) {
     const hn_collocation col = nodes_of_radau3();
-    const hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings)};
+    const hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
+                                       .projects = hn_dae_projects_speeds(form, form_settings)};
     (void)settings;
     return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
 }

@@ -31,7 +31,8 @@ static hn_status create_dae(const hn_system *sys, hn_dae_form form, const double
                             const double *form_settings, hn_arena *arena, void **self,
                             hn_diag *diag) {
     const hn_collocation col = nodes();
-    hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings)};
+    hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
+                                 .projects = hn_dae_projects_speeds(form, form_settings)};
     if (!(settings[FIXED] > 0)) {
         opts.rtol = settings[RTOL];
         opts.atol = settings[ATOL] > 0 ? settings[ATOL] : settings[RTOL];

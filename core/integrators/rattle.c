@@ -72,8 +72,10 @@ static hn_status allocate(rattle *s, hn_arena *arena) {
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
                         const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    (void)form;
-    (void)form_settings;
+    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "rattle", diag);
+    if (refused != HN_OK) {
+        return refused;
+    }
     const hn_system_info info = hn_system_get_info(sys);
     if (info.nq != info.nv) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use genalpha, or the ggl form",

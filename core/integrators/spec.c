@@ -229,9 +229,11 @@ static hn_status check_pair(piece right, const hn_method_spec *spec, hn_diag *di
     list_fitting(spec, 0, served, sizeof served);
     snprintf(hint, sizeof hint, "%.40s serves %s", spec->stepper->name, served);
     const int n = list_fitting(spec, 1, list, sizeof list);
-    hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s hands over %s; %s%s", spec->formulation->name,
-                of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
-                n ? "take one of " : "no integrator serves it", list);
+    const char *why = of_dae ? spec->stepper->unserved : NULL;
+    hn_diag_set(
+        diag, HN_ERR_INPUT, NULL, hint, "%s hands over %s; %s%s%s%s", spec->formulation->name,
+        of_dae ? "a differential-algebraic system" : "an ordinary differential equation",
+        n ? "take one of " : "no integrator serves it", list, why ? "; " : "", why ? why : "");
     return at_column(diag, right, HN_ERR_INPUT);
 }
 

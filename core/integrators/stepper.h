@@ -22,6 +22,8 @@ typedef struct hn_stepper {
 
     unsigned
         forms; ///< bit (1 << form) per hn_dae_form it serves; 0: ordinary differential equations only
+    const char *
+        unserved; ///< why it has no form where one would be looked for, for a refusal; NULL: nothing to say
     const hn_dae_stepper
         *dae; ///< how, see integrators/dae.h; NULL when `forms` has no differential-algebraic form
 

@@ -84,7 +84,8 @@ static int create_tangent(trapezoidal *s, hn_arena *arena) {
         end = row_end(s, e);
         pairs += (long long)(end - e) * (end - e);
     }
-    if (nv < SPARSE_FROM || 2 * (square / 2 + pairs) > (long long)nv * nv) {
+    // most of the pairs stand where M has entries too
+    if (nv < SPARSE_FROM || 4 * (entries_of(s, HN_LINEAR_M) + pairs) > 3LL * nv * nv) {
         return hn_square_init(&s->square, arena, nv);
     }
     s->sparse = hn_newton_matrix_create(arena, HN_REAL, 1, nv, square + (int)pairs);
@@ -106,6 +107,10 @@ static hn_status allocate(trapezoidal *s, hn_arena *arena) {
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
                         const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
+    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "trapezoidal", diag);
+    if (refused != HN_OK) {
+        return refused;
+    }
     (void)settings;
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_PHI;
@@ -118,7 +123,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
     if (status != HN_OK) {
         return status;
     }
-    // index3 hands over no settings: the bare rule
+    // on index3 it is the bare rule
     const int augmented = form == HN_FORM_AUGMENTED;
     s->given_weight = augmented ? form_settings[FORM_WEIGHT] : 0;
     s->project = augmented && (int)form_settings[FORM_PROJECTIONS] == PROJECTIONS_ON;

@@ -14,7 +14,8 @@ const hn_formulation hn_formulation_index2 = {
     .source =
         "Brenan, Campbell & Petzold 1996; Hairer & Wanner 1996, VII.1; Hairer, Lubich & Roche 1989",
     .needs = "M f J and derivatives",
-    .order_note = "radau5: q 5, v 5, its own multipliers 3; midpoint: 2, 2, 1",
+    .order_note = "radau5: q 5, v 5, its own multipliers 3; midpoint: 2, 2, 1; Gauss methods "
+                  "lose theirs (2 and 4, for 4 and 6) and do not serve it",
     .limits = "redundant rows contradict each other once the gap is open: there the position is "
               "projected after each step (close=0); with close=-1 the run ends or goes astray",
     .form = HN_FORM_INDEX2,
