@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#define SAME_TIME 1e-9 // of a step
+#define SAME_TIME 1e-9     // of a step
+#define ROUNDED_TIME 2e-14 // relative
 
 // a state of `side` at time t from its y: mended as after a step, then read
 static hn_status finish_side(hn_run *run, double t, double *y) {
@@ -81,7 +82,11 @@ static hn_status interpolate(hn_run *run, double t) {
 static hn_status locate(hn_run *run, double t) {
     const double h = run->h_next;
     const double tol = SAME_TIME * (run->h > 0 ? run->h : fabs(h));
-    if (fabs(t - run->now.t) <= (run->adaptive ? 0 : tol)) {
+    // steps that are chosen may end a rounding short of a time that somebody divided out
+    const double ahead = t - run->now.t;
+    const int here =
+        run->adaptive ? ahead >= 0 && ahead <= ROUNDED_TIME * fabs(t) : fabs(ahead) <= tol;
+    if (here) {
         memcpy(run->at_q, run->now.q, (size_t)run->info.nq * sizeof(double));
         memcpy(run->at_v, run->now.v, (size_t)run->info.nv * sizeof(double));
         run->at_raw = run->has_step ? hn_engine_raw_lambda(run, &run->main) : NULL;

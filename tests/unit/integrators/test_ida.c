@@ -91,6 +91,7 @@ typedef struct trial {
 } trial;
 
 static const double never[HN_MAX_SETTINGS] = {-1}; // index 2: positions are not projected
+static const double none[HN_MAX_SETTINGS] = {0};   // index 3: nor are speeds
 
 static const hn_dae_stepper *ida(void) {
     return hn_stepper_ida.dae;
@@ -109,8 +110,10 @@ static void open(trial *x, const char *scene, hn_dae_form form, double rtol) {
     memcpy(x->y, x->m.q, (size_t)x->m.info.nq * sizeof *x->y);
     memcpy(x->y + x->m.info.nq, x->m.v, (size_t)x->m.info.nv * sizeof *x->y);
     assert_int_equal(ida()->create(x->m.sys, form, settings,
-                                   form == HN_FORM_INDEX2 ? never : stabilisation, x->arena,
-                                   &x->self, &diag),
+                                   form == HN_FORM_INDEX2   ? never
+                                   : form == HN_FORM_INDEX3 ? none
+                                                            : stabilisation,
+                                   x->arena, &x->self, &diag),
                      HN_OK);
     assert_int_equal(ida()->start(x->self, 0, x->y), HN_OK);
 }

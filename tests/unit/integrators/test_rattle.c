@@ -56,11 +56,11 @@ static void a_damper_is_refused_with_the_way_to_take_it(void **state) {
     hn_model m;
     hn_diag diag = {0};
     void *self = NULL;
-    const double settings[HN_MAX_SETTINGS] = {1e-3, 0};
+    const double settings[HN_MAX_SETTINGS] = {1e-3, 0}, none[HN_MAX_SETTINGS] = {0};
     hn_arena *arena = hn_arena_create(0);
     hn_model_open_text(&m, damped_bob, NULL);
     assert_int_equal(
-        rattle()->dae->create(m.sys, HN_FORM_INDEX3, settings, settings, arena, &self, &diag),
+        rattle()->dae->create(m.sys, HN_FORM_INDEX3, settings, none, arena, &self, &diag),
         HN_ERR_UNSUPPORTED);
     assert_non_null(strstr(diag.message, "speed"));
     assert_non_null(strstr(diag.hint, "split"));

@@ -99,10 +99,27 @@ static void motions_that_ask_for_their_steps_are_not_called_stiff(void **state) 
     }
 }
 
+// steps of 1e-4 s end at 9.999999999999999e-05 where a hundredth of 0.01 s is asked for
+static void a_sample_a_rounding_after_the_last_step_is_that_step(void **state) {
+    (void)state;
+    hn_model m;
+    hn_sample s;
+    hn_model_open_text(&m, damped, NULL);
+    hn_run *run = hn_motion_start(&m, "index1@radau5:rtol=1e-6");
+    assert_int_equal(hn_run_step(run), HN_OK);
+    const double t = hn_run_time(run);
+    assert_int_equal(hn_run_sample(run, t * (1 + 5e-15), &s), HN_OK);
+    assert_near(s.t, t, 1e-14 * t);
+    assert_int_equal(hn_run_sample(run, t * (1 + 1e-6), &s), HN_ERR_INPUT); // has yet to be reached
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_held_by_a_strong_damper_are_told_with_an_implicit_remedy),
         cmocka_unit_test(the_remedy_takes_few_steps_and_arrives_at_the_same_place),
+        cmocka_unit_test(a_sample_a_rounding_after_the_last_step_is_that_step),
         cmocka_unit_test(motions_that_ask_for_their_steps_are_not_called_stiff),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
