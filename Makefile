@@ -49,9 +49,9 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-
             -Wmissing-prototypes -Wconversion -Wno-sign-conversion
 # no fast-math and no fused multiply-add: a build must give the same bits everywhere
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
-CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -MMD -MP
+CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -isystem /usr/include/suitesparse -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
-LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lklu -lOSMesa -lpng -lxml2 -lm
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lOSMesa -lpng -lxml2 -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)

@@ -8,7 +8,9 @@
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
+#include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_dense.h>
+#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -78,6 +80,22 @@ static int give_residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void *
     return 0;
 }
 
+static int is_sparse(const ida_stepper *s) {
+    return !s->by_differences && hn_ida_jacobian_is_sparse(&s->jacobian);
+}
+
+static void copy_columns(const hn_compressed *from, const double *values, SUNMatrix A) {
+    const int n = from->n, entries = from->start[n];
+    sunindextype *start = SUNSparseMatrix_IndexPointers(A), *row = SUNSparseMatrix_IndexValues(A);
+    for (int i = 0; i <= n; i++) {
+        start[i] = from->start[i];
+    }
+    for (int e = 0; e < entries; e++) {
+        row[e] = from->row[e];
+    }
+    memcpy(SUNSparseMatrix_Data(A), values, (size_t)entries * sizeof *values);
+}
+
 static int give_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector r, SUNMatrix A,
                          void *user, N_Vector work1, N_Vector work2, N_Vector work3) {
     ida_stepper *s = user;
@@ -85,6 +103,13 @@ static int give_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector
     (void)work1;
     (void)work2;
     (void)work3;
+    if (is_sparse(s)) {
+        const double *values;
+        const hn_compressed *places =
+            hn_ida_jacobian_fill_sparse(&s->jacobian, t, c, data_of(y), data_of(ydot), &values);
+        copy_columns(places, values, A);
+        return 0;
+    }
     hn_ida_jacobian_fill(&s->jacobian, t, c, data_of(y), data_of(ydot), SUNDenseMatrix_Data(A));
     return 0;
 }
@@ -190,7 +215,9 @@ static int create_vectors(ida_stepper *s) {
     s->ydot = N_VNew_Serial(s->n, s->context);
     s->id = N_VNew_Serial(s->n, s->context);
     s->tolerance = N_VNew_Serial(s->n, s->context);
-    s->matrix = SUNDenseMatrix(s->n, s->n, s->context);
+    s->matrix = is_sparse(s) ? SUNSparseMatrix(s->n, s->n, hn_ida_jacobian_puts(&s->jacobian),
+                                               CSC_MAT, s->context)
+                             : SUNDenseMatrix(s->n, s->n, s->context);
     return s->y && s->ydot && s->id && s->tolerance && s->matrix;
 }
 
@@ -227,7 +254,8 @@ static hn_status create_integration(ida_stepper *s, double t) {
     if (!create_vectors(s)) {
         return HN_ERR_MEMORY;
     }
-    s->solver = SUNLinSol_Dense(s->y, s->matrix, s->context);
+    s->solver = is_sparse(s) ? SUNLinSol_KLU(s->y, s->matrix, s->context)
+                             : SUNLinSol_Dense(s->y, s->matrix, s->context);
     s->ida = IDACreate(s->context);
     if (!s->solver || !s->ida) {
         return HN_ERR_MEMORY;
@@ -236,6 +264,30 @@ static hn_status create_integration(ida_stepper *s, double t) {
     memcpy(data_of(s->y), s->start_y, (size_t)s->n * sizeof(double));
     memcpy(data_of(s->ydot), s->start_ydot, (size_t)s->n * sizeof(double));
     return hn_ida_status(configure_ida(s, t), t, s->why, sizeof s->why);
+}
+
+/// Operations of a factorisation and of a solution.
+typedef struct linear_work {
+    double factor, solve;
+} linear_work;
+
+static linear_work work_of(const ida_stepper *s, long setups) {
+    const double n = s->n;
+    if (!is_sparse(s)) {
+        return (linear_work){2 * n * n * n / 3, 2 * n * n};
+    }
+    if (setups == 0) {
+        return (linear_work){0, 0};
+    }
+    sun_klu_numeric *numeric = SUNLinSol_KLUGetNumeric(s->solver);
+    sun_klu_common *common = SUNLinSol_KLUGetCommon(s->solver);
+    if (!numeric) {
+        return (linear_work){0, 0}; // the matrix was singular
+    }
+    klu_l_flops(SUNLinSol_KLUGetSymbolic(s->solver), numeric, common);
+    return (linear_work){
+        common->flops,
+        2.0 * ((double)numeric->lnz + (double)numeric->unz + (double)numeric->nzoff) + n};
 }
 
 static void add_counters(const ida_stepper *s, hn_cost *cost) {
@@ -249,14 +301,14 @@ static void add_counters(const ida_stepper *s, hn_cost *cost) {
     IDAGetNumNonlinSolvIters(s->ida, &iterations);
     IDAGetNumErrTestFails(s->ida, &errors);
     IDAGetNumStepSolveFails(s->ida, &failures);
-    const double n = s->n, lu = 2 * n * n * n / 3;
+    const linear_work work = work_of(s, setups);
     cost->evals += residuals + extra;
     cost->factorisations += setups;
     cost->solves += iterations;
     cost->newton += iterations;
     cost->rejected += errors + failures;
     cost->ops += (double)(residuals + extra) * hn_ida_problem_ops(&s->problem) +
-                 (double)setups * lu + (double)iterations * 2 * n * n;
+                 (double)setups * work.factor + (double)iterations * work.solve;
     if (!s->by_differences) {
         cost->ops += (double)setups * hn_ida_jacobian_ops(&s->jacobian);
     }

@@ -1,6 +1,7 @@
 #include "integrators/ida_jacobian.h"
 
 #include "linalg/dense.h"
+#include "linalg/newton_matrix.h"
 
 #include <string.h>
 
@@ -20,6 +21,51 @@ static int is_index1(const hn_ida_problem *p) {
     return p->form == HN_FORM_INDEX1 || p->form == HN_FORM_STABILISED;
 }
 
+static int entries_of(const hn_linear *l, hn_linear_term term) {
+    const int *rows, *cols;
+    return hn_linear_pattern(l, term, &rows, &cols);
+}
+
+// puts of fill(), at most
+static int count_puts(const hn_ida_jacobian *j) {
+    const hn_ida_problem *p = j->problem;
+    const int M = entries_of(j->terms, HN_LINEAR_M), J = entries_of(j->terms, HN_LINEAR_J);
+    int n = p->nq + p->nv + M + entries_of(j->terms, HN_LINEAR_K) +
+            entries_of(j->terms, HN_LINEAR_C) + 2 * J;
+    if (is_index1(p)) {
+        n += entries_of(j->terms, HN_LINEAR_GAMMA_Q) + entries_of(j->terms, HN_LINEAR_GAMMA_V) +
+             2 * entries_of(j->turn, HN_LINEAR_V);
+    }
+    if (terms_of(p->form) & HN_LINEAR_V) {
+        n += entries_of(j->terms, HN_LINEAR_V) + 2 * J;
+    }
+    return p->form == HN_FORM_GGL ? n + 2 * M + 2 * J : n;
+}
+
+// those that stand where others do
+static int count_doubled(const hn_ida_jacobian *j) {
+    const int J = entries_of(j->terms, HN_LINEAR_J);
+    if (!is_index1(j->problem)) {
+        return 0;
+    }
+    return 2 * entries_of(j->turn, HN_LINEAR_V) +
+           (j->problem->form == HN_FORM_STABILISED ? 2 * J + entries_of(j->terms, HN_LINEAR_V) : 0);
+}
+
+// Large matrices are given to the library entry by entry. With balls, whose columns are mixed by G, they stay full.
+static hn_status create_sparse(hn_ida_jacobian *j, hn_arena *arena) {
+    const int room = hn_ida_problem_room(j->problem), puts = count_puts(j);
+    if (j->G || !hn_newton_matrix_wants_sparse(room, puts - count_doubled(j))) {
+        return HN_OK;
+    }
+    j->sparse = hn_arena_get(arena, sizeof *j->sparse);
+    if (!j->sparse || !hn_compressed_init(&j->sparse->places, arena, room, puts)) {
+        return HN_ERR_MEMORY;
+    }
+    j->sparse->values = hn_arena_doubles(arena, (size_t)puts);
+    return j->sparse->values ? HN_OK : HN_ERR_MEMORY;
+}
+
 hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem, hn_arena *arena) {
     const hn_ida_problem *p = problem;
     const size_t nq = (size_t)p->nq, nv = (size_t)p->nv, nc = (size_t)p->nc;
@@ -27,8 +73,6 @@ hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem
     j->unit = hn_arena_doubles(arena, nq + nv);
     j->rate = hn_arena_doubles(arena, nq + nv);
     j->still = hn_arena_doubles(arena, nq + nv);
-    j->row_terms = hn_arena_doubles(arena, nc * nv);
-    j->row_speeds = hn_arena_doubles(arena, nc * nv);
     j->lambda = hn_arena_doubles(arena, nc);
     if (nq != nv) {
         j->G = hn_arena_doubles(arena, nq * nv);
@@ -42,7 +86,7 @@ hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem
     if (status == HN_OK && is_index1(p)) {
         status = hn_linear_create(p->sys, HN_LINEAR_V, arena, &j->turn);
     }
-    return status;
+    return status == HN_OK ? create_sparse(j, arena) : status;
 }
 
 void hn_ida_jacobian_free(hn_ida_jacobian *j) {
@@ -50,62 +94,58 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j) {
     hn_linear_free(j->turn);
 }
 
-// --- blocks ---------------------------------------------------------------------------------------------------
+// --- entries --------------------------------------------------------------------------------------------------
 
-/// A block of A whose first entry is (row, col).
-typedef struct block {
-    double *at;
-    int n; // distance between columns
-} block;
-
-static block block_at(double *A, int n, int row, int col) {
-    return (block){A + (size_t)col * (size_t)n + row, n};
-}
-
-static double *entry(block b, int row, int col) {
-    return b.at + (size_t)col * (size_t)b.n + row;
-}
-
-// b += s X, X (rows x cols) row-major
-static void add_matrix(block b, int rows, int cols, double s, const double *X) {
-    for (int i = 0; i < rows; i++) {
-        for (int k = 0; k < cols; k++) {
-            *entry(b, i, k) += s * X[i * cols + k];
-        }
+static void add(const hn_ida_jacobian *j, int row, int col, double x) {
+    if (j->sparse) {
+        hn_compressed_put(&j->sparse->places, row, col, x, 0);
+    } else {
+        j->A[(size_t)col * (size_t)j->problem->n + (size_t)row] += x;
     }
 }
 
-// b += s X, where the columns of X go along the speeds and those of the block along q: X G^+
-static void add_along_speeds(const hn_ida_jacobian *j, block b, int rows, const double *X) {
-    const int nq = j->problem->nq, nv = j->problem->nv;
+// x in a column that goes along speed `speed`; those of the matrix go along q: X G^+
+static void add_along_speed(const hn_ida_jacobian *j, int row, int speed, double x) {
     if (!j->Gp) {
-        add_matrix(b, rows, nv, 1, X);
+        add(j, row, speed, x);
         return;
     }
-    for (int i = 0; i < rows; i++) {
-        for (int k = 0; k < nq; k++) {
-            double sum = 0;
-            for (int s = 0; s < nv; s++) {
-                sum += X[i * nv + s] * j->Gp[s * nq + k];
-            }
-            *entry(b, i, k) += sum;
+    for (int k = 0; k < j->problem->nq; k++) {
+        add(j, row, k, x * j->Gp[speed * j->problem->nq + k]);
+    }
+}
+
+/// Where a term goes: its first row and column, and what its rows and columns are.
+typedef struct target {
+    int row, col;
+    int by_row;     ///< 1: rows are constraints, those that are kept count
+    int along;      ///< 1: columns go along the speeds (col is then that of q)
+    int transposed; ///< 1: rows and columns change places, by_row is about columns
+} target;
+
+static void add_term(const hn_ida_jacobian *j, const hn_linear *l, hn_linear_term term,
+                     const target *at, double s) {
+    const double *values = hn_linear_get(l, term);
+    const int *rows, *cols, n = hn_linear_pattern(l, term, &rows, &cols);
+    for (int e = 0; e < n; e++) {
+        const int row = at->by_row ? j->problem->place[rows[e]] : rows[e], col = cols[e];
+        const double x = s * values[(size_t)rows[e] * (size_t)j->problem->nv + (size_t)cols[e]];
+        if (row < 0) {
+            continue;
+        }
+        if (at->transposed) {
+            add(j, at->row + col, at->col + row, x);
+        } else if (at->along) {
+            add_along_speed(j, at->row + row, col, x);
+        } else {
+            add(j, at->row + row, at->col + col, x);
         }
     }
 }
 
-// b -= J' over the kept rows
-static void subtract_transpose(block b, const hn_ida_problem *p, const double *J) {
-    for (int k = 0; k < p->n_kept; k++) {
-        for (int i = 0; i < p->nv; i++) {
-            *entry(b, i, k) -= J[p->kept[k] * p->nv + i];
-        }
-    }
-}
-
-static void add_diagonal(block b, int n, double x) {
-    for (int i = 0; i < n; i++) {
-        *entry(b, i, i) += x;
-    }
+// -J' over the kept rows
+static void subtract_transpose(const hn_ida_jacobian *j, int row, int col) {
+    add_term(j, j->terms, HN_LINEAR_J, &(target){row, col, 1, 0, 1}, -1);
 }
 
 // --- eq. (1) --------------------------------------------------------------------------------------------------
@@ -127,7 +167,7 @@ static void find_G(hn_ida_jacobian *j, const double *q) {
 }
 
 // -(G v)_q: G v is a linear function of a quaternion's entries, so unit steps give its derivative exactly
-static void subtract_turning(hn_ida_jacobian *j, block b, const double *v) {
+static void subtract_turning(hn_ida_jacobian *j, const double *v) {
     const int nq = j->problem->nq;
     memset(j->unit, 0, (size_t)nq * sizeof *j->unit);
     hn_system_kinematics(j->problem->sys, j->unit, v, j->still);
@@ -136,114 +176,124 @@ static void subtract_turning(hn_ida_jacobian *j, block b, const double *v) {
         hn_system_kinematics(j->problem->sys, j->unit, v, j->rate);
         j->unit[k] = 0;
         for (int i = 0; i < nq; i++) {
-            *entry(b, i, k) -= j->rate[i] - j->still[i];
+            add(j, i, k, j->still[i] - j->rate[i]);
         }
     }
 }
 
-static void put_kinematics(hn_ida_jacobian *j, double c, const double *y, double *A) {
+static void put_kinematics(hn_ida_jacobian *j, double c, const double *y) {
     const hn_ida_problem *p = j->problem;
-    const block by_q = block_at(A, p->n, 0, 0), by_v = block_at(A, p->n, 0, p->nq);
     if (p->form == HN_FORM_GGL) {
-        const double *M = hn_linear_get(j->terms, HN_LINEAR_M);
-        add_matrix(by_q, p->nv, p->nv, c, M);
-        add_matrix(by_v, p->nv, p->nv, -1, M);
-        subtract_transpose(block_at(A, p->n, 0, p->nq + p->nv + p->n_kept), p,
-                           hn_linear_get(j->terms, HN_LINEAR_J));
+        add_term(j, j->terms, HN_LINEAR_M, &(target){0}, c);
+        add_term(j, j->terms, HN_LINEAR_M, &(target){.col = p->nq}, -1);
+        subtract_transpose(j, 0, p->nq + p->nv + p->n_kept);
         return;
     }
-    add_diagonal(by_q, p->nq, c);
+    for (int i = 0; i < p->nq; i++) {
+        add(j, i, i, c);
+    }
     if (!j->G) {
-        add_diagonal(by_v, p->nv, -1);
+        for (int i = 0; i < p->nv; i++) {
+            add(j, i, p->nq + i, -1);
+        }
         return;
     }
     find_G(j, y);
-    add_matrix(by_v, p->nq, p->nv, -1, j->G);
-    subtract_turning(j, by_q, y + p->nq);
+    for (int i = 0; i < p->nq * p->nv; i++) {
+        add(j, i / p->nv, p->nq + i % p->nv, -j->G[i]);
+    }
+    subtract_turning(j, y + p->nq);
 }
 
 // --- eq. (2), (3) ---------------------------------------------------------------------------------------------
 
-static void put_dynamics(const hn_ida_jacobian *j, double c, double *A) {
-    const hn_ida_problem *p = j->problem;
-    const block by_v = block_at(A, p->n, p->nq, p->nq);
-    add_along_speeds(j, block_at(A, p->n, p->nq, 0), p->nv, hn_linear_get(j->terms, HN_LINEAR_K));
-    add_matrix(by_v, p->nv, p->nv, 1, hn_linear_get(j->terms, HN_LINEAR_C));
-    add_matrix(by_v, p->nv, p->nv, c, hn_linear_get(j->terms, HN_LINEAR_M));
-    subtract_transpose(block_at(A, p->n, p->nq, p->nq + p->nv), p,
-                       hn_linear_get(j->terms, HN_LINEAR_J));
+static void put_dynamics(const hn_ida_jacobian *j, double c) {
+    const int nq = j->problem->nq, nv = j->problem->nv;
+    const target by_v = {.row = nq, .col = nq};
+    add_term(j, j->terms, HN_LINEAR_K, &(target){.row = nq, .along = 1}, 1);
+    add_term(j, j->terms, HN_LINEAR_C, &by_v, 1);
+    add_term(j, j->terms, HN_LINEAR_M, &by_v, c);
+    subtract_transpose(j, nq, nq + nv);
 }
 
-static void add_to(double *sum, const hn_ida_jacobian *j, double s, const double *X) {
-    hn_axpy(j->problem->nc * j->problem->nv, s, X, sum);
-}
-
-static void find_index1_rows(hn_ida_jacobian *j, double t, double c, const double *q,
-                             const double *a) {
+static void put_index1_rows(hn_ida_jacobian *j, double t, double c, const double *q,
+                            const double *a) {
     const hn_ida_problem *p = j->problem;
-    const double *J = hn_linear_get(j->terms, HN_LINEAR_J);
-    add_to(j->row_terms, j, 1, hn_linear_get(j->terms, HN_LINEAR_GAMMA_Q));
-    add_to(j->row_speeds, j, 1, hn_linear_get(j->terms, HN_LINEAR_GAMMA_V));
-    add_to(j->row_speeds, j, c, J);
+    const target by_q = {.row = p->nq + p->nv, .by_row = 1, .along = 1};
+    const target by_v = {.row = p->nq + p->nv, .col = p->nq, .by_row = 1};
+    add_term(j, j->terms, HN_LINEAR_GAMMA_Q, &by_q, 1);
+    add_term(j, j->terms, HN_LINEAR_GAMMA_V, &by_v, 1);
+    add_term(j, j->terms, HN_LINEAR_J, &by_v, c);
     hn_linear_run(j->turn, t, q, a, NULL, NULL);
-    add_to(j->row_terms, j, 1, hn_linear_get(j->turn, HN_LINEAR_V));
+    add_term(j, j->turn, HN_LINEAR_V, &by_q, 1);
     if (j->offset) {
         hn_linear_run(j->turn, t, q, NULL, NULL, NULL);
-        add_to(j->row_terms, j, -1, hn_linear_get(j->turn, HN_LINEAR_V));
+        add_term(j, j->turn, HN_LINEAR_V, &by_q, -1);
     }
     if (p->form == HN_FORM_STABILISED) {
-        add_to(j->row_terms, j, 2 * p->alpha, hn_linear_get(j->terms, HN_LINEAR_V));
-        add_to(j->row_terms, j, p->beta * p->beta, J);
-        add_to(j->row_speeds, j, 2 * p->alpha, J);
-    }
-}
-
-static void put_rows(const hn_ida_jacobian *j, double *A, int first, const double *by_q,
-                     const double *by_v) {
-    const hn_ida_problem *p = j->problem;
-    for (int k = 0; k < p->n_kept; k++) {
-        const size_t row = (size_t)p->kept[k] * (size_t)p->nv;
-        if (by_q) {
-            add_along_speeds(j, block_at(A, p->n, first + k, 0), 1, by_q + row);
-        }
-        if (by_v) {
-            add_matrix(block_at(A, p->n, first + k, p->nq), 1, p->nv, 1, by_v + row);
-        }
+        add_term(j, j->terms, HN_LINEAR_V, &by_q, 2 * p->alpha);
+        add_term(j, j->terms, HN_LINEAR_J, &by_q, p->beta * p->beta);
+        add_term(j, j->terms, HN_LINEAR_J, &by_v, 2 * p->alpha);
     }
 }
 
 static void put_constraints(hn_ida_jacobian *j, double t, double c, const double *y,
-                            const double *ydot, double *A) {
+                            const double *ydot) {
     const hn_ida_problem *p = j->problem;
-    const double *J = hn_linear_get(j->terms, HN_LINEAR_J);
     const int first = p->nq + p->nv;
     if (is_index1(p)) {
-        memset(j->row_terms, 0, (size_t)p->nc * (size_t)p->nv * sizeof *j->row_terms);
-        memset(j->row_speeds, 0, (size_t)p->nc * (size_t)p->nv * sizeof *j->row_speeds);
-        find_index1_rows(j, t, c, y, ydot + p->nq);
-        put_rows(j, A, first, j->row_terms, j->row_speeds);
+        put_index1_rows(j, t, c, y, ydot + p->nq);
         return;
     }
+    const target by_q = {.row = first, .by_row = 1, .along = 1};
     if (p->form == HN_FORM_INDEX3) {
-        put_rows(j, A, first, J, NULL);
+        add_term(j, j->terms, HN_LINEAR_J, &by_q, 1);
         return;
     }
-    put_rows(j, A, first, hn_linear_get(j->terms, HN_LINEAR_V), J);
+    add_term(j, j->terms, HN_LINEAR_V, &by_q, 1);
+    add_term(j, j->terms, HN_LINEAR_J, &(target){.row = first, .col = p->nq, .by_row = 1}, 1);
     if (p->form == HN_FORM_GGL) {
-        put_rows(j, A, first + p->n_kept, J, NULL);
+        add_term(j, j->terms, HN_LINEAR_J,
+                 &(target){.row = first + p->n_kept, .by_row = 1, .along = 1}, 1);
     }
+}
+
+static void fill(hn_ida_jacobian *j, double t, double c, const double *y, const double *ydot) {
+    hn_ida_problem_lambda(j->problem, y, j->lambda);
+    hn_linear_run(j->terms, t, y, y + j->problem->nq, ydot + j->problem->nq, j->lambda);
+    put_kinematics(j, c, y);
+    put_dynamics(j, c);
+    put_constraints(j, t, c, y, ydot);
+    j->count++;
 }
 
 void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
                           const double *ydot, double *A) {
-    const hn_ida_problem *p = j->problem;
-    hn_ida_problem_lambda(p, y, j->lambda);
-    hn_linear_run(j->terms, t, y, y + p->nq, ydot + p->nq, j->lambda);
-    memset(A, 0, (size_t)p->n * (size_t)p->n * sizeof *A);
-    put_kinematics(j, c, y, A);
-    put_dynamics(j, c, A);
-    put_constraints(j, t, c, y, ydot, A);
-    j->count++;
+    const size_t n = (size_t)j->problem->n;
+    hn_ida_sparse *const sparse = j->sparse;
+    j->sparse = NULL;
+    j->A = A;
+    memset(A, 0, n * n * sizeof *A);
+    fill(j, t, c, y, ydot);
+    j->sparse = sparse;
+}
+
+const hn_compressed *hn_ida_jacobian_fill_sparse(hn_ida_jacobian *j, double t, double c,
+                                                 const double *y, const double *ydot,
+                                                 const double **values) {
+    hn_compressed_begin(&j->sparse->places, j->problem->n);
+    fill(j, t, c, y, ydot);
+    (void)hn_compressed_end(&j->sparse->places, 1, j->sparse->values);
+    *values = j->sparse->values;
+    return &j->sparse->places;
+}
+
+int hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j) {
+    return j->sparse != NULL;
+}
+
+int hn_ida_jacobian_puts(const hn_ida_jacobian *j) {
+    return j->sparse ? j->sparse->places.entries_max : 0;
 }
 
 double hn_ida_jacobian_ops(const hn_ida_jacobian *j) {

@@ -18,6 +18,12 @@
 
 #include "dynamics/linearise.h"
 #include "integrators/ida_problem.h"
+#include "linalg/compressed.h"
+
+typedef struct hn_ida_sparse {
+    hn_compressed places;
+    double *values;
+} hn_ida_sparse;
 
 typedef struct hn_ida_jacobian {
     const hn_ida_problem *problem;
@@ -26,8 +32,8 @@ typedef struct hn_ida_jacobian {
     int offset;                  ///< V(0) is not zero
     double *G, *Gp;              ///< nq x nv and nv x nq; NULL when nq == nv
     double *unit, *rate, *still; ///< nq + nv scratch each
-    double *row_terms;           ///< nc x nv: the derivative by q of (3) along the speeds
-    double *row_speeds;          ///< nc x nv: that by v
+    double *A;                   ///< what is being filled, when it is full
+    hn_ida_sparse *sparse;       ///< NULL: the matrix is full
     double *lambda;              ///< nc
     long long count;
 } hn_ida_jacobian;
@@ -39,6 +45,14 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j);
 /// Fills A (n x n, column by column).
 void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
                           const double *ydot, double *A);
+/// 1 when the matrix is large and has few entries: it is then filled in compressed columns with at most so many entries. Their places are
+/// the same from one filling to the next as long as the rows that are kept are.
+int hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j);
+int hn_ida_jacobian_puts(const hn_ida_jacobian *j);
+/// The places, and the values of their entries (borrowed).
+const hn_compressed *hn_ida_jacobian_fill_sparse(hn_ida_jacobian *j, double t, double c,
+                                                 const double *y, const double *ydot,
+                                                 const double **values);
 double hn_ida_jacobian_ops(const hn_ida_jacobian *j); ///< arithmetic operations of one
 
 #endif

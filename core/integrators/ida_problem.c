@@ -37,12 +37,15 @@ static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
     p->work = hn_arena_doubles(arena, nv > nc ? nv : nc);
     p->slope = hn_arena_doubles(arena, 3 * ((size_t)p->nq + nv));
     p->kept = hn_arena_ints(arena, nc);
+    p->place = hn_arena_ints(arena, nc);
     if (hn_arena_failed(arena) || !hn_qr_init(&p->qr, arena, p->nv, p->nc)) {
         return HN_ERR_MEMORY;
     }
     const hn_accel_opts opts = {.baumgarte = is_stabilised(p), .want_lambda = 1};
     hn_status status = hn_eval_create(p->sys, terms_of(p->form), arena, &p->eval);
     if (status == HN_OK) {
+        p->n_M = hn_eval_pattern(p->eval, HN_TERM_M, &p->M_row, &p->M_col);
+        p->n_J = hn_eval_pattern(p->eval, HN_TERM_J, &p->J_row, &p->J_col);
         status = hn_accel_create(p->sys, &opts, arena, &p->accel);
     }
     return status;
@@ -86,8 +89,10 @@ static void keep_independent_rows(hn_ida_problem *p, const double *J) {
     hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
     p->n_kept = 0;
     for (int row = 0; row < p->nc; row++) {
+        p->place[row] = -1;
         for (int k = 0; k < p->qr.rank; k++) {
             if (p->qr.perm[k] == row) {
+                p->place[row] = p->n_kept;
                 p->kept[p->n_kept++] = row;
             }
         }
@@ -154,8 +159,34 @@ hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *s
 // r -= J' x over the kept rows
 static void subtract_reaction(const hn_ida_problem *p, const double *J, const double *x,
                               double *r) {
-    for (int k = 0; k < p->n_kept; k++) {
-        hn_axpy(p->nv, -x[k], J + (size_t)p->kept[k] * (size_t)p->nv, r);
+    for (int e = 0; e < p->n_J; e++) {
+        const int row = p->J_row[e], col = p->J_col[e];
+        if (p->place[row] >= 0) {
+            r[col] -= x[p->place[row]] * J[(size_t)row * (size_t)p->nv + (size_t)col];
+        }
+    }
+}
+
+// r (nv) = M x
+static void multiply_mass(const hn_ida_problem *p, const double *x, double *r) {
+    const double *M = hn_eval_get(p->eval, HN_TERM_M);
+    memset(r, 0, (size_t)p->nv * sizeof *r);
+    for (int e = 0; e < p->n_M; e++) {
+        const int i = p->M_row[e], k = p->M_col[e];
+        const double m = M[(size_t)i * (size_t)p->nv + (size_t)k];
+        r[i] += m * x[k];
+        r[k] += i != k ? m * x[i] : 0;
+    }
+}
+
+// r += k J x over the kept rows
+static void add_rows(const hn_ida_problem *p, double k, const double *x, double *r) {
+    const double *J = hn_eval_get(p->eval, HN_TERM_J);
+    for (int e = 0; e < p->n_J; e++) {
+        const int row = p->J_row[e], col = p->J_col[e];
+        if (p->place[row] >= 0) {
+            r[p->place[row]] += k * J[(size_t)row * (size_t)p->nv + (size_t)col] * x[col];
+        }
     }
 }
 
@@ -172,35 +203,43 @@ static void put_kinematics(hn_ida_problem *p, const double *y, const double *ydo
     for (int i = 0; i < p->nv; i++) {
         p->work[i] = ydot[i] - v[i];
     }
-    hn_mat_vec(p->nv, p->nv, hn_eval_get(p->eval, HN_TERM_M), p->work, r);
+    multiply_mass(p, p->work, r);
     subtract_reaction(p, hn_eval_get(p->eval, HN_TERM_J), v + p->nv + p->n_kept, r);
 }
 
-static double speed_gap(const hn_ida_problem *p, const double *J, const double *v, int row) {
-    return hn_dot(p->nv, J + (size_t)row * (size_t)p->nv, v) +
-           hn_eval_get(p->eval, HN_TERM_PHI_T)[row];
+// r += k (J v + phi_t) over the kept rows
+static void add_speed_gap(const hn_ida_problem *p, double k, const double *v, double *r) {
+    const double *phi_t = hn_eval_get(p->eval, HN_TERM_PHI_T);
+    add_rows(p, k, v, r);
+    for (int i = 0; i < p->n_kept; i++) {
+        r[i] += k * phi_t[p->kept[i]];
+    }
+}
+
+static void add_kept(const hn_ida_problem *p, double k, hn_term term, double *r) {
+    const double *x = hn_eval_get(p->eval, term);
+    for (int i = 0; i < p->n_kept; i++) {
+        r[i] += k * x[p->kept[i]];
+    }
 }
 
 // eq. (3)
 static void put_constraints(const hn_ida_problem *p, const double *v, const double *a, double *r) {
-    const double *J = hn_eval_get(p->eval, HN_TERM_J);
-    for (int k = 0; k < p->n_kept; k++) {
-        const int row = p->kept[k];
-        if (p->form == HN_FORM_INDEX3) {
-            r[k] = hn_eval_get(p->eval, HN_TERM_PHI)[row];
-        } else if (p->form == HN_FORM_INDEX1 || is_stabilised(p)) {
-            r[k] = hn_dot(p->nv, J + (size_t)row * (size_t)p->nv, a) +
-                   hn_eval_get(p->eval, HN_TERM_GAMMA)[row];
-        } else {
-            r[k] = speed_gap(p, J, v, row);
-        }
-        if (is_stabilised(p)) {
-            r[k] += 2 * p->alpha * speed_gap(p, J, v, row) +
-                    p->beta * p->beta * hn_eval_get(p->eval, HN_TERM_PHI)[row];
-        }
-        if (has_mu(p)) {
-            r[p->n_kept + k] = hn_eval_get(p->eval, HN_TERM_PHI)[row];
-        }
+    memset(r, 0, (size_t)((has_mu(p) ? 2 : 1) * p->n_kept) * sizeof *r);
+    if (p->form == HN_FORM_INDEX3) {
+        add_kept(p, 1, HN_TERM_PHI, r);
+    } else if (p->form == HN_FORM_INDEX1 || is_stabilised(p)) {
+        add_rows(p, 1, a, r);
+        add_kept(p, 1, HN_TERM_GAMMA, r);
+    } else {
+        add_speed_gap(p, 1, v, r);
+    }
+    if (is_stabilised(p)) {
+        add_speed_gap(p, 2 * p->alpha, v, r);
+        add_kept(p, p->beta * p->beta, HN_TERM_PHI, r);
+    }
+    if (has_mu(p)) {
+        add_kept(p, 1, HN_TERM_PHI, r + p->n_kept);
     }
 }
 
@@ -211,7 +250,7 @@ void hn_ida_problem_residual(hn_ida_problem *p, double t, const double *y, const
     hn_eval_run(p->eval, t, y, v);
     p->residuals++;
     put_kinematics(p, y, ydot, r);
-    hn_mat_vec(p->nv, p->nv, hn_eval_get(p->eval, HN_TERM_M), a, dynamics);
+    multiply_mass(p, a, dynamics);
     hn_axpy(p->nv, -1, hn_eval_get(p->eval, HN_TERM_F), dynamics);
     subtract_reaction(p, hn_eval_get(p->eval, HN_TERM_J), lambda, dynamics);
     put_constraints(p, v, a, dynamics + p->nv);
@@ -225,7 +264,7 @@ void hn_ida_problem_lambda(const hn_ida_problem *p, const double *y, double *lam
 }
 
 double hn_ida_problem_ops(const hn_ida_problem *p) {
-    const double products = hn_flops_product(p->nv, p->nv, 1) + hn_flops_product(p->nv, p->nc, 1);
-    return hn_eval_info(p->eval).ops + (has_mu(p) ? 2 : 1) * products +
-           hn_flops_product(p->nc, p->nv, 1);
+    const double mass = 4.0 * p->n_M, rows = 2.0 * p->n_J;
+    return hn_eval_info(p->eval).ops + (has_mu(p) ? 2 : 1) * (mass + rows) +
+           (is_stabilised(p) ? 2 : 1) * rows;
 }

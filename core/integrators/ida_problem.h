@@ -28,6 +28,9 @@ typedef struct hn_ida_problem {
     int n;             ///< nq + nv + n_kept, and n_kept again with mu
     double alpha, beta;
     hn_eval *eval;
+    int n_M, n_J; ///< entries of M (lower triangle) and J that are not identically zero, and where
+    const int *M_row, *M_col, *J_row, *J_col;
+    int *place; ///< nc: which of the kept rows this is; -1: left out
     hn_accel *accel;
     hn_qr qr;
     double *a, *lambda, *work; ///< nv, nc, max(nv, nc)
