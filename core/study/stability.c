@@ -260,7 +260,11 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
     }
     hn_eigenvalue roots[2];
     const int n_roots = baumgarte_roots(spec, roots);
-    const double gap = n_roots ? hn_stability_limit(spec->stepper, roots, 2) : HUGE_VAL;
+    // a root to the right makes the gap itself grow, at any step
+    const double gap = n_roots == 0 ? HUGE_VAL
+                       : roots[0].re > 0 || roots[1].re > 0
+                           ? 0
+                           : hn_stability_limit(spec->stepper, roots, 2);
     for (int k = 0; k <= HN_STABILITY_LOOKS; k++) {
         const hn_eigenvalue *s;
         const int n = hn_stability_path_eigenvalues(p, k, &s);
@@ -369,7 +373,7 @@ static void conclude(trial *t, hn_walk_end end, const hn_run *run, const hn_walk
     }
     switch (end) {
     case HN_WALK_FAILED:
-        o->kind = HN_STABILITY_STOPPED;
+        o->kind = s.status == HN_ERR_DIVERGED ? HN_STABILITY_GREW : HN_STABILITY_STOPPED;
         o->status = s.status;
         snprintf(o->reason, sizeof o->reason, "%s", s.reason);
         break;
@@ -406,9 +410,15 @@ static hn_walk_end walk(trial *t, hn_run *run, double h, const hn_walk_limits *l
         if (end != HN_WALK_DONE || look(t, run, k, time)) {
             return end;
         }
-        // never 0, which would mean no limit
-        left.seconds =
-            limits->seconds > 0 ? fmax(1e-9, left.seconds - (hn_thread_seconds() - before)) : 0;
+        if (limits->seconds > 0) {
+            left.seconds -= hn_thread_seconds() - before;
+            if (left.seconds <= 0) {
+                return HN_WALK_OVER;
+            }
+        }
+        if (limits->stop && limits->stop(limits->user)) {
+            return HN_WALK_STOPPED;
+        }
     }
     return HN_WALK_DONE;
 }

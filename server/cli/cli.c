@@ -28,10 +28,13 @@ static const hn_command COMMANDS[] = {
      hn_command_run},
     {"compare", "SCENE", "several methods on one clock, and where they part",
      MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
-    {"study", "SCENE work-precision",
-     "error against cost; --out FILE.html, .json or .csv; steps and tolerances are laddered",
-     MODEL_OPTIONS " --methods --time --budget --levels --samples --csv --out -o --shard", 1, 2,
-     hn_command_study},
+    {"study", "SCENE work-precision|budget|stability",
+     "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
+     ".json or .csv (maps also .svg, .png)",
+     MODEL_OPTIONS
+     " --methods --time --budget --levels --samples --over --preset --grid --csv --out -o "
+     "--shard",
+     1, 2, hn_command_study},
     {"reference", "SCENE",
      "the reference solution: by two means, the digits they share; --out writes it as it is "
      "shipped",

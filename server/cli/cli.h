@@ -35,7 +35,8 @@ typedef struct hn_args {
     hn_words given; ///< names of the options that were given, as in the table
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard;
+    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard, *over, *preset,
+        *grid;
     double time, every, t, port, width, height, seed, frame_dt;
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;

@@ -11,6 +11,7 @@
 static const hn_study_kind *const KINDS[] = {
     &hn_study_kind_work_precision,
     &hn_study_kind_budget,
+    &hn_study_kind_stability,
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 
@@ -99,7 +100,7 @@ hn_exit hn_command_study(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
-    const hn_exit result = kind->run(args, model);
+    const hn_exit result = kind->run(lib, args, model);
     hn_model_free(model);
     return result;
 }

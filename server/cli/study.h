@@ -10,10 +10,11 @@ typedef struct hn_study_kind {
     const char *options; ///< that it reads, separated by spaces; others are refused
     /// Faults that can be told before the scene is loaded. NULL: none.
     hn_status (*check)(const hn_args *args, hn_diags *diags);
-    hn_exit (*run)(const hn_args *args, const hn_model *model);
+    hn_exit (*run)(const hn_library *lib, const hn_args *args, const hn_model *model);
 } hn_study_kind;
 
-extern const hn_study_kind hn_study_kind_work_precision, hn_study_kind_budget;
+extern const hn_study_kind hn_study_kind_work_precision, hn_study_kind_budget,
+    hn_study_kind_stability;
 
 struct hn_study;
 /// A work-precision study where --out, --json and --csv say, or as text; and the faults of these options, before anything is computed.

@@ -139,7 +139,8 @@ static hn_exit write_results(const hn_args *args, hn_strbuf *json) {
     return hn_cli_print(&text);
 }
 
-static hn_exit account_for(const hn_args *args, const hn_model *model) {
+static hn_exit account_for(const hn_library *lib, const hn_args *args, const hn_model *model) {
+    (void)lib;
     hn_diags diags = {0};
     hn_progress progress = {0};
     hn_strbuf b;

@@ -152,7 +152,8 @@ static hn_exit write_part(const hn_args *args, const hn_study *study) {
     return written;
 }
 
-static hn_exit study_model(const hn_args *args, const hn_model *model) {
+static hn_exit study_model(const hn_library *lib, const hn_args *args, const hn_model *model) {
+    (void)lib;
     char folder[400];
     hn_diags diags = {0};
     hn_study *study = NULL;

@@ -1,0 +1,9 @@
+#ifndef HN_CLI_STUDY_STABILITY_H
+#define HN_CLI_STUDY_STABILITY_H
+// A map of stability for a terminal.
+
+#include "session/stability.h"
+
+/// A map of characters a method, the predicted boundary in it and the agreement below; a map with one column is a table of limits.
+void hn_map_text(hn_strbuf *b, const hn_map *map);
+#endif

@@ -1,0 +1,138 @@
+"""Maps of stability from the command line: limits that agree with their prediction, documents, faults, an interrupt."""
+
+import csv
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+DONE, INPUT, ENDED = 0, 2, 4
+SCENE = os.path.join(os.path.dirname(__file__), "..", "scenes", "stiff-four-bar.json")
+STUDY = ["study", SCENE, "stability"]
+SMALL = [*STUDY, "--over", "h=1e-4..1e-1,k=1e5..1e8", "--grid", "4x5", "--time", "0.1", "--methods", "projection@rk4"]
+
+
+def strict(text):
+    def refuse(word):
+        raise ValueError("JSON holds " + word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+class Stability(unittest.TestCase):
+    def setUp(self):
+        self.kept = tempfile.TemporaryDirectory()
+        self.folder = self.kept.name
+        self.env = dict(os.environ, HOLONOM_CACHE=self.folder)
+
+    def tearDown(self):
+        self.kept.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def call(self, *words):
+        return subprocess.run([driver.PROGRAM, *words], capture_output=True, env=self.env, timeout=120 * driver.SLOW)
+
+    def test_the_last_stable_step_of_each_method_is_the_predicted_one(self):
+        done = self.call(*STUDY, "--preset", "limits", "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        study = strict(done.stdout)
+        self.assertIsNone(study["x"])
+        self.assertEqual(len(study["methods"]), 3)
+        for method in study["methods"]:
+            column = method["columns"][0]
+            self.assertAlmostEqual(column["last_stable"] / column["predicted"][0], 1, delta=0.05)
+            self.assertEqual(column["verdict"], "agrees")
+        # 2.828 and 2 over the rate of the spring: 465 1/s
+        limits = [m["columns"][0]["predicted"][0] for m in study["methods"]]
+        self.assertAlmostEqual(limits[0] / limits[2], 2.8284 / 2, delta=0.01)
+
+    def test_an_implicit_method_ends_where_newton_does_and_says_so(self):
+        done = self.call(*STUDY, "--methods", "index3@genalpha", "projection@radau5")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        text = done.stdout.decode()
+        self.assertIn("index3@genalpha: nothing to compare", text)
+        self.assertIn("not an instability", text)
+
+    def test_documents_hold_the_same_cells(self):
+        done = self.call(*SMALL, "--csv", "--out", self.path("m.json"))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        rows = list(csv.DictReader(io.StringIO(done.stdout.decode())))
+        with open(self.path("m.json"), encoding="utf-8") as f:
+            study = strict(f.read())
+        cells = [c for row in study["methods"][0]["rows"] for c in row]
+        self.assertEqual(len(rows), 20)
+        self.assertEqual([r["class"] for r in rows], [c["class"] for c in cells])
+        self.assertLessEqual({c["class"] for c in cells}, {"stable", "inaccurate", "grew", "stopped"})
+        for cell in cells:
+            self.assertEqual(cell["class"] in ("grew", "stopped"), cell["margin"] > 1, cell)
+            self.assertEqual("reason" in cell, cell["margin"] > 1)
+
+    def test_pictures_are_files_of_their_kind_and_ask_no_network(self):
+        for name in ("m.html", "m.svg", "m.png"):
+            done = self.call(*SMALL, "--out", self.path(name))
+            self.assertEqual(done.returncode, DONE, done.stderr)
+        with open(self.path("m.png"), "rb") as f:
+            self.assertEqual(f.read(8), b"\x89PNG\r\n\x1a\n")
+        for name in ("m.html", "m.svg"):
+            with open(self.path(name), encoding="utf-8") as f:
+                text = f.read()
+            self.assertNotRegex(text.replace("http://www.w3.org/2000/svg", ""), r"https?://|src=|@import|<script|<link")
+            self.assertNotRegex(text, r"\bnan\b|\binf\b")
+            self.assertEqual(len(re.findall("<title>k = ", text)), 20)
+            self.assertIn("prediction within 5 %", text)
+
+    def test_a_map_draws_the_predicted_limit_among_its_cells(self):
+        text = self.call(*SMALL).stdout.decode()
+        self.assertIn("\u2501", text)
+        self.assertRegex(text, r"prediction within 5 % on \d of \d columns")
+
+    def test_what_is_at_fault_is_told(self):
+        for words, said in (
+            (["--over", "h=1..0"], b"has to be larger"),
+            (["--over", "zeta=1..2"], b"'zeta' is no parameter"),
+            (["--over", "k=1..1e99"], b"may be 0 to"),
+            (["--over", "h=1e-9..1"], b"a trial has at most"),
+            (["--preset", "stifness"], b"no preset called"),
+            (["--preset", "limits", "--over", "h=1e-3..1"], b"either --preset or --over"),
+            (["--grid", "0x7"], b"not a grid"),
+            (["--grid", "99x99", "--over", "h=1e-3..1,k=1..1e3"], b"2 to 64"),
+            (["--out", "x.pdf"], b"cannot be told from its name"),
+            (["--levels", "3"], b"--levels"),
+        ):
+            done = self.call(*STUDY, *words)
+            self.assertEqual(done.returncode, INPUT, words)
+            self.assertIn(said, done.stderr + done.stdout)
+
+    def test_an_interrupted_map_goes_on_to_the_cells_of_an_undisturbed_one(self):
+        words = [*SMALL[:-1], "projection@rk4", "projection@dop853", "projection@symplectic-euler", "--csv"]
+        words[words.index("4x5")] = "24x24"
+        with tempfile.TemporaryDirectory() as other:
+            whole = subprocess.run([driver.PROGRAM, *words], capture_output=True, env=dict(self.env, HOLONOM_CACHE=other))
+        with subprocess.Popen([driver.PROGRAM, *words], env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as p:
+            deadline = time.monotonic() + 30 * driver.SLOW
+            while time.monotonic() < deadline and not any(os.path.getsize(self.path(k)) for k in os.listdir(self.folder)):
+                time.sleep(0.005)
+            p.send_signal(signal.SIGINT)
+            _, told = p.communicate(timeout=30 * driver.SLOW)
+        self.assertEqual(p.returncode, ENDED, told)
+        self.assertIn(b"goes on from here", told)
+        done = self.call(*words)
+        self.assertEqual(done.returncode, DONE)
+        self.assertIn(b"going on with", done.stderr)
+        self.assertEqual(done.stdout, whole.stdout)
+        self.assertEqual(os.listdir(self.folder), [], "nothing is left of a finished map")
+
+
+if __name__ == "__main__":
+    driver.main()
