@@ -200,9 +200,12 @@ static int refine(hn_kkt *k, int max) {
         find_residual(k);
         memcpy(k->step, k->r, (size_t)k->n * sizeof *k->step);
         solve(k, k->step);
-        // contradictory rows make multipliers grow for ever; the accelerations settle
-        const int judged = k->way == HN_KKT_PROXIMAL ? k->nv : k->n;
-        const double size = hn_norm_max(judged, k->x), moved = hn_norm_max(judged, k->step);
+        // contradictory rows make multipliers grow for ever; the accelerations settle. Where forces cancel in them they are known
+        // to the rounding of these
+        const int proximal = k->way == HN_KKT_PROXIMAL, judged = proximal ? k->nv : k->n;
+        const double cancelled = proximal ? hn_norm_max(k->n, k->b) : 0,
+                     size = fmax(cancelled, hn_norm_max(judged, k->x)),
+                     moved = hn_norm_max(judged, k->step);
         k->moved = size > 0 ? moved / size : 0;
         if (!(moved > 2 * DBL_EPSILON * size) || !(moved < 0.5 * last)) {
             break;

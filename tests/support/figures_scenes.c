@@ -29,8 +29,24 @@ hn_figure_links hn_figure_fb0(void) {
                              .th3 = 1.5};
 }
 
+/// The start as JSON: the crank given and the rest guessed, or all of it given.
+static void put_start(const hn_figure_links *l, char *text, size_t size) {
+    if (l->pinned) {
+        (void)snprintf(text, size,
+                       "{\"positions\": {\"th1\": %.17g, \"th2\": %.17g, \"th3\": %.17g}, "
+                       "\"rates\": {\"th1\": %.17g, \"th2\": %.17g, \"th3\": %.17g}}",
+                       l->th1, l->th2, l->th3, l->w1, l->w2, l->w3);
+        return;
+    }
+    (void)snprintf(text, size,
+                   "{\"positions\": {\"th1\": %.17g, \"th2\": {\"guess\": %.17g}, \"th3\": "
+                   "{\"guess\": %.17g}}, \"rates\": {\"th1\": %.17g}}",
+                   l->th1, l->th2, l->th3, l->w1);
+}
+
 void hn_figure_open_links(hn_model *m, const hn_figure_links *l) {
-    char text[2000];
+    char text[2000], start[400];
+    put_start(l, start, sizeof start);
     const int length = snprintf(
         text, sizeof text,
         "{\"holonom\": 1, \"name\": \"links\", \"lagrangian\": {\"coordinates\": ["
@@ -42,13 +58,11 @@ void hn_figure_open_links(hn_model *m, const hn_figure_links *l) {
         "\"constraints\": [{\"name\": \"x\", \"formula\": "
         "\"%.17g*cos(th1) + %.17g*cos(th2) - %.17g*cos(th3) - %.17g\"}, {\"name\": \"y\", "
         "\"formula\": \"%.17g*sin(th1) + %.17g*sin(th2) - %.17g*sin(th3)\"}]},"
-        "\"start\": {\"positions\": {\"th1\": %.17g, \"th2\": {\"guess\": %.17g}, \"th3\": "
-        "{\"guess\": %.17g}}, \"rates\": {\"th1\": %.17g}}}",
+        "\"start\": %s}",
         l->coupler_drives ? "false" : "true", l->coupler_drives ? "true" : "false",
         (l->m1 / 3 + l->m2) * l->l1 * l->l1, l->m2 * l->l2 * l->l2 / 3, l->m3 * l->l3 * l->l3 / 3,
         l->m2 * l->l1 * l->l2 / 2, l->g * (l->m1 / 2 + l->m2) * l->l1, l->g * l->m2 / 2 * l->l2,
-        l->g * l->m3 / 2 * l->l3, l->l1, l->l2, l->l3, l->d, l->l1, l->l2, l->l3, l->th1, l->th2,
-        l->th3, l->w1);
+        l->g * l->m3 / 2 * l->l3, l->l1, l->l2, l->l3, l->d, l->l1, l->l2, l->l3, start);
     assert_true(length > 0 && (size_t)length < sizeof text);
     hn_model_open_text(m, text, NULL);
 }

@@ -25,9 +25,11 @@ void hn_figures_half_explicit(hn_figures *f);
 void hn_figures_solvers(hn_figures *f);
 void hn_figures_rank(hn_figures *f);
 void hn_figures_singular(hn_figures *f);
+void hn_figures_rods(hn_figures *f);
 void hn_figures_ladder(hn_figures *f);
 void hn_figures_change_points(hn_figures *f);
 void hn_figures_extremes(hn_figures *f);
+void hn_figures_million_steps(hn_figures *f);
 void hn_figures_long_runs(hn_figures *f);
 void hn_figures_lesson(hn_figures *f);
 
@@ -41,6 +43,8 @@ typedef struct hn_figure_links {
     double th1, w1;       ///< start of the crank [rad], [rad/s]
     double th2, th3;      ///< guesses [rad]
     int coupler_drives;   ///< 1: the coupler's angle is the actuated one
+    int pinned;           ///< 1: th2 and th3 are no guesses, and w2, w3 belong to the start
+    double w2, w3;        ///< [rad/s]
 } hn_figure_links;
 hn_figure_links hn_figure_fb0(void);
 /// The assembly may fail: see m->status.

@@ -39,6 +39,19 @@ static const hn_figure_topic topics[] = {
      hn_figures_rank},
     {"Singular poses", "Fichter 1986; Ma & Angeles 1991; Gonzalez et al. 2006", HN_FIGURE_QUICK,
      hn_figures_singular},
+    {"A platform on six rods", "Fichter 1986; Ma & Angeles 1991", HN_FIGURE_QUICK, hn_figures_rods},
+    {"The ladder of two four-bars", "Bayo & Avello 1994; Gonzalez et al. 2006", HN_FIGURE_SLOW,
+     hn_figures_ladder},
+    {"Change points", "Bayo & Avello 1994; Udwadia & Phohomsiri 2006", HN_FIGURE_SLOW,
+     hn_figures_change_points},
+    {"Sizes, speeds, and speeds that do not fit", "Cardona & Geradin 1989", HN_FIGURE_QUICK,
+     hn_figures_extremes},
+    {"What lessons get wrong", "Hairer, Norsett & Wanner 1993 for the step control", HN_FIGURE_SLOW,
+     hn_figures_lesson},
+    {"A million steps", "the figures of ten million, by their laws", HN_FIGURE_SLOW,
+     hn_figures_million_steps},
+    {"Ten million steps", "Leimkuhler & Skeel 1994; Hairer, Lubich & Wanner 2006", HN_FIGURE_TABLE,
+     hn_figures_long_runs},
 };
 
 int hn_figure_topic_count(void) {

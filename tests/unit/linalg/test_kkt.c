@@ -224,6 +224,19 @@ static void repeated_rows_change_nothing_where_they_are_served(void **state) {
     assert_true(least_norm < hn_norm2(2, plain.lambda));
 }
 
+static void forces_that_the_rows_take_whole_leave_no_acceleration(void **state) {
+    // two coordinates held, the third without force
+    const four_bar b = {.nc = 3,
+                        .M = {2, 0, 0, 0, 3, 0, 0, 0, 1},
+                        .J = {1, 0, 0, 0, 1, 0, 1, 1, 0},
+                        .f = {3, -4, 0}};
+    const answer x = solve(kkt_of(state), HN_KKT_PROXIMAL, &b, 4);
+    assert_int_equal(x.status, HN_OK);
+    assert_true(hn_norm_max(NV, x.a) < 1e-14);
+    assert_near(x.force[0], -3, 1e-12);
+    assert_near(x.force[1], 4, 1e-12);
+}
+
 static void rows_that_contradict_each_other_are_met_as_well_as_can_be_or_refused(void **state) {
     four_bar b = repeat_rows(make_four_bar(2, 1.8));
     b.nc = 3;
@@ -337,6 +350,7 @@ int main(void) {
         cmocka_unit_test(without_refinement_elimination_loses_digits_at_the_extremes),
         cmocka_unit_test(a_massless_rocker_is_served_by_all_but_the_range_space),
         cmocka_unit_test(repeated_rows_change_nothing_where_they_are_served),
+        cmocka_unit_test(forces_that_the_rows_take_whole_leave_no_acceleration),
         cmocka_unit_test(rows_that_contradict_each_other_are_met_as_well_as_can_be_or_refused),
         cmocka_unit_test(the_condition_is_that_of_the_equilibrated_matrix),
         cmocka_unit_test(an_indefinite_matrix_is_factored_and_its_inertia_is_told),
