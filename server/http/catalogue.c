@@ -31,6 +31,9 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"run_samples", (double)o->max_samples},
                 {"run_cpu_s", o->max_run_cpu},
                 {"frame_cpu_s", o->frame_cpu},
+                {"studies_at_once", o->max_studies},
+                {"study_methods", HN_STUDIES_METHODS},
+                {"study_levels", HN_STUDIES_LEVELS},
                 {"long_requests_at_once", o->pool},
                 {"long_requests_waiting", o->queue},
                 {"pause_without_reader_s", o->idle_pause},
@@ -67,6 +70,7 @@ void hn_handle_index(hn_request *r) {
                                            {"lessons", "/api/v1/lessons"},
                                            {"problems", "/api/v1/problems"},
                                            {"comparisons", "/api/v1/comparisons"},
+                                           {"studies", "/api/v1/studies"},
                                            {"errors", "/api/v1/errors"},
                                            {"page", "/"}};
     hn_strbuf b;

@@ -207,6 +207,20 @@ static const struct {
      "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
      "incident (Incident), "
      "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
+    {"StudyList",
+     "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
+    {"Study",
+     "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
+     "until "
+     "there is one\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
+     "\"time_left_s\",\"budget_s\",\"scene\",\"settings\",\"methods\",\"document\",\"links\"],"
+     "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
+     ",\"state\":{\"enum\":[\"running\",\"finished\",\"stopped\",\"failed\"]},\"reason\":" TEXT
+     ",\"hint\":" TEXT ",\"progress\":{\"type\":\"number\"},\"elapsed_s\":{\"type\":\"number\"},"
+     "\"time_left_s\":" MAYBE_NUMBER ",\"budget_s\":{\"type\":\"number\"},\"scene\":{\"type\":["
+     "\"string\",\"null\"]},\"settings\":{\"type\":\"object\",\"additionalProperties\":{\"type\":"
+     "\"number\"}},\"methods\":" TEXTS ",\"document\":{\"type\":[\"object\",\"null\"]},\"links\":{"
+     "\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
     {"Verdict", "{\"type\":\"object\"}"},
     {"Picture", "{\"type\":\"string\",\"contentMediaType\":\"image/png\"}"},
     {"Problem",

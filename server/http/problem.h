@@ -34,6 +34,8 @@
       "Wait as long as the Retry-After header says, or delete a comparison.")                      \
     X(HN_PROBLEM_INTERNAL, 500, "internal", "The program is at fault",                             \
       "The request was sound; the program could not serve it.")                                    \
+    X(HN_PROBLEM_STUDIES_BUSY, 503, "studies-busy", "Enough studies are running",                  \
+      "Wait as long as the Retry-After header says, or stop a study that is running.")             \
     X(HN_PROBLEM_STOPPING, 503, "stopping", "The server is going down",                            \
       "It was told to stop and takes on no new work.")
 

@@ -5,6 +5,7 @@
 #include "http/openapi.h"
 #include "http/request.h"
 #include "http/stateless.h"
+#include "http/studies.h"
 #include "render/canvas.h"
 #include "session/comparison.h"
 
@@ -192,6 +193,68 @@ static const hn_field CHANGE[] = {
      .about = "a setting of a formulation, changed while running"},
     END_OF_FIELDS};
 
+static const char *const STOPPED[] = {"stopped", NULL};
+static const char *const MAP_PRESETS[] = {"stiffness", "mass-ratio", "baumgarte", "limits", NULL};
+
+static const hn_field STUDY[] = {
+    SCENE_FIELDS,
+    {.name = "kind",
+     .type = HN_FIELD_CHOICE,
+     .required = 1,
+     .choices = hn_studies_kind_names,
+     .about = "what is studied"},
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .required = 1,
+     .min = 1,
+     .max = HN_STUDIES_METHODS,
+     .about = "spellings of methods; a study chooses steps and tolerances itself"},
+    {.name = "time",
+     .type = HN_FIELD_NUMBER,
+     .min = 1e-9,
+     .max = 1e6,
+     .about = "end [s]; the scene's when left out"},
+    {.name = "budget",
+     .type = HN_FIELD_NUMBER,
+     .min = 0.01,
+     .max = 3600,
+     .about = "wall time [s]; run_cpu_s when left out, and at most"},
+    {.name = "levels",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_LEVELS,
+     .about = "work-precision: steps or tolerances per method"},
+    {.name = "samples",
+     .type = HN_FIELD_INTEGER,
+     .min = 0,
+     .max = HN_STUDIES_SAMPLES,
+     .about = "work-precision: measurements of time per point"},
+    {.name = "preset",
+     .type = HN_FIELD_CHOICE,
+     .choices = MAP_PRESETS,
+     .about = "stability: what the map is over"},
+    {.name = "over",
+     .type = HN_FIELD_TEXT,
+     .about = "stability: the axes in place of a preset: h=1e-4..1e-1,k=1e2..1e8:log"},
+    {.name = "columns",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_SIDE,
+     .about = "stability: of the map"},
+    {.name = "rows",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_SIDE,
+     .about = "stability: of the map"},
+    END_OF_FIELDS};
+
+static const hn_field STUDY_CHANGE[] = {{.name = "state",
+                                         .type = HN_FIELD_CHOICE,
+                                         .required = 1,
+                                         .choices = STOPPED,
+                                         .about = "ends the computing; what was done is kept"},
+                                        END_OF_FIELDS};
+
 static const hn_route_query SCENE_QUERY[] = {{"set", "string", "parameter:value, may be repeated"},
                                              {NULL, NULL, NULL}};
 static const hn_route_query REFERENCE_QUERY[] = {
@@ -267,6 +330,17 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/comparisons/{id}/events", HN_WORK_LIGHT, hn_handle_comparison_events, NULL,
      "text/event-stream", "200", "Events", "Server-sent events: one stream for all methods",
      EVENTS_QUERY},
+    {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
+     "StudyList", "The studies there are", NULL},
+    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, STUDY, JSON, "202",
+     "Study", "Starts a study; its Location tells the progress, and the document when it is done",
+     NULL},
+    {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
+     "State, progress, time left, and the document when it is done", NULL},
+    {"PATCH", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_patch, STUDY_CHANGE, JSON,
+     "200", "Study", "Stops a study and keeps what was done", NULL},
+    {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
+     NULL, "Stops a study and forgets it", NULL},
 };
 enum { N_ROUTES = sizeof ROUTES / sizeof *ROUTES };
 

@@ -17,6 +17,7 @@ hn_http_opts hn_http_opts_default(void) {
                           .next_ports = 20,
                           .max_connections = 256,
                           .max_comparisons = 32,
+                          .max_studies = 2,
                           .max_streams = 64,
                           .max_events = 20000,
                           .max_body = 1 << 20,
@@ -328,8 +329,9 @@ hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts, hn_se
     if (status == HN_OK) {
         s->jobs = hn_jobs_create(opts->pool, opts->queue, run_job);
         s->comparisons = hn_comparisons_create(&s->opts, lib);
+        s->studies = hn_studies_create(&s->opts, lib);
         status =
-            s->jobs && s->comparisons
+            s->jobs && s->comparisons && s->studies
                 ? hn_listen(opts->host, opts->port, opts->next_ports, &fd, &s->port, host, diag)
                 : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
     }
@@ -358,6 +360,7 @@ void hn_server_stop(hn_server *s) {
     int fd = s->daemon ? MHD_quiesce_daemon(s->daemon) : -1;
     // nobody may be left suspended when the daemon goes: workers and pool answer what they hold
     hn_comparisons_stop(s->comparisons);
+    hn_studies_stop(s->studies);
     if (s->jobs) {
         hn_jobs_stop(s->jobs);
     }
@@ -368,6 +371,7 @@ void hn_server_stop(hn_server *s) {
         close(fd);
     }
     hn_comparisons_free(s->comparisons);
+    hn_studies_free(s->studies);
     hn_jobs_free(s->jobs);
     hn_static_files_free(s->files);
     pthread_mutex_destroy(&s->scenes.lock);

@@ -15,10 +15,11 @@ typedef struct hn_http_opts {
     const char *const *allow_hosts;
     int n_allow_hosts;
     int max_connections, max_comparisons, max_streams, max_events;
+    int max_studies;                     ///< at once
     long long max_body, max_event_bytes; ///< bytes; event bytes per comparison
     double max_duration;                 ///< of a comparison, simulated [s]
     long long max_samples;               ///< of one run
-    double max_run_cpu;                  ///< of one stateless run [s]
+    double max_run_cpu;                  ///< of one stateless run, and of one study [s]
     double frame_cpu;                    ///< of one method in one frame [s]
     int pool, queue;                     ///< threads for long requests; how many may wait
     double idle_pause, expiry,

@@ -7,6 +7,7 @@
 #include "http/jobs.h"
 #include "http/server.h"
 #include "http/static_files.h"
+#include "http/studies.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -26,6 +27,7 @@ struct hn_server {
     hn_jobs *jobs;
     hn_static_files *files;
     hn_comparisons *comparisons;
+    hn_studies *studies;
     hn_kept_text scenes;
     atomic_int stopping;
     int port;

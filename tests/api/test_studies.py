@@ -1,0 +1,191 @@
+"""Studies as resources: the documents of the command line, progress while they last, bounds, stopping, and what is left of them."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+
+import driver
+
+AT = "/api/v1/studies"
+METHODS = ["index1@rk4:h=1e-3", "projection@rk4:h=1e-3"]
+# counts alone: nothing in the document that a clock said
+QUICK = {"scene": "pendulum", "kind": "work-precision", "methods": METHODS, "time": 0.5, "levels": 3, "samples": 0}
+BUDGET = {"scene": "four-bar", "kind": "budget", "methods": METHODS, "time": 0.2}
+# far more than its budget allows
+LONG = {"scene": "four-bar", "kind": "work-precision", "methods": METHODS, "samples": 10}
+
+# changes of QUICK, pointer of the fault, a word of its detail or hint
+AT_FAULT = [
+    ({"kind": "work-precison"}, "/kind", "work-precision"),
+    ({"kind": None}, "/kind", "missing"),
+    ({"methods": None}, "/methods", "missing"),
+    ({"methods": []}, "/methods", ""),
+    ({"methods": METHODS[:1] * 13}, "/methods", "12"),
+    ({"methods": ["index1@rk4", "indx1@rk4"]}, "/methods/1", "index1"),
+    ({"scene": "pendulumm"}, "/scene", "pendulum"),
+    ({"settings": {"nonsense": 1}}, None, "nonsense"),
+    ({"levels": 8}, "/levels", "7"),
+    ({"levels": 1}, "/levels", "2"),
+    ({"levels": 2.5}, "/levels", ""),
+    ({"samples": -1}, "/samples", "0"),
+    ({"samples": 11}, "/samples", "10"),
+    ({"budget": 0}, "/budget", ""),
+    ({"budget": 21}, "/budget", "20 s"),
+    ({"time": 0}, "/time", ""),
+    ({"time": 5000}, "/time", "3600"),
+    ({"level": 3}, "/level", "levels"),
+    ({"columns": 4}, "/columns", "work-precision"),
+]
+
+
+def but(body, **changes):
+    return {k: v for k, v in {**body, **changes}.items() if v is not None}
+
+
+def command_line(*words):
+    """What `holonom study ... --json` prints, with nothing kept from before."""
+    with tempfile.TemporaryDirectory() as cache:
+        done = subprocess.run([driver.PROGRAM, "study", *words, "--json"], capture_output=True, check=True,
+                              env=dict(os.environ, HOLONOM_CACHE=cache))
+    return json.loads(done.stdout)
+
+
+def start(server, body):
+    answer = server.ask("POST", AT, body)
+    assert answer.status == 202, answer.body[:500]
+    study = answer.json()
+    assert answer.headers["location"] == study["links"]["self"] == f"{AT}/{study['id']}"
+    return study
+
+
+def look(server, study):
+    return server.ask("GET", study["links"]["self"]).json()
+
+
+def wait(server, study, seconds=60):
+    """The study when it has ended; its progress never falls."""
+    end, before = time.monotonic() + seconds * driver.SLOW, 0
+    while True:
+        now = look(server, study)
+        if now["state"] != "running":
+            return now
+        assert before <= now["progress"] <= 1, (before, now["progress"])
+        assert now["document"] is None
+        before = now["progress"]
+        assert time.monotonic() < end, now
+        time.sleep(0.05)
+
+
+class Studies(driver.ServerCase):
+    def test_work_precision_is_the_document_of_the_command_line(self):
+        done = wait(self.server, start(self.server, QUICK))
+        self.assertEqual((done["state"], done["reason"], done["progress"], done["time_left_s"]), ("finished", "", 1, 0))
+        self.assertEqual((done["kind"], done["scene"], done["methods"]), ("work-precision", "pendulum", METHODS))
+        same = command_line("pendulum", "work-precision", "--methods", *METHODS, "--time", "0.5", "--levels", "3",
+                            "--samples", "0", "--budget", "20")
+        self.assertEqual(done["document"], same)
+
+    def test_budget_is_the_document_of_the_command_line(self):
+        done = wait(self.server, start(self.server, BUDGET))
+        self.assertEqual(done["state"], "finished")
+        self.assertEqual(done["document"], command_line("four-bar", "budget", "--methods", *METHODS, "--time", "0.2"))
+
+    def test_parameters_and_scenes_of_ones_own_are_studied(self):
+        scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
+        own = wait(self.server, start(self.server, but(QUICK, scene=scene, settings={"g": 5})))
+        shipped = wait(self.server, start(self.server, but(QUICK, settings={"g": 5})))
+        other = wait(self.server, start(self.server, QUICK))
+        self.assertEqual(own["settings"], {"g": 5})
+        points = [[m["points"] for m in done["document"]["methods"]] for done in (own, shipped, other)]
+        self.assertEqual(points[0], points[1])
+        self.assertNotEqual(points[0], points[2])
+
+    def test_every_number_is_bounded_and_every_fault_is_told(self):
+        for changes, pointer, word in AT_FAULT:
+            with self.subTest(changes=changes):
+                document = self.assert_problem(self.server.ask("POST", AT, but(QUICK, **changes)), 422, "invalid-input")
+                fault = document["errors"][0]
+                if pointer is not None:
+                    self.assertEqual(fault["pointer"], pointer)
+                self.assertIn(word, fault["detail"] + fault.get("hint", ""))
+        self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "running"}), 422)
+
+    def test_no_more_than_two_run_at_once_and_the_next_is_told_when_to_ask_again(self):
+        running = [start(self.server, LONG) for _ in range(2)]
+        answer = self.server.ask("POST", AT, LONG)
+        self.assert_problem(answer, 503, "studies-busy")
+        self.assertGreater(int(answer.headers["retry-after"]), 0)
+        listed = self.server.ask("GET", AT).json()["studies"]
+        self.assertLessEqual({s["id"] for s in running}, {s["id"] for s in listed if s["state"] == "running"})
+        for study in running:
+            self.assertEqual(self.server.ask("DELETE", study["links"]["self"]).status, 204)
+            self.assert_problem(self.server.ask("GET", study["links"]["self"]), 404, "not-found")
+        end = time.monotonic() + 20 * driver.SLOW
+        while (answer := self.server.ask("POST", AT, QUICK)).status == 503:
+            self.assertLess(time.monotonic(), end, "the places of deleted studies are not given back")
+            time.sleep(0.1)
+        self.assertEqual(wait(self.server, answer.json())["state"], "finished")
+
+    def test_a_stopped_study_keeps_what_was_done(self):
+        study = start(self.server, LONG)
+        while look(self.server, study)["progress"] < 0.1:
+            time.sleep(0.05)
+        self.assertEqual(self.server.ask("PATCH", study["links"]["self"], {"state": "stopped"}).status, 200)
+        done = wait(self.server, study, 20)
+        self.assertEqual(done["state"], "stopped")
+        self.assertIn("stopped on request", done["reason"])
+        self.assertTrue(done["document"]["stopped"])
+        states = [point["state"] for method in done["document"]["methods"] for point in method["points"]]
+        self.assertIn("done", states)
+        self.assertEqual(self.server.ask("DELETE", study["links"]["self"]).status, 204)
+
+    def test_a_study_that_is_over_may_be_stopped_and_stays_as_it_is(self):
+        done = wait(self.server, start(self.server, QUICK))
+        self.server.ask("PATCH", done["links"]["self"], {"state": "stopped"})
+        self.assertEqual(look(self.server, done)["document"], done["document"])
+
+    def test_finished_ones_make_room_for_others(self):
+        first = wait(self.server, start(self.server, QUICK))
+        for _ in range(16):
+            last = wait(self.server, start(self.server, but(QUICK, levels=2, time=0.01)))
+        self.assertLessEqual(len(self.server.ask("GET", AT).json()["studies"]), 16)
+        self.assert_problem(self.server.ask("GET", first["links"]["self"]), 404)
+        self.assertEqual(look(self.server, last)["state"], "finished")
+
+
+class Bounded(unittest.TestCase):
+    """Options of the server that bound a study."""
+
+    def test_computing_ends_where_the_server_says(self):
+        server = driver.Server("--run-cpu", "0.3")
+        try:
+            for body in (LONG, but(BUDGET, time=10)):
+                done = wait(server, start(server, body), 20)
+                self.assertEqual(done["budget_s"], 0.3)
+                self.assertIn(done["state"], ("stopped", "failed"), done["reason"])
+                self.assertTrue(done["reason"])
+        finally:
+            self.assertEqual(server.stop(), 0)
+
+    def test_what_nobody_touches_goes(self):
+        server = driver.Server("--expiry", "0.3")
+        try:
+            done = wait(server, start(server, but(QUICK, time=0.01)))
+            time.sleep(1)
+            self.assertEqual(server.ask("GET", done["links"]["self"]).status, 404)
+        finally:
+            self.assertEqual(server.stop(), 0)
+
+    def test_the_server_ends_cleanly_while_studies_run(self):
+        server = driver.Server()
+        for body in (LONG, but(BUDGET, time=10)):
+            start(server, body)
+        time.sleep(0.5)
+        self.assertEqual(server.stop(), 0, "".join(server.errors))
+
+
+if __name__ == "__main__":
+    driver.main()
