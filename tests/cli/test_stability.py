@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
 
 DONE, INPUT, ENDED = 0, 2, 4
-SCENE = os.path.join(os.path.dirname(__file__), "..", "scenes", "stiff-four-bar.json")
+SCENE = "stiff-four-bar"
 STUDY = ["study", SCENE, "stability"]
 SMALL = [*STUDY, "--over", "h=1e-4..1e-1,k=1e5..1e8", "--grid", "4x5", "--time", "0.1", "--methods", "projection@rk4"]
 

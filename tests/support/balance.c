@@ -396,7 +396,7 @@ balance balance_of(const hn_system *sys, double t, const double *q, const double
     balance out = {0};
     double fastest = 0;
     for (int i = 0; i < hn_system_get_info(sys).nv; i++) {
-        fastest = fmax(fastest, fabs(v[i]));
+        fastest = fmax(fastest, fmax(fabs(v[i]), sqrt(fabs(a[i])))); // what turns within a step
     }
     out.step = 1e-3 / (1 + 0.1 * fastest);
     double *user = calloc(2 * (size_t)hn_system_get_info(sys).n_user + 1, sizeof *user);
