@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { MAX_NEWTON = 25 };
+#define FLOOR 1e-11 // ||phi|| / length: what rounding can leave open, generously
 
 static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv;
@@ -186,10 +187,65 @@ static void newton_step(hn_chart *chart, hn_chart_point *p) {
     chart->cost.newton++;
 }
 
+/// "RRR of B: x and B: y, a circle and a circle": a step of the position analysis in words.
+static void name_dyad(const hn_chart *chart, int step, char text[HN_CHART_TEXT]) {
+    const hn_dyad d = hn_dyads_at(chart->dyads, step);
+    snprintf(text, HN_CHART_TEXT, "%s of %.40s%s%.40s (%s)", hn_dyad_kind_name(d.kind),
+             hn_system_row_name(chart->sys, d.row[0]), d.n == 2 ? " and " : "",
+             d.n == 2 ? hn_system_row_name(chart->sys, d.row[1]) : "", hn_dyad_kind_about(d.kind));
+}
+
+// the given independent values have torn a dyad apart
+static hn_status fail_torn(hn_chart *chart, double t, const double *q, int step) {
+    char name[HN_CHART_TEXT], text[HN_CHART_TEXT];
+    name_dyad(chart, step, name);
+    snprintf(text, sizeof text,
+             "%.120s cannot be closed with this value: the end of its range was passed", name);
+    return hn_chart_fail(chart, HN_ERR_CHART, t, q, text);
+}
+
+hn_status hn_chart_fail_dyad(hn_chart *chart, int step) {
+    char name[HN_CHART_TEXT], text[HN_CHART_TEXT];
+    name_dyad(chart, step, name);
+    snprintf(text, sizeof text,
+             "%.120s went over to its other assembly mode: a dead point was passed, or the step "
+             "is too long",
+             name);
+    chart->here.valid = 0;
+    return hn_chart_fail(chart, HN_ERR_CHART, chart->here.t, chart->here.q, text);
+}
+
+// the factor is wanted for the basis alone, and for telling how near the end of the chart is
+static hn_status close_by_dyads(hn_chart *chart, hn_chart_point *p, double t, double *q) {
+    if (!hn_all_finite(chart->nq, p->q)) {
+        return hn_chart_fail(chart, HN_ERR_DIVERGED, t, q, "the state is not finite");
+    }
+    const int failed = hn_dyads_solve(chart->dyads, t, p->q);
+    if (failed >= 0) {
+        return fail_torn(chart, t, p->q, failed);
+    }
+    eval_loop(chart, p, t);
+    if (!(p->gap <= FLOOR * chart->length)) {
+        return hn_chart_fail(chart, HN_ERR_CHART, t, p->q,
+                             "the closed form leaves a gap: coordinates too large for its digits");
+    }
+    if (!hn_chart_factor(chart, p)) {
+        return fail_singular(chart, t, p->q);
+    }
+    hn_chart_make_basis(chart, p);
+    memmove(q, p->q, (size_t)chart->nq * sizeof *q);
+    p->tol = 0; // closer it does not get
+    p->valid = 1;
+    return HN_OK;
+}
+
 hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q, double tol) {
     double last = HUGE_VAL;
     p->valid = 0;
     memmove(p->q, q, (size_t)chart->nq * sizeof *q);
+    if (chart->dyads) {
+        return close_by_dyads(chart, p, t, q);
+    }
     for (int i = 0; i < MAX_NEWTON; i++) {
         eval_loop(chart, p, t);
         if (!isfinite(p->gap)) {
@@ -199,7 +255,7 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
             return fail_singular(chart, t, p->q);
         }
         // a gap that stopped falling at rounding level is as closed as it gets
-        const int at_floor = p->gap <= 1e-11 * chart->length && p->gap >= 0.5 * last;
+        const int at_floor = p->gap <= FLOOR * chart->length && p->gap >= 0.5 * last;
         if (p->gap <= tol * chart->length || at_floor) {
             hn_chart_make_basis(chart, p);
             memmove(q, p->q, (size_t)chart->nq * sizeof *q);
@@ -216,7 +272,11 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
 }
 
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {
-    const hn_chart_point *from = &chart->base;
+    hn_chart_predict_from(chart, &chart->base, t, q_ind, q);
+}
+
+void hn_chart_predict_from(const hn_chart *chart, const hn_chart_point *from, double t,
+                           const double *q_ind, double *q) {
     const int r = chart->r;
     for (int i = 0; i < chart->nv; i++) {
         double step = from->s[i] * (t - from->t);

@@ -19,6 +19,7 @@
 // Null-space, partitioning and reduced coordinates are built on this. Source: Wehage & Haug 1982; for which columns to take,
 // Goreinov, Tyrtyshnikov & Zamarashkin 1997 (submatrices of locally maximal volume).
 
+#include "dynamics/dyads.h"
 #include "dynamics/eval.h"
 #include "linalg/qr.h"
 #include "linalg/sparse_lu.h"
@@ -70,6 +71,7 @@ typedef struct hn_chart {
     int is_measured; ///< the next two belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
     double length;       ///< characteristic length [m]
+    hn_dyads *dyads;     ///< borrowed: loops are closed by these formulas; NULL: by Newton's method
     hn_cost cost;
     char why[HN_CHART_TEXT];
 } hn_chart;
@@ -130,6 +132,11 @@ HN_MUST_CHECK hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *point, 
                                         const double *q);
 /// q (nq) from independent entries q_ind (r, plain coordinates), the others predicted along the tangent at `base`.
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q);
+/// The same along the tangent at another point.
+void hn_chart_predict_from(const hn_chart *chart, const hn_chart_point *from, double t,
+                           const double *q_ind, double *q);
+/// A step went through the pose where the two ways of assembling step `step` of chart.dyads meet; `here` is no longer valid.
+hn_status hn_chart_fail_dyad(hn_chart *chart, int step);
 /// v = N u + s at the point.
 void hn_chart_speeds(const hn_chart *chart, const hn_chart_point *point, const double *u,
                      double *v);

@@ -1,5 +1,6 @@
 #include "methods/minimal_state.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define STEPS_AHEAD \
@@ -8,7 +9,6 @@
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
     const size_t nv = (size_t)hn_system_get_info(sys).nv;
-    s->arena = arena;
     s->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
     s->v = hn_arena_doubles(arena, nv);
     s->last_v = hn_arena_doubles(arena, nv);
@@ -17,6 +17,9 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
     }
     const hn_status status = hn_chart_init(&s->chart, sys, 1, arena, diag);
     s->chart.plain_only = 1;
+    s->position = HN_POSITION_NEWTON;
+    s->dyads = NULL;
+    s->arena = arena;
     return status;
 }
 
@@ -24,6 +27,8 @@ void hn_minimal_destroy(void *self) {
     hn_minimal_state *s = self;
     hn_chart_destroy(&s->chart);
     hn_chart_jacobian_free(&s->slopes);
+    hn_dyads_free(s->dyads);
+    s->dyads = NULL;
 }
 
 // `here` goes to the closed pose with the independent entries of y
@@ -91,14 +96,51 @@ void hn_minimal_ode(void *self, hn_ode *out) {
                     .prepare = prepare};
 }
 
+// a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose `here`
+static hn_status choose_position(hn_minimal_state *s, double t) {
+    hn_chart *chart = &s->chart;
+    const hn_chart_point *p = &chart->here;
+    hn_status status = HN_OK;
+    if (s->position == HN_POSITION_NEWTON || chart->nc == 0) {
+        return HN_OK;
+    }
+    if (!s->dyads || !hn_dyads_serve(s->dyads, chart->dep, chart->rank)) {
+        hn_dyads_free(s->dyads);
+        s->dyads = NULL;
+        status = hn_dyads_create(chart->sys, chart->dep, chart->rank, s->arena, &s->dyads);
+    }
+    if (status != HN_OK) {
+        return hn_chart_fail(chart, status, t, p->q, hn_status_text(status));
+    }
+    const char *refusal = hn_dyads_refusal(s->dyads);
+    if (refusal) {
+        char text[HN_CHART_TEXT];
+        snprintf(text, sizeof text, "no position analysis in closed form: %.180s", refusal);
+        return s->position == HN_POSITION_DYADS
+                   ? hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, p->q, text)
+                   : HN_OK;
+    }
+    if (!hn_dyads_take_branch(s->dyads, t, p->q)) {
+        return hn_chart_fail(chart, HN_ERR_CHART, t, p->q,
+                             "a dyad stands at its dead point: which way it goes on is not told "
+                             "by the pose");
+    }
+    chart->dyads = s->dyads;
+    return HN_OK;
+}
+
 hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
                            const double *v, double *y) {
     hn_chart *chart = &s->chart;
     memmove(s->q, q, (size_t)chart->nq * sizeof *q);
     memmove(s->v, v, (size_t)chart->nv * sizeof *v);
+    chart->dyads = NULL;
     hn_status status = hn_chart_choose(chart, t, s->q, first);
     if (status == HN_OK) {
         status = hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE);
+    }
+    if (status == HN_OK) {
+        status = choose_position(s, t);
     }
     if (status != HN_OK) {
         return status;
@@ -145,10 +187,35 @@ static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     return along < 0;
 }
 
+// A closed form keeps its sign and so never goes over to the other mode: where the two ways of assembling a dyad meet inside a
+// step, it turns back on a kinked path. The tangent does not: from the last state forth or from this one back it arrives at a pose
+// of the other sign (of two points on either side of the meeting at least one sees it).
+static hn_status check_dyads(hn_minimal_state *s, double t, const double *y) {
+    hn_chart *chart = &s->chart;
+    const hn_chart_point *here = &chart->here, *base = &chart->base;
+    int turned;
+    if (!chart->dyads || !base->valid) {
+        return HN_OK;
+    }
+    hn_chart_predict(chart, t, y, s->q);
+    turned = hn_dyads_find_turned(chart->dyads, t, s->q);
+    if (turned < 0) {
+        for (int j = 0; j < chart->r; j++) {
+            s->v[j] = base->q[chart->at[chart->ind[j]]];
+        }
+        hn_chart_predict_from(chart, here, base->t, s->v, s->q);
+        turned = hn_dyads_find_turned(chart->dyads, base->t, s->q);
+    }
+    return turned < 0 ? HN_OK : hn_chart_fail_dyad(chart, turned);
+}
+
 hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     hn_chart *chart = &s->chart;
     const double h = t - chart->base.t;
     hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
+    if (status == HN_OK) {
+        status = check_dyads(s, t, y);
+    }
     if (status != HN_OK) {
         return status;
     }
@@ -173,6 +240,7 @@ void hn_minimal_add_cost(const void *self, hn_cost *cost) {
     const hn_minimal_state *s = self;
     hn_chart_add_cost(&s->chart, cost);
     hn_chart_jacobian_add_cost(&s->slopes, cost);
+    cost->ops += s->chart.dyads ? hn_dyads_ops(s->chart.dyads) : 0;
 }
 
 const char *hn_minimal_why(const void *self) {

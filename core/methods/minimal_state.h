@@ -2,14 +2,24 @@
 #define HN_METHODS_MINIMAL_STATE_H
 // What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many entries as the mechanism
 // has freedoms. Which entry of q an independent speed moves must be plain, so the speeds of balls are always dependent; where
-// that cannot be, the scene is refused. Every right-hand side closes the loops first, by Newton from a tangent prediction, so no gap can open.
+// that cannot be, the scene is refused. Every right-hand side closes the loops first, by Newton from a tangent prediction or, where
+// the loops fall apart into dyads, in closed form, so no gap can open.
 
 #include "methods/chart.h"
 #include "methods/chart_jacobian.h"
 
+/// How loops are closed once the independent coordinates are known.
+typedef enum hn_position {
+    HN_POSITION_AUTO, ///< in closed form where there is one
+    HN_POSITION_NEWTON,
+    HN_POSITION_DYADS ///< in closed form, or not at all
+} hn_position;
+
 typedef struct hn_minimal_state {
     hn_chart chart;
     hn_chart_jacobian slopes;
+    hn_position position; ///< HN_POSITION_NEWTON after init
+    hn_dyads *dyads;      ///< for the present choice of coordinates; NULL before the first start
     hn_arena *arena;
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step
@@ -18,6 +28,7 @@ typedef struct hn_minimal_state {
     int has_rate;
 } hn_minimal_state;
 
+/// Closed forms add nodes to the system's graph when the state is set (dynamics/system.h says who may when).
 HN_MUST_CHECK hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                                         hn_diag *diag);
 void hn_minimal_destroy(void *self);

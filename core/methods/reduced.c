@@ -6,9 +6,13 @@
 //     M_r q_r'' + B' (M B' q_r' + h) = B' Q,   M_r = B' M B,   B' q_r' = [0; -J_d^-1 gamma]           (1)
 //
 // (the primes on B mark its rate on the left of q_r', its transpose elsewhere). f exists as far as the next fold,
-// det J_d = 0; there the method stops and says so.
+// det J_d = 0; there the method stops and says so. Where the loops fall apart into dyads f is written down (dynamics/dyads.h) and
+// nothing is iterated; else it is found by Newton's method.
 
-enum { SET_COORDINATE };
+enum { SET_COORDINATE, SET_POSITION };
+
+static const char *const positions[] = {"auto", "newton", "dyads"}; // as hn_position counts them
+enum { N_POSITIONS = sizeof positions / sizeof positions[0] };
 
 typedef struct reduced {
     hn_minimal_state state; // first: see minimal_state.h
@@ -29,7 +33,9 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "coordinate=%d: this scene has coordinates 1 to %d", red->first + 1, nv);
     }
-    return hn_minimal_init(&red->state, sys, arena, diag);
+    const hn_status status = hn_minimal_init(&red->state, sys, arena, diag);
+    red->state.position = (hn_position)settings[SET_POSITION];
+    return status;
 }
 
 static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
@@ -57,11 +63,15 @@ const hn_formulation hn_formulation_reduced = {
     .source = "Wehage & Haug 1982; Featherstone 2008, ch. 8",
     .needs = "M f phi J gamma",
     .keeps_gap = 1,
-    .n_settings = 1,
+    .n_settings = 2,
     .settings = {{"coordinate", 0, 0, 4000, "",
                   "number of the joint coordinate to keep, as inspect lists them; 0: the best "
                   "choice at the start",
-                  NULL, 0, 0}},
+                  NULL, 0, 0},
+                 {"position", HN_POSITION_NEWTON, 0, N_POSITIONS - 1, "",
+                  "who closes the loops: dyads in closed form, Newton's method, or auto: dyads "
+                  "where inspect finds them",
+                  positions, N_POSITIONS, 0}},
     .create = create,
     .destroy = hn_minimal_destroy,
     .ode = hn_minimal_ode,

@@ -3,6 +3,7 @@
 #include "dynamics/redundancy.h"
 #include "session/caption.h"
 #include "session/model.h"
+#include "session/position_json.h"
 
 static void put_start(hn_strbuf *b, const hn_assembly *a) {
     hn_json_key(b, "start");
@@ -33,6 +34,9 @@ hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *d
     hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
     if (status == HN_OK) {
         status = hn_system_inspect_put(b, hn_model_system(model));
+    }
+    if (status == HN_OK) {
+        status = hn_position_put(b, model);
     }
     hn_json_end_object(b);
     return status == HN_OK

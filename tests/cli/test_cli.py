@@ -87,6 +87,24 @@ class CommandLine(unittest.TestCase):
         unfit = self.assert_exit(call("terms", "five-bar", "--v", "w1=1"), DONE)
         self.assertIn("the speeds given do not fit the loops", unfit)
 
+    def test_inspect_tells_how_positions_are_found(self):
+        def answers(scene):
+            return strict(self.assert_exit(call("inspect", scene, "--json"), DONE))["position_analysis"]
+
+        squeezer = answers("seven-body-squeezer")
+        self.assertEqual(squeezer["answers"], "dyads: closed form (3 of them)")
+        self.assertLess(squeezer["operations"], squeezer["operations_of_a_newton_step"])
+        self.assertEqual([step["kind"] for step in squeezer["steps"]], ["RRR"] * 3)
+        self.assertTrue(answers("3-rrr")["answers"].startswith("Newton, because 4 unknowns hang together"))
+        self.assertIn("no loops", answers("pendulum")["answers"])
+        refused = call("run", "3-rrr", "--method", "reduced:position=dyads@rk4:h=1e-3", "--time", "0.1")
+        self.assertNotEqual(refused.returncode, DONE)
+        self.assertIn(b"no position analysis in closed form", refused.stderr)
+        flat = call("run", "parallelogram", "--method", "reduced:position=auto@rk4:h=1e-3", "--time", "0.5", "--json")
+        self.assertEqual(flat.returncode, ENDED)
+        self.assertIn("RRR of B: x and B: y (a circle and a circle) went over to its other assembly mode",
+                      strict(flat.stdout)["reason"])
+
     def test_raw_multipliers_come_when_asked_for_and_where_there_are_some(self):
         words = ("run", "four-bar", "--method", "ggl@radau5:h=0.01", "--time", "0.1", "--every", "0.05")
         plain = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]
