@@ -352,6 +352,10 @@ hn_tape_info hn_dyads_info(const hn_dyads *d) {
     return hn_tape_get_info(d->solve);
 }
 
+hn_tape_info hn_dyads_branch_info(const hn_dyads *d) {
+    return hn_tape_get_info(d->branch);
+}
+
 double hn_dyads_ops(const hn_dyads *d) {
     return (double)d->solves * hn_tape_get_info(d->solve).ops +
            (double)d->reads * hn_tape_get_info(d->branch).ops;

@@ -58,8 +58,9 @@ int hn_dyads_serve(const hn_dyads *d, const int *dep, int n); ///< 1: made for t
 int hn_dyads_count(const hn_dyads *d);                        ///< steps
 int hn_dyads_proper(const hn_dyads *d); ///< those of them with two unknowns: dyads
 hn_dyad hn_dyads_at(const hn_dyads *d, int k);
-hn_tape_info hn_dyads_info(const hn_dyads *d); ///< of one solve
-double hn_dyads_ops(const hn_dyads *d);        ///< arithmetic operations so far
+hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve
+hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one look at the branches
+double hn_dyads_ops(const hn_dyads *d);               ///< arithmetic operations so far
 
 /// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead point, where the two ways meet.
 int hn_dyads_take_branch(hn_dyads *d, double t, const double *q);

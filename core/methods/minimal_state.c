@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+// accepted steps over which HN_POSITION_AUTO counts what Newton's method costs
+enum { STEPS_MEASURED = 8 };
 #define STEPS_AHEAD \
     2 // |det J_d| is nearly linear in t there; twice the step leaves room for its bend
 
@@ -19,6 +21,8 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
     s->chart.plain_only = 1;
     s->position = HN_POSITION_NEWTON;
     s->dyads = NULL;
+    s->closings = s->newton_steps = 0;
+    s->n_settled = s->prefers_dyads = 0;
     s->arena = arena;
     return status;
 }
@@ -43,7 +47,10 @@ static hn_status place(hn_minimal_state *s, double t, const double *y, double to
         return HN_OK;
     }
     hn_chart_predict(chart, t, y, s->q);
+    const long long newton = chart->cost.newton;
     const hn_status status = hn_chart_close(chart, p, t, s->q, tol);
+    s->closings++;
+    s->newton_steps += chart->cost.newton - newton;
     return status == HN_OK ? hn_chart_check_mode(chart) : status;
 }
 
@@ -96,10 +103,33 @@ void hn_minimal_ode(void *self, hn_ode *out) {
                     .prepare = prepare};
 }
 
+// the closed form takes over at the closed pose `here`; 0: a dyad stands at its dead point
+static int adopt_dyads(hn_minimal_state *s, double t) {
+    if (!hn_dyads_take_branch(s->dyads, t, s->chart.here.q)) {
+        return 0;
+    }
+    s->chart.dyads = s->dyads;
+    return 1;
+}
+
+// the closed form must serve, or the run is refused with the reason
+static hn_status demand_dyads(hn_minimal_state *s, double t) {
+    hn_chart *chart = &s->chart;
+    const char *refusal = hn_dyads_refusal(s->dyads);
+    if (refusal) {
+        char text[HN_CHART_TEXT];
+        snprintf(text, sizeof text, "no position analysis in closed form: %.180s", refusal);
+        return hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, chart->here.q, text);
+    }
+    return adopt_dyads(s, t) ? HN_OK
+                             : hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
+                                             "a dyad stands at its dead point: which way it goes "
+                                             "on is not told by the pose");
+}
+
 // a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose `here`
 static hn_status choose_position(hn_minimal_state *s, double t) {
     hn_chart *chart = &s->chart;
-    const hn_chart_point *p = &chart->here;
     hn_status status = HN_OK;
     if (s->position == HN_POSITION_NEWTON || chart->nc == 0) {
         return HN_OK;
@@ -110,23 +140,33 @@ static hn_status choose_position(hn_minimal_state *s, double t) {
         status = hn_dyads_create(chart->sys, chart->dep, chart->rank, s->arena, &s->dyads);
     }
     if (status != HN_OK) {
-        return hn_chart_fail(chart, status, t, p->q, hn_status_text(status));
+        return hn_chart_fail(chart, status, t, chart->here.q, hn_status_text(status));
     }
-    const char *refusal = hn_dyads_refusal(s->dyads);
-    if (refusal) {
-        char text[HN_CHART_TEXT];
-        snprintf(text, sizeof text, "no position analysis in closed form: %.180s", refusal);
-        return s->position == HN_POSITION_DYADS
-                   ? hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, p->q, text)
-                   : HN_OK;
+    if (s->position == HN_POSITION_DYADS) {
+        return demand_dyads(s, t);
     }
-    if (!hn_dyads_take_branch(s->dyads, t, p->q)) {
-        return hn_chart_fail(chart, HN_ERR_CHART, t, p->q,
-                             "a dyad stands at its dead point: which way it goes on is not told "
-                             "by the pose");
+    if (s->prefers_dyads && !hn_dyads_refusal(s->dyads)) {
+        (void)adopt_dyads(s, t); // at a dead point Newton's method goes on, as long as it can
     }
-    chart->dyads = s->dyads;
     return HN_OK;
+}
+
+// Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed form takes one run of its tape
+// for each closing, and looks at its branches twice a step.
+static void compare_costs(hn_minimal_state *s, double t) {
+    const hn_chart *chart = &s->chart;
+    if (s->position != HN_POSITION_AUTO || chart->dyads || !s->dyads ||
+        hn_dyads_refusal(s->dyads) || ++s->n_settled < STEPS_MEASURED) {
+        return;
+    }
+    const double step = hn_eval_info(chart->loop).ops + hn_sparse_lu_factor_ops(chart->here.lu) +
+                        hn_sparse_lu_solve_ops(chart->here.lu);
+    const double newton = step * (double)s->newton_steps;
+    const double dyads = hn_dyads_info(s->dyads).ops * (double)s->closings +
+                         2.0 * hn_dyads_branch_info(s->dyads).ops * STEPS_MEASURED;
+    s->prefers_dyads = dyads < newton && adopt_dyads(s, t);
+    s->closings = s->newton_steps = 0; // a mechanism that starts from rest needs more of them later
+    s->n_settled = 0;
 }
 
 hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
@@ -232,6 +272,9 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
         s->volume = volume;
         s->has_rate = 1;
         memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
+    }
+    if (status == HN_OK) {
+        compare_costs(s, t);
     }
     return status;
 }

@@ -10,7 +10,7 @@
 
 /// How loops are closed once the independent coordinates are known.
 typedef enum hn_position {
-    HN_POSITION_AUTO, ///< in closed form where there is one
+    HN_POSITION_AUTO, ///< by Newton's method at first; in closed form once that is seen to cost fewer operations
     HN_POSITION_NEWTON,
     HN_POSITION_DYADS ///< in closed form, or not at all
 } hn_position;
@@ -20,6 +20,9 @@ typedef struct hn_minimal_state {
     hn_chart_jacobian slopes;
     hn_position position; ///< HN_POSITION_NEWTON after init
     hn_dyads *dyads;      ///< for the present choice of coordinates; NULL before the first start
+    // what HN_POSITION_AUTO measures
+    long long closings, newton_steps;
+    int n_settled, prefers_dyads;
     hn_arena *arena;
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step

@@ -6,8 +6,9 @@
 //     M_r q_r'' + B' (M B' q_r' + h) = B' Q,   M_r = B' M B,   B' q_r' = [0; -J_d^-1 gamma]           (1)
 //
 // (the primes on B mark its rate on the left of q_r', its transpose elsewhere). f exists as far as the next fold,
-// det J_d = 0; there the method stops and says so. Where the loops fall apart into dyads f is written down (dynamics/dyads.h) and
-// nothing is iterated; else it is found by Newton's method.
+// det J_d = 0; there the method stops and says so. Where the loops fall apart into dyads f can be written down (dynamics/dyads.h) and
+// nothing is iterated; else it is found by Newton's method. Neither is always cheaper: a parallelogram moves along its tangent, where
+// Newton's method has nothing to do.
 
 enum { SET_COORDINATE, SET_POSITION };
 
@@ -68,9 +69,9 @@ const hn_formulation hn_formulation_reduced = {
                   "number of the joint coordinate to keep, as inspect lists them; 0: the best "
                   "choice at the start",
                   NULL, 0, 0},
-                 {"position", HN_POSITION_NEWTON, 0, N_POSITIONS - 1, "",
+                 {"position", HN_POSITION_AUTO, 0, N_POSITIONS - 1, "",
                   "who closes the loops: dyads in closed form, Newton's method, or auto: dyads "
-                  "where inspect finds them",
+                  "once they are seen to cost fewer operations than Newton's method did",
                   positions, N_POSITIONS, 0}},
     .create = create,
     .destroy = hn_minimal_destroy,

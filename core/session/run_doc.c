@@ -176,12 +176,24 @@ static hn_status step_to(hn_run *run, double t, const hn_run_request *r) {
     return HN_OK;
 }
 
+/// The sample at t. Where no step of the integrator's own reaches it the run goes on first: if it ends there, that is the reason.
+static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
+    hn_status status = hn_run_sample(run, t, sample);
+    if (status != HN_OK && hn_run_time(run) < t) {
+        status = hn_run_step_towards(run, t);
+        if (status == HN_OK) {
+            status = hn_run_sample(run, t, sample);
+        }
+    }
+    return status;
+}
+
 /// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
 static hn_status take_sample(hn_run *run, double h, double t, const hn_run_request *r, table *tab) {
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, r);
     hn_sample sample;
     if (status == HN_OK) {
-        status = hn_run_sample(run, t, &sample);
+        status = sample_at(run, t, &sample);
     }
     if (status == HN_OK) {
         table_add(tab, &sample);
@@ -289,10 +301,21 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
     hn_json_end_array(b);
 }
 
+/// The run's own reason; where it would have gone on, what ended the output.
+static const char *reason_of(const hn_run *run, const hn_run_request *request,
+                             const hn_run_summary *s, hn_status ended) {
+    if (ended == HN_OK || s->status != HN_OK) {
+        return s->reason;
+    }
+    if (ended == HN_ERR_BUDGET) {
+        return request->stop_reason ? request->stop_reason : "stopped on request";
+    }
+    return hn_run_sample_why(run, ended);
+}
+
 static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
                     const hn_run_request *request, const char *warning, hn_status ended,
                     const table *tab) {
-    const char *stopped = request->stop_reason ? request->stop_reason : "stopped on request";
     hn_run_summary s = hn_run_get_summary(run);
     char spelling[HN_SPEC_MAX];
     hn_method_format(hn_run_spec(run), spelling);
@@ -303,8 +326,7 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
         hn_json_put_string(b, "warning", warning);
     }
     hn_json_put_string(b, "status", hn_status_name(ended));
-    hn_json_put_string(b, "reason",
-                       ended == HN_ERR_BUDGET && s.status == HN_OK ? stopped : s.reason);
+    hn_json_put_string(b, "reason", reason_of(run, request, &s, ended));
     // an adaptive step may end beyond the time asked for
     hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
     put_names(b, model);

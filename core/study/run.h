@@ -141,6 +141,8 @@ double hn_run_time(const hn_run *run);
 /// side step of the same integrator from that step's start, which leaves the run as it was) or ahead of the present time by
 /// less than one step (fixed: a side step). With raw multipliers asked for it is always a side step.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
+/// Why the last sample that failed could not be taken, in words. Borrowed, until the run goes on.
+const char *hn_run_sample_why(const hn_run *run, hn_status status);
 /// 1 if the integrator finds multipliers of its own (hn_sample.raw_lambda).
 int hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);

@@ -159,3 +159,8 @@ hn_status hn_run_sample(hn_run *run, double t, hn_sample *out) {
            3 * (size_t)run->info.n_points * sizeof(double));
     return HN_OK;
 }
+
+const char *hn_run_sample_why(const hn_run *run, hn_status status) {
+    const char *why = status != HN_ERR_DIVERGED ? hn_engine_why(run, &run->side) : NULL;
+    return why ? why : hn_status_text(status);
+}

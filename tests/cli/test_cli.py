@@ -100,7 +100,7 @@ class CommandLine(unittest.TestCase):
         refused = call("run", "3-rrr", "--method", "reduced:position=dyads@rk4:h=1e-3", "--time", "0.1")
         self.assertNotEqual(refused.returncode, DONE)
         self.assertIn(b"no position analysis in closed form", refused.stderr)
-        flat = call("run", "parallelogram", "--method", "reduced:position=auto@rk4:h=1e-3", "--time", "0.5", "--json")
+        flat = call("run", "parallelogram", "--method", "reduced:position=dyads@rk4:h=1e-3", "--time", "0.5", "--json")
         self.assertEqual(flat.returncode, ENDED)
         self.assertIn("RRR of B: x and B: y (a circle and a circle) went over to its other assembly mode",
                       strict(flat.stdout)["reason"])
@@ -168,6 +168,10 @@ class CommandLine(unittest.TestCase):
         self.assertIn(b"ended early", done.stderr)
         run = strict(self.assert_exit(call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500", "--json"), ENDED))
         self.assertTrue(run["reason"])
+        # a sample between two steps finds the end before the next step does
+        run = strict(self.assert_exit(call("run", "parallelogram", "--method", "reduced@rk4:h=1e-2", "--time", "1", "--json"), ENDED))
+        self.assertIn("other assembly mode", run["reason"])
+        self.assertEqual(run["incidents"][-1]["code"], "chart-lost")
 
     def test_compare_prints_a_row_for_each_method(self):
         text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
