@@ -192,13 +192,6 @@ static void find_steps(builder *b) {
 
 // tapes --------------------------------------------------------------------------------------------------------------
 
-static hn_ex sign_symbol(hn_graph *g, int k) {
-    char name[32], latex[32];
-    snprintf(name, sizeof name, "sign of step %d", k + 1);
-    snprintf(latex, sizeof latex, "\\sigma_{%d}", k + 1);
-    return hn_symbol(g, name, latex);
-}
-
 static int symbol_of(const hn_system *sys, int coordinate) {
     return sys->q_symbols[hn_system_position_of(sys, coordinate)];
 }
@@ -210,7 +203,7 @@ static void compose(builder *b) {
     int n = 0;
     for (int k = 0; k < d->n; k++) {
         hn_dyad_step *s = &d->steps[k];
-        hn_dyad_solve_form(b->sys, s, sign_symbol(g, k));
+        hn_dyad_solve_form(b->sys, s, k);
         const hn_ex list[OUTPUTS] = {s->room, s->x[0], s->dyad.n == 2 ? s->x[1] : hn_num(0)};
         hn_substitute(g, list, OUTPUTS, b->solved, b->with, n, b->outputs + OUTPUTS * k);
         for (int i = 0; i < s->dyad.n; i++) {
@@ -362,7 +355,29 @@ double hn_dyads_ops(const hn_dyads *d) {
 }
 
 hn_ex hn_dyads_expression(const hn_dyads *d, int k, int i) {
-    return d->steps[k].x[i];
+    return d->steps[k].told[i];
+}
+
+int hn_dyads_n_parts(const hn_dyads *d, int k) {
+    return d->steps[k].n_parts;
+}
+
+hn_dyad_part hn_dyads_part(const hn_dyads *d, int k, int i) {
+    return (hn_dyad_part){d->steps[k].part[i], d->steps[k].part_is[i]};
+}
+
+static int has_sign(const hn_dyads *d, int k) {
+    const hn_dyad_kind kind = d->steps[k].dyad.kind;
+    return kind != HN_DYAD_SINGLE && kind != HN_DYAD_PRP;
+}
+
+const char *hn_dyads_sign_name(const hn_dyads *d, int k) {
+    const hn_graph *g = d->sys->g;
+    return has_sign(d, k) ? hn_graph_symbol_name(g, hn_ex_symbol(g, d->steps[k].sign)) : NULL;
+}
+
+double hn_dyads_sign(const hn_dyads *d, int k) {
+    return d->signs[k];
 }
 
 static void read_branches(hn_dyads *d, double t, const double *q) {
@@ -385,13 +400,12 @@ int hn_dyads_find_turned(hn_dyads *d, double t, const double *q) {
 
 int hn_dyads_take_branch(hn_dyads *d, double t, const double *q) {
     read_branches(d, t, q);
+    int stands = 1;
     for (int k = 0; k < d->n; k++) {
-        if (!(fabs(d->out[k]) > 0)) {
-            return 0;
-        }
-        d->signs[k] = d->out[k] > 0 ? 1 : -1;
+        d->signs[k] = d->out[k] > 0 ? 1 : d->out[k] < 0 ? -1 : 0;
+        stands &= d->signs[k] != 0;
     }
-    return 1;
+    return stands;
 }
 
 /// The unknowns of one step into q.

@@ -62,7 +62,8 @@ hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve
 hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one look at the branches
 double hn_dyads_ops(const hn_dyads *d);               ///< arithmetic operations so far
 
-/// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead point, where the two ways meet.
+/// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead point, where the two ways meet;
+/// its sign is then 0.
 int hn_dyads_take_branch(hn_dyads *d, double t, const double *q);
 /// The first step that is assembled the other way at q (nq), -1: none. q is near a pose, e.g. predicted along a tangent.
 int hn_dyads_find_turned(hn_dyads *d, double t, const double *q);
@@ -70,7 +71,18 @@ int hn_dyads_find_turned(hn_dyads *d, double t, const double *q);
 /// step that cannot be closed (its circles do not meet); q is then as it was. Allocates nothing.
 int hn_dyads_solve(hn_dyads *d, double t, double *q);
 
-/// Step k as an equation for people: unknown i of it in terms of what is known before it, +-1 standing for `sign`. Borrowed; in the
-/// graph of the system.
+/// Step k as an equation for people: unknown i of it in terms of what is known before it (for i = 1 also unknown 0, or the other way round), with
+/// hn_dyads_sign_name() for the way it is assembled. Borrowed; in the graph of the system.
 hn_ex hn_dyads_expression(const hn_dyads *d, int k, int i);
+/// Names that the expressions of step k use, in this order.
+enum { HN_DYAD_PARTS = 4 };
+typedef struct hn_dyad_part {
+    hn_ex name, is;
+} hn_dyad_part;
+int hn_dyads_n_parts(const hn_dyads *d, int k);
+hn_dyad_part hn_dyads_part(const hn_dyads *d, int k, int i);
+/// NULL where there is one way only.
+const char *hn_dyads_sign_name(const hn_dyads *d, int k);
+/// +1 or -1 of the way kept; 0: the pose it was taken from is the dead point, where both ways meet.
+double hn_dyads_sign(const hn_dyads *d, int k);
 #endif

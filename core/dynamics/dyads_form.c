@@ -2,6 +2,7 @@
 #include "dynamics/dyads_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { TRIALS = 3 };
@@ -217,6 +218,20 @@ static hn_ex symbol_of(const hn_system *sys, int coordinate) {
         hn_system_get_exprs(sys).q_symbols[hn_system_position_of(sys, coordinate)]);
 }
 
+/// A symbol of step k. No name of a scene can be the same: those are ASCII.
+static hn_ex step_symbol(hn_graph *g, const char *letter, const char *latex, int k) {
+    char name[32], tex[32];
+    snprintf(name, sizeof name, "%s%d", letter, k + 1);
+    snprintf(tex, sizeof tex, "%s_{%d}", latex, k + 1);
+    return hn_symbol(g, name, tex);
+}
+
+static hn_ex name_part(hn_dyad_step *s, hn_ex name, hn_ex is) {
+    s->part[s->n_parts] = name;
+    s->part_is[s->n_parts++] = is;
+    return name;
+}
+
 /// p cos x + q sin x = k as a circle of radius 1 and a line. With s2 = p^2 + q^2, room = s2 - k^2 and w = sign sqrt(room):
 ///
 ///     s2 cos x = k p - w q,   s2 sin x = k q + w p,   and w = p sin x - q cos x tells the sign
@@ -241,13 +256,35 @@ static void solve_turn(hn_graph *g, hn_dyad_step *s, hn_ex x) {
     (void)meet(g, s, s->form.A.e[0], s->form.B.e[0], hn_neg(s->form.E.e[0]), x);
 }
 
+/// xi cos x + eta sin x = kappa, and with the other link turned round what is left over.
+static void tell_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn_ex x, int number) {
+    const hn_dyad_form *f = &s->form;
+    const hn_ex xi = name_part(s, step_symbol(g, "ξ", "\\xi", number), p);
+    const hn_ex eta = name_part(s, step_symbol(g, "η", "\\eta", number), q);
+    const hn_ex kappa = name_part(s, step_symbol(g, "κ", "\\kappa", number), k);
+    const hn_ex room =
+        hn_sub(g, hn_add(g, hn_mul(g, xi, xi), hn_mul(g, eta, eta)), hn_mul(g, kappa, kappa));
+    const hn_ex rho =
+        name_part(s, step_symbol(g, "ρ", "\\rho", number), hn_mul(g, s->sign, hn_sqrt(g, room)));
+    s->told[0] = atan2_of(g, hn_add(g, hn_mul(g, kappa, eta), hn_mul(g, rho, xi)),
+                          hn_sub(g, hn_mul(g, kappa, xi), hn_mul(g, rho, eta)));
+    hn_pair left;
+    for (int i = 0; i < 2; i++) {
+        left.e[i] = hn_neg(hn_add(
+            g, f->E.e[i],
+            hn_add(g, hn_mul(g, f->A.e[i], hn_cos(g, x)), hn_mul(g, f->B.e[i], hn_sin(g, x)))));
+    }
+    s->told[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
+}
+
 /// |E + A cos x + B sin x|^2 = |C|^2 is a line for (cos x, sin x); what is left over is the other link turned round.
-static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x) {
+static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x, int number) {
     const hn_dyad_form *f = &s->form;
     const hn_ex k =
         hn_scale(0.5, hn_sub(g, times(g, &f->C, &f->C),
                              hn_add(g, times(g, &f->E, &f->E), times(g, &f->A, &f->A))));
-    const circle c = meet(g, s, times(g, &f->E, &f->A), times(g, &f->E, &f->B), k, x);
+    const hn_ex p = times(g, &f->E, &f->A), q = times(g, &f->E, &f->B);
+    const circle c = meet(g, s, p, q, k, x);
     hn_pair left;
     for (int i = 0; i < 2; i++) {
         const hn_ex turned =
@@ -256,6 +293,7 @@ static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x) {
     }
     s->x[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
     s->is_angle[1] = 1;
+    tell_rrr(g, s, p, q, k, x, number);
 }
 
 /// Across the line the slide does not count, along it nothing else is unknown.
@@ -266,7 +304,21 @@ static void solve_rrp(hn_graph *g, hn_dyad_step *s, hn_ex x) {
     hn_ex along = hn_mul(g, times(g, &f->W, &f->E), c.s2);
     along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->A), c.cosine));
     along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), c.sine));
-    s->x[1] = hn_neg(hn_div(g, along, hn_mul(g, times(g, &f->W, &f->W), c.s2)));
+    const hn_ex w2 = times(g, &f->W, &f->W);
+    s->x[1] = hn_neg(hn_div(g, along, hn_mul(g, w2, c.s2)));
+    along = hn_add(g, times(g, &f->W, &f->E), hn_mul(g, times(g, &f->W, &f->A), hn_cos(g, x)));
+    along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), hn_sin(g, x)));
+    s->told[1] = hn_neg(hn_div(g, along, w2));
+}
+
+/// The angle that turns A + y U on -E.
+static hn_ex turned_by(hn_graph *g, const hn_dyad_form *f, hn_ex y) {
+    hn_pair cosine, sine;
+    for (int i = 0; i < 2; i++) {
+        cosine.e[i] = hn_add(g, f->A.e[i], hn_mul(g, y, f->U.e[i]));
+        sine.e[i] = hn_add(g, f->B.e[i], hn_mul(g, y, f->V.e[i]));
+    }
+    return atan2_of(g, hn_neg(times(g, &sine, &f->E)), hn_neg(times(g, &cosine, &f->E)));
 }
 
 /// |A + y U| = |E| for the slide, then the angle from the pieces that it turns.
@@ -277,12 +329,8 @@ static void solve_rpr(hn_graph *g, hn_dyad_step *s, hn_ex y) {
     s->room = hn_sub(g, hn_mul(g, au, au), hn_mul(g, u2, far));
     s->branch = hn_add(g, hn_mul(g, u2, y), au);
     s->x[1] = hn_div(g, hn_sub(g, hn_mul(g, s->sign, hn_sqrt(g, s->room)), au), u2);
-    hn_pair cosine, sine;
-    for (int i = 0; i < 2; i++) {
-        cosine.e[i] = hn_add(g, f->A.e[i], hn_mul(g, s->x[1], f->U.e[i]));
-        sine.e[i] = hn_add(g, f->B.e[i], hn_mul(g, s->x[1], f->V.e[i]));
-    }
-    s->x[0] = atan2_of(g, hn_neg(times(g, &sine, &f->E)), hn_neg(times(g, &cosine, &f->E)));
+    s->x[0] = turned_by(g, f, s->x[1]);
+    s->told[0] = turned_by(g, f, y);
     s->is_angle[0] = 1;
 }
 
@@ -293,10 +341,12 @@ static void solve_prp(hn_graph *g, hn_dyad_step *s) {
     s->x[1] = hn_neg(hn_div(g, cross(g, &f->A, &f->E), det));
 }
 
-void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, hn_ex sign) {
+void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, int k) {
     hn_graph *g = hn_system_graph(sys);
     const hn_ex x = symbol_of(sys, s->dyad.unknown[0]);
-    s->sign = sign;
+    s->sign = step_symbol(g, "σ", "\\sigma", k);
+    s->told[0] = s->told[1] = hn_num(0);
+    s->n_parts = 0;
     s->room = s->branch = hn_num(1);
     switch (s->dyad.kind) {
     case HN_DYAD_SINGLE:
@@ -306,7 +356,7 @@ void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, hn_ex sign) {
         solve_turn(g, s, x);
         break;
     case HN_DYAD_RRR:
-        solve_rrr(g, s, x);
+        solve_rrr(g, s, x, k);
         break;
     case HN_DYAD_RRP:
         solve_rrp(g, s, x);
@@ -319,5 +369,8 @@ void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, hn_ex sign) {
         break;
     case HN_DYAD_KIND_COUNT:
         break;
+    }
+    for (int i = 0; i < s->dyad.n; i++) {
+        s->told[i] = hn_is_zero(s->told[i]) ? s->x[i] : s->told[i];
     }
 }

@@ -22,7 +22,7 @@ hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *a
     s->position = HN_POSITION_NEWTON;
     s->dyads = NULL;
     s->closings = s->newton_steps = 0;
-    s->n_settled = s->prefers_dyads = 0;
+    s->n_settled = 0;
     s->arena = arena;
     return status;
 }
@@ -142,13 +142,7 @@ static hn_status choose_position(hn_minimal_state *s, double t) {
     if (status != HN_OK) {
         return hn_chart_fail(chart, status, t, chart->here.q, hn_status_text(status));
     }
-    if (s->position == HN_POSITION_DYADS) {
-        return demand_dyads(s, t);
-    }
-    if (s->prefers_dyads && !hn_dyads_refusal(s->dyads)) {
-        (void)adopt_dyads(s, t); // at a dead point Newton's method goes on, as long as it can
-    }
-    return HN_OK;
+    return s->position == HN_POSITION_DYADS ? demand_dyads(s, t) : HN_OK;
 }
 
 // Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed form takes one run of its tape
@@ -164,7 +158,9 @@ static void compare_costs(hn_minimal_state *s, double t) {
     const double newton = step * (double)s->newton_steps;
     const double dyads = hn_dyads_info(s->dyads).ops * (double)s->closings +
                          2.0 * hn_dyads_branch_info(s->dyads).ops * STEPS_MEASURED;
-    s->prefers_dyads = dyads < newton && adopt_dyads(s, t);
+    if (dyads < newton) {
+        (void)adopt_dyads(s, t); // at a dead point Newton's method goes on, as long as it can
+    }
     s->closings = s->newton_steps = 0; // a mechanism that starts from rest needs more of them later
     s->n_settled = 0;
 }
@@ -175,6 +171,9 @@ hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const doubl
     memmove(s->q, q, (size_t)chart->nq * sizeof *q);
     memmove(s->v, v, (size_t)chart->nv * sizeof *v);
     chart->dyads = NULL;
+    // a start that is made again gives the same bits
+    s->closings = s->newton_steps = 0;
+    s->n_settled = 0;
     hn_status status = hn_chart_choose(chart, t, s->q, first);
     if (status == HN_OK) {
         status = hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE);

@@ -20,9 +20,9 @@ typedef struct hn_minimal_state {
     hn_chart_jacobian slopes;
     hn_position position; ///< HN_POSITION_NEWTON after init
     hn_dyads *dyads;      ///< for the present choice of coordinates; NULL before the first start
-    // what HN_POSITION_AUTO measures
+    // what HN_POSITION_AUTO measures since the start or the last comparison
     long long closings, newton_steps;
-    int n_settled, prefers_dyads;
+    int n_settled;
     hn_arena *arena;
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step

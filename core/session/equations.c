@@ -1,7 +1,7 @@
 // The equations of motion, with parameters as symbols.
-#include "base/arena.h"
 #include "expr/print.h"
 #include "session/model.h"
+#include "session/position_form.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -165,7 +165,7 @@ static const char *const SYSTEM_LATEX =
     "\\varphi = 0 \\]\n";
 
 static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit,
-                     double *image) {
+                     double *image, const hn_position_form *position) {
     const hn_scene *scene = hn_system_scene(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
@@ -185,9 +185,11 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
                          terms[k].meaning);
         write_entries(b, hn_system_graph(sys), &terms[k], write_text);
     }
+    hn_position_form_text(b, position);
 }
 
-static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms) {
+static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms,
+                      const hn_position_form *position) {
     hn_strbuf_printf(b, "%% %s\n%s",
                      hn_system_scene(sys)->title ? hn_system_scene(sys)->title
                                                  : hn_system_scene(sys)->id,
@@ -199,10 +201,11 @@ static void put_latex(hn_strbuf *b, const hn_system *sys, const term *terms) {
             hn_strbuf_add(b, "\\end{align*}\n");
         }
     }
+    hn_position_form_latex(b, position);
 }
 
 static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, double *unit,
-                     double *image) {
+                     double *image, const hn_position_form *position) {
     const hn_scene *scene = hn_system_scene(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
@@ -247,6 +250,7 @@ static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, doub
         write_entries(b, hn_system_graph(sys), &terms[k], write_json);
     }
     hn_json_end_array(b);
+    hn_position_form_json(b, position);
     hn_json_end_object(b);
 }
 
@@ -260,25 +264,27 @@ hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_fo
         return status;
     }
     hn_system_info info = hn_system_get_info(sys);
-    hn_arena *arena = hn_arena_create(0);
-    double *unit = arena ? hn_arena_doubles(arena, (size_t)info.nv + 1) : NULL;
-    double *image = arena ? hn_arena_doubles(arena, (size_t)info.n_user + 1) : NULL;
+    hn_position_form position;
+    status = hn_position_form_create(model, sys, &position);
+    double *unit = position.arena ? hn_arena_doubles(position.arena, (size_t)info.nv + 1) : NULL;
+    double *image =
+        position.arena ? hn_arena_doubles(position.arena, (size_t)info.n_user + 1) : NULL;
     term terms[N_TERMS];
     list_terms(sys, terms);
-    if (!unit || !image) {
-        status = HN_ERR_MEMORY;
+    if (status != HN_OK || !unit || !image) {
+        status = status != HN_OK ? status : HN_ERR_MEMORY;
     } else if (form == HN_EQUATIONS_TEXT) {
-        put_text(b, sys, terms, unit, image);
+        put_text(b, sys, terms, unit, image, &position);
     } else if (form == HN_EQUATIONS_LATEX) {
-        put_latex(b, sys, terms);
+        put_latex(b, sys, terms, &position);
     } else {
-        put_json(b, sys, terms, unit, image);
+        put_json(b, sys, terms, unit, image, &position);
     }
     if (status == HN_OK && b->n >= LARGEST_TEXT) {
         status = hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "take a smaller scene",
                               "the equations are longer than %d bytes", LARGEST_TEXT);
     }
-    hn_arena_free(arena);
+    hn_position_form_free(&position);
     hn_system_free(sys);
     return status == HN_OK && b->failed ? HN_ERR_MEMORY : status;
 }

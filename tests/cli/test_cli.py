@@ -72,6 +72,20 @@ class CommandLine(unittest.TestCase):
         moved = strict(self.assert_exit(call("terms", "pendulum", "--json", "--q", name + "=0.5", "--t", "2"), DONE))
         self.assertEqual((moved["q"][0], moved["t"]), (0.5, 2))
 
+    def test_equations_give_the_pose_from_the_independent_coordinates(self):
+        text = self.assert_exit(call("equations", "slider-crank"), DONE)
+        self.assertIn("independent: th1\n", text)
+        self.assertIn("\n  x = r*cos(th1) + l*cos(theta_rod)\n", text)
+        latex = self.assert_exit(call("equations", "four-bar", "--format", "latex"), DONE)
+        self.assertIn(r"\rho_{1} &= \sigma_{1}\, \sqrt{", latex)
+        position = strict(self.assert_exit(call("equations", "four-bar", "--json"), DONE))["position"]
+        self.assertEqual((position["independent"], len(position["steps"])), (["th1"], 1))
+        step = position["steps"][0]
+        self.assertEqual([line["name"] for line in step["unknowns"]], ["theta_coupler", "th3"])
+        self.assertIn(step["sign"]["value"], (-1, 1))
+        self.assertIn("the others: Newton, because 4 unknowns hang", self.assert_exit(call("equations", "3-rrr"), DONE))
+        self.assertNotIn("independent:", self.assert_exit(call("equations", "pendulum"), DONE))
+
     def test_terms_show_the_equations_left_on_the_free_motion(self):
         text = self.assert_exit(call("terms", "five-bar"), DONE)
         self.assertIn("independent: th1, th2 (the motors)", text)

@@ -505,6 +505,8 @@ export function createSession(store) {
     /** For parameters of one's own. */
     computeReference: () => reference.compute(),
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
+    /** Every term at one state. @param {{t: number, state: Record<string, number>}} at */
+    terms: (at) => api.terms({ scene: data.scene?.id ?? "", settings: data.settings, ...at }),
     notice,
     dispose() {
       endReactions();

@@ -4,6 +4,7 @@ import { sentenceOf } from "../api/client.js";
 import katex from "katex";
 import { listen } from "../state/store.js";
 import { h } from "../widgets/dom.js";
+import { createReduced } from "./reduced.js";
 
 const MOST_ENTRIES = 40; // beyond it a large scene would only fill the page
 const LONGEST = 600; // [characters of TeX] nobody reads a longer formula, and setting it takes a browser seconds
@@ -31,6 +32,7 @@ export function createEquations(el, store, actions) {
   const summary = h("summary", {}, h("h2", { id: "equations-title" }, "Equations"));
   const details = h("details", { class: "fold equation-panel" }, summary, body);
   el.replaceChildren(details);
+  const reduced = createReduced(store, actions, { formula, line: entryLine });
   let shownFor = "";
 
   /** A long subscript has its parts apart: e_{0,top} for e_{0\\_top}. @param {string} latex */
@@ -90,7 +92,9 @@ export function createEquations(el, store, actions) {
         h("p", { class: "about" }, `${name}: ${is}.`),
       ),
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
+      reduced.node,
     );
+    reduced.give(answer.position);
   }
 
   function entryLine(entry) {
@@ -121,6 +125,7 @@ export function createEquations(el, store, actions) {
     update() {},
     dispose() {
       stop();
+      reduced.dispose();
       el.replaceChildren();
     },
   };

@@ -129,11 +129,58 @@ static void what_hangs_together_is_left_to_newton_and_named(void **state) {
     hn_model_close(&p.model);
 }
 
+/// What is told of step k, evaluated at the closed pose whose entries are in x by symbol number.
+static void assert_told_is_true(const probe *p, const char *name, int k, double *x) {
+    hn_graph *g = hn_system_graph(p->model.sys);
+    const hn_dyad d = hn_dyads_at(p->dyads, k);
+    if (hn_dyads_sign_name(p->dyads, k)) {
+        const double sign = hn_dyads_sign(p->dyads, k);
+        assert_near(fabs(sign), 1, 0);
+        x[hn_graph_find_symbol(g, hn_dyads_sign_name(p->dyads, k))] = sign;
+    }
+    for (int i = 0; i < hn_dyads_n_parts(p->dyads, k); i++) {
+        const hn_dyad_part part = hn_dyads_part(p->dyads, k, i);
+        x[hn_ex_symbol(g, part.name)] = hn_graph_eval(g, part.is, x);
+    }
+    for (int i = 0; i < d.n; i++) {
+        const double q = p->model.q[hn_system_position_of(p->model.sys, d.unknown[i])];
+        const double off = hn_graph_eval(g, hn_dyads_expression(p->dyads, k, i), x) - q;
+        // an angle is told up to whole turns; sqrt(1 - c^2) loses digits where links are nearly in line
+        if (!(fabs(remainder(off, 2 * M_PI)) < 1e-10)) {
+            fail_msg("%s, step %d, unknown %d: off by %g", name, k + 1, i + 1, off);
+        }
+    }
+}
+
+static void the_equations_told_to_people_hold_at_the_start(void **state) {
+    (void)state;
+    static const char *const scenes[][2] = {
+        {"four-bar", "th1"},     {"slider-crank", "th1"},         {"watt-six-bar", "th1"},
+        {"quick-return", "th1"}, {"seven-body-squeezer", "beta"}, {"peaucellier", "th"},
+        {"scott-russell", "th"}};
+    for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
+        probe p;
+        open_probe(&p, scenes[s][0], scenes[s][1]);
+        assert_int_equal(hn_dyads_take_branch(p.dyads, 0, p.model.q), 1);
+        const int n = hn_graph_n_symbols(hn_system_graph(p.model.sys));
+        const hn_system_exprs exprs = hn_system_get_exprs(p.model.sys);
+        double *x = hn_arena_doubles(p.model.arena, (size_t)n);
+        for (int i = 0; i < p.model.info.nq; i++) {
+            x[exprs.q_symbols[i]] = p.model.q[i];
+        }
+        for (int k = 0; k < hn_dyads_count(p.dyads); k++) {
+            assert_told_is_true(&p, scenes[s][0], k, x);
+        }
+        close_probe(&p);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mechanisms_fall_apart_into_the_groups_of_the_textbooks),
         cmocka_unit_test(the_coupler_of_fb0_follows_the_formula_with_the_arc_cosine),
         cmocka_unit_test(what_cannot_be_closed_is_named_and_leaves_the_pose_alone),
+        cmocka_unit_test(the_equations_told_to_people_hold_at_the_start),
         cmocka_unit_test(what_hangs_together_is_left_to_newton_and_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
