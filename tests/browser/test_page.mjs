@@ -334,6 +334,61 @@ test("the equations of the scene are set as mathematics", () =>
     await screenshot(page, "page-1280-light-equations");
   }));
 
+for (const [theme, width] of [
+  ["light", 1280],
+  ["dark", 360],
+]) {
+  test(`${theme}, ${width} wide: the reduced terms unfold, with names, and follow the time shown`, () =>
+    onPage({ colorScheme: theme, viewport: { width, height: 780 } }, async (page) => {
+      await page.click(".equation-panel summary");
+      await page.waitForSelector(".reduced-panel summary");
+      assert.equal(await page.locator(".reduced-tables").isVisible(), false);
+      await page.click(".reduced-panel summary");
+      await page.waitForSelector(".reduced-tables table");
+      assert.match(await page.textContent(".reduced-panel"), /Independent: th1 \(the motors\)/);
+      const acceleration = () =>
+        page.textContent(".reduced-tables table:first-child tbody tr:nth-child(2) td");
+      const [M, C, g, tau, a] = await page.evaluate(() => {
+        const numbers = [...document.querySelectorAll(".reduced-tables table")].map((one) =>
+          [...one.querySelectorAll("tbody td")].map((td) =>
+            Number(td.textContent.replace("−", "-")),
+          ),
+        );
+        const [[v, a, g, tau], [M], [C]] = numbers;
+        return [M, C * v, g, tau, a];
+      });
+      // four digits of each are shown
+      assert.ok(Math.abs(M * a + C + g - tau) < 2e-3 * (Math.abs(g) + Math.abs(C)));
+      // the closed form is set: four parts, and the two coordinates of the dyad
+      assert.equal(await page.locator(".reduced-panel .term-block .katex").count(), 6);
+      assert.equal(await page.locator(".katex-error").count(), 0);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+      const before = await acceleration();
+      await page.locator(".reduced-panel").scrollIntoViewIfNeeded();
+      await screenshot(page, `page-${width}-${theme}-reduced`);
+      await page.evaluate(() => document.activeElement?.blur());
+      await page.keyboard.press("Space");
+      await until(page, (data) => data.latest.t > 0.3);
+      await page.waitForFunction(
+        (old) =>
+          document.querySelector(".reduced-tables table tbody tr:nth-child(2) td").textContent !==
+          old,
+        before,
+      );
+    }));
+}
+
+test("where no coordinates can be independent, the reduced terms say so", () =>
+  onPage({ hash: "#heavy-top" }, async (page) => {
+    await page.click(".equation-panel summary");
+    await page.click(".reduced-panel summary");
+    await page.waitForFunction(() =>
+      /There are no such coordinates here: .*ball/.test(
+        document.querySelector(".reduced-panel").textContent,
+      ),
+    );
+  }));
+
 test("a formula too long to be read is not set, and said where it is printed", () =>
   onPage({ hash: "#stewart-6-6" }, async (page) => {
     await page.click(".equation-panel summary");

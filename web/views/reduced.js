@@ -17,8 +17,11 @@ const MOVED = String.raw`v = \Phi\,v_r + s, \qquad M_r\,a_r + C_r\,v_r + d_r + g
 /** @param {number} x */
 const number = (x) => Number(x.toPrecision(DIGITS)).toString().replace("-", "−");
 
+/** A letter with the index r, and what it is. @param {string} letter @param {string} meaning */
+const term = (letter, meaning) => h("span", {}, letter, h("sub", {}, "r"), ` ${meaning}`);
+
 /**
- * @param {string} caption @param {string[]} columns @param {string[]} rows @param {number[][]} values
+ * @param {Node | string} caption @param {string[]} columns @param {(Node | string)[]} rows @param {number[][]} values
  */
 function table(caption, columns, rows, values) {
   return h(
@@ -45,20 +48,20 @@ function table(caption, columns, rows, values) {
   );
 }
 
-/** The vectors side by side, a row for each freedom. */
+/** A row for each vector, a column for each freedom. */
 function vectors(reduced) {
-  const columns = [
-    ["rate", reduced.v_r],
-    ["acceleration", reduced.a_r],
-    ["g_r, gravity and springs", reduced.g_r],
-    ["τ_r, motors and other loads", reduced.tau_r],
-    ...(reduced.d_r ? [["d_r, what moves with time", reduced.d_r]] : []),
+  const rows = [
+    [term("v", "rates"), reduced.v_r],
+    [term("a", "accelerations"), reduced.a_r],
+    [term("g", "gravity and springs"), reduced.g_r],
+    [term("τ", "motors and other loads"), reduced.tau_r],
+    ...(reduced.d_r ? [[term("d", "closures that move"), reduced.d_r]] : []),
   ];
   return table(
-    "vectors",
-    columns.map(([name]) => name),
+    "Vectors",
     reduced.independent,
-    reduced.independent.map((_, i) => columns.map(([, values]) => values[i])),
+    rows.map(([name]) => name),
+    rows.map(([, values]) => values),
   );
 }
 
@@ -71,9 +74,9 @@ function tables(reduced, names) {
   }
   return [
     vectors(reduced),
-    table("M_r, mass", independent, independent, reduced.M_r),
-    table("C_r, such that Ṁ_r − 2 C_r is skew", rates, independent, reduced.C_r),
-    table("Φ, how fast each coordinate moves", rates, names, reduced.Phi),
+    table(term("M", "mass"), independent, independent, reduced.M_r),
+    table(term("C", "speeds squared"), rates, independent, reduced.C_r),
+    table("Φ how fast each coordinate moves", rates, names, reduced.Phi),
   ];
 }
 
