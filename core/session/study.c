@@ -8,6 +8,7 @@
 static const double DEFAULT_BUDGET = 60; // [s]
 static const double REFERENCE_SHARE =
     0.5; // of the budget, for one of the computations of a reference
+static const double CHAOS_SHARE = 0.05; // of the budget
 
 // from the naive to the specialised: fixed steps, chosen steps, differential-algebraic integrators
 static const char *const STANDARD[] = {
@@ -76,6 +77,22 @@ static hn_status find_reference(hn_study *s, hn_diags *diags) {
     return status;
 }
 
+void hn_study_find_chaos(hn_study *s, const hn_walk_limits *limits) {
+    hn_diag diag = {0};
+    const hn_status status =
+        hn_chaos_estimate(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
+                          s->ref->T, limits, &s->chaos, &diag);
+    if (status != HN_OK) {
+        s->chaos = (hn_chaos){.T = s->ref->T};
+        snprintf(s->chaos.why, sizeof s->chaos.why,
+                 "whether neighbouring motions part is not known: %.120s",
+                 status == HN_ERR_BUDGET ? "it would take too long" : diag.message);
+        return;
+    }
+    const double horizon = hn_chaos_horizon(&s->chaos, HN_STUDY_TINY, HN_STUDY_LARGE);
+    s->wp->horizon = isfinite(horizon) ? horizon : 0;
+}
+
 static hn_status set_up(hn_study *s, hn_diags *diags) {
     hn_method_spec specs[HN_WP_METHODS];
     hn_diag diag = {0};
@@ -99,6 +116,10 @@ static hn_status set_up(hn_study *s, hn_diags *diags) {
                           s->ref, specs, r->n_methods, &opts, &s->wp, &diag);
     if (status != HN_OK) {
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    if (r->n_shards == 0) {
+        const hn_walk_limits limits = {CHAOS_SHARE * r->budget, r->hooks.stop, r->hooks.user};
+        hn_study_find_chaos(s, &limits);
     }
     return r->folder ? hn_store_open_log(s, diags) : HN_OK;
 }
@@ -161,8 +182,19 @@ int hn_study_run(hn_study *s) {
     for (int m = 0; m < s->wp->n_methods; m++) {
         hn_wp_classify(s->wp, m, &s->classes[m]);
     }
-    hn_store_close_log(s, finished);
+    hn_store_close_log(s, finished && !s->request.keep);
     return finished;
+}
+
+void hn_study_forget(hn_study *s) {
+    hn_store_close_log(s, 0);
+    if (s->log_path[0]) {
+        remove(s->log_path);
+    }
+}
+
+const hn_chaos *hn_study_chaos(const hn_study *s) {
+    return &s->chaos;
 }
 
 const hn_wp *hn_study_wp(const hn_study *s) {

@@ -5,6 +5,7 @@
 // interrupted, at whatever moment that was.
 
 #include "session/model.h"
+#include "study/chaos.h"
 #include "study/pareto.h"
 
 typedef struct hn_study hn_study;
@@ -20,6 +21,7 @@ typedef struct hn_study_request {
     const char *
         build; ///< what the program calls itself: work of another build is not gone on with; NULL: not told
     const char *folder; ///< where references and unfinished studies are kept; NULL: nowhere
+    int keep; ///< 1: what is kept of it stays when it is finished too, until hn_study_forget()
     hn_wp_hooks
         hooks; ///< `stop` and `progress` are asked and told, also while the reference is computed
 } hn_study_request;
@@ -35,6 +37,7 @@ HN_MUST_CHECK hn_status hn_study_open(const hn_model *model, const hn_study_requ
 void hn_study_free(hn_study *study); ///< NULL is legal; what was kept of an unfinished study stays
 /// Runs what is left. Returns 1 when the study is finished, and then nothing of it is kept but the reference; 0: stopped, or out of its budget.
 int hn_study_run(hn_study *study);
+void hn_study_forget(hn_study *study); ///< after a run: deletes what is kept of it, but the reference
 
 // parts
 /// What a part of a study has to hand over: JSON that holds the scene, the request, the reference and this part's points.
@@ -54,6 +57,12 @@ HN_MUST_CHECK hn_status hn_study_merge(const hn_study_part_text *parts, int n, h
 const hn_wp *hn_study_wp(const hn_study *study);
 const hn_class *hn_study_classes(const hn_study *study); ///< one per method, after a run
 const hn_model *hn_study_model(const hn_study *study);
+/// How fast neighbouring motions part, and what that means in words. A study to beyond the horizon, from which differences of
+/// HN_STUDY_TINY are as large as HN_STUDY_LARGE, ranks nothing but energy and gaps. A part of a study does not ask.
+const hn_chaos *hn_study_chaos(const hn_study *study);
+#define HN_STUDY_TINY 1e-13 ///< what rounding leaves of some thousand steps
+#define HN_STUDY_LARGE 0.1  ///< no digit is left
+
 int hn_study_resumed(const hn_study *study);        ///< points taken up from an interrupted study
 int hn_study_kept_reference(const hn_study *study); ///< 1: the reference was read, not computed
 

@@ -40,6 +40,17 @@ static void put_reference(hn_strbuf *b, const hn_study *s) {
     hn_json_end_object(b);
 }
 
+static void put_chaos(hn_strbuf *b, const hn_study *s) {
+    hn_json_key(b, "chaos");
+    hn_json_object(b);
+    hn_json_put_bool(b, "possible", s->chaos.possible);
+    hn_json_put_bool(b, "chaotic", s->chaos.chaotic);
+    hn_json_put_number(b, "exponent", s->chaos.exponent);
+    hn_json_put_number(b, "horizon", s->wp->horizon > 0 ? s->wp->horizon : (double)NAN);
+    hn_json_put_string(b, "text", s->chaos.why);
+    hn_json_end_object(b);
+}
+
 static void put_class(hn_strbuf *b, const hn_class *c) {
     hn_json_key(b, "class");
     hn_json_object(b);
@@ -170,14 +181,18 @@ static void put_sentences(hn_strbuf *b, const hn_study *s, const hn_pareto *p) {
 static void put_paretos(hn_strbuf *b, const hn_study *s) {
     hn_json_key(b, "pareto");
     hn_json_array(b);
-    for (int error = HN_ERROR_Q; error <= HN_ERROR_REACTION; error++) {
+    const hn_error_kind also = hn_wp_ranked_error(s->wp);
+    for (int error = HN_ERROR_Q; error < HN_ERROR_COUNT; error++) {
+        if (error > HN_ERROR_REACTION && error != (int)also) {
+            continue;
+        }
         for (int cost = 0; cost < HN_COST_COUNT; cost++) {
             hn_pareto p;
             hn_wp_pareto(s->wp, s->classes, (hn_error_kind)error, (hn_cost_kind)cost, &p);
             hn_json_object(b);
             hn_json_put_string(b, "error", hn_error_name((hn_error_kind)error));
             hn_json_put_string(b, "cost", hn_cost_name((hn_cost_kind)cost));
-            hn_json_put_bool(b, "ranked", !p.few && !p.clocks_differ);
+            hn_json_put_bool(b, "ranked", !p.few && !p.clocks_differ && !p.beyond_horizon);
             put_sentences(b, s, &p);
             hn_json_key(b, "bands");
             hn_json_array(b);
@@ -193,7 +208,7 @@ static void put_paretos(hn_strbuf *b, const hn_study *s) {
 
 static void put_race(hn_strbuf *b, const hn_study *s) {
     hn_race race;
-    hn_wp_race(s->wp, s->classes, HN_ERROR_Q, &race);
+    hn_wp_race(s->wp, s->classes, hn_wp_ranked_error(s->wp), &race);
     hn_json_key(b, "race");
     hn_json_object(b);
     hn_json_put_numbers(b, "operations", race.cost, (size_t)race.n);
@@ -229,6 +244,7 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     // where nothing is timed the document holds nothing that a clock said: two of them are the same bytes
     hn_json_put_number(b, "elapsed", s->wp->opts.n_samples > 0 ? s->wp->elapsed : (double)NAN);
     put_reference(b, s);
+    put_chaos(b, s);
     put_methods(b, s);
     put_paretos(b, s);
     put_race(b, s);

@@ -1,6 +1,6 @@
 // The study as one HTML file: no network, no script. Which plot shows is chosen by radio buttons that style sheets read, so
 // that it works wherever a page can be opened; on paper the chosen one is printed.
-#include "session/study_plot.h"
+#include "session/study_page.h"
 
 #include "base/hash.h"
 #include "base/units.h"
@@ -23,18 +23,6 @@ static const char STYLE[] =
     "th,td{padding:4px 10px 4px 0;border-bottom:1px solid var(--hairline)}"
     "td.n,th.n{text-align:right;white-space:nowrap}td.m{white-space:nowrap}td.v{min-width:190px}"
     ".scroll{overflow-x:auto}.wrong{color:var(--tear)}"
-    "svg{display:block;width:100%;height:auto}svg.key{display:inline-block;width:28px;vertical-"
-    "align:-2px}"
-    ".grid{stroke:var(--hairline);stroke-width:1;fill:none}.axis{stroke:var(--muted);stroke-width:"
-    "1;fill:none}"
-    ".curve{fill:none;stroke-width:2}.again{stroke-width:1.2}.lap{fill:none;stroke-width:1}."
-    "elsewhere{opacity:.55}.leader{fill:none;stroke:var(--"
-    "hairline)}"
-    ".open{fill:none;stroke-width:.5}.solid{stroke:none}.failed path{fill:none;stroke-width:2}"
-    ".band{fill:var(--muted);opacity:.14}"
-    "svg text{fill:var(--ink);font:12px system-ui,sans-serif}svg .tick,svg .note{fill:var(--muted)}"
-    "svg .power{font-size:9px}svg "
-    ".title{font-size:13px}.end{text-anchor:end}.middle{text-anchor:middle}"
     ".choice{position:absolute;opacity:0;pointer-events:none}"
     ".bar{display:flex;flex-wrap:wrap;gap:4px 16px;font-size:13px;color:var(--muted);margin:8px 0}"
     ".bar span{margin-right:4px}.bar label{cursor:pointer;padding:2px "
@@ -48,7 +36,7 @@ static const char STYLE[] =
     "tr,svg,li{break-inside:avoid}"
     ".all{display:none}}";
 
-static void put_theme(hn_strbuf *b, hn_theme theme) {
+void hn_page_theme(hn_strbuf *b, hn_theme theme) {
     const hn_surface *s = hn_surface_get(theme);
     hn_strbuf_printf(
         b, "--paper:#%06X;--raised:#%06X;--ink:#%06X;--muted:#%06X;--hairline:#%06X;--tear:#%06X;",
@@ -71,35 +59,37 @@ static void put_choices_style(hn_strbuf *b) {
     for (int i = 0; i < HN_ERROR_COUNT + HN_COST_COUNT; i++) {
         const int e = i < HN_ERROR_COUNT;
         const int n = e ? i : i - HN_ERROR_COUNT;
-        hn_strbuf_printf(b, "%s#%c%d:checked~.bar label[for=%c%d]", i ? "," : "", e ? 'e' : 'c', n,
+        hn_strbuf_printf(b, "%s#%c%d:checked~* label[for=%c%d]", i ? "," : "", e ? 'e' : 'c', n,
                          e ? 'e' : 'c', n);
     }
     hn_strbuf_add(b, "{background:var(--raised);box-shadow:inset 0 -2px var(--ink)}");
     for (int i = 0; i < HN_ERROR_COUNT + HN_COST_COUNT; i++) {
         const int e = i < HN_ERROR_COUNT;
         const int n = e ? i : i - HN_ERROR_COUNT;
-        hn_strbuf_printf(b, "%s#%c%d:focus-visible~.bar label[for=%c%d]", i ? "," : "",
+        hn_strbuf_printf(b, "%s#%c%d:focus-visible~* label[for=%c%d]", i ? "," : "",
                          e ? 'e' : 'c', n, e ? 'e' : 'c', n);
     }
     hn_strbuf_add(b, "{outline:2px solid var(--ink)}");
 }
 
-static void put_head(hn_strbuf *b, const char *title) {
+void hn_page_head(hn_strbuf *b, const char *title, const char *style) {
     hn_strbuf_add(b, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
                      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
                      "<meta name=\"color-scheme\" content=\"light dark\"><title>");
     hn_html_text(b, title);
-    hn_strbuf_add(b, ": error against cost</title><style>:root{");
-    put_theme(b, HN_THEME_LIGHT);
+    hn_strbuf_add(b, "</title><style>:root{");
+    hn_page_theme(b, HN_THEME_LIGHT);
     hn_strbuf_add(b, "}@media screen and (prefers-color-scheme:dark){:root{");
-    put_theme(b, HN_THEME_DARK);
+    hn_page_theme(b, HN_THEME_DARK);
     hn_strbuf_add(b, "}}");
+    hn_strbuf_add(b, hn_plot_style());
     hn_strbuf_add(b, STYLE);
     put_choices_style(b);
+    hn_strbuf_add(b, style);
     hn_strbuf_add(b, "</style></head><body><main>\n");
 }
 
-static void put_method(hn_strbuf *b, const hn_study *s, int m) {
+void hn_study_put_method(hn_strbuf *b, const hn_study *s, int m) {
     hn_strbuf_add(b, "<td class=\"m\">");
     hn_study_key(b, m);
     hn_strbuf_add(b, " ");
@@ -109,7 +99,8 @@ static void put_method(hn_strbuf *b, const hn_study *s, int m) {
 
 // answers --------------------------------------------------------------------------------------------------------
 
-static int is_timed(const hn_wp *wp) {
+int hn_study_is_timed(const hn_study *s) {
+    const hn_wp *wp = hn_study_wp(s);
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             if (wp->methods[m].point[k].n_samples > 0) {
@@ -120,7 +111,7 @@ static int is_timed(const hn_wp *wp) {
     return 0;
 }
 
-static void put_answers(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost_kind cost) {
+static void put_answer(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost_kind cost) {
     hn_pareto p;
     hn_strbuf text;
     hn_strbuf_init(&text);
@@ -137,9 +128,20 @@ static void put_answers(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn
         hn_strbuf_printf(b, "<li>%.*s</li>", (int)(end - line), line);
         line = *end ? end + 1 : end;
     }
-    hn_strbuf_add(b, p.n_bands ? "</ul>" : "<li>Nothing reaches an error of 0.1.</li></ul>");
+    hn_strbuf_add(b, p.n_bands || p.beyond_horizon ? "</ul>" : "<li>Nothing reaches an error of 0.1.</li></ul>");
     b->failed |= text.failed;
     hn_strbuf_reset(&text);
+}
+
+void hn_study_put_answers(hn_strbuf *b, const hn_study *s) {
+    const hn_error_kind error = hn_wp_ranked_error(hn_study_wp(s));
+    if (hn_study_is_timed(s)) {
+        put_answer(b, s, error, HN_COST_TIME);
+    }
+    put_answer(b, s, error, HN_COST_OPS);
+    if (error != HN_ERROR_Q) {
+        put_answer(b, s, HN_ERROR_Q, HN_COST_OPS);
+    }
 }
 
 // the table of methods -------------------------------------------------------------------------------------------
@@ -177,7 +179,7 @@ static void put_quantity(hn_strbuf *b, double value, const char *unit) {
     hn_strbuf_printf(b, "<td class=\"n\">%s</td>", isfinite(value) ? text : "–");
 }
 
-static void put_methods(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_methods(hn_strbuf *b, const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
     hn_strbuf_add(
         b, "<h2>Methods</h2><p class=\"quiet\">What the ladder of sizes says of each, and its "
@@ -198,7 +200,7 @@ static void put_methods(hn_strbuf *b, const hn_study *s) {
             done += wp->methods[m].point[k].state == HN_WP_DONE;
         }
         hn_strbuf_add(b, "<tr>");
-        put_method(b, s, m);
+        hn_study_put_method(b, s, m);
         hn_strbuf_printf(b, "<td class=\"v%s\">", c->kind == HN_CLASS_ELSEWHERE ? " wrong" : "");
         hn_html_text(b, c->text);
         hn_strbuf_printf(b, "</td><td class=\"n\">%d of %d</td>", done, wp->n_levels);
@@ -212,17 +214,20 @@ static void put_methods(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "</tbody></table></div>\n");
 }
 
-static void put_race(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_race(hn_strbuf *b, const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
     hn_race race;
-    hn_wp_race(wp, hn_study_classes(s), HN_ERROR_Q, &race);
+    const hn_error_kind error = hn_wp_ranked_error(wp);
+    hn_wp_race(wp, hn_study_classes(s), error, &race);
     if (race.n == 0) {
         return;
     }
-    hn_strbuf_add(
-        b, "<h2>What equal cost buys</h2><p class=\"quiet\">Error of the coordinates for the "
-           "same number of operations, between measured points; ≤: with fewer already; –: no "
-           "point is as cheap.</p><div class=\"scroll\"><table><thead><tr><th>method</th>");
+    hn_strbuf_printf(
+        b,
+        "<h2>What equal cost buys</h2><p class=\"quiet\">Error of the %s for the "
+        "same number of operations, between measured points; ≤: with fewer already; –: no "
+        "point is as cheap.</p><div class=\"scroll\"><table><thead><tr><th>method</th>",
+        hn_error_title(error));
     for (int i = 0; i < race.n; i++) {
         char text[HN_SI_TEXT];
         hn_si_format(race.cost[i], "op", 2, text);
@@ -231,7 +236,7 @@ static void put_race(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "</tr></thead><tbody>");
     for (int m = 0; m < wp->n_methods; m++) {
         hn_strbuf_add(b, "<tr>");
-        put_method(b, s, m);
+        hn_study_put_method(b, s, m);
         for (int i = 0; i < race.n; i++) {
             const double e = race.error[i][m];
             hn_strbuf_add(b, "<td class=\"n\">");
@@ -250,7 +255,7 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp_point *p = &wp->methods[m].point[k];
     const int done = p->state == HN_WP_DONE;
     hn_strbuf_add(b, "<tr>");
-    put_method(b, s, m);
+    hn_study_put_method(b, s, m);
     hn_strbuf_printf(b, "<td class=\"n\">%.3g</td><td class=\"n\">%lld</td>", p->size, p->steps);
     for (int i = 0; i < HN_ERROR_COUNT && done; i++) {
         put_error(b, wp, p, (hn_error_kind)i);
@@ -272,7 +277,7 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     hn_strbuf_add(b, "</tr>");
 }
 
-static void put_points(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_points(hn_strbuf *b, const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
     hn_strbuf_add(
         b,
@@ -293,7 +298,7 @@ static void put_points(hn_strbuf *b, const hn_study *s) {
 }
 
 /// A list of what did not come to the end, with why: on paper too.
-static void put_failures(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_failures(hn_strbuf *b, const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
     int any = 0;
     for (int m = 0; m < wp->n_methods; m++) {
@@ -337,20 +342,22 @@ static const char *cost_title(int i) {
     return i == HN_COST_TIME ? "CPU time" : hn_cost_name((hn_cost_kind)i);
 }
 
-static void put_plots(hn_strbuf *b, const hn_study *s) {
-    const int first_cost = is_timed(hn_study_wp(s)) ? HN_COST_TIME : HN_COST_OPS;
-    hn_strbuf_add(b, "<h2>Error against cost</h2><section>");
+void hn_page_choices(hn_strbuf *b, hn_cost_kind first) {
     for (int e = 0; e < HN_ERROR_COUNT; e++) {
         hn_strbuf_printf(b, "<input class=\"choice\" type=\"radio\" name=\"e\" id=\"e%d\"%s>", e,
                          e == HN_ERROR_Q ? " checked" : "");
     }
     for (int c = 0; c < HN_COST_COUNT; c++) {
         hn_strbuf_printf(b, "<input class=\"choice\" type=\"radio\" name=\"c\" id=\"c%d\"%s>", c,
-                         c == first_cost ? " checked" : "");
+                         c == (int)first ? " checked" : "");
     }
+    hn_strbuf_add(b, "<div class=\"bars\">");
     put_bar(b, "error of", 'e', HN_ERROR_COUNT, error_title);
     put_bar(b, "against", 'c', HN_COST_COUNT, cost_title);
-    hn_strbuf_add(b, "<div class=\"plots\">");
+    hn_strbuf_add(b, "</div>");
+}
+
+void hn_study_put_plots(hn_strbuf *b, const hn_study *s) {
     for (int e = 0; e < HN_ERROR_COUNT; e++) {
         for (int c = 0; c < HN_COST_COUNT; c++) {
             hn_strbuf_printf(b, "<div class=\"plot e%d c%d\">", e, c);
@@ -358,10 +365,29 @@ static void put_plots(hn_strbuf *b, const hn_study *s) {
             hn_strbuf_add(b, "</div>\n");
         }
     }
+}
+
+static void put_plots(hn_strbuf *b, const hn_study *s) {
+    hn_strbuf_add(b, "<h2>Error against cost</h2><section>");
+    hn_page_choices(b, hn_study_is_timed(s) ? HN_COST_TIME : HN_COST_OPS);
+    hn_strbuf_add(b, "<div class=\"plots\">");
+    hn_study_put_plots(b, s);
     hn_strbuf_add(
         b, "</div></section><p class=\"quiet\">Down is more accurate, left is cheaper. A cross "
            "on the upper edge is a run that ended early, at what it had cost by then. A "
            "faint curve converges to something else.</p>\n");
+}
+
+void hn_study_put_chaos(hn_strbuf *b, const hn_study *s) {
+    const hn_chaos *c = hn_study_chaos(s);
+    hn_strbuf_printf(b, "<p class=\"quiet%s\">Chaos: ", c->chaotic ? " wrong" : "");
+    hn_html_text(b, c->why);
+    hn_strbuf_add(b, ".");
+    if (hn_study_wp(s)->horizon > 0) {
+        hn_strbuf_printf(b, " A difference of %.0e has grown to %g by t = %.3g s.", HN_STUDY_TINY,
+                         HN_STUDY_LARGE, hn_study_wp(s)->horizon);
+    }
+    hn_strbuf_add(b, "</p>");
 }
 
 static void put_intro(hn_strbuf *b, const hn_study *s) {
@@ -377,6 +403,7 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
                      wp->ref->T, wp->n_methods, wp->n_levels);
     hn_html_text(b, scene->id ? scene->id : "");
     hn_strbuf_printf(b, " %s</p>", hex);
+    hn_study_put_chaos(b, s);
     if (wp->stopped || wp->out_of_time) {
         hn_strbuf_printf(b, "<p class=\"wrong\">%s; what was left out is listed below.</p>",
                          wp->stopped ? "This study was stopped before its end"
@@ -384,7 +411,7 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
     }
 }
 
-static void put_measures(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_measures(hn_strbuf *b, const hn_study *s) {
     const hn_ref *ref = hn_study_wp(s)->ref;
     hn_strbuf_printf(
         b,
@@ -420,19 +447,18 @@ static void put_measures(hn_strbuf *b, const hn_study *s) {
 
 void hn_study_html(hn_strbuf *b, const hn_study *s) {
     const hn_scene *scene = hn_model_scene(hn_study_model(s));
-    const int timed = is_timed(hn_study_wp(s));
-    put_head(b, scene->title ? scene->title : scene->id);
+    char title[200];
+    snprintf(title, sizeof title, "%.160s: error against cost",
+             scene->title ? scene->title : scene->id);
+    hn_page_head(b, title, "");
     put_intro(b, s);
     hn_strbuf_add(b, "<h2>Which method for which accuracy</h2>");
-    put_answers(b, s, HN_ERROR_Q, timed ? HN_COST_TIME : HN_COST_OPS);
-    if (timed) {
-        put_answers(b, s, HN_ERROR_Q, HN_COST_OPS);
-    }
+    hn_study_put_answers(b, s);
     put_plots(b, s);
-    put_methods(b, s);
-    put_race(b, s);
-    put_failures(b, s);
-    put_measures(b, s);
-    put_points(b, s);
+    hn_study_put_methods(b, s);
+    hn_study_put_race(b, s);
+    hn_study_put_failures(b, s);
+    hn_study_put_measures(b, s);
+    hn_study_put_points(b, s);
     hn_strbuf_add(b, "</main></body></html>\n");
 }

@@ -20,10 +20,14 @@ struct hn_study {
     hn_wp *wp;
     hn_class classes[HN_WP_METHODS];
     int resumed, kept_reference;
+    hn_chaos chaos; ///< `why` "": not asked
     FILE *log;          ///< lines of the unfinished study, NULL: nothing is kept
     char log_path[512]; ///< "" while there is none
     int log_failed;     ///< a line could not be written: nothing more is
 };
+
+/// Fills `chaos`, and the horizon of the study. Cut short by the limits it says that it is not known.
+void hn_study_find_chaos(hn_study *study, const hn_walk_limits *limits);
 
 /// Opens the log of this study, reads what it holds into the study, and goes on behind its last whole line. HN_ERR_IO: another program has it.
 HN_MUST_CHECK hn_status hn_store_open_log(hn_study *study, hn_diags *diags);

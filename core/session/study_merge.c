@@ -454,6 +454,7 @@ static void conclude(merging *g) {
         }
         hn_wp_classify(s->wp, m, &s->classes[m]);
     }
+    hn_study_find_chaos(s, NULL);
 }
 
 static hn_status merge(merging *g, const hn_study_part_text *texts) {

@@ -11,6 +11,28 @@ static const double MARKER = 4.2; // half its size
 static const double SMALLEST = 1e-17;
 static const double SLOPE_MARGIN = 0.05; // of the range of costs, left and right
 
+static const char STYLE[] =
+    "svg{display:block;width:100%;height:auto}svg.key{display:inline-block;width:28px;vertical-"
+    "align:-2px}"
+    ".grid{stroke:var(--hairline);stroke-width:1;fill:none}.axis{stroke:var(--muted);stroke-width:"
+    "1;fill:none}"
+    ".curve{fill:none;stroke-width:2}.again{stroke-width:1.2}.lap{fill:none;stroke-width:1}."
+    "elsewhere{opacity:.55}.leader{fill:none;stroke:var(--"
+    "hairline)}"
+    ".open{fill:none;stroke-width:.5}.solid{stroke:none}.failed path{fill:none;stroke-width:2}"
+    ".part rect{stroke:var(--paper);stroke-width:1}svg .inside{fill:var(--paper);font-size:11px}"
+    ".sign{fill:none;stroke:var(--tear);stroke-width:1.8}.sign.survived{stroke:var(--ink)}"
+    ".sign.off{stroke:var(--muted)}.sign.told,.sign.silent{fill:var(--tear)}"
+    ".way{stroke:var(--hairline);stroke-width:1;fill:none}"
+    ".band{fill:var(--muted);opacity:.14}"
+    "svg text{fill:var(--ink);font:12px system-ui,sans-serif}svg .tick,svg .note{fill:var(--muted)}"
+    "svg .power{font-size:9px}svg "
+    ".title{font-size:13px}.end{text-anchor:end}.middle{text-anchor:middle}";
+
+const char *hn_plot_style(void) {
+    return STYLE;
+}
+
 typedef struct frame {
     hn_error_kind error;
     hn_cost_kind cost;
@@ -289,10 +311,12 @@ static void put_labels(hn_strbuf *b, const hn_wp *wp, const frame *f) {
     spread_labels(list, n);
     for (int i = 0; i < n; i++) {
         const double edge = WIDTH - RIGHT;
+        hn_strbuf_printf(b, "<g class=\"entry\" data-m=\"%d\">", list[i].method);
         hn_strbuf_printf(b, "<path class=\"leader\" d=\"M%.1f %.1fL%.1f %.1fH%.1f\"/>",
                          list[i].x + MARKER + 2, list[i].y, edge + 2, list[i].at, edge + 8);
         put_marker(b, list[i].method, edge + 15, list[i].at, MARKER);
         put_text(b, edge + 24, list[i].at + 4, "label", wp->methods[list[i].method].spelling);
+        hn_strbuf_add(b, "</g>");
     }
 }
 
@@ -315,8 +339,10 @@ void hn_study_plot(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost
                      WIDTH - RIGHT);
     put_text(b, 6, 14, "title", title);
     for (int m = 0; m < wp->n_methods; m++) {
+        hn_strbuf_printf(b, "<g class=\"series\" data-m=\"%d\">", m);
         put_curve(b, s, &f, m);
         put_failures(b, s, &f, m);
+        hn_strbuf_add(b, "</g>");
     }
     put_labels(b, wp, &f);
     hn_strbuf_add(b, "</svg>");

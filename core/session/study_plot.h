@@ -10,6 +10,8 @@
 void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_cost_kind cost);
 /// Line and marker of method m on their own, for legends.
 void hn_study_key(hn_strbuf *b, int m);
+/// What plots need of a style sheet, beside the variables.
+const char *hn_plot_style(void);
 /// Text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);
 #endif

@@ -183,6 +183,13 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
         describe_failure(wp, m, &l, out);
         return;
     }
+    if (hn_wp_is_beyond_horizon(wp)) {
+        snprintf(out->text, sizeof out->text,
+                 "not classed: neighbouring motions part, and from t = %.3g s on, before the end, "
+                 "where a method goes says nothing of it",
+                 wp->horizon);
+        return;
+    }
     if (goes_elsewhere(wp, &l, out)) {
         snprintf(out->text, sizeof out->text,
                  "converges to something else: %.1e from the reference, while its finest sizes are "

@@ -44,6 +44,6 @@ typedef struct hn_class {
     char text[256];    ///< in words
 } hn_class;
 
-/// Of the coordinates' largest error over the run.
+/// Of the coordinates' largest error over the run; beyond the horizon nothing is said.
 void hn_wp_classify(const hn_wp *wp, int m, hn_class *out);
 #endif

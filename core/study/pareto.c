@@ -37,6 +37,10 @@ double hn_wp_cost(const hn_wp_point *p, hn_cost_kind kind) {
     }
 }
 
+hn_error_kind hn_wp_ranked_error(const hn_wp *wp) {
+    return hn_wp_is_beyond_horizon(wp) ? HN_ERROR_ENERGY : HN_ERROR_Q;
+}
+
 /// The error as it may be claimed.
 static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error) {
     return fmax(p->worst[error], HN_WP_ABOVE_REFERENCE * wp->ref->error[error]);
@@ -187,8 +191,10 @@ void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
     *out = (hn_pareto){.cost = cost,
                        .error = error,
                        .few = timed && is_timed_too_seldom(wp),
-                       .clocks_differ = timed && !(wp->clocks_apart <= HN_PARETO_STEADY)};
-    for (int d = 1; d <= HN_PARETO_BANDS; d++) {
+                       .clocks_differ = timed && !(wp->clocks_apart <= HN_PARETO_STEADY),
+                       .beyond_horizon =
+                           error <= HN_ERROR_REACTION && hn_wp_is_beyond_horizon(wp)};
+    for (int d = 1; d <= HN_PARETO_BANDS && !out->beyond_horizon; d++) {
         hn_band band = {.accuracy = pow(10, -d)}, counted = band;
         fill_band(wp, classes, error, cost, &band);
         if (band.best.level < 0) {
@@ -407,6 +413,14 @@ static void put_clocks(hn_strbuf *b, const hn_wp *wp) {
 }
 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
+    if (p->beyond_horizon) {
+        hn_strbuf_printf(b,
+                         "Not ranked: neighbouring motions part exponentially, and from t = %.3g s "
+                         "on, before the end at %.4g s, this error says nothing of a method; energy "
+                         "still does.\n",
+                         wp->horizon, wp->ref->T);
+        return;
+    }
     if (p->few) {
         hn_strbuf_printf(b, "Not ranked by time: some points were timed fewer than %d times.\n",
                          HN_WP_ENOUGH);

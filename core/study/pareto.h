@@ -6,6 +6,9 @@
 // Counts are exact; times are ranked only where a second measurement would say the same: the two halves of the samples of both
 // methods agree, and the methods differ by more than 10 % and by more than all that was met in either. Otherwise the sentence says
 // why, and ranks by operations.
+//
+// Where neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no error along the motion is ranked:
+// only gaps and energy, which every motion nearby keeps too, still say something of a method.
 
 #include "study/classing.h"
 
@@ -56,11 +59,14 @@ typedef struct hn_pareto {
     hn_error_kind error;
     int few; ///< 1: points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
     int clocks_differ; ///< 1: nor are those of parts whose yardsticks are apart, or unknown
+    int beyond_horizon; ///< 1: the study ends where errors of this kind say nothing: there are no bands
     int n_bands;       ///< 1e-1, 1e-2, ... down to the best error reached
     hn_band band[HN_PARETO_BANDS];
     hn_band counted[HN_PARETO_BANDS]; ///< of times: the same bands by operations
 } hn_pareto;
 
+/// What methods are ranked by first: the coordinates; beyond the horizon the energy.
+hn_error_kind hn_wp_ranked_error(const hn_wp *wp);
 /// `classes` one per method. Errors below the reference's own count as HN_WP_ABOVE_REFERENCE times that.
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                   hn_pareto *out);

@@ -51,14 +51,23 @@ static void strip_size(char *spelling, const char *key) {
     }
 }
 
-void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]) {
+hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size) {
     hn_method_spec spec = wp->methods[m].spec;
-    *setting_of(&spec, size_key(&wp->methods[m])) = wp->methods[m].point[k].size;
+    *setting_of(&spec, size_key(&wp->methods[m])) = size;
+    return spec;
+}
+
+void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]) {
+    const hn_method_spec spec = hn_wp_spec(wp, m, wp->methods[m].point[k].size);
     hn_method_format(&spec, out);
 }
 
 int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error) {
     return isfinite(error) && error > HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
+}
+
+int hn_wp_is_beyond_horizon(const hn_wp *wp) {
+    return wp->horizon > 0 && wp->horizon < wp->ref->T;
 }
 
 /// Size number k: steps divide the reference's intervals and halve, tolerances fall evenly.
@@ -191,8 +200,7 @@ void hn_wp_free(hn_wp *wp) {
 
 static hn_run *make_run(hn_wp *wp, int m, int k, hn_run **run, hn_diag *diag) {
     if (!*run) {
-        hn_method_spec spec = wp->methods[m].spec;
-        *setting_of(&spec, size_key(&wp->methods[m])) = wp->methods[m].point[k].size;
+        const hn_method_spec spec = hn_wp_spec(wp, m, wp->methods[m].point[k].size);
         const hn_status status = hn_run_create(wp->sys, &spec, wp->q, wp->v, NULL, run, diag);
         if (status != HN_OK) {
             *run = NULL;

@@ -94,6 +94,7 @@ typedef struct hn_wp {
     hn_run *yardstick_run;
     double
         clocks_apart; ///< put together from parts: the slowest yardstick over the fastest; NaN: not known; 1: one clock
+    double horizon; ///< from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
     int out_of_time; ///< 1: the budget left something out
     int stopped;     ///< 1: stopped on request
     double elapsed;  ///< wall time of hn_wp_run() [s]
@@ -116,8 +117,12 @@ void hn_wp_point_statistics(hn_wp_point *p);
 double hn_wp_point_halves_apart(const hn_wp_point *p);
 /// `own` of every point, from the ends: how far each is from the next coarser one that came to its end.
 void hn_wp_compare_ends(hn_wp *wp);
+/// Method m with a step or tolerance of one's own.
+hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size);
 /// The spelling of one point, with its size.
 void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]);
+/// 1 if the study ends where errors along the motion say nothing.
+int hn_wp_is_beyond_horizon(const hn_wp *wp);
 /// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own; otherwise it is a bound.
 int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error);
 #endif

@@ -70,6 +70,8 @@ static const option OPTIONS[] = {
     {"--preset", "NAME", OPTION_TEXT, AT(preset),
      "axes by name: stiffness, mass-ratio, baumgarte or limits"},
     {"--grid", "NxM", OPTION_TEXT, AT(grid), "columns and rows of a map; 24x24 when left out"},
+    {"--plots", "DIR", OPTION_TEXT, AT(plots),
+     "a folder for every plot of the report, as SVG and PNG"},
     {"--csv", NULL, OPTION_FLAG, AT(csv), "one row a point on standard output"},
     {"--long", NULL, OPTION_FLAG, AT(run_long), "what takes minutes too"},
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},

@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include "build.h"
+#include "session/report.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -35,6 +36,10 @@ static const hn_command COMMANDS[] = {
      " --methods --time --budget --levels --samples --over --preset --grid --csv --out -o "
      "--shard",
      1, 2, hn_command_study},
+    {"report", "[SCENE...]",
+     "studies of several scenes, accounts and survival in one page; --out FILE.html or .json",
+     "--methods --budget --levels --samples --out -o --plots", 0, HN_REPORT_SCENES,
+     hn_command_report},
     {"reference", "SCENE",
      "the reference solution: by two means, the digits they share; --out writes it as it is "
      "shipped",

@@ -36,7 +36,7 @@ typedef struct hn_args {
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard, *over, *preset,
-        *grid;
+        *grid, *plots;
     double time, every, t, port, width, height, seed, frame_dt;
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
@@ -106,6 +106,7 @@ hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_report(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_merge(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args);

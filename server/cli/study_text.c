@@ -211,9 +211,16 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp) {
 static void put_front(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     hn_pareto p;
+    const hn_error_kind error = hn_wp_ranked_error(wp);
     for (int cost = has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS; cost++) {
-        hn_wp_pareto(wp, hn_study_classes(study), HN_ERROR_Q, (hn_cost_kind)cost, &p);
-        hn_strbuf_printf(b, "\nCheapest by %s\n", hn_cost_name((hn_cost_kind)cost));
+        hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
+        hn_strbuf_printf(b, "\nCheapest by %s%s\n", hn_cost_name((hn_cost_kind)cost),
+                         error == HN_ERROR_Q ? "" : ", for the error of the energy");
+        hn_pareto_sentences(b, wp, &p);
+    }
+    if (error != HN_ERROR_Q) {
+        hn_wp_pareto(wp, hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &p);
+        hn_strbuf_add(b, "\nFor the error of the coordinates\n");
         hn_pareto_sentences(b, wp, &p);
     }
 }
@@ -223,7 +230,7 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
     static const char *const heads[HN_RACE_COSTS] = {"error", "error", "error"};
     hn_race race;
     hn_table t;
-    hn_wp_race(wp, hn_study_classes(study), HN_ERROR_Q, &race);
+    hn_wp_race(wp, hn_study_classes(study), hn_wp_ranked_error(wp), &race);
     if (race.n == 0) {
         return;
     }
@@ -281,9 +288,10 @@ static void put_head(hn_strbuf *b, const hn_study *study) {
     const hn_ref *ref = hn_study_wp(study)->ref;
     hn_strbuf_printf(b, "%s, to t = %g s\n", scene->title ? scene->title : scene->id, ref->T);
     hn_strbuf_printf(
-        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e are not claimed.\n\n",
+        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e are not claimed.\n",
         ref->means[0], ref->means[1], hn_ref_digits(ref),
         HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
+    hn_strbuf_printf(b, "Chaos: %s.\n\n", hn_study_chaos(study)->why);
 }
 
 void hn_study_text(hn_strbuf *b, const hn_study *study) {

@@ -61,47 +61,38 @@ static double distance(const hn_model *m, const hn_ladder_motion *motion, const 
     return worst;
 }
 
-static hn_ladder_end judge_wrong(const hn_run *run) {
-    const hn_incident *incident = NULL;
-    const int n = hn_run_incidents(run, &incident);
-    for (int i = 0; i < n; i++) {
-        switch (incident[i].code) {
-        case HN_INCIDENT_BRANCH_FLIP:
-        case HN_INCIDENT_GAP_OPEN:
-        case HN_INCIDENT_ENERGY_JUMP:
-        case HN_INCIDENT_STEP_LIMIT:
-            return HN_LADDER_TOLD;
-        default:
-            break; // that a pose was near singular does not say that the run is wrong
-        }
-    }
-    return HN_LADDER_SILENT;
+typedef struct beside {
+    const hn_model *model;
+    const hn_ladder_motion *motion;
+    double spread;
+} beside;
+
+static hn_survival_seen look(void *user, int k, const hn_sample *s) {
+    beside *b = user;
+    (void)k;
+    const double off = distance(b->model, b->motion, s, &b->spread);
+    return (hn_survival_seen){off, b->spread >= FOLDED};
 }
 
-hn_ladder_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
-                            double *worst) {
+hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
+                              double *worst) {
+    beside b = {m, motion, 0};
+    // every look is half an interval early, so that the exact motion covers the step behind the last
+    const hn_survival_judge judge = {.look = look,
+                                     .user = &b,
+                                     .T = motion->duration,
+                                     .n = LOOKS,
+                                     .before = 0.5,
+                                     .at_steps = 1,
+                                     .limit = MAX_DISTANCE};
     hn_run *run = hn_motion_start(m, method);
-    hn_ladder_end end = HN_LADDER_SURVIVED;
-    double largest = 0, spread = 0;
-    for (int k = 1; k <= LOOKS && end == HN_LADDER_SURVIVED; k++) {
-        hn_sample sample = {0};
-        // the last look is a step early, so that the exact motion covers it
-        const double t = motion->duration * (k - 0.5) / LOOKS;
-        if (hn_run_advance(run, t) != HN_OK ||
-            hn_run_sample(run, hn_run_time(run), &sample) != HN_OK) {
-            end = HN_LADDER_STOPPED;
-        } else {
-            largest = fmax(largest, distance(m, motion, &sample, &spread));
-        }
-    }
-    if (end == HN_LADDER_SURVIVED && !(largest <= MAX_DISTANCE)) {
-        end = spread < FOLDED ? HN_LADDER_OFF : judge_wrong(run);
-    }
+    hn_survival s;
+    assert_true(hn_survival_try(run, &judge, &s));
     if (worst) {
-        *worst = largest;
+        *worst = s.worst;
     }
     hn_run_free(run);
-    return end;
+    return s.end;
 }
 
 double hn_ladder_step(int k, int n) {

@@ -3,7 +3,7 @@
 // The ladder of N four-bars and its exact motion, for tests of what methods make of its flat poses. Twice a turn all bars
 // lie on one line and every loop could fold over; the exact motion goes straight through.
 
-#include "study/run.h"
+#include "study/survival.h"
 #include "support/model.h"
 
 enum { HN_LADDER_GRID = 10000 };
@@ -19,20 +19,11 @@ void hn_ladder_motion_fill(hn_ladder_motion *motion, int n_loops, double duratio
 /// b at 0 <= t <= duration [rad].
 double hn_ladder_motion_angle(const hn_ladder_motion *motion, double t);
 
-/// What became of one run.
-typedef enum hn_ladder_end {
-    HN_LADDER_SURVIVED, ///< the tips stayed within 1e-2 m of the exact motion throughout
-    HN_LADDER_OFF, ///< they did not, but the verticals stayed parallel: the right branch, inaccurately
-    HN_LADDER_STOPPED, ///< the run ended early and said why
-    HN_LADDER_TOLD,    ///< a loop folded over and an incident says that something went wrong
-    HN_LADDER_SILENT,  ///< a loop folded over and nothing was told
-    HN_LADDER_ENDS
-} hn_ladder_end;
-
+/// What became of one run: survived is within 1e-2 m of the exact motion throughout, off is not as near but with parallel verticals.
 /// Runs `method` ("projection@rk4:h=0.01") over the whole motion. *worst (may be NULL): the largest distance of a tip from its
 /// exact place at a hundred times and more [m], until the run stopped.
-hn_ladder_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
-                            double *worst);
+hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
+                              double *worst);
 /// The k-th of n steps from 0.0022 s to 0.02 s.
 double hn_ladder_step(int k, int n);
 

@@ -53,7 +53,7 @@ static const entry entries[] = {
 
 static void run_entry(const hn_model *m, const hn_ladder_motion *motion, const entry *e,
                       int steps) {
-    int count[HN_LADDER_ENDS] = {0};
+    int count[HN_SURVIVAL_ENDS] = {0};
     double worst = 0;
     for (int k = 0; k < steps; k++) {
         char method[HN_SPEC_MAX];
@@ -61,15 +61,15 @@ static void run_entry(const hn_model *m, const hn_ladder_motion *motion, const e
         snprintf(method, sizeof method, "%s@%s:%s=%.17g", e->formulation, e->stepper,
                  e->adaptive ? "rtol" : "h",
                  e->adaptive ? pow(10, -3 - 6.0 * k / (steps - 1)) : hn_ladder_step(k, steps));
-        hn_ladder_end end = hn_ladder_run(m, motion, method, &off);
+        hn_survival_end end = hn_ladder_run(m, motion, method, &off);
         count[end]++;
-        if (end == HN_LADDER_SURVIVED && off > worst) {
+        if (end == HN_SURVIVAL_SURVIVED && off > worst) {
             worst = off;
         }
     }
     printf("%-2d  %-34s %-17s %4d of %-3d  %7d  %7d %5d %7d   %.1e\n", motion->n_loops,
-           e->formulation, e->stepper, count[HN_LADDER_SURVIVED], steps, count[HN_LADDER_OFF],
-           count[HN_LADDER_STOPPED], count[HN_LADDER_TOLD], count[HN_LADDER_SILENT], worst);
+           e->formulation, e->stepper, count[HN_SURVIVAL_SURVIVED], steps, count[HN_SURVIVAL_OFF],
+           count[HN_SURVIVAL_STOPPED], count[HN_SURVIVAL_TOLD], count[HN_SURVIVAL_SILENT], worst);
     fflush(stdout);
 }
 

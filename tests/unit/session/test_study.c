@@ -179,12 +179,57 @@ static void the_same_study_twice_at_once_is_refused(void **state) {
     close_place(&p);
 }
 
+/// A study of four free angles without a clock, to T: the bands of the coordinates' error, by operations.
+static hn_pareto bands_of(const char *scene, double T, double *horizon) {
+    place p;
+    hn_study *study = NULL;
+    hn_diags diags = {0};
+    hn_pareto pareto;
+    open_place(&p, scene);
+    hn_study_request r = hn_study_request_default();
+    r.methods = METHODS;
+    r.n_methods = 2;
+    r.time = T;
+    r.levels = 3;
+    r.samples = -1;
+    r.budget = 0;
+    assert_int_equal(hn_study_open(p.model, &r, &study, &diags), HN_OK);
+    assert_int_equal(hn_study_run(study), 1);
+    hn_wp_pareto(hn_study_wp(study), hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &pareto);
+    *horizon = hn_study_wp(study)->horizon;
+    if (pareto.beyond_horizon) { // energy still says something, and no method is called wrong
+        hn_pareto energy;
+        hn_wp_pareto(hn_study_wp(study), hn_study_classes(study), HN_ERROR_ENERGY, HN_COST_OPS,
+                     &energy);
+        assert_false(energy.beyond_horizon);
+        assert_true(energy.n_bands > 0);
+        assert_int_equal(hn_study_classes(study)[0].kind, HN_CLASS_UNSETTLED);
+    }
+    hn_study_free(study);
+    close_place(&p);
+    return pareto;
+}
+
+static void beyond_the_horizon_of_chaos_errors_are_not_ranked(void **state) {
+    (void)state;
+    double horizon;
+    const hn_pareto late = bands_of("four-angles-as-printed", 30, &horizon);
+    assert_true(late.beyond_horizon && late.n_bands == 0);
+    assert_true(horizon > 10 && horizon < 30);
+    // neighbours part by a factor e in a second: little in two
+    const hn_pareto soon = bands_of("four-angles-as-printed", 2, &horizon);
+    assert_true(!soon.beyond_horizon && soon.n_bands > 2);
+    const hn_pareto one_freedom = bands_of("fb0", 10, &horizon);
+    assert_true(!one_freedom.beyond_horizon && one_freedom.n_bands > 2 && horizon == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_goes_on_where_it_was_cut),
         cmocka_unit_test(a_torn_line_costs_one_point_and_no_more),
         cmocka_unit_test(lines_of_another_hand_are_not_taken),
         cmocka_unit_test(the_same_study_twice_at_once_is_refused),
+        cmocka_unit_test(beyond_the_horizon_of_chaos_errors_are_not_ranked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

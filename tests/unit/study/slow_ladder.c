@@ -60,7 +60,7 @@ static void projection_survives_every_step_size(void **state) {
             char method[64];
             double worst = 0;
             snprintf(method, sizeof method, "projection@rk4:h=%.17g", hn_ladder_step(k, steps[i]));
-            if (hn_ladder_run(&m, &motion, method, &worst) != HN_LADDER_SURVIVED) {
+            if (hn_ladder_run(&m, &motion, method, &worst) != HN_SURVIVAL_SURVIVED) {
                 fail_msg("N = %d, %s: %g m from the exact motion", sizes[i], method, worst);
             }
         }
@@ -82,7 +82,7 @@ static void nobody_is_silent_on_the_other_branch(void **state) {
         for (int k = 0; k < 25; k++) {
             char method[64];
             snprintf(method, sizeof method, "%s@rk4:h=%.17g", f->name, hn_ladder_step(k, 25));
-            if (hn_ladder_run(&m, &motion, method, NULL) == HN_LADDER_SILENT) {
+            if (hn_ladder_run(&m, &motion, method, NULL) == HN_SURVIVAL_SILENT) {
                 fail_msg("%s left the branch and did not say so", method);
             }
         }
