@@ -143,7 +143,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev \
-                 libxml2-dev ca-certificates node:nodejs npm:npm
+                 libxml2-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
@@ -210,6 +210,7 @@ help:
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
+	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
 	@echo 'make format       put every C file into the one format'
@@ -217,7 +218,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings extreme figures references pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings extreme figures references report pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -274,6 +275,11 @@ references: all
 extreme: all
 	@$(PROGRAM) extreme $(LONG) >build/extreme.txt || { cat build/extreme.txt; exit 1; }
 	@cp build/extreme.txt tests/tables/extreme.txt && cat tests/tables/extreme.txt
+
+# the budget leaves time for the plots and for a machine that is not alone; nothing else should run beside it
+report: all
+	@$(PROGRAM) report --budget 240 --out build/report.html --plots build/report
+	@echo 'report: build/report.html, plots in build/report/'
 
 rings: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)

@@ -11,8 +11,8 @@ static const double DEFAULT_BUDGET = 240; // [s]
 static const double STUDY_SHARE = 0.75;   // of a scene's time; accounts and survival take the rest
 static const double ACCOUNT_SHARE = 0.1;
 static const double SURVIVAL_SHARE = 0.15;
-static const double ACCOUNT_STEP = 4; // times the scene's
-static const double NO_BUDGET = 1e9;  // [s]
+static const double ACCOUNT_STEP = 4;              // times the scene's
+static const double NO_BUDGET = 1e9;               // [s]
 static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
 
 // one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground; space
@@ -98,7 +98,7 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     }
     s->study = NULL;
     snprintf(s->reason, sizeof s->reason, "%s",
-             r->stopped  ? "stopped on request before it began"
+             r->stopped    ? "stopped on request before it began"
              : diags.n > 0 ? diags.item[0].message
                            : hn_status_text(status));
     return status;
@@ -164,9 +164,8 @@ static void try_size(const hn_report_scene *s, const hn_survival_judge *judge, i
     hn_run *run = NULL;
     const double size = size_of(wp, m, hn_model_scene(s->model)->step, k);
     const hn_method_spec spec = hn_wp_spec(wp, m, size);
-    const hn_status status =
-        hn_run_create(hn_model_system(s->model), &spec, hn_model_q(s->model), hn_model_v(s->model),
-                      NULL, &run, &diag);
+    const hn_status status = hn_run_create(hn_model_system(s->model), &spec, hn_model_q(s->model),
+                                           hn_model_v(s->model), NULL, &run, &diag);
     if (status != HN_OK) {
         snprintf(strip->reason, sizeof strip->reason, "%.190s", diag.message);
         return;
@@ -184,8 +183,8 @@ static void survive(hn_report *r, hn_report_scene *s) {
     hn_survival_judge judge = {0};
     hn_arena *arena = hn_arena_create(1 << 14);
     s->strips = arena ? calloc((size_t)wp->n_methods, sizeof *s->strips) : NULL;
-    if (s->strips && hn_survival_by_reference(hn_model_system(s->model), wp->ref, arena, &judge) ==
-                         HN_OK) {
+    if (s->strips &&
+        hn_survival_by_reference(hn_model_system(s->model), wp->ref, arena, &judge) == HN_OK) {
         judge.limits = &limits;
         for (int i = 0; i < HN_REPORT_SIZES && !ask_end(r); i++) {
             for (int m = 0; m < wp->n_methods && !ask_end(r); m++) {

@@ -56,13 +56,13 @@ typedef struct hn_report_account {
 
 typedef struct hn_report_scene {
     const hn_model *model;
-    hn_study *study;  ///< NULL: `reason`
+    hn_study *study;              ///< NULL: `reason`
     char reason[HN_DIAG_MESSAGE]; ///< why there is no study
     hn_report_account accounts[HN_REPORT_ACCOUNTS];
     int n_accounts;
-    int singular;        ///< 1: it passes near singular poses
-    double singular_at;  ///< the first of them [s]
-    hn_strip *strips;    ///< one a method of the study where it is singular, else NULL
+    int singular;       ///< 1: it passes near singular poses
+    double singular_at; ///< the first of them [s]
+    hn_strip *strips;   ///< one a method of the study where it is singular, else NULL
 } hn_report_scene;
 
 int hn_report_n_scenes(const hn_report *report);
@@ -93,10 +93,11 @@ typedef enum hn_verdict_kind {
 } hn_verdict_kind;
 typedef struct hn_verdict {
     hn_verdict_kind kind;
-    double best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
+    double
+        best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
     int done, failed, skipped; ///< sizes
     char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "elsewhere, by 0.3"
-    const char *why;           ///< the reason of the coarsest failure, or the class's words; borrowed
+    const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
 } hn_verdict;
 hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
 
@@ -109,7 +110,7 @@ void hn_report_json(hn_strbuf *b, const hn_report *report);
 void hn_report_html(hn_strbuf *b, const hn_report *report);
 
 typedef struct hn_report_plot {
-    char name[160];       ///< for a file: "fb0-q-time"
+    char name[160]; ///< for a file: "fb0-q-time"
     const hn_report *of;
     int scene, kind, error, cost;
 } hn_report_plot;

@@ -35,7 +35,8 @@ static const char STYLE[] =
     ".top{break-inside:avoid}.top table{font-size:8pt}}";
 
 static const char SCRIPT[] =
-    "(function(){'use strict';var d=document,main=d.querySelector('main'),tip=d.createElement('div')"
+    "(function(){'use strict';var "
+    "d=document,main=d.querySelector('main'),tip=d.createElement('div')"
     ";tip.className='tip';tip.hidden=true;d.body.appendChild(tip);main.classList.add('script');"
     "var held=new WeakMap();"
     "function target(e){return e.target.closest&&e.target.closest('.point,.failed,.part,.mark')}"
@@ -122,9 +123,10 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
-                     "only where two measurements agree and the next method is clearly slower. "
-                     "Operations (op): time does not decide there, arithmetic does.</p>");
+    hn_strbuf_add(b,
+                  "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
+                  "only where two measurements agree and the next method is clearly slower. "
+                  "Operations (op): time does not decide there, arithmetic does.</p>");
 }
 
 static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
@@ -135,10 +137,7 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
     const hn_verdict v = hn_report_find_verdict(s, m);
     const int bad = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE;
     const int none = v.kind == HN_VERDICT_REFUSED || v.kind == HN_VERDICT_NOT_RUN;
-    hn_strbuf_printf(b, "<td%s title=\"",
-                     bad    ? " class=\"wrong\""
-                     : none ? " class=\"none\""
-                            : "");
+    hn_strbuf_printf(b, "<td%s title=\"", bad ? " class=\"wrong\"" : none ? " class=\"none\"" : "");
     hn_html_text(b, v.why);
     hn_strbuf_printf(b, "\">%s", v.text);
     if (s->strips && s->strips[m].n > 0) {
@@ -153,8 +152,9 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
     if (!any) {
         return;
     }
-    hn_strbuf_add(b, "<h2>What each method reaches: smallest error of the coordinates, and where it "
-                     "fails</h2><div class=\"scroll\"><table><thead><tr><th>method</th>");
+    hn_strbuf_add(b,
+                  "<h2>What each method reaches: smallest error of the coordinates, and where it "
+                  "fails</h2><div class=\"scroll\"><table><thead><tr><th>method</th>");
     for (int i = 0; i < r->n; i++) {
         const hn_scene *scene = hn_model_scene(r->scenes[i].model);
         hn_strbuf_add(b, "<th>");
@@ -170,16 +170,18 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
-                     "or tolerance did not come to the end. “elsewhere”: it converges, but not to "
-                     "the motion of the scene. “survives n/m”: so many other step sizes came "
-                     "through the singular poses within 1e-2.</p>\n");
+    hn_strbuf_add(b,
+                  "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
+                  "or tolerance did not come to the end. “elsewhere”: it converges, but not to "
+                  "the motion of the scene. “survives n/m”: so many other step sizes came "
+                  "through the singular poses within 1e-2.</p>\n");
 }
 
 static void put_top(hn_strbuf *b, const hn_report *r) {
     const hn_study *any = any_study(r);
-    hn_strbuf_printf(b, "<h1>Which method should I use, and what does accuracy cost?</h1>"
-                        "<p class=\"quiet\">%d scenes, %d methods, %d sizes each; made in %.0f s",
+    hn_strbuf_printf(b,
+                     "<h1>Which method should I use, and what does accuracy cost?</h1>"
+                     "<p class=\"quiet\">%d scenes, %d methods, %d sizes each; made in %.0f s",
                      r->n, r->request.n_methods, any ? hn_study_wp(any)->n_levels : 0, r->elapsed);
     if (r->request.build) {
         hn_strbuf_add(b, " by holonom ");
@@ -200,6 +202,9 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
 
 static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
     if (!hn_report_has_accounts(s)) {
+        hn_strbuf_add(b, "<p class=\"quiet\">No account of errors and energy: ");
+        hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
+        hn_strbuf_add(b, ".</p>");
         return;
     }
     hn_strbuf_add(b, "<h3>Where errors and energy come from</h3><div class=\"lines\">");
@@ -250,8 +255,9 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     }
     const hn_wp *wp = hn_study_wp(s->study);
     if (wp->out_of_time || wp->stopped) {
-        hn_strbuf_add(b, "<p class=\"quiet\">The budget left finer sizes or samples of time out; they "
-                         "are listed below.</p>");
+        hn_strbuf_add(b,
+                      "<p class=\"quiet\">The budget left finer sizes or samples of time out; they "
+                      "are listed below.</p>");
     }
     put_wrong_models(b, s);
     hn_strbuf_add(b, "<div class=\"scroll\">");
@@ -296,10 +302,11 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     hn_page_choices(b, any && hn_study_is_timed(any) ? HN_COST_TIME : HN_COST_OPS);
     hn_strbuf_add(b, "<div class=\"plots\">");
     put_names(b, any);
-    hn_strbuf_add(b, "<p class=\"quiet\">Down is more accurate, left is cheaper. A cross on the upper "
-                     "edge is a run that ended early, at what it had cost by then; a faint curve "
-                     "converges to something else; the grey band is what the reference cannot "
-                     "resolve.</p>");
+    hn_strbuf_add(b,
+                  "<p class=\"quiet\">Down is more accurate, left is cheaper. A cross on the upper "
+                  "edge is a run that ended early, at what it had cost by then; a faint curve "
+                  "converges to something else; the grey band is what the reference cannot "
+                  "resolve.</p>");
     for (int i = 0; i < r->n; i++) {
         put_scene(b, &r->scenes[i], i);
     }

@@ -12,8 +12,8 @@ enum { WIDTH = 900, LABELS = 196, RIGHT = 744, TEXT_STEP = 16 };
 enum { SIGNED_TEXT = HN_SI_TEXT + 4 }; // a sign may take three bytes
 enum { BAR_TOP = 58, BAR_ROW = 62, BAR = 24, FEWEST_PIXELS = 1, SAID_MOST = 4 };
 enum { STRIP_TOP = 66, STRIP_ROW = 46, STRIP = 32, STRIP_BOTTOM = 40 };
-static const double LETTER = 6.6;    // about the width of one in a label [px]
-static const double SAID = 0.01;     // parts below this share of the largest are not named
+static const double LETTER = 6.6; // about the width of one in a label [px]
+static const double SAID = 0.01;  // parts below this share of the largest are not named
 
 static void put_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text) {
     hn_strbuf_printf(b, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, class_name);
@@ -184,9 +184,10 @@ void hn_report_account_plot(hn_strbuf *b, const hn_report_scene *s, int energy) 
     begin(b, BAR_TOP + BAR_ROW * s->n_accounts, title);
     put_text(b, 0, 14, "title", title);
     put_text(b, 0, 34, "note",
-             energy ? "each bar to its own scale; the parts add up to the number at its right"
-                    : "each bar to its own scale; the parts add up, to first order, to the number at "
-                      "its right");
+             energy
+                 ? "each bar to its own scale; the parts add up to the number at its right"
+                 : "each bar to its own scale; the parts add up, to first order, to the number at "
+                   "its right");
     for (int i = 0; i < s->n_accounts; i++) {
         put_account(b, s, &s->accounts[i], energy, BAR_TOP + BAR_ROW * i);
     }
@@ -345,7 +346,8 @@ static int draw(hn_strbuf *b, const hn_report_plot *p) {
     } else {
         hn_report_account_plot(b, s, p->kind == KIND_ENERGY);
     }
-    return strncmp(hn_strbuf_text(b), "<svg ", 5) == 0; // a paragraph says that nothing came to its end
+    return strncmp(hn_strbuf_text(b), "<svg ", 5) ==
+           0; // a paragraph says that nothing came to its end
 }
 
 /// The value of "NAME)..." in "--name:value;" pairs; 0: there is none.

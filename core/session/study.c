@@ -7,7 +7,7 @@
 
 static const double DEFAULT_BUDGET = 60; // [s]
 static const double REFERENCE_SHARE =
-    0.5; // of the budget, for one of the computations of a reference
+    0.5;                                // of the budget, for one of the computations of a reference
 static const double CHAOS_SHARE = 0.05; // of the budget
 
 // from the naive to the specialised: fixed steps, chosen steps, differential-algebraic integrators

@@ -37,7 +37,8 @@ HN_MUST_CHECK hn_status hn_study_open(const hn_model *model, const hn_study_requ
 void hn_study_free(hn_study *study); ///< NULL is legal; what was kept of an unfinished study stays
 /// Runs what is left. Returns 1 when the study is finished, and then nothing of it is kept but the reference; 0: stopped, or out of its budget.
 int hn_study_run(hn_study *study);
-void hn_study_forget(hn_study *study); ///< after a run: deletes what is kept of it, but the reference
+void hn_study_forget(
+    hn_study *study); ///< after a run: deletes what is kept of it, but the reference
 
 // parts
 /// What a part of a study has to hand over: JSON that holds the scene, the request, the reference and this part's points.

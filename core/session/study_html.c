@@ -66,8 +66,8 @@ static void put_choices_style(hn_strbuf *b) {
     for (int i = 0; i < HN_ERROR_COUNT + HN_COST_COUNT; i++) {
         const int e = i < HN_ERROR_COUNT;
         const int n = e ? i : i - HN_ERROR_COUNT;
-        hn_strbuf_printf(b, "%s#%c%d:focus-visible~* label[for=%c%d]", i ? "," : "",
-                         e ? 'e' : 'c', n, e ? 'e' : 'c', n);
+        hn_strbuf_printf(b, "%s#%c%d:focus-visible~* label[for=%c%d]", i ? "," : "", e ? 'e' : 'c',
+                         n, e ? 'e' : 'c', n);
     }
     hn_strbuf_add(b, "{outline:2px solid var(--ink)}");
 }
@@ -128,7 +128,9 @@ static void put_answer(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_
         hn_strbuf_printf(b, "<li>%.*s</li>", (int)(end - line), line);
         line = *end ? end + 1 : end;
     }
-    hn_strbuf_add(b, p.n_bands || p.beyond_horizon ? "</ul>" : "<li>Nothing reaches an error of 0.1.</li></ul>");
+    hn_strbuf_add(b, p.n_bands || p.beyond_horizon
+                         ? "</ul>"
+                         : "<li>Nothing reaches an error of 0.1.</li></ul>");
     b->failed |= text.failed;
     hn_strbuf_reset(&text);
 }

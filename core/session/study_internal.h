@@ -20,7 +20,7 @@ struct hn_study {
     hn_wp *wp;
     hn_class classes[HN_WP_METHODS];
     int resumed, kept_reference;
-    hn_chaos chaos; ///< `why` "": not asked
+    hn_chaos chaos;     ///< `why` "": not asked
     FILE *log;          ///< lines of the unfinished study, NULL: nothing is kept
     char log_path[512]; ///< "" while there is none
     int log_failed;     ///< a line could not be written: nothing more is

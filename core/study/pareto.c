@@ -192,8 +192,7 @@ void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
                        .error = error,
                        .few = timed && is_timed_too_seldom(wp),
                        .clocks_differ = timed && !(wp->clocks_apart <= HN_PARETO_STEADY),
-                       .beyond_horizon =
-                           error <= HN_ERROR_REACTION && hn_wp_is_beyond_horizon(wp)};
+                       .beyond_horizon = error <= HN_ERROR_REACTION && hn_wp_is_beyond_horizon(wp)};
     for (int d = 1; d <= HN_PARETO_BANDS && !out->beyond_horizon; d++) {
         hn_band band = {.accuracy = pow(10, -d)}, counted = band;
         fill_band(wp, classes, error, cost, &band);
@@ -414,11 +413,12 @@ static void put_clocks(hn_strbuf *b, const hn_wp *wp) {
 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     if (p->beyond_horizon) {
-        hn_strbuf_printf(b,
-                         "Not ranked: neighbouring motions part exponentially, and from t = %.3g s "
-                         "on, before the end at %.4g s, this error says nothing of a method; energy "
-                         "still does.\n",
-                         wp->horizon, wp->ref->T);
+        hn_strbuf_printf(
+            b,
+            "Not ranked: neighbouring motions part exponentially, and from t = %.3g s "
+            "on, before the end at %.4g s, this error says nothing of a method; energy "
+            "still does.\n",
+            wp->horizon, wp->ref->T);
         return;
     }
     if (p->few) {

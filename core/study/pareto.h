@@ -60,7 +60,7 @@ typedef struct hn_pareto {
     int few; ///< 1: points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
     int clocks_differ; ///< 1: nor are those of parts whose yardsticks are apart, or unknown
     int beyond_horizon; ///< 1: the study ends where errors of this kind say nothing: there are no bands
-    int n_bands;       ///< 1e-1, 1e-2, ... down to the best error reached
+    int n_bands;        ///< 1e-1, 1e-2, ... down to the best error reached
     hn_band band[HN_PARETO_BANDS];
     hn_band counted[HN_PARETO_BANDS]; ///< of times: the same bands by operations
 } hn_pareto;

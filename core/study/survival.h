@@ -11,7 +11,8 @@
     X(HN_SURVIVAL_SURVIVED, "survived", "stayed with the exact motion throughout")                \
     X(HN_SURVIVAL_OFF, "off", "left the exact motion, its loops the right way round: inaccurate") \
     X(HN_SURVIVAL_STOPPED, "stopped", "ended early and said why")                                 \
-    X(HN_SURVIVAL_TOLD, "told", "a loop folded over, and an incident says that something is wrong") \
+    X(HN_SURVIVAL_TOLD, "told",                                                                   \
+      "a loop folded over, and an incident says that something is wrong")                         \
     X(HN_SURVIVAL_SILENT, "silent", "a loop folded over, and nothing was told")
 typedef enum hn_survival_end {
 #define HN_SURVIVAL_ENUM(code, name, about) code,
@@ -32,18 +33,19 @@ typedef hn_survival_seen (*hn_survival_look)(void *user, int k, const hn_sample 
 typedef struct hn_survival_judge {
     hn_survival_look look;
     void *user;
-    double T;     ///< [s]
-    int n;        ///< looks, at T (k - before) / n, k = 1..n
+    double T;      ///< [s]
+    int n;         ///< looks, at T (k - before) / n, k = 1..n
     double before; ///< 0: the last look is at T
-    int at_steps; ///< 1: at the run's own times just behind these
-    double limit; ///< of the distance, in its unit
-    const hn_walk_limits *limits; ///< computing time of one run, and `stop`, asked between looks; NULL: none
+    int at_steps;  ///< 1: at the run's own times just behind these
+    double limit;  ///< of the distance, in its unit
+    const hn_walk_limits
+        *limits; ///< computing time of one run, and `stop`, asked between looks; NULL: none
 } hn_survival_judge;
 
 typedef struct hn_survival {
     hn_survival_end end;
-    double t;     ///< where it stopped, or was first seen off or folded; T when it survived [s]
-    double worst; ///< largest distance, until it stopped
+    double t;         ///< where it stopped, or was first seen off or folded; T when it survived [s]
+    double worst;     ///< largest distance, until it stopped
     char reason[256]; ///< of a run that stopped
 } hn_survival;
 

@@ -94,7 +94,8 @@ typedef struct hn_wp {
     hn_run *yardstick_run;
     double
         clocks_apart; ///< put together from parts: the slowest yardstick over the fastest; NaN: not known; 1: one clock
-    double horizon; ///< from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
+    double
+        horizon; ///< from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
     int out_of_time; ///< 1: the budget left something out
     int stopped;     ///< 1: stopped on request
     double elapsed;  ///< wall time of hn_wp_run() [s]

@@ -46,9 +46,9 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
         const hn_report_scene *s = hn_report_scene_at(r, i);
         hn_table_cell(&t, "%s", id_of(s));
         for (int k = 0; k < HN_REPORT_BANDS; k++) {
-            const hn_report_answer a =
-                s->study ? hn_report_find_answer(s, hn_report_accuracy[k])
-                         : (hn_report_answer){-1, (double)NAN, HN_COST_OPS, 0};
+            const hn_report_answer a = s->study
+                                           ? hn_report_find_answer(s, hn_report_accuracy[k])
+                                           : (hn_report_answer){-1, (double)NAN, HN_COST_OPS, 0};
             hn_table_cell(&t, "%s",
                           a.method < 0 ? "-" : hn_study_wp(s->study)->methods[a.method].spelling);
             hn_table_quantity(&t, a.cost, a.by == HN_COST_TIME ? "s" : "op");
@@ -63,8 +63,8 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
     hn_table t;
     hn_table_init(&t);
     hn_table_column(&t, "smallest error of q", 0);
-    const int n = hn_report_n_scenes(r) < HN_TABLE_COLUMNS - 1 ? hn_report_n_scenes(r)
-                                                               : HN_TABLE_COLUMNS - 1;
+    const int n =
+        hn_report_n_scenes(r) < HN_TABLE_COLUMNS - 1 ? hn_report_n_scenes(r) : HN_TABLE_COLUMNS - 1;
     for (int i = 0; i < n; i++) {
         hn_table_column(&t, id_of(hn_report_scene_at(r, i)), 0);
     }
@@ -118,8 +118,7 @@ static int convert(const char *svg, const char *png) {
     if (error != 0) {
         return error == ENOENT ? -1 : 0;
     }
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {}
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
@@ -172,8 +171,9 @@ static hn_exit write_plots(const hn_args *args, const hn_report *r) {
         }
     }
     if (!converts) {
-        fprintf(stderr, "holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
-                        "librsvg2-bin)\n",
+        fprintf(stderr,
+                "holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
+                "librsvg2-bin)\n",
                 written);
     }
     return HN_EXIT_DONE;
@@ -212,8 +212,7 @@ static hn_status load(const hn_library *lib, const hn_args *args, hn_model **mod
     int n_words = args->words.n;
     const char *const *words = n_words > 0 ? args->words.word : hn_report_standard(&n_words);
     hn_status status = HN_OK;
-    if (args->out && !hn_path_ends_in(args->out, ".html") &&
-        !hn_path_ends_in(args->out, ".json")) {
+    if (args->out && !hn_path_ends_in(args->out, ".html") && !hn_path_ends_in(args->out, ".json")) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .html or .json",
                             "what to write into '%.200s' cannot be told from its name", args->out);
     }
