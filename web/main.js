@@ -16,6 +16,7 @@ import { createMethods } from "./views/methods.js";
 import { createPlots } from "./views/plots.js";
 import { createReactions } from "./views/reactions.js";
 import { createStatus } from "./views/status.js";
+import { createStudies } from "./views/studies.js";
 import { createTear } from "./views/tear.js";
 import { createTransport } from "./views/transport.js";
 import { createTheme } from "./widgets/theme.js";
@@ -30,13 +31,16 @@ const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 const dialog = createMethodDialog(document.body, store, session);
 const keys = createKeysDialog(document.body, store, session);
+const studies = createStudies(document.body, store, session);
+/** Keys that open something; all others are actions of the session. */
+const OPENERS = { help: keys.open, study: studies.open };
 const views = [
   createHeader(at("top"), store, session, { toggleTheme: theme.toggle, openKeys: keys.open }),
   createDrawing(at("mechanism"), store, session),
   createTear(at("mechanism"), store),
   createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),
-  createMethods(at("methods"), store, session, dialog.open),
+  createMethods(at("methods"), store, session, dialog.open, studies.open),
   createControls(at("controls"), store, session),
   createHappening(at("happening"), store, session),
   createPlots(at("plots"), store, session),
@@ -70,11 +74,7 @@ addEventListener("keydown", (event) => {
     event.defaultPrevented || takesKey(event) ? undefined : findKey(event, store.data.view.letters);
   if (key) {
     event.preventDefault();
-    if (key.action === "help") {
-      keys.open();
-    } else {
-      session[key.action](key.argument);
-    }
+    (OPENERS[key.action] ?? session[key.action])(key.argument);
   }
 });
 addEventListener("hashchange", () => {

@@ -222,6 +222,7 @@ static const struct {
      "\"number\"}},\"methods\":" TEXTS ",\"document\":{\"type\":[\"object\",\"null\"]},\"links\":{"
      "\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
     {"Verdict", "{\"type\":\"object\"}"},
+    {"Report", "{\"type\":\"string\",\"contentMediaType\":\"text/html\"}"},
     {"Picture", "{\"type\":\"string\",\"contentMediaType\":\"image/png\"}"},
     {"Problem",
      "{\"type\":\"object\",\"description\":\"RFC "

@@ -337,6 +337,8 @@ static const hn_route ROUTES[] = {
      NULL},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
      "State, progress, time left, and the document when it is done", NULL},
+    {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",
+     "200", "Report", "The study as one HTML file that needs no network", NULL},
     {"PATCH", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_patch, STUDY_CHANGE, JSON,
      "200", "Study", "Stops a study and keeps what was done", NULL},
     {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",

@@ -52,6 +52,7 @@ static void free_study(study *s) {
             s->work.kind->release(&s->work);
         }
         hn_strbuf_reset(&s->result.document);
+        hn_strbuf_reset(&s->result.report);
         hn_model_free(s->work.model);
         reset_order(&s->work.order);
         free(s);
@@ -73,15 +74,17 @@ static void *work(void *arg) {
     hn_studies *all = s->all;
     hn_study_result result = {0};
     hn_strbuf_init(&result.document);
+    hn_strbuf_init(&result.report);
     s->work.wall_end = hn_now() + s->work.order.budget;
     s->work.cpu_end = hn_thread_cpu() + all->opts->max_run_cpu;
     s->work.kind->run(&s->work, &result);
-    if (result.document.failed) {
+    if (result.document.failed || result.report.failed) {
         result.state = HN_STUDY_FAILED;
         snprintf(result.reason, sizeof result.reason, "%s", hn_status_text(HN_ERR_MEMORY));
     }
     if (result.state == HN_STUDY_FAILED) {
         hn_strbuf_reset(&result.document);
+        hn_strbuf_reset(&result.report);
     }
     pthread_mutex_lock(&all->lock);
     s->result = result;
@@ -146,6 +149,10 @@ static void put_study(hn_strbuf *b, const study *s) {
     hn_json_key(b, "links");
     hn_json_object(b);
     hn_json_put_string(b, "self", self);
+    if (s->result.report.n) {
+        snprintf(self, sizeof self, "/api/v1/studies/%s/report", s->id);
+        hn_json_put_string(b, "report", self);
+    }
     hn_json_end_object(b);
     hn_json_end_object(b);
 }
@@ -482,6 +489,27 @@ void hn_handle_study_get(hn_request *r) {
         reply_study(r, MHD_HTTP_OK, s);
         release(s);
     }
+}
+
+void hn_handle_study_report(hn_request *r) {
+    study *s = find_study(r);
+    if (!s) {
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    pthread_mutex_lock(&s->all->lock);
+    hn_strbuf_add_n(&b, hn_strbuf_text(&s->result.report), s->result.report.n);
+    pthread_mutex_unlock(&s->all->lock);
+    if (b.n > 0 || b.failed) {
+        hn_reply_bytes(r, MHD_HTTP_OK, "text/html", &b);
+        hn_reply_header_add(r, "Content-Disposition", "attachment; filename=\"holonom-%s.html\"",
+                            s->work.kind->name);
+    } else {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, NULL,
+                         "this study has no report: it is not done, or its kind has none");
+    }
+    release(s);
 }
 
 void hn_handle_study_patch(hn_request *r) {

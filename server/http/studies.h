@@ -9,7 +9,8 @@ enum {
     HN_STUDIES_METHODS = 12,
     HN_STUDIES_LEVELS = 7,
     HN_STUDIES_SAMPLES = 10,
-    HN_STUDIES_SIDE = 24
+    HN_STUDIES_SIDE = 24,
+    HN_STUDIES_MAPS = 4
 };
 
 typedef struct hn_studies hn_studies;
@@ -28,6 +29,7 @@ extern const char *const hn_studies_kind_names[];
 void hn_handle_studies_list(struct hn_request *r);
 void hn_handle_studies_create(struct hn_request *r);
 void hn_handle_study_get(struct hn_request *r);
+void hn_handle_study_report(struct hn_request *r);
 void hn_handle_study_patch(struct hn_request *r);
 void hn_handle_study_delete(struct hn_request *r);
 #endif

@@ -43,7 +43,8 @@ typedef struct hn_study_work {
 /// How a study ended.
 typedef struct hn_study_result {
     hn_study_state state;
-    hn_strbuf document;
+    hn_strbuf document; ///< JSON
+    hn_strbuf report;   ///< HTML; empty when the kind has none
     char reason[HN_DIAG_MESSAGE], hint[HN_DIAG_HINT];
 } hn_study_result;
 

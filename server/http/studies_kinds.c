@@ -3,6 +3,7 @@
 
 #include "http/live_internal.h"
 #include "session/account_doc.h"
+#include "session/stability.h"
 #include "session/study.h"
 
 #include <math.h>
@@ -89,6 +90,7 @@ static void run_work_precision(hn_study_work *w, hn_study_result *out) {
     hn_study_run(study);
     tell_end(w, hn_study_wp(study)->out_of_time, out);
     hn_study_json(&out->document, study);
+    hn_study_html(&out->report, study);
     hn_study_free(study);
 }
 
@@ -110,6 +112,65 @@ static void run_budget(hn_study_work *w, hn_study_result *out) {
     }
 }
 
+// ---- stability --------------------------------------------------------------------------------------------------
+
+/// The scene as it was asked for, with these parameters on top.
+static hn_status load_with(void *user, const hn_setting *settings, int n, hn_model **out,
+                           hn_diags *diags) {
+    const hn_study_work *w = user;
+    hn_scene_order order = {0};
+    hn_status status = hn_scene_order_copy(&order, &w->order.scene);
+    for (int i = 0; i < n && status == HN_OK; i++) {
+        status = hn_scene_order_add(&order, settings[i].name, strlen(settings[i].name),
+                                    settings[i].value, diags);
+    }
+    if (status == HN_OK) {
+        status = hn_scene_order_load(&order, w->lib, 0, out, diags);
+    }
+    hn_scene_order_reset(&order);
+    return status;
+}
+
+static hn_status prepare_stability(hn_study_work *w, hn_diags *diags) {
+    const hn_study_order *o = &w->order;
+    hn_map_request request = hn_map_request_default();
+    if (o->preset && o->over) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", "take one of them",
+                            "a map is over what 'preset' names or over what 'over' says");
+    }
+    request.over = o->over;
+    request.preset = o->preset || o->over ? o->preset : "limits";
+    request.columns = o->columns;
+    request.rows = o->rows;
+    request.methods = (const char *const *)o->methods;
+    request.n_methods = o->n_methods;
+    request.time = o->time;
+    request.budget = o->budget;
+    request.load = load_with;
+    request.load_user = w;
+    request.stop = must_stop;
+    request.progress = tell_share;
+    request.user = w;
+    hn_map *map = NULL;
+    w->cpu_end = HUGE_VAL; // the thread of the study sets it to its own clock
+    const hn_status status = hn_map_open(w->model, &request, &map, diags);
+    w->prepared = map;
+    return status;
+}
+
+static void run_stability(hn_study_work *w, hn_study_result *out) {
+    hn_map *map = w->prepared;
+    hn_map_run(map);
+    tell_end(w, hn_map_out_of_time(map), out);
+    hn_map_json(&out->document, map);
+    hn_map_html(&out->report, map);
+}
+
+static void release_map(hn_study_work *w) {
+    hn_map_free(w->prepared);
+    w->prepared = NULL;
+}
+
 // ---- the table --------------------------------------------------------------------------------------------------
 
 static const hn_study_kind_row KINDS[] = {
@@ -117,11 +178,17 @@ static const hn_study_kind_row KINDS[] = {
      .most_methods = HN_STUDIES_METHODS,
      .options = "levels samples",
      .run = run_work_precision},
+    {.name = "stability",
+     .most_methods = HN_STUDIES_MAPS,
+     .options = "preset over columns rows",
+     .prepare = prepare_stability,
+     .run = run_stability,
+     .release = release_map},
     {.name = "budget", .most_methods = HN_STUDIES_METHODS, .options = "", .run = run_budget},
 };
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 
-const char *const hn_studies_kind_names[] = {"work-precision", "budget", NULL};
+const char *const hn_studies_kind_names[] = {"work-precision", "stability", "budget", NULL};
 
 const hn_study_kind_row *hn_study_kind_find(const char *name) {
     for (int i = 0; i < N_KINDS; i++) {

@@ -14,6 +14,8 @@ METHODS = ["index1@rk4:h=1e-3", "projection@rk4:h=1e-3"]
 # counts alone: nothing in the document that a clock said
 QUICK = {"scene": "pendulum", "kind": "work-precision", "methods": METHODS, "time": 0.5, "levels": 3, "samples": 0}
 BUDGET = {"scene": "four-bar", "kind": "budget", "methods": METHODS, "time": 0.2}
+MAP = {"scene": "four-bar", "kind": "stability", "methods": ["baumgarte:alpha=5,beta=5@rk4:h=1e-2"], "time": 0.5,
+       "preset": "baumgarte", "columns": 4, "rows": 3}
 # far more than its budget allows
 LONG = {"scene": "four-bar", "kind": "work-precision", "methods": METHODS, "samples": 10}
 
@@ -93,6 +95,47 @@ class Studies(driver.ServerCase):
         self.assertEqual(done["state"], "finished")
         self.assertEqual(done["document"], command_line("four-bar", "budget", "--methods", *METHODS, "--time", "0.2"))
 
+    def test_a_map_of_stability_is_the_document_of_the_command_line(self):
+        done = wait(self.server, start(self.server, MAP))
+        self.assertEqual(done["state"], "finished", done["reason"])
+        same = command_line("four-bar", "stability", "--methods", *MAP["methods"], "--time", "0.5", "--preset", "baumgarte",
+                            "--grid", "4x3", "--budget", "20")
+        for document in (done["document"], same):
+            self.assertGreater(document.pop("elapsed"), 0)
+        self.assertEqual(done["document"], same)
+
+    def test_a_map_over_a_parameter_loads_the_scene_with_each_value(self):
+        body = but(MAP, methods=["projection@symplectic-euler"], preset=None, over="g=1..20:lin,h=1e-3..1e-1", time=0.3)
+        done = wait(self.server, start(self.server, body))
+        self.assertEqual(done["state"], "finished", done["reason"])
+        x, y = done["document"]["x"], done["document"]["y"]
+        self.assertEqual((x["name"], x["kind"], y["kind"]), ("g", "parameter", "step"))
+        errors = [cell["error"] for cell in done["document"]["methods"][0]["rows"][0]]
+        self.assertEqual(len(set(errors)), 4, "each column is another motion")
+
+    def test_faults_of_a_map_are_told_before_it_starts(self):
+        for changes, pointer in (({"over": "h=1e-3..1e-1"}, "/over"), ({"preset": None, "over": "nonsense=1..2"}, None),
+                                 ({"preset": "stiffness"}, "/preset"), ({"columns": 25}, "/columns"), ({"rows": 1}, "/rows"),
+                                 ({"methods": MAP["methods"] * 5}, "/methods"), ({"levels": 3}, "/levels"),
+                                 ({"preset": "stiffnes"}, "/preset")):
+            with self.subTest(changes=changes):
+                answer = self.server.ask("POST", AT, but(MAP, **changes))
+                document = self.assert_problem(answer, 422)
+                if pointer:
+                    self.assertEqual(document["errors"][0]["pointer"], pointer)
+
+    def test_a_report_is_one_file_to_save(self):
+        for body, kind in ((QUICK, "work-precision"), (MAP, "stability")):
+            done = wait(self.server, start(self.server, body))
+            answer = self.server.ask("GET", done["links"]["report"])
+            self.assertEqual((answer.status, answer.type), (200, "text/html"))
+            self.assertEqual(answer.headers["content-disposition"], f'attachment; filename="holonom-{kind}.html"')
+            self.assertIn(b"<svg", answer.body)
+            self.assertNotIn(b'src="http', answer.body)
+        done = wait(self.server, start(self.server, BUDGET))
+        self.assertNotIn("report", done["links"])
+        self.assert_problem(self.server.ask("GET", done["links"]["self"] + "/report"), 404, "not-found")
+
     def test_parameters_and_scenes_of_ones_own_are_studied(self):
         scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
         own = wait(self.server, start(self.server, but(QUICK, scene=scene, settings={"g": 5})))
@@ -162,7 +205,7 @@ class Bounded(unittest.TestCase):
     def test_computing_ends_where_the_server_says(self):
         server = driver.Server("--run-cpu", "0.3")
         try:
-            for body in (LONG, but(BUDGET, time=10)):
+            for body in (LONG, but(BUDGET, time=10), but(MAP, time=20, columns=24, rows=24)):
                 done = wait(server, start(server, body), 20)
                 self.assertEqual(done["budget_s"], 0.3)
                 self.assertIn(done["state"], ("stopped", "failed"), done["reason"])

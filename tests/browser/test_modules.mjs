@@ -69,7 +69,7 @@ test("a single character can be switched off, Space and the arrows stay", () => 
   assert.equal(press("-", false), undefined);
   assert.equal(press(" ", false), "toggle");
   assert.equal(press("ArrowRight", false), "step");
-  assert.equal(KEYS.filter(isCharacter).length, 12);
+  assert.equal(KEYS.filter(isCharacter).length, 15);
 });
 
 test("a number is read as people type it, and only in its unit", () => {
@@ -521,6 +521,7 @@ test("a link says the same after it was read and written again", () => {
       selected: Math.floor(random() * 8),
       hidden: pick([0, 1, 2, 3]),
       show: pick(["labels", "traces", "arrows", "reactions"]),
+      study: ["", "work-precision", "stability", "budget"][k % 4],
       build: "0.1.0 gcc 12.2.0",
     });
     const { link, faults } = decodeLink(text);

@@ -101,6 +101,15 @@ export const api = {
   /** The page is going away: no answer is waited for. @param {string} id */
   abandonComparison: (id) =>
     fetch(`${BASE}/comparisons/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
+  /** @param {object} body */
+  createStudy: (body) => request("POST", `${BASE}/studies`, body),
+  /** @param {string} id */
+  study: (id) => request("GET", `${BASE}/studies/${id}`),
+  /** @param {string} id */
+  stopStudy: (id) => request("PATCH", `${BASE}/studies/${id}`, { state: "stopped" }),
+  /** Nobody waits for it any more. @param {string} id */
+  abandonStudy: (id) =>
+    fetch(`${BASE}/studies/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
   /** @param {string} id @param {string} lastId */
   eventsAddress: (id, lastId) =>
     `${BASE}/comparisons/${id}/events${lastId ? `?last_event_id=${encodeURIComponent(lastId)}` : ""}`,

@@ -2,7 +2,7 @@
 // The keys of the page, as data. `key` is KeyboardEvent.key; a letter (or any single printable character) can be switched off.
 
 /**
- * @typedef {{key: string, shift?: boolean, context: "page" | "drawing", action: string, argument?: number, means: string, shown?: string}} Key
+ * @typedef {{key: string, shift?: boolean, context: "page" | "drawing", action: string, argument?: number | string, means: string, shown?: string}} Key
  * @type {Key[]}
  */
 export const KEYS = [
@@ -45,6 +45,30 @@ export const KEYS = [
   { key: "-", context: "page", action: "slower", means: "slower" },
   { key: "=", context: "page", action: "faster", means: "faster" },
   { key: "l", context: "page", action: "share", means: "a link to what is shown", shown: "L" },
+  {
+    key: "w",
+    context: "page",
+    action: "study",
+    argument: "work-precision",
+    means: "what accuracy costs",
+    shown: "W",
+  },
+  {
+    key: "b",
+    context: "page",
+    action: "study",
+    argument: "stability",
+    means: "map of stability",
+    shown: "B",
+  },
+  {
+    key: "e",
+    context: "page",
+    action: "study",
+    argument: "budget",
+    means: "where the error comes from",
+    shown: "E",
+  },
   { key: "F1", context: "page", action: "help", means: "this table" },
   ...Array.from({ length: 8 }, (_, i) => ({
     key: String(i + 1),

@@ -1,6 +1,7 @@
 // @ts-check
 // What a link to the page holds, in its fragment (which never reaches a server's log): scene, parameters, methods, the frame of the clock, and what is shown.
 // A bare fragment is the id of a scene.
+import { KINDS } from "./studies.js";
 
 const SHOWN = ["labels", "traces", "arrows", "reactions"];
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
@@ -8,14 +9,14 @@ const LONGEST = 4000; // [characters] that every mail program and browser takes
 
 /**
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number, selected: number, hidden: number[],
- *   show: string[], build: string}} Linked
+ *   show: string[], study: string, build: string}} Linked study: the one that is open, or ""
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
 const escape = (text) => encodeURIComponent(text).replace(/%(3A|2C|40|3D|2F)/g, decodeURIComponent);
 
 /** @param {Linked} what @returns {string} */
-export function encodeLink({ scene, settings, methods, frame, selected, hidden, show, build }) {
+export function encodeLink({ scene, settings, methods, frame, selected, hidden, show, study, build }) {
   const pairs = [
     ["scene", scene],
     ...Object.entries(settings).map(([name, value]) => [`set.${name}`, String(value)]),
@@ -24,6 +25,7 @@ export function encodeLink({ scene, settings, methods, frame, selected, hidden, 
     ["selected", String(selected)],
     ...hidden.map((m) => ["hidden", String(m)]),
     ["show", show.join(",")],
+    ...(study ? [["study", study]] : []),
     ["build", build],
   ];
   return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
@@ -40,6 +42,7 @@ const EMPTY = () => ({
   selected: 0,
   hidden: /** @type {number[]} */ ([]),
   show: ["labels"],
+  study: "",
   build: "",
 });
 
@@ -61,6 +64,10 @@ const FIELDS = {
     out.show = words.filter((word) => SHOWN.includes(word));
     const other = words.find((word) => !SHOWN.includes(word));
     return other ? `names '${other}'; there are ${SHOWN.join(", ")}` : "";
+  },
+  study: (out, value) => {
+    out.study = KINDS.some((kind) => kind === value) ? value : "";
+    return out.study ? "" : `is '${value.slice(0, 40)}'; there are ${KINDS.join(", ")}`;
   },
   build: (out, value) => {
     out.build = value;

@@ -6,6 +6,7 @@ import { createStream } from "../api/stream.js";
 import { niceBelow } from "./format.js";
 import { createReactionFeed } from "./reaction-feed.js";
 import { createReferenceFeed } from "./reference.js";
+import { createStudyFeed } from "./studies.js";
 import { decodeLink, encodeLink, fits } from "./link.js";
 import { createHistory } from "./history.js";
 import { cardOf, labelsOf, parseSpelling, withSetting } from "./spelling.js";
@@ -56,6 +57,7 @@ export function createSession(store) {
   let asked = 0;
   const endReactions = createReactionFeed(store);
   const reference = createReferenceFeed(store);
+  const studies = createStudyFeed(store);
   const wantedSpeed = () => asked || data.speed;
 
   /** @param {string} text */
@@ -326,7 +328,7 @@ export function createSession(store) {
   }
 
   /** @param {import("./link.js").Linked} link */
-  async function showLinked({ frame, selected, hidden }) {
+  async function showLinked({ frame, selected, hidden, study }) {
     for (let left = frame; left > 0; left -= MOST_STEPS) {
       await change({ step: Math.min(left, MOST_STEPS) });
       if (data.state === "finished") {
@@ -336,6 +338,7 @@ export function createSession(store) {
     const n = data.methods.length;
     data.view.hidden = new Set(hidden.filter((m) => m < n));
     data.view.selected = Math.min(selected, n - 1);
+    data.view.study = study;
   }
 
   const actions = {
@@ -369,6 +372,7 @@ export function createSession(store) {
         selected: view.selected,
         hidden: [...view.hidden],
         show: PANELS.filter((name) => view[name]),
+        study: view.study,
         build: data.build,
       });
       if (!fits(fragment)) {
@@ -504,6 +508,7 @@ export function createSession(store) {
     },
     /** For parameters of one's own. */
     computeReference: () => reference.compute(),
+    studies,
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
     /** Every term at one state. @param {{t: number, state: Record<string, number>}} at */
     terms: (at) => api.terms({ scene: data.scene?.id ?? "", settings: data.settings, ...at }),
@@ -511,6 +516,7 @@ export function createSession(store) {
     dispose() {
       endReactions();
       reference.dispose();
+      studies.dispose();
       stream?.dispose();
       if (data.id) {
         api.abandonComparison(data.id);

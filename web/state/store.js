@@ -1,5 +1,6 @@
 // @ts-check
 // Data and named events. Views read `store.data`, listen, and never write; actions of state/session.js write.
+import { KINDS, noStudy } from "./studies.js";
 
 /**
  * @typedef {{name: string, unit: string, about: string, value: number, initial: number, min: number, max: number, integer: boolean}} Parameter
@@ -32,6 +33,7 @@ export const EVENTS = [
   "stream",
   "reactions", // what the joints carry, as last asked for
   "reference", // the reference solution of the scene, or why there is none
+  "study", // a study goes on or has ended; the detail is its kind
   "notice", // a sentence for the status line
   "theme",
 ];
@@ -66,6 +68,8 @@ function initialData() {
      * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], reason: string} | null} */
     reactions: null,
     /** null until it is asked for @type {import("./reference.js").Reference | null} */ reference: null,
+    /** by kind @type {Record<string, import("./studies.js").Study>} */
+    studies: Object.fromEntries(KINDS.map((kind) => [kind, noStudy()])),
     stream: { state: "connecting", id: "" },
     notice: "",
     /** @type {"light" | "dark"} */ theme: "light",
@@ -79,6 +83,8 @@ function initialData() {
       /** the table of forces is open */ reactions: false,
       /** forces are drawn */ arrows: false,
       /** where one looks from; null: as the scene is best seen @type {{right: number[], up: number[]} | null} */ look: null,
+      /** the study that is open, or "" */ study: "",
+      /** what the map of stability is over; "": as the methods suggest */ map: "",
       letters: true,
       stepped: false,
       /** the method whose card is open, or -1 */ why: -1,

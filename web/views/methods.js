@@ -16,8 +16,9 @@ const REDRAW = 120; // [ms] numbers that change faster cannot be read
  * @param {import("../state/store.js").Store} store
  * @param {import("../state/session.js").Session} actions
  * @param {(m: number) => void} openDialog edits method m, or adds one (m = -1)
+ * @param {(kind: string) => void} openStudy
  */
-export function createMethods(el, store, actions, openDialog) {
+export function createMethods(el, store, actions, openDialog, openStudy) {
   const data = store.data;
   const body = h("tbody", { role: "rowgroup" });
   const add = h(
@@ -25,6 +26,16 @@ export function createMethods(el, store, actions, openDialog) {
     { type: "button", class: "quiet", onclick: () => openDialog(-1) },
     icon("plus"),
     "add a method",
+  );
+  const studies = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      title: "what accuracy costs (W), where steps are stable (B), where the error comes from (E)",
+      onclick: () => openStudy("work-precision"),
+    },
+    "studies",
   );
   const head = (text, title) => h("th", { scope: "col", role: "columnheader", title }, text);
   const table = h(
@@ -50,7 +61,12 @@ export function createMethods(el, store, actions, openDialog) {
     body,
   );
   el.replaceChildren(
-    h("div", { class: "title" }, h("h2", { id: "methods-title" }, "Methods"), add),
+    h(
+      "div",
+      { class: "title" },
+      h("h2", { id: "methods-title" }, "Methods"),
+      h("div", { class: "choices" }, studies, add),
+    ),
     table,
   );
 

@@ -1,0 +1,259 @@
+// Studies on the page: what accuracy costs, where steps are stable, where the error comes from.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { openPage, read, screenshot, startBrowser, startServer, until } from "./support.mjs";
+import {
+  barsOf,
+  boundaryOf,
+  dotsOf,
+  floorOf,
+  frameOf,
+  orderOf,
+  presetsOf,
+  signatureOf,
+} from "../../web/state/studies.js";
+import { decodeLink, encodeLink } from "../../web/state/link.js";
+
+const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
+const STABILISED =
+  "#scene=four-bar&method=index1@rk4:h=1e-3&method=baumgarte:alpha=5,beta=5@rk4:h=1e-3";
+const LONG = 60000; // [ms] that a study may take on a busy machine
+
+let server;
+let browser;
+
+before(async () => {
+  server = await startServer();
+  browser = await startBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Runs a body on a fresh page and then asks for its faults. */
+async function onPage(options, body) {
+  const opened = await openPage(browser, server.url, options);
+  try {
+    await body(opened.page);
+  } finally {
+    await opened.close();
+  }
+  assert.deepEqual(opened.faults, []);
+}
+
+const hasEnded = (kind) =>
+  `(data) => ["finished", "stopped"].includes(data.studies["${kind}"].state) && data.studies["${kind}"].document`;
+
+// ---- reading documents ------------------------------------------------------------------------------------------
+
+const point = (size, state, more = {}) => ({
+  method: `a@rk4:h=${size}`,
+  size,
+  state,
+  reason: state === "done" ? "" : "it fell apart",
+  operations: state === "done" ? 100 / size : undefined,
+  evaluations: 4 / size,
+  worst: { q: size ** 4 },
+  bounds: [],
+  cpu: { median: null },
+  ...more,
+});
+const STUDY = {
+  reference: { error: { q: 1e-13, gap: 0 } },
+  methods: [{ size: "h", points: [point(1, "failed"), point(0.1, "done"), point(0.01, "done", { bounds: ["q"] })] }],
+  pareto: [],
+};
+
+test("a point that failed stands on the upper edge, at what it would have cost", () => {
+  const [dots] = dotsOf(STUDY, "q", "operations");
+  assert.deepEqual(
+    dots.map(({ error, bound }) => [error, bound]),
+    [
+      [Infinity, false],
+      [0.1 ** 4, false],
+      [0.01 ** 4, true],
+    ],
+  );
+  assert.ok(Math.abs(dots[0].cost - 100) < 1e-9, "a tenth of what a tenth of the step costs");
+  assert.equal(dots[0].reason, "it fell apart");
+  assert.equal(dotsOf(STUDY, "q", "time")[0].length, 1, "what was not measured is not drawn, the failure is");
+});
+
+test("the frame holds every finite error in whole decades, and the band of the reference where it is near", () => {
+  const box = frameOf(dotsOf(STUDY, "q", "operations"), floorOf(STUDY, "q"));
+  assert.deepEqual([box.y0, box.y1], [-8, -4]);
+  assert.ok(box.x0 < 2 && box.x1 > 4);
+  assert.equal(frameOf(dotsOf(STUDY, "q", "operations"), 1e-9).y0, -9);
+  assert.equal(frameOf([[]], 0), null);
+});
+
+test("bars add up: what is negative goes to the left, what is positive to the right", () => {
+  const bars = barsOf({ a: 3, b: -1, c: 0, d: null, e: 1 }, [..."abcde"].map((name) => ({ name })));
+  assert.deepEqual(
+    bars.map(({ name, from, to }) => [name, from, to]),
+    [
+      ["a", 0, 0.75],
+      ["b", -0.25, 0],
+      ["e", 0.75, 1],
+    ],
+  );
+});
+
+test("the predicted boundary lies between cells on either side of the limit, or at the step itself", () => {
+  const cells = { rows: [[0.5, 2], [2, 2]].map((row) => row.map((margin) => ({ margin }))), columns: [] };
+  const grid = { x: { values: [1, 2] }, y: { values: [1, 2], scale: "lin", kind: "setting" } };
+  assert.deepEqual(boundaryOf(grid, cells), [
+    [[1, 0], [1, 1]],
+    [[0, 1], [1, 1]],
+  ]);
+  const steps = { x: null, y: { values: [1e-3, 1e-1], scale: "log", kind: "step" } };
+  const [line] = boundaryOf(steps, { rows: [], columns: [{ predicted: [1e-2] }] });
+  assert.ok(Math.abs(line[0][1] - 1) < 1e-12, "half-way between the middles of two cells");
+});
+
+test("a map over alpha and beta is asked for the methods that have them alone", () => {
+  const data = {
+    scene: { id: "four-bar" },
+    settings: {},
+    methods: [{ spelling: "index1@rk4" }, { spelling: "baumgarte:alpha=5,beta=5@rk4" }],
+  };
+  assert.deepEqual(orderOf("stability", data, "baumgarte").methods, ["baumgarte:alpha=5,beta=5@rk4"]);
+  assert.equal(orderOf("stability", data, "limits").methods.length, 2);
+  assert.ok(presetsOf(data.methods).some(({ preset }) => preset === "baumgarte"));
+  assert.ok(!presetsOf(data.methods.slice(0, 1)).some(({ preset }) => preset === "baumgarte"));
+});
+
+test("a link names the study that is open, and no other word", () => {
+  const link = { ...decodeLink("scene=a&method=b@c").link, study: "budget" };
+  assert.equal(decodeLink(encodeLink(link)).link.study, "budget");
+  const { link: other, faults } = decodeLink("scene=a&study=everything");
+  assert.equal(other.study, "");
+  assert.match(faults[0], /study is 'everything'/);
+});
+
+// ---- the page ---------------------------------------------------------------------------------------------------
+
+test("W draws error against cost; a point's step is taken over by click and by keyboard", () =>
+  onPage({ hash: SHORT }, async (page) => {
+    await page.keyboard.press("w");
+    const dialog = page.getByRole("dialog", { name: /Studies/ });
+    await dialog.getByRole("progressbar").waitFor();
+    await until(page, hasEnded("work-precision"), LONG);
+    const spots = dialog.locator(".scatter [data-spot]");
+    const drawn = await spots.count();
+    const points = await read(page, (data) =>
+      data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
+    );
+    assert.equal(drawn, points, "every point is there, failed ones too");
+    assert.match(await spots.first().getAttribute("aria-label"), /h = .*: (error .* operations|error .*op|failed)/);
+    await dialog.getByRole("button", { name: "evaluations" }).click();
+    assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/);
+    assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes");
+    const wanted = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[2].method);
+    await dialog.locator('.scatter [data-m="0"][data-spot="2"]').click({ force: true });
+    await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(wanted)}`);
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Enter");
+    const next = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[3].method);
+    await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(next)}`);
+    await dialog.getByText("on the page now").waitFor();
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Space"); // keys are the page's again
+    await until(page, (data) => data.state === "running");
+  }));
+
+test("a finished study is saved as one file without network", () =>
+  onPage({ hash: SHORT }, async (page) => {
+    await page.getByRole("button", { name: "studies" }).click();
+    await until(page, hasEnded("work-precision"), LONG);
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("link", { name: "Save as a report" }).click(),
+    ]);
+    assert.equal(download.suggestedFilename(), "holonom-work-precision.html");
+    const chunks = [];
+    for await (const chunk of await download.createReadStream()) {
+      chunks.push(chunk);
+    }
+    const text = Buffer.concat(chunks).toString();
+    assert.match(text, /<svg/);
+    assert.doesNotMatch(text, /(src|href)="https?:/);
+  }));
+
+test("a study that is stopped shows what was done, and says so", () =>
+  onPage({}, async (page) => {
+    await page.keyboard.press("w");
+    await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
+    await page.getByRole("button", { name: "Stop" }).click();
+    await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
+    await page.locator(".study-run").getByText(/stopped on request/).waitFor();
+    assert.ok((await page.locator(".scatter .spot").count()) > 0);
+  }));
+
+test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", () =>
+  onPage({ hash: STABILISED }, async (page) => {
+    await page.keyboard.press("b");
+    await until(page, hasEnded("stability"), LONG);
+    const letters = await page.locator(".maps .cell .letter").allTextContents();
+    assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
+    assert.ok((await page.locator(".maps .boundary").count()) > 0);
+    await page.locator('.maps [data-spot="3 2"]').click();
+    const axes = await read(page, (data) => {
+      const { x, y } = data.studies.stability.document;
+      return [x.values[3], y.values[2]].map((value) => Number(value.toPrecision(4)));
+    });
+    await until(page, `(data) => data.methods[1].spelling.startsWith("baumgarte:alpha=${axes[0]},beta=${axes[1]}@")`);
+    await page.locator(".maps .here").waitFor();
+    await page.keyboard.press("ArrowUp");
+    assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
+  }));
+
+test("E shows the parts of each method's error, that add up to it", () =>
+  onPage({ hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" }, async (page) => {
+    await until(page, hasEnded("budget"), LONG);
+    const { value, parts } = await read(page, (data) => data.studies.budget.document.methods[0].error);
+    const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
+    assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
+    assert.ok((await page.locator(".account .part").count()) > 0);
+    await page.getByRole("button", { name: "energy" }).last().click();
+    assert.match(await page.locator(".accounts").textContent(), /energy at the end/);
+  }));
+
+test("what a study chooses itself makes no other study of it", () => {
+  const of = (kind, method, preset) => signatureOf({ kind, methods: [method], preset });
+  const same = (kind, a, b, preset) => of(kind, a, preset) === of(kind, b, preset);
+  assert.ok(same("work-precision", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
+  assert.ok(!same("budget", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
+  const [low, high] = ["baumgarte:alpha=5,beta=5@rk4:h=1e-3", "baumgarte:alpha=9,beta=7@rk4:h=1e-3"];
+  assert.ok(same("stability", low, high, "baumgarte"));
+  assert.ok(!same("stability", low, high, "limits"));
+  assert.ok(!same("stability", low, low.replace("1e-3", "1e-2"), "baumgarte"));
+});
+
+test("a link opens its study, and other methods ask for it anew", () =>
+  onPage({ hash: `${SHORT}&study=work-precision` }, async (page) => {
+    await until(page, hasEnded("work-precision"), LONG);
+    await page.locator(".study-run").getByText(/^done in|left something out$/).waitFor();
+    await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
+    await until(page, (data) => data.methods.length === 1 && data.view.study === "");
+    assert.equal(await page.getByRole("dialog").count(), 0);
+    await page.keyboard.press("w");
+    await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
+  }));
+
+test("the dialog fits 360 pixels in both themes, and the page does not scroll sideways", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    await onPage({ hash: SHORT, viewport: { width: 360, height: 760 }, colorScheme }, async (page) => {
+      await page.keyboard.press("w");
+      await until(page, hasEnded("work-precision"), LONG);
+      const wide = await page.evaluate(() => {
+        const dialog = document.querySelector("dialog[open]");
+        return [dialog.scrollWidth - dialog.clientWidth, document.body.scrollWidth - innerWidth];
+      });
+      assert.deepEqual(wide.map((extra) => extra <= 0), [true, true], String(wide));
+      await screenshot(page, `studies-360-${colorScheme}`);
+    });
+  }
+});

@@ -1,0 +1,214 @@
+// @ts-check
+// The studies of what is on the page, in one dialog: a tab each, how far it is, and what comes of it.
+import { sentenceOf } from "../api/client.js";
+import { KINDS } from "../state/studies.js";
+import { listen } from "../state/store.js";
+import { h, say, set } from "../widgets/dom.js";
+import { createStudyBudget } from "./study-budget.js";
+import { createStudyCost } from "./study-cost.js";
+import { createStudyMap } from "./study-map.js";
+
+const TABS = {
+  "work-precision": { word: "What accuracy costs", letter: "W" },
+  stability: { word: "Where steps are stable", letter: "B" },
+  budget: { word: "Where the error comes from", letter: "E" },
+};
+const TOLD_EVERY = 2000; // [ms] for those who listen
+
+/** "12 s", "2 min" @param {number} seconds */
+const span = (seconds) => (seconds < 90 ? `${Math.max(1, Math.ceil(seconds))} s` : `${Math.ceil(seconds / 60)} min`);
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../state/session.js").Session} actions
+ */
+export function createStudies(el, store, actions) {
+  const data = store.data;
+  const { studies } = actions;
+  const cost = createStudyCost(store, (m, spelling, words) => {
+    const spellings = data.methods.map((method) => method.spelling);
+    spellings[m] = spelling;
+    apply(() => actions.setMethods(spellings), words);
+  });
+  const map = createStudyMap(store, {
+    preset: studies.preset,
+    changePreset(preset) {
+      actions.setView({ map: preset });
+      studies.start("stability");
+    },
+    onPick: ({ m, spelling, parameters, words }) =>
+      apply(async () => {
+        for (const [name, value] of Object.entries(parameters)) {
+          await actions.setParameter(name, value);
+        }
+        const spellings = data.methods.map((method) => method.spelling);
+        if (m >= 0 && spellings[m] !== spelling) {
+          spellings[m] = spelling;
+          await actions.setMethods(spellings);
+        }
+      }, words),
+  });
+  const views = { "work-precision": cost, stability: map, budget: createStudyBudget(store) };
+  const title = h("h2", { id: "studies-title" });
+  const tabs = KINDS.map((kind) =>
+    h(
+      "button",
+      {
+        type: "button",
+        role: "tab",
+        class: "quiet",
+        id: `tab-${kind}`,
+        "aria-controls": `study-${kind}`,
+        title: `key ${TABS[kind].letter} on the page`,
+        onclick: () => open(kind),
+      },
+      TABS[kind].word,
+    ),
+  );
+  const bar = h("progress", { max: 1, "aria-label": "How far the study is" });
+  const state = h("span", { class: "number" });
+  const spoken = h("p", { class: "hidden", role: "status" });
+  const note = h("p", { class: "study-note", role: "alert" });
+  const stop = h("button", { type: "button", class: "plain", onclick: () => studies.stop(data.view.study) }, "Stop");
+  const again = h("button", { type: "button", class: "plain", onclick: () => studies.start(data.view.study) }, "Run again");
+  const report = h("a", { class: "study-link", download: "" }, "Save as a report");
+  const link = h("button", { type: "button", class: "quiet", title: "copy a link that opens this study", onclick: () => actions.share().then(tellNotice) }, "link");
+  const close = h("button", { type: "button", class: "tool", "aria-label": "Close", onclick: () => dialog.close() }, "×");
+  const panels = KINDS.map((kind) =>
+    h("div", { role: "tabpanel", id: `study-${kind}`, "aria-labelledby": `tab-${kind}`, class: "study-panel" }, views[kind].el),
+  );
+  const dialog = h(
+    "dialog",
+    { class: "dialog study", "aria-labelledby": "studies-title", onclose: () => actions.setView({ study: "" }) },
+    h("div", { class: "study-head" }, title, link, close),
+    h("div", { class: "study-tabs", role: "tablist", "aria-labelledby": "studies-title", onkeydown: onTabKey }, ...tabs),
+    h("div", { class: "study-run" }, bar, state, stop, again, report),
+    note,
+    spoken,
+    ...panels,
+  );
+  el.append(dialog);
+  let told = 0;
+
+  /** @param {KeyboardEvent} event */
+  function onTabKey(event) {
+    const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (by) {
+      event.preventDefault();
+      const n = KINDS.length;
+      const next = (KINDS.findIndex((kind) => kind === data.view.study) + by + n) % n;
+      open(KINDS[next]);
+      tabs[next].focus();
+    }
+  }
+
+  const tellNotice = () => say(note, data.notice);
+
+  /** A change of what is on the page, told here because the page lies behind. */
+  async function apply(change, words) {
+    try {
+      await change();
+      map.mark();
+      showRun();
+      say(note, `${words} on the page now.`);
+    } catch (error) {
+      say(note, sentenceOf(error));
+    }
+  }
+
+  /** @param {string} kind */
+  function open(kind) {
+    if (!data.scene) {
+      return;
+    }
+    data.view.study = kind;
+    if (!dialog.open) {
+      dialog.showModal();
+      tabs[KINDS.findIndex((one) => one === kind)].focus();
+    }
+    say(title, `Studies: ${data.scene.title}`);
+    tabs.forEach((tab, i) => set(tab, { "aria-selected": String(KINDS[i] === kind), "aria-pressed": String(KINDS[i] === kind), tabindex: KINDS[i] === kind ? 0 : -1 }));
+    panels.forEach((panel, i) => (panel.hidden = KINDS[i] !== kind));
+    say(note, "");
+    if (data.studies[kind].state === "none" || (data.studies[kind].state !== "running" && !studies.isPresent(kind))) {
+      studies.start(kind);
+    }
+    show();
+  }
+
+  function stateWords({ state: now, progress, left, elapsed, reason }) {
+    if (now === "running") {
+      return `${Math.round(100 * progress)} %${left === null ? "" : `, ${span(left)} left at most`}`;
+    }
+    return now === "finished" ? `done in ${span(elapsed)}` : reason;
+  }
+
+  function showRun() {
+    const kind = data.view.study;
+    const study = data.studies[kind];
+    if (!study) {
+      return;
+    }
+    const runs = study.state === "running";
+    const words = stateWords(study);
+    bar.hidden = stop.hidden = !runs;
+    bar.value = study.progress;
+    again.hidden = runs;
+    report.hidden = !study.report;
+    set(report, { href: study.report || null });
+    const old = !runs && study.document && !studies.isPresent(kind) ? " – of the methods and parameters before the last change" : "";
+    say(state, words + old);
+    state.dataset.kind = study.state === "failed" ? "error" : "";
+    if (!runs || Date.now() - told > TOLD_EVERY) {
+      told = Date.now();
+      say(spoken, `${TABS[kind].word}: ${words}`);
+    }
+  }
+
+  function show() {
+    const kind = data.view.study;
+    if (kind && dialog.open) {
+      showRun();
+      const has = Boolean(data.studies[kind].document);
+      views[kind].el.classList.toggle("waiting", !has);
+      views[kind].paint();
+    }
+  }
+
+  let width = 0;
+  const observer = new ResizeObserver(() => {
+    if (dialog.open && dialog.clientWidth !== width) {
+      width = dialog.clientWidth;
+      show();
+    }
+  });
+  observer.observe(dialog);
+  const stopListening = listen(store, {
+    study: (kind) => {
+      if (kind === data.view.study) {
+        (data.studies[kind].state === "running" && !data.studies[kind].document ? showRun : show)();
+        if (data.studies[kind].state === "running") {
+          views[kind].el.classList.add("waiting");
+        }
+      }
+    },
+    theme: show,
+    view: () => {
+      if (data.view.study && !dialog.open) {
+        open(data.view.study);
+      } else if (!data.view.study && dialog.open) {
+        dialog.close();
+      }
+    },
+  });
+  return {
+    open,
+    update() {},
+    dispose() {
+      stopListening();
+      observer.disconnect();
+      dialog.remove();
+    },
+  };
+}

@@ -1,0 +1,226 @@
+// @ts-check
+// Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that was predicted. A cell can be
+// pointed at, and clicked to set what its axes stand for.
+import { plain, prettyUnit, quantity } from "../state/format.js";
+import { CLASSES, boundaryOf, presetsOf } from "../state/studies.js";
+import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
+import { h, s, say } from "../widgets/dom.js";
+import { rove } from "../widgets/roving.js";
+
+const GREEK = { alpha: "α", beta: "β" };
+const ROOM = { left: 62, right: 12, top: 8, bottom: 44 };
+const HEIGHT = 360;
+const TICKS = 6;
+
+/** @param {{name: string, unit: string}} axis */
+const titleOf = (axis) => `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
+/** @param {{name: string, unit: string}} axis @param {number} value */
+const valueOf = (axis, value) =>
+  `${GREEK[axis.name] ?? axis.name} = ${axis.unit === "s" ? quantity(value, "s") : `${plain(Number(value.toPrecision(3)))}${axis.unit ? ` ${prettyUnit(axis.unit)}` : ""}`}`;
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {{changePreset: (preset: string) => void, onPick: (change: {m: number, spelling: string, parameters: Record<string, number>, words: string}) => void, preset: () => string}} actions
+ */
+export function createStudyMap(store, actions) {
+  const data = store.data;
+  const menu = h("select", { id: "map-over", onchange: () => actions.changePreset(menu.value) });
+  const legend = h("ul", { class: "legend" });
+  const told = h("p", { class: "told" });
+  const fields = h("div", { class: "maps" });
+  const el = h(
+    "div",
+    {},
+    h("div", { class: "study-bar" }, h("label", { for: "map-over", class: "word" }, "over"), menu),
+    fields,
+    told,
+    legend,
+  );
+
+  /** @type {{method: any, picture: SVGElement, px: (i: number) => number, py: (j: number) => number}[]} */
+  let drawn = [];
+  const map = () => data.studies.stability.document;
+  const placeOf = (spelling) => {
+    const wanted = parseSpelling(spelling);
+    return data.methods.findIndex(({ spelling: own }) => {
+      const mine = parseSpelling(own);
+      return mine.formulation.name === wanted.formulation.name && mine.integrator.name === wanted.integrator.name;
+    });
+  };
+  const labelOf = (method) => data.methods[placeOf(method.method)]?.label ?? method.method;
+
+  function wordsOf(method, i, j) {
+    const cell = method.rows[j][i];
+    const { x, y } = map();
+    const where = [x && valueOf(x, x.values[i]), valueOf(y, y.values[j])].filter(Boolean).join(", ");
+    const outcome = `${CLASSES[cell.class]?.word ?? cell.class}${cell.reason ? `: ${cell.reason}` : ""}`;
+    const margin = Number.isFinite(cell.margin ?? NaN)
+      ? `; the step is ${plain(Number(cell.margin.toPrecision(2)))} of the predicted limit`
+      : "";
+    return `${labelOf(method)}, ${where}: ${outcome}${margin}`;
+  }
+
+  /** What a click on a cell sets. */
+  function changeOf(method, i, j) {
+    const m = placeOf(method.method);
+    const { x, y } = map();
+    const axes = [
+      [x, i],
+      [y, j],
+    ].filter(([axis]) => axis);
+    let spelling = data.methods[m]?.spelling ?? "";
+    /** @type {Record<string, number>} */
+    const parameters = {};
+    for (const [axis, at] of axes) {
+      const value = Number(axis.values[at].toPrecision(4));
+      if (axis.kind === "parameter") {
+        parameters[axis.name] = value;
+      } else {
+        spelling = withSetting(data.catalogue, spelling, axis.name, String(value));
+      }
+    }
+    const words = axes.map(([axis, at]) => valueOf(axis, Number(axis.values[at].toPrecision(4)))).join(", ");
+    return { m, spelling, parameters, words: `${labelOf(method)}: ${words}` };
+  }
+
+  function tickList(axis) {
+    const every = Math.max(1, Math.ceil(axis.values.length / TICKS));
+    return axis.values.map((value, i) => ({ value, i })).filter(({ i }) => i % every === 0);
+  }
+
+  const short = (axis, value) => (axis.unit === "s" ? quantity(value, "s", 1) : quantity(value, "", 2).trim());
+
+  /** Where the method stands now, in cells; null: off the map. */
+  function presentPlace(method) {
+    const m = placeOf(method.method);
+    const at = (axis) => {
+      if (!axis) {
+        return 0.5;
+      }
+      const value =
+        axis.kind === "parameter"
+          ? data.scene.parameters.find(({ name }) => name === axis.name)?.value
+          : settingOf(data.catalogue, data.methods[m]?.spelling ?? "", axis.name)?.value;
+      const f = (v) => (axis.scale === "log" ? Math.log(v) : v);
+      const n = axis.values.length;
+      const share = (f(Number(value)) - f(axis.values[0])) / (f(axis.values[n - 1]) - f(axis.values[0]));
+      const place = 0.5 + share * (n - 1);
+      return value !== undefined && place >= 0 && place <= n ? place : NaN;
+    };
+    const place = [at(map().x), at(map().y)];
+    return m >= 0 && place.every(Number.isFinite) ? place : null;
+  }
+
+  function drawOne(method) {
+    const { x, y } = map();
+    const [nx, ny] = [x ? x.values.length : 1, y.values.length];
+    const width = Math.max(280, Math.min(640, fields.clientWidth || 640));
+    const w = (width - ROOM.left - ROOM.right) / nx;
+    const hgt = (HEIGHT - ROOM.top - ROOM.bottom) / ny;
+    const px = (i) => ROOM.left + i * w;
+    const py = (j) => HEIGHT - ROOM.bottom - j * hgt;
+    const picture = s("svg", {
+      class: "map",
+      viewBox: `0 0 ${width} ${HEIGHT}`,
+      role: "group",
+      "aria-label": `Stability of ${labelOf(method)}: ${titleOf(y)} against ${x ? titleOf(x) : "nothing"}; arrow keys go from cell to cell`,
+    });
+    method.rows.forEach((row, j) =>
+      row.forEach((cell, i) =>
+        picture.append(
+          s(
+            "g",
+            { class: `cell ${cell.class}`, role: "button", tabindex: -1, "data-spot": `${i} ${j}`, "aria-label": wordsOf(method, i, j) },
+            s("rect", { x: px(i), y: py(j + 1), width: w, height: hgt }),
+            s("text", { x: px(i) + w / 2, y: py(j) - hgt / 2 + 4, class: "letter" }, CLASSES[cell.class]?.letter ?? ""),
+          ),
+        ),
+      ),
+    );
+    for (const line of boundaryOf(map(), method)) {
+      const d = line.map(([i, j], n) => `${n ? "L" : "M"}${px(i).toFixed(1)} ${py(j).toFixed(1)}`).join("");
+      picture.append(s("path", { d, class: "boundary under" }), s("path", { d, class: "boundary" }));
+    }
+    drawn.push({ method, picture, px, py });
+    const ticks = tickList(y).map(({ value, i }) => s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)));
+    if (x) {
+      ticks.push(...tickList(x).map(({ value, i }) => s("text", { x: px(i + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "tick middle" }, short(x, value))));
+      ticks.push(s("text", { x: (ROOM.left + width - ROOM.right) / 2, y: HEIGHT - 8, class: "title middle" }, titleOf(x)));
+    }
+    const middle = (ROOM.top + HEIGHT - ROOM.bottom) / 2;
+    ticks.push(s("text", { x: 13, y: middle, class: "title middle", transform: `rotate(-90 13 ${middle})` }, titleOf(y)));
+    picture.append(...ticks);
+    const cellAt = (i, j) => picture.querySelector(`[data-spot="${i} ${j}"]`) ?? undefined;
+    const placed = (node) => /** @type {string} */ (node.getAttribute("data-spot")).split(" ").map(Number);
+    const STEPS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    const rover = rove(picture, {
+      move: (node, key) => {
+        const [i, j] = placed(node);
+        return cellAt(i + STEPS[key][0], j + STEPS[key][1]);
+      },
+      act: (node) => {
+        const [i, j] = placed(node);
+        actions.onPick(changeOf(method, i, j));
+      },
+      tell: (node) => say(told, node ? `${wordsOf(method, ...placed(node))}. Click or Enter: run it so.` : IDLE),
+    });
+    rover.start(cellAt(0, 0));
+    return h(
+      "figure",
+      {},
+      h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`),
+      picture,
+    );
+  }
+
+  const IDLE = "Point at a cell, or reach it with the arrow keys; a click runs the method so.";
+
+  function fillLegend() {
+    const used = new Set(map().methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)));
+    legend.replaceChildren(
+      ...Object.entries(CLASSES)
+        .filter(([name]) => used.has(name))
+        .map(([name, { letter, word }]) =>
+          h(
+            "li",
+            {},
+            s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("g", { class: `cell ${name}` }, s("rect", { width: 18, height: 18 }), s("text", { x: 9, y: 13, class: "letter" }, letter))),
+            word,
+          ),
+        ),
+      h("li", {}, s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("path", { d: "M0 9H18", class: "boundary" })), "predicted boundary"),
+      ...(fields.querySelector(".here")
+        ? [h("li", {}, s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("circle", { cx: 9, cy: 9, r: 6, class: "here" })), "as it runs now")]
+        : []),
+    );
+  }
+
+  function paint() {
+    const presets = presetsOf(data.methods);
+    menu.replaceChildren(...presets.map(({ preset, word }) => h("option", { value: preset }, word)));
+    menu.value = actions.preset();
+    fields.hidden = legend.hidden = told.hidden = !map();
+    if (map()) {
+      drawn = [];
+      fields.replaceChildren(...map().methods.map(drawOne));
+      mark();
+      say(told, IDLE);
+    }
+  }
+
+  /** Rings where the methods stand now; the cells stay, and with them the one in focus. */
+  function mark() {
+    for (const { method, picture, px, py } of drawn) {
+      picture.querySelector(".here")?.remove();
+      const here = presentPlace(method);
+      if (here) {
+        picture.append(s("circle", { cx: px(here[0]), cy: py(here[1]), r: 7, class: "here" }));
+      }
+    }
+    if (map()) {
+      fillLegend();
+    }
+  }
+
+  return { el, paint, mark };
+}
