@@ -1,5 +1,6 @@
 #include "integrators/lagrange_terms.h"
 
+#include "dynamics/direction.h"
 #include "expr/tape.h"
 
 #include <math.h>
@@ -13,7 +14,8 @@ typedef struct part {
 } part;
 
 struct hn_lagrange {
-    int n;         // nq == nv
+    const hn_system *sys;
+    int nq, n;     // n: nv
     double *in;    // q, v, t
     part forces;   // M v, L_q
     part matrices; // entries of M and (M v)_q that are not identically zero
@@ -26,10 +28,12 @@ struct hn_lagrange {
 
 // the expressions while they are built
 typedef struct source {
+    const hn_system *sys;
     hn_graph *g;
     hn_system_exprs ex;
-    int n;
+    int nq, n;
     int *symbols;              // q, v, t
+    hn_ex *of_q;               // nq: derivatives by the entries of q, or their rates G v
     hn_ex *momentum, *kinetic; // n: M v, d/dq (1/2 v' M v)
     hn_ex *still;              // n: f(q, 0, t)
     hn_ex *list;               // 2 n n
@@ -48,17 +52,77 @@ static void build_momentum(source *s) {
     }
 }
 
+static int place_of(const source *s, int symbol) {
+    int i = 0;
+    while (s->ex.q_symbols[i] != symbol) {
+        i++;
+        HN_ASSERT(i < s->nq);
+    }
+    return i;
+}
+
+// out (n) = of_q G: derivatives along the speeds
+static void go_along_speeds(source *s, hn_ex *out) {
+    for (int j = 0; j < s->n; j++) {
+        int symbols[HN_DIRECTION_MOST];
+        hn_ex seed[HN_DIRECTION_MOST], sum = hn_num(0);
+        const int n = hn_direction_of_speed(s->sys, j, symbols, seed);
+        for (int k = 0; k < n; k++) {
+            const int i = place_of(s, symbols[k]);
+            sum = hn_add(s->g, sum, hn_mul(s->g, s->of_q[i], seed[k]));
+        }
+        out[j] = sum;
+    }
+}
+
+// of_q = G v
+static void build_rates(source *s) {
+    for (int i = 0; i < s->nq; i++) {
+        s->of_q[i] = hn_num(0);
+    }
+    for (int j = 0; j < s->n; j++) {
+        int symbols[HN_DIRECTION_MOST];
+        hn_ex seed[HN_DIRECTION_MOST];
+        const int n = hn_direction_of_speed(s->sys, j, symbols, seed);
+        const hn_ex v = hn_graph_symbol_expr(s->g, s->ex.v_symbols[j]);
+        for (int k = 0; k < n; k++) {
+            const int i = place_of(s, symbols[k]);
+            s->of_q[i] = hn_add(s->g, s->of_q[i], hn_mul(s->g, seed[k], v));
+        }
+    }
+}
+
+// The momentum of a ball turns with the axes that it is measured in: rate += omega x p.
+static void turn_momenta(source *s, hn_ex *rate) {
+    for (int at = 0; at < s->n; at++) {
+        if (hn_system_position_of(s->sys, at) >= 0) {
+            continue;
+        }
+        const hn_ex *p = s->momentum + at;
+        for (int x = 0; x < 3; x++) {
+            const int y = (x + 1) % 3, z = (x + 2) % 3;
+            const hn_ex wy = hn_graph_symbol_expr(s->g, s->ex.v_symbols[at + y]);
+            const hn_ex wz = hn_graph_symbol_expr(s->g, s->ex.v_symbols[at + z]);
+            const hn_ex turn = hn_sub(s->g, hn_mul(s->g, wy, p[z]), hn_mul(s->g, wz, p[y]));
+            rate[at + x] = hn_add(s->g, rate[at + x], turn);
+        }
+        at += 2;
+    }
+}
+
 static void build_kinetic(source *s) {
     hn_ex twice = hn_num(0);
     for (int i = 0; i < s->n; i++) {
         const hn_ex v = hn_graph_symbol_expr(s->g, s->ex.v_symbols[i]);
         twice = hn_add(s->g, twice, hn_mul(s->g, v, s->momentum[i]));
     }
-    hn_diff_reverse(s->g, hn_scale(0.5, twice), s->ex.q_symbols, s->n, s->kinetic);
+    hn_diff_reverse(s->g, hn_scale(0.5, twice), s->ex.q_symbols, s->nq, s->of_q);
+    go_along_speeds(s, s->kinetic);
 }
 
 static hn_status compile(const source *s, int n_out, hn_arena *arena, part *p) {
-    hn_status status = hn_tape_compile(s->g, s->list, n_out, s->symbols, 2 * s->n + 1, &p->tape);
+    hn_status status =
+        hn_tape_compile(s->g, s->list, n_out, s->symbols, s->nq + s->n + 1, &p->tape);
     if (status != HN_OK) {
         return status;
     }
@@ -100,7 +164,8 @@ static hn_status compile_matrices(hn_lagrange *l, source *s, hn_arena *arena) {
     const size_t n = (size_t)s->n;
     memcpy(s->list, s->ex.M, n * n * sizeof *s->list);
     for (size_t i = 0; i < n; i++) {
-        hn_diff(s->g, s->momentum[i], s->ex.q_symbols, s->n, s->list + n * n + i * n);
+        hn_diff(s->g, s->momentum[i], s->ex.q_symbols, s->nq, s->of_q);
+        go_along_speeds(s, s->list + n * n + i * n);
     }
     l->at = hn_arena_ints(arena, 2 * n * n);
     l->row = hn_arena_ints(arena, n * n);
@@ -116,11 +181,11 @@ static hn_status compile_matrices(hn_lagrange *l, source *s, hn_arena *arena) {
 // Q_v, and the sum of the sizes of its parts, squared
 static hn_status compile_rest(source *s, hn_arena *arena, part *p) {
     const int n = s->n;
-    hn_ex *turned = s->list + n; // (dM/dt) v: the rate of M v with v held fixed
-    for (int i = 0; i < n; i++) {
-        s->zero[i] = hn_graph_symbol_expr(s->g, s->ex.v_symbols[i]);
-    }
-    hn_diff_forward(s->g, s->momentum, n, s->ex.q_symbols, s->zero, n, turned);
+    hn_ex *turned =
+        s->list + n; // (dM/dt) v, and omega x p of balls: the rate of M v with v held fixed
+    build_rates(s);
+    hn_diff_forward(s->g, s->momentum, n, s->ex.q_symbols, s->of_q, s->nq, turned);
+    turn_momenta(s, turned);
     for (int i = 0; i < n; i++) {
         const hn_ex moving = hn_sub(s->g, s->ex.f[i], s->still[i]);
         const hn_ex inertia = hn_sub(s->g, turned[i], s->kinetic[i]);
@@ -135,9 +200,9 @@ static hn_status compile_rest(source *s, hn_arena *arena, part *p) {
 
 static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
     const int n = s->n;
-    memcpy(s->symbols, s->ex.q_symbols, (size_t)n * sizeof *s->symbols);
-    memcpy(s->symbols + n, s->ex.v_symbols, (size_t)n * sizeof *s->symbols);
-    s->symbols[2 * n] = s->ex.t_symbol;
+    memcpy(s->symbols, s->ex.q_symbols, (size_t)s->nq * sizeof *s->symbols);
+    memcpy(s->symbols + s->nq, s->ex.v_symbols, (size_t)n * sizeof *s->symbols);
+    s->symbols[s->nq + n] = s->ex.t_symbol;
     for (int i = 0; i < n; i++) {
         s->zero[i] = hn_num(0);
     }
@@ -163,11 +228,15 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
 
 hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena, hn_lagrange **out) {
     const hn_system_info info = hn_system_get_info(sys);
-    HN_ASSERT(info.nq == info.nv);
-    const size_t n = (size_t)info.nv;
+    const size_t n = (size_t)info.nv, nq = (size_t)info.nq;
     hn_lagrange *l = hn_arena_get(arena, sizeof *l);
-    source s = {.g = hn_system_graph(sys), .ex = hn_system_get_exprs(sys), .n = info.nv};
-    s.symbols = hn_arena_ints(arena, 2 * n + 1);
+    source s = {.sys = sys,
+                .g = hn_system_graph(sys),
+                .ex = hn_system_get_exprs(sys),
+                .nq = info.nq,
+                .n = info.nv};
+    s.symbols = hn_arena_ints(arena, nq + n + 1);
+    s.of_q = hn_arena_get(arena, nq * sizeof *s.of_q);
     s.momentum = hn_arena_get(arena, n * sizeof *s.momentum);
     s.kinetic = hn_arena_get(arena, n * sizeof *s.kinetic);
     s.still = hn_arena_get(arena, n * sizeof *s.still);
@@ -176,8 +245,10 @@ hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena, hn_lagrange 
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+    l->sys = sys;
+    l->nq = info.nq;
     l->n = info.nv;
-    l->in = hn_arena_doubles(arena, 2 * n + 1);
+    l->in = hn_arena_doubles(arena, nq + n + 1);
     const hn_status status = l->in ? build(l, &s, arena) : HN_ERR_MEMORY;
     if (status != HN_OK) {
         hn_lagrange_free(l);
@@ -201,10 +272,10 @@ int hn_lagrange_mass_is_constant(const hn_lagrange *l) {
 }
 
 static void run(hn_lagrange *l, part *p, double t, const double *q, const double *v) {
-    const size_t n = (size_t)l->n;
-    memcpy(l->in, q, n * sizeof *q);
-    memcpy(l->in + n, v, n * sizeof *v);
-    l->in[2 * n] = t;
+    const size_t n = (size_t)l->n, nq = (size_t)l->nq;
+    memcpy(l->in, q, nq * sizeof *q);
+    memcpy(l->in + nq, v, n * sizeof *v);
+    l->in[nq + n] = t;
     hn_tape_eval(p->tape, l->in, p->out, p->work);
     p->runs++;
 }
@@ -220,10 +291,11 @@ int hn_lagrange_has_dissipation(hn_lagrange *l) {
     unsigned seed = 1;
     for (int k = 0; k < STATES; k++) {
         double *in = l->in;
-        for (int i = 0; i < 2 * l->n; i++) {
+        for (int i = 0; i < l->nq + l->n; i++) {
             in[i] = next_signed(&seed);
         }
-        in[2 * l->n] = 0.1 * k;
+        (void)hn_system_normalise(l->sys, in);
+        in[l->nq + l->n] = 0.1 * k;
         hn_tape_eval(l->rest.tape, in, l->rest.out, l->rest.work);
         for (int i = 0; i < l->n; i++) {
             const double left = fabs(l->rest.out[i]), size = sqrt(l->rest.out[l->n + i]);

@@ -5,8 +5,11 @@
 //     d/dt (M v) = L_q + Q_v + J' lambda,     L_q = d/dq (1/2 v' M v) + f(q, 0, t)                               (1)
 //     Q_v = f(q, v, t) - f(q, 0, t) + (dM/dt) v - d/dq (1/2 v' M v)                                             (2)
 //
+// Derivatives by q are taken along the speeds: along G of q' = G v. For the three speeds of a ball, measured in its own axes, the
+// left of (1) and the middle of (2) gain omega x p, p being its three entries of M v (Hamel's form).
+//
 // Q_v is what depends on speed and comes from no Lagrangian of this form: dampers, friction, air, gyroscopic terms. It vanishes
-// identically for rigid bodies under weight, springs and forces of place and time. Needs nq == nv.
+// identically for rigid bodies under weight, springs and forces of place and time.
 
 #include "base/arena.h"
 #include "dynamics/system.h"
@@ -26,7 +29,7 @@ int hn_lagrange_has_dissipation(hn_lagrange *l);
 /// out: M v (nv) and L_q (nv) at (t, q, v).
 void hn_lagrange_forces(hn_lagrange *l, double t, const double *q, const double *v,
                         const double **momentum, const double **force);
-/// M (nv x nv) and B = (M v)_q (nv x nv, row i: derivative of entry i).
+/// M (nv x nv) and B = (M v)_q (nv x nv, row i: derivative of entry i along the speeds).
 void hn_lagrange_matrices(hn_lagrange *l, double t, const double *q, const double *v,
                           const double **M, const double **B);
 /// Entries of M + (M v)_q that are not identically zero: their number, rows and columns (borrowed).
