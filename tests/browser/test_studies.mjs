@@ -208,6 +208,10 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
     await page.locator(".maps .here").waitFor();
     await page.keyboard.press("ArrowUp");
     assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
+    await page.getByLabel("over").selectOption("limits");
+    await until(page, (data) => data.studies.stability.document?.x === null, LONG);
+    assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side");
+    assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each");
   }));
 
 test("E shows the parts of each method's error, that add up to it", () =>
@@ -218,7 +222,7 @@ test("E shows the parts of each method's error, that add up to it", () =>
     assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
     assert.ok((await page.locator(".account .part").count()) > 0);
     await page.getByRole("button", { name: "energy" }).last().click();
-    assert.match(await page.locator(".accounts").textContent(), /energy at the end/);
+    assert.match(await page.locator(".accounts").textContent(), /energy at the end has changed by/);
   }));
 
 test("what a study chooses itself makes no other study of it", () => {

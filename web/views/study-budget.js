@@ -12,6 +12,8 @@ const ACCOUNTS = [
   { name: "energy", word: "energy", order: BILL },
 ];
 
+const ADDS_UP = 0.05; // relative: beyond it the error is too large for a sum of first order
+
 /** @param {number | null} value @param {string} unit */
 const numberOf = (value, unit) =>
   value === null ? "–" : Math.abs(value) < 1e-12 && value !== 0 ? `${scientific(value)} ${unit}` : quantity(value, unit);
@@ -48,8 +50,8 @@ export function createStudyBudget(store) {
     const account = method[shown.name];
     return account
       ? shown.name === "error"
-        ? { total: account.value, unit: account.unit, parts: account.parts, what: `${account.coordinate} at the end is off by` }
-        : { total: account.change, unit: "J", parts: account.parts, what: "energy at the end is off by" }
+        ? { total: account.value, unit: account.unit, parts: account.parts, sum: account.sum, what: `${account.coordinate} at the end is off by` }
+        : { total: account.change, unit: "J", parts: account.parts, sum: account.change, what: "energy at the end has changed by" }
       : null;
   }
 
@@ -75,8 +77,12 @@ export function createStudyBudget(store) {
     const account = accountOf(method);
     const why = method.state === "done" ? "there is no reference solution to be off from" : method.reason;
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
+    const differs = account && Math.abs(account.sum - account.total) > ADDS_UP * Math.abs(account.total);
+    const warning = differs
+      ? `; its parts add up to ${numberOf(account.sum, account.unit)}: so large an error is no sum of small ones`
+      : "";
     const words = account
-      ? `${account.what} ${numberOf(account.total, account.unit)}${partly}`
+      ? `${account.what} ${numberOf(account.total, account.unit)}${warning}${partly}`
       : why;
     return h(
       "figure",
@@ -118,7 +124,7 @@ export function createStudyBudget(store) {
     }
     about.textContent =
       shown.name === "error"
-        ? "Each bar holds the parts of one method's error, in shares of it: what pushed the coordinate forward to the right, what held it back to the left. They add up to the error."
+        ? "Each bar holds the parts of one method's error, in shares of it: what pushed the coordinate forward to the right, what held it back to the left. They add up to it while it is small."
         : "Each bar holds what put energy in (right) and what took it out (left), in shares. They add up to the change.";
     list.replaceChildren(...study().methods.map(row));
     legend.replaceChildren(

@@ -88,7 +88,7 @@ export function createStudyMap(store, actions) {
     return axis.values.map((value, i) => ({ value, i })).filter(({ i }) => i % every === 0);
   }
 
-  const short = (axis, value) => (axis.unit === "s" ? quantity(value, "s", 1) : quantity(value, "", 2).trim());
+  const short = (axis, value) => (axis.unit === "s" ? quantity(value, "s", 2) : quantity(value, "", 2).trim());
 
   /** Where the method stands now, in cells; null: off the map. */
   function presentPlace(method) {
@@ -111,9 +111,11 @@ export function createStudyMap(store, actions) {
     return m >= 0 && place.every(Number.isFinite) ? place : null;
   }
 
-  function drawOne(method) {
+  /** One method; or all of them side by side, where nothing but the step is varied. */
+  function drawOne(methods) {
     const { x, y } = map();
-    const [nx, ny] = [x ? x.values.length : 1, y.values.length];
+    const [nx, ny] = [x ? x.values.length : methods.length, y.values.length];
+    const at = (i) => (x ? { method: methods[0], column: i } : { method: methods[i], column: 0 });
     const width = Math.max(280, Math.min(640, fields.clientWidth || 640));
     const w = (width - ROOM.left - ROOM.right) / nx;
     const hgt = (HEIGHT - ROOM.top - ROOM.bottom) / ny;
@@ -123,29 +125,35 @@ export function createStudyMap(store, actions) {
       class: "map",
       viewBox: `0 0 ${width} ${HEIGHT}`,
       role: "group",
-      "aria-label": `Stability of ${labelOf(method)}: ${titleOf(y)} against ${x ? titleOf(x) : "nothing"}; arrow keys go from cell to cell`,
+      "aria-label": `Stability of ${methods.map(labelOf).join(", ")}: ${titleOf(y)}${x ? ` against ${titleOf(x)}` : ""}; arrow keys go from cell to cell`,
     });
-    method.rows.forEach((row, j) =>
-      row.forEach((cell, i) =>
+    for (let j = 0; j < ny; j++) {
+      for (let i = 0; i < nx; i++) {
+        const { method, column } = at(i);
+        const cell = method.rows[j][column];
         picture.append(
           s(
             "g",
-            { class: `cell ${cell.class}`, role: "button", tabindex: -1, "data-spot": `${i} ${j}`, "aria-label": wordsOf(method, i, j) },
+            { class: `cell ${cell.class}`, role: "button", tabindex: -1, "data-spot": `${i} ${j}`, "aria-label": wordsOf(method, column, j) },
             s("rect", { x: px(i), y: py(j + 1), width: w, height: hgt }),
             s("text", { x: px(i) + w / 2, y: py(j) - hgt / 2 + 4, class: "letter" }, CLASSES[cell.class]?.letter ?? ""),
           ),
-        ),
-      ),
-    );
-    for (const line of boundaryOf(map(), method)) {
-      const d = line.map(([i, j], n) => `${n ? "L" : "M"}${px(i).toFixed(1)} ${py(j).toFixed(1)}`).join("");
-      picture.append(s("path", { d, class: "boundary under" }), s("path", { d, class: "boundary" }));
+        );
+      }
     }
-    drawn.push({ method, picture, px, py });
+    methods.forEach((method, k) => {
+      for (const line of boundaryOf(map(), method)) {
+        const d = line.map(([i, j], n) => `${n ? "L" : "M"}${px(k + i).toFixed(1)} ${py(j).toFixed(1)}`).join("");
+        picture.append(s("path", { d, class: "boundary under" }), s("path", { d, class: "boundary" }));
+      }
+      drawn.push({ method, picture, px: (i) => px(k + i), py });
+    });
     const ticks = tickList(y).map(({ value, i }) => s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)));
     if (x) {
       ticks.push(...tickList(x).map(({ value, i }) => s("text", { x: px(i + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "tick middle" }, short(x, value))));
       ticks.push(s("text", { x: (ROOM.left + width - ROOM.right) / 2, y: HEIGHT - 8, class: "title middle" }, titleOf(x)));
+    } else {
+      ticks.push(...methods.map((method, k) => s("text", { x: px(k + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "middle" }, labelOf(method))));
     }
     const middle = (ROOM.top + HEIGHT - ROOM.bottom) / 2;
     ticks.push(s("text", { x: 13, y: middle, class: "title middle", transform: `rotate(-90 13 ${middle})` }, titleOf(y)));
@@ -160,15 +168,18 @@ export function createStudyMap(store, actions) {
       },
       act: (node) => {
         const [i, j] = placed(node);
-        actions.onPick(changeOf(method, i, j));
+        actions.onPick(changeOf(at(i).method, at(i).column, j));
       },
-      tell: (node) => say(told, node ? `${wordsOf(method, ...placed(node))}. Click or Enter: run it so.` : IDLE),
+      tell: (node) => {
+        const [i, j] = node ? placed(node) : [0, 0];
+        say(told, node ? `${wordsOf(at(i).method, at(i).column, j)}. Click or Enter: run it so.` : IDLE);
+      },
     });
     rover.start(cellAt(0, 0));
     return h(
       "figure",
       {},
-      h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`),
+      ...methods.map((method) => h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`)),
       picture,
     );
   }
@@ -202,7 +213,7 @@ export function createStudyMap(store, actions) {
     fields.hidden = legend.hidden = told.hidden = !map();
     if (map()) {
       drawn = [];
-      fields.replaceChildren(...map().methods.map(drawOne));
+      fields.replaceChildren(...(map().x ? map().methods.map((method) => drawOne([method])) : [drawOne(map().methods)]));
       mark();
       say(told, IDLE);
     }
@@ -210,8 +221,8 @@ export function createStudyMap(store, actions) {
 
   /** Rings where the methods stand now; the cells stay, and with them the one in focus. */
   function mark() {
+    fields.querySelectorAll(".here").forEach((ring) => ring.remove());
     for (const { method, picture, px, py } of drawn) {
-      picture.querySelector(".here")?.remove();
       const here = presentPlace(method);
       if (here) {
         picture.append(s("circle", { cx: px(here[0]), cy: py(here[1]), r: 7, class: "here" }));
