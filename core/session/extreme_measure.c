@@ -180,7 +180,7 @@ const hn_extreme_measure hn_extreme_measures[] = {
     {"outcome", "how the run ended, or the solver answered", 0, -1, 1, see_outcome},
     {"stable-step", "the largest step {h} at which nothing grows [s]", 0, 0, 0,
      hn_extreme_see_stable_step},
-    {"lyapunov", "rate at which neighbours part, from twins brought together every 0.5 s [1/s]", 0,
-     0, 0, hn_extreme_see_lyapunov},
+    {"lyapunov", "rate at which neighbours part, from twins brought together again and again [1/s]",
+     0, 0, 0, hn_extreme_see_lyapunov},
 };
 const int hn_extreme_n_measures = sizeof hn_extreme_measures / sizeof *hn_extreme_measures;

@@ -1,8 +1,8 @@
 // Measures with a loop of their own: the largest step that does not grow, and how fast neighbours part.
 #include "session/extreme_internal.h"
 
-#include "dynamics/project.h"
 #include "linalg/dense.h"
+#include "study/chaos.h"
 #include "study/spectrum.h"
 
 #include <math.h>
@@ -157,106 +157,8 @@ void hn_extreme_see_stable_step(hn_extreme_bench *bench, const hn_extreme_trial 
 
 // chaos --------------------------------------------------------------------------------------------------------------
 
-#define TWIN_APART 1e-7  // how far the twin begins, of the coordinates' unit
-#define TWIN_TIME 0.5    // between renormalisations [s]
-#define TWIN_LEFT_OUT 10 // of them, until the twin lies in the direction that grows
-
-typedef struct twins {
-    const hn_system *sys;
-    const hn_method_spec *spec;
-    hn_projector *projector;
-    hn_system_info info;
-    double *q, *v, *twin_q, *twin_v, *delta;
-} twins;
-
-static double apart(twins *w) {
-    hn_system_difference(w->sys, w->q, w->twin_q, w->delta);
-    double sum = hn_dot(w->info.nv, w->delta, w->delta);
-    for (int i = 0; i < w->info.nv; i++) {
-        sum += (w->twin_v[i] - w->v[i]) * (w->twin_v[i] - w->v[i]);
-    }
-    return sqrt(sum);
-}
-
-/// The twin at TWIN_APART of the way it has gone, on the loops.
-static hn_status renormalise(twins *w, double distance) {
-    const double share = TWIN_APART / distance;
-    hn_system_difference(w->sys, w->q, w->twin_q, w->delta);
-    memcpy(w->twin_q, w->q, (size_t)w->info.nq * sizeof(double));
-    for (int i = 0; i < w->info.nv; i++) {
-        w->delta[i] *= share;
-        w->twin_v[i] = w->v[i] + share * (w->twin_v[i] - w->v[i]);
-    }
-    hn_system_move(w->sys, w->twin_q, w->delta);
-    const hn_status status = hn_project_position(w->projector, 0, w->twin_q, 1e-15, NULL);
-    return status == HN_OK ? hn_project_velocity(w->projector, 0, w->twin_q, w->twin_v, NULL)
-                           : status;
-}
-
-static hn_status advance(const twins *w, double *q, double *v) {
-    hn_run *run = NULL;
-    hn_diag diag;
-    hn_sample s;
-    hn_status status = hn_run_create(w->sys, w->spec, q, v, NULL, &run, &diag);
-    if (status == HN_OK) {
-        hn_run_watch(run, 0);
-        status = hn_run_advance(run, TWIN_TIME);
-    }
-    if (status == HN_OK) {
-        status = hn_run_sample(run, TWIN_TIME, &s);
-    }
-    if (status == HN_OK) {
-        hn_system_from_user(w->sys, s.q, q);
-        hn_system_rates_from_user(w->sys, s.v, v);
-    }
-    hn_run_free(run);
-    return status;
-}
-
-static hn_status make_twins(twins *w, const hn_extreme_look *look, const hn_method_spec *spec) {
-    w->sys = hn_model_system(look->model);
-    w->spec = spec;
-    w->info = hn_system_get_info(w->sys);
-    const size_t nq = (size_t)w->info.nq, nv = (size_t)w->info.nv;
-    w->q = hn_arena_doubles(look->arena, nq);
-    w->v = hn_arena_doubles(look->arena, nv);
-    w->twin_q = hn_arena_doubles(look->arena, nq);
-    w->twin_v = hn_arena_doubles(look->arena, nv);
-    w->delta = hn_arena_doubles(look->arena, nv);
-    if (hn_arena_failed(look->arena)) {
-        return HN_ERR_MEMORY;
-    }
-    memcpy(w->q, look->q, nq * sizeof(double));
-    memcpy(w->v, look->v, nv * sizeof(double));
-    memcpy(w->twin_q, look->q, nq * sizeof(double));
-    memcpy(w->twin_v, look->v, nv * sizeof(double));
-    for (int i = 0; i < w->info.nv; i++) {
-        w->twin_v[i] += TWIN_APART * (i + 1); // in no direction of symmetry
-    }
-    const hn_status status =
-        hn_projector_create(w->sys, HN_WEIGHT_MASS, look->arena, &w->projector);
-    return status == HN_OK ? renormalise(w, TWIN_APART) : status;
-}
-
-/// Mean rate at which the twin parts, over the trial's time.
-static double part_rate(hn_extreme_bench *bench, twins *w, double T, hn_status *status) {
-    const int n = (int)fmin(floor(T / TWIN_TIME), 1e5);
-    double sum = 0;
-    for (int k = 0; k < n && *status == HN_OK; k++) {
-        *status = advance(w, w->q, w->v);
-        if (*status == HN_OK) {
-            *status = advance(w, w->twin_q, w->twin_v);
-        }
-        if (*status == HN_OK) {
-            const double distance = apart(w);
-            sum += k < TWIN_LEFT_OUT ? 0 : log(distance / TWIN_APART);
-            *status = renormalise(w, distance);
-        }
-        if (hn_extreme_is_stopped(bench)) {
-            *status = HN_ERR_BUDGET;
-        }
-    }
-    return sum / (TWIN_TIME * (n - TWIN_LEFT_OUT));
+static int ask_bench(void *user) {
+    return hn_extreme_is_stopped(user);
 }
 
 void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *trial,
@@ -265,24 +167,23 @@ void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *tr
     hn_extreme_trial still = *trial;
     still.time = (hn_extreme_number){0}; // the look stands at its start
     const hn_extreme_point point = {&still, scene, method, 0};
+    const hn_walk_limits limits = {.stop = ask_bench, .user = bench};
     hn_extreme_look look;
-    twins w = {0};
+    hn_chaos chaos;
+    hn_diag diag = {0};
     out->value = (double)NAN;
     hn_extreme_look_begin(bench, &point, 0, &look);
     hn_status status = look.status;
-    if (status == HN_OK && !(trial->time.value > 2 * TWIN_LEFT_OUT * TWIN_TIME)) {
-        fail(out, HN_ERR_INPUT, "the time is too short for an estimate");
-    } else if (status == HN_OK) {
-        const hn_method_spec spec = *hn_run_spec(look.run);
-        status = make_twins(&w, &look, &spec);
-        const double rate = status == HN_OK ? part_rate(bench, &w, trial->time.value, &status) : 0;
-        if (status == HN_OK) {
-            out->value = rate / trial->scale;
-        }
-    }
     if (status != HN_OK) {
         fail(out, status, look.reason);
+    } else {
+        status = hn_chaos_estimate(hn_model_system(look.model), look.q, look.v, trial->time.value,
+                                   &limits, &chaos, &diag);
+        if (status == HN_OK) {
+            out->value = chaos.exponent / trial->scale;
+        } else {
+            fail(out, status, diag.message);
+        }
     }
-    hn_projector_free(w.projector);
     hn_extreme_look_end(&look);
 }
