@@ -146,7 +146,9 @@ class Stateless(driver.ServerCase):
             answer = self.post("equations", {"scene": "four-bar", "format": form}).json()
             self.assertEqual(answer["format"], form)
             self.assertGreater(len(answer["text"]), 100)
-        self.assertTrue(self.post("equations", {"scene": "four-bar", "format": "json"}).json())
+        position = self.post("equations", {"scene": "four-bar", "format": "json"}).json()["position"]
+        self.assertEqual(position["independent"], ["th1"])
+        self.assertEqual([line["name"] for line in position["steps"][0]["unknowns"]], ["theta_coupler", "th3"])
 
     def test_a_run_has_its_samples_in_columns(self):
         run = self.post("runs", {"scene": "four-bar", "method": METHODS[1], "time": 1, "every": 0.25}).json()
