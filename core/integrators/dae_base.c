@@ -302,6 +302,27 @@ hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *wh
     return status;
 }
 
+void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size) {
+    const double massless = 1e-14; // of the largest mass, as in the dense solves
+    const hn_system_info info = hn_system_get_info(sys);
+    double heaviest = 0;
+    int found = -1;
+    for (int i = 0; i < info.nv; i++) {
+        heaviest = fmax(heaviest, M[(size_t)i * info.nv + i]);
+    }
+    for (int i = info.nv - 1; i >= 0; i--) {
+        found = M[(size_t)i * info.nv + i] > massless * heaviest ? found : i;
+    }
+    const int named = found >= 0 && found < info.n_user;
+    const char *name =
+        named ? hn_system_scene(sys)->coordinates[hn_system_user_coordinate(sys, found)].name
+              : "a combination of the coordinates";
+    snprintf(why, size,
+             "ggl needs M^-1 and the mass matrix at t = %.6g s has none: %s moves no mass; index2 "
+             "and index3 serve this",
+             t, name);
+}
+
 int hn_dae_close_setting(hn_dae_form form, const double *form_settings) {
     return form == HN_FORM_INDEX2 ? (int)form_settings[0] : HN_CLOSE_NEVER;
 }

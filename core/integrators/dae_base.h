@@ -84,6 +84,9 @@ double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *mov
 /// Notes `what` failed at time t and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
 
+/// Why a step of the ggl form has no answer at an M (nv x nv) that has no inverse: names the first coordinate without mass.
+void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size);
+
 /// When integrators on index 2 close the position at the end of a step: every so many steps, or one of these.
 enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
 /// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.

@@ -408,9 +408,13 @@ static hn_status begin(implicit_dae *s, double t, const double *y) {
     const hn_status status =
         hn_implicit_linear_at(&s->lin, t, s->q0, s->v0, s->a_start, s->lambda_start);
     if (status != HN_OK) {
-        snprintf(s->why, sizeof s->why, "%s at t = %.6g s: %s",
-                 s->form == HN_FORM_GGL ? "the mass matrix" : "the equations", t,
-                 hn_status_text(status));
+        if (s->form == HN_FORM_GGL && status != HN_ERR_DIVERGED) {
+            hn_dae_tell_massless(s->sys, hn_linear_get(s->lin.terms, HN_LINEAR_M), t, s->why,
+                                 sizeof s->why);
+        } else {
+            snprintf(s->why, sizeof s->why, "the equations at t = %.6g s: %s", t,
+                     hn_status_text(status));
+        }
         return status;
     }
     const double *R = hn_linear_get(s->lin.terms, HN_LINEAR_RESIDUAL);

@@ -13,7 +13,9 @@ const hn_formulation hn_formulation_ggl = {
     .drift = "none: loop gap and speed gap stay at rounding",
     .when =
         "stiff springs and dampers, long runs, tight tolerances; the default among implicit ones",
-    .when_not = "cheap short runs without stiffness: an explicit method with projection costs less",
+    .when_not =
+        "cheap short runs without stiffness: an explicit method with projection costs less; a "
+        "massless link: its equations have M^-1 in them (index2 and index3 serve that)",
     .source =
         "Gear, Leimkuhler & Gupta 1985; Fuehrer & Leimkuhler 1991; Hairer & Wanner 1996, VII.2",
     .needs = "M f phi J and derivatives",

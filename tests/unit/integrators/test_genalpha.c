@@ -188,6 +188,35 @@ static void a_step_does_not_allocate_and_a_trial_can_be_repeated(void **state) {
     }
 }
 
+// x^2 + y^2 = 1 holds y, which has no mass, to x: the motion is determined, M^-1 does not exist
+static void
+a_massless_coordinate_is_refused_by_name_where_the_stabiliser_divides_by_masses(void **state) {
+    (void)state;
+    static const char light[] =
+        "{\"holonom\": 1, \"name\": \"light\", \"lagrangian\": {\"coordinates\": ["
+        "{\"name\": \"x\", \"rate\": \"vx\", \"unit\": \"m\"}, {\"name\": \"y\", \"rate\": \"vy\", "
+        "\"unit\": \"m\"}], \"kinetic\": \"vx^2/2\", \"potential\": \"9.81*y\","
+        "\"constraints\": [{\"name\": \"rod\", \"formula\": \"x^2 + y^2 - 1\"}]},"
+        "\"start\": {\"positions\": {\"x\": 0.6, \"y\": {\"guess\": -0.8}}, \"rates\": {\"x\": "
+        "0}}}";
+    static const char *const steppers[] = {"genalpha", "radau5", "radau3"};
+    for (int i = 0; i < 3; i++) {
+        const hn_stepper *s = hn_stepper_find(steppers[i]);
+        hn_model m;
+        hn_test_dae d;
+        hn_model_open_text(&m, light, NULL);
+        hn_test_dae_open(&d, &m, s, HN_FORM_GGL, NULL);
+        assert_int_not_equal(hn_test_dae_steps(&d, 1e-3, 1), HN_OK);
+        assert_non_null(strstr(d.table->why(d.self), "y moves no mass"));
+        hn_test_dae_close(&d);
+        hn_test_dae_open(&d, &m, s, HN_FORM_INDEX3, NULL);
+        assert_int_equal(hn_test_dae_steps(&d, 1e-3, 10),
+                         HN_OK); // what it is told to use serves it
+        hn_test_dae_close(&d);
+        hn_model_close(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_is_2_in_positions_speeds_and_multipliers_below_rho_1),
@@ -199,6 +228,8 @@ int main(void) {
         cmocka_unit_test(an_infinitely_fast_oscillation_keeps_rho_of_itself_in_a_step),
         cmocka_unit_test(rows_written_twice_change_nothing_but_the_last_digits),
         cmocka_unit_test(a_step_does_not_allocate_and_a_trial_can_be_repeated),
+        cmocka_unit_test(
+            a_massless_coordinate_is_refused_by_name_where_the_stabiliser_divides_by_masses),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
