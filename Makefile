@@ -278,7 +278,7 @@ extreme: all
 
 # the budget leaves time for the plots and for a machine that is not alone; nothing else should run beside it
 report: all
-	@$(PROGRAM) report --budget 240 --out build/report.html --plots build/report
+	@$(PROGRAM) report --budget 225 --out build/report.html --plots build/report
 	@echo 'report: build/report.html, plots in build/report/'
 
 rings: build/.packages-test

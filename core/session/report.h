@@ -96,7 +96,7 @@ typedef struct hn_verdict {
     double
         best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
     int done, failed, skipped; ///< sizes
-    char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "elsewhere, by 0.3"
+    char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "no digit", "elsewhere, by 0.3"
     const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
 } hn_verdict;
 hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);

@@ -6,6 +6,8 @@
 
 const double hn_report_accuracy[HN_REPORT_BANDS] = {1e-3, 1e-6, 1e-9};
 
+static const double NO_DIGIT = 0.1; // errors from here on
+
 static const hn_band *band_at(const hn_pareto *p, const hn_band *bands, double accuracy) {
     for (int i = 0; i < p->n_bands; i++) {
         if (bands[i].accuracy < accuracy * 1.01 && bands[i].accuracy > accuracy * 0.99 &&
@@ -67,8 +69,12 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
     } else {
         v.kind = v.failed > 0 ? HN_VERDICT_PARTLY : HN_VERDICT_GOOD;
         v.why = v.why ? v.why : c->text;
-        snprintf(v.text, sizeof v.text, v.failed > 0 ? "%.0e, %d of %d fail" : "%.0e", v.best,
-                 v.failed, v.failed + v.done);
+        char best[24] = "no digit";
+        if (v.best < NO_DIGIT) {
+            snprintf(best, sizeof best, "%.0e", v.best);
+        }
+        snprintf(v.text, sizeof v.text, v.failed > 0 ? "%s, %d of %d fail" : "%s", best, v.failed,
+                 v.failed + v.done);
     }
     v.why = v.why ? v.why : "left out to keep the budget";
     return v;

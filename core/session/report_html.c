@@ -14,8 +14,7 @@ static const char STYLE[] =
     ".top td,.top th{padding:3px 12px 3px 0}.top td{white-space:nowrap}"
     ".top small{color:var(--muted);font-size:12px}.top .wrong{color:var(--tear)}"
     ".top .none{color:var(--muted)}.top a{color:inherit}"
-    ".lines{display:grid;grid-template-columns:1fr 1fr;gap:24px}"
-    ".lines>*{min-width:0}"
+    ".lines>*{margin:16px 0}"
     ".bars{position:sticky;top:0;z-index:2;background:var(--paper);padding:6px 0;"
     "border-bottom:1px solid var(--hairline);margin-top:32px}.bars .bar{margin:2px 0}"
     ".names{display:flex;flex-wrap:wrap;gap:2px 12px;margin:2px 0}"
@@ -28,10 +27,10 @@ static const char STYLE[] =
     "font-size:13px;pointer-events:none}"
     "h3{font-size:15px;font-weight:600;margin:24px 0 4px}"
     ".scroll>svg,.plot>svg{min-width:640px}section>details{margin:12px 0}"
-    "@media (max-width:760px){main{padding:16px 12px 48px}.lines{display:block}"
+    "@media (max-width:760px){main{padding:16px 12px 48px}"
     ".bars{position:static}.names{font-size:12px}}"
     "@media print{.names{display:none}.bars{display:none}section>details{display:none}"
-    "section{break-before:page}h2{border:0}.lines{gap:12px}.scroll>svg,.plot>svg{min-width:0}"
+    "section{break-before:page}h2{border:0}.scroll>svg,.plot>svg{min-width:0}"
     ".top{break-inside:avoid}.top table{font-size:8pt}}";
 
 static const char SCRIPT[] =
@@ -135,11 +134,15 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
         return;
     }
     const hn_verdict v = hn_report_find_verdict(s, m);
-    const int bad = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE;
+    const int bad = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE ||
+                    (v.done > 0 && !(v.best < 0.1));
     const int none = v.kind == HN_VERDICT_REFUSED || v.kind == HN_VERDICT_NOT_RUN;
     hn_strbuf_printf(b, "<td%s title=\"", bad ? " class=\"wrong\"" : none ? " class=\"none\"" : "");
     hn_html_text(b, v.why);
     hn_strbuf_printf(b, "\">%s", v.text);
+    if (v.skipped > 0 && v.done > 0) {
+        hn_strbuf_printf(b, " <small>%d sizes left</small>", v.skipped);
+    }
     if (s->strips && s->strips[m].n > 0) {
         hn_strbuf_printf(b, " <small>survives %d/%d</small>", hn_strip_survived(&s->strips[m]),
                          s->strips[m].n);
@@ -170,11 +173,12 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(b,
-                  "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
-                  "or tolerance did not come to the end. “elsewhere”: it converges, but not to "
-                  "the motion of the scene. “survives n/m”: so many other step sizes came "
-                  "through the singular poses within 1e-2.</p>\n");
+    hn_strbuf_add(
+        b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
+           "or tolerance did not come to the end. “2 sizes left”: the budget left so many finer "
+           "ones out, the method may reach more. “elsewhere”: it converges, but not to "
+           "the motion of the scene. “survives n/m”: so many other step sizes came "
+           "through the singular poses within 1e-2.</p>\n");
 }
 
 static void put_top(hn_strbuf *b, const hn_report *r) {
@@ -277,6 +281,21 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     hn_strbuf_add(b, "</details></section>\n");
 }
 
+/// What plots show first: time where all of it was measured, else operations, which always are.
+static hn_cost_kind first_cost(const hn_report *r) {
+    for (int i = 0; i < r->n; i++) {
+        hn_pareto p;
+        if (r->scenes[i].study) {
+            hn_wp_pareto(hn_study_wp(r->scenes[i].study), hn_study_classes(r->scenes[i].study),
+                         HN_ERROR_ENERGY, HN_COST_TIME, &p);
+            if (p.few || !hn_study_is_timed(r->scenes[i].study)) {
+                return HN_COST_OPS;
+            }
+        }
+    }
+    return any_study(r) ? HN_COST_TIME : HN_COST_OPS;
+}
+
 static void put_names(hn_strbuf *b, const hn_study *any) {
     hn_strbuf_add(b, "<div class=\"names\" role=\"group\" aria-label=\"methods shown\">");
     for (int m = 0; any && m < hn_study_wp(any)->n_methods; m++) {
@@ -299,7 +318,7 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     b->failed |= style.failed;
     hn_strbuf_reset(&style);
     put_top(b, r);
-    hn_page_choices(b, any && hn_study_is_timed(any) ? HN_COST_TIME : HN_COST_OPS);
+    hn_page_choices(b, first_cost(r));
     hn_strbuf_add(b, "<div class=\"plots\">");
     put_names(b, any);
     hn_strbuf_add(b,

@@ -207,7 +207,7 @@ static const char *const MEANINGS[HN_SURVIVAL_ENDS] = {
     [HN_SURVIVAL_SURVIVED] = "survived",
     [HN_SURVIVAL_OFF] = "inaccurate from here",
     [HN_SURVIVAL_STOPPED] = "stopped, and said why",
-    [HN_SURVIVAL_TOLD] = "folded over, and told",
+    [HN_SURVIVAL_TOLD] = "wrong, and told",
     [HN_SURVIVAL_SILENT] = "folded over, silently",
 };
 
@@ -218,7 +218,7 @@ static void put_sign(hn_strbuf *b, hn_survival_end end, double x, double y) {
 
 static void put_signs_legend(hn_strbuf *b) {
     double x = 6;
-    for (int end = 0; end < HN_SURVIVAL_ENDS; end++) {
+    for (int end = 0; end < HN_SURVIVAL_SILENT; end++) { // which the reference cannot tell
         put_sign(b, (hn_survival_end)end, x, 31);
         put_text(b, x + 10, 35, "note", MEANINGS[end]);
         x += 34 + LETTER * (double)strlen(MEANINGS[end]);

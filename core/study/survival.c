@@ -30,7 +30,7 @@ double hn_survival_step(double usual, int k, int n) {
     return usual * (LEAST_STEP + (MOST_STEP - LEAST_STEP) * k / (n - 1));
 }
 
-/// Of a run with a loop the wrong way round: did it say so?
+/// Of a run that is wrong: did it say so?
 static hn_survival_end told_or_silent(const hn_run *run) {
     const hn_incident *incident = NULL;
     const int n = hn_run_incidents(run, &incident);
@@ -87,7 +87,9 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
         out->worst = isnan(seen.distance) ? HUGE_VAL : fmax(out->worst, seen.distance);
     }
     if (!(out->worst <= j->limit)) {
-        out->end = folded ? told_or_silent(run) : HN_SURVIVAL_OFF;
+        const hn_survival_end told = told_or_silent(run);
+        out->end =
+            folded || (j->ask_incidents && told == HN_SURVIVAL_TOLD) ? told : HN_SURVIVAL_OFF;
         out->t = folded ? folded_at : left;
     }
     return 1;
@@ -96,56 +98,35 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
 // by the reference solution ------------------------------------------------------------------------------------------
 
 typedef struct beside {
-    const hn_system *sys;
     const hn_ref *ref;
     hn_errors *errors;
-    hn_mode_watch *modes;
-    double *q, *mine, *theirs; ///< nq; one a loop
 } beside;
 
 static hn_survival_seen look(void *user, int k, const hn_sample *s) {
-    beside *b = user;
-    const hn_state_seen reference = hn_ref_at(b->ref, k);
-    hn_survival_seen seen = {hn_errors_between(b->errors, s->q, reference.q), 0};
-    hn_system_from_user(b->sys, s->q, b->q);
-    hn_mode_watch_values(b->modes, s->t, b->q, b->mine);
-    hn_system_from_user(b->sys, reference.q, b->q);
-    hn_mode_watch_values(b->modes, s->t, b->q, b->theirs);
-    for (int i = 0; i < hn_mode_watch_count(b->modes); i++) {
-        seen.folded |= b->mine[i] * b->theirs[i] < 0 && fabs(b->mine[i]) > HN_RUN_WARN_MODE &&
-                       fabs(b->theirs[i]) > HN_RUN_WARN_MODE;
-    }
-    return seen;
+    const beside *b = user;
+    return (hn_survival_seen){hn_errors_between(b->errors, s->q, hn_ref_at(b->ref, k).q), 0};
 }
 
 hn_status hn_survival_by_reference(const hn_system *sys, const hn_ref *ref, hn_arena *arena,
                                    hn_survival_judge *out) {
     beside *b = hn_arena_get(arena, sizeof *b);
-    *out = (hn_survival_judge){
-        .look = look, .user = b, .T = ref->T, .n = ref->n, .limit = HN_SURVIVAL_DISTANCE};
+    *out = (hn_survival_judge){.look = look,
+                               .user = b,
+                               .T = ref->T,
+                               .n = ref->n,
+                               .limit = HN_SURVIVAL_DISTANCE,
+                               .ask_incidents = 1};
     if (!b) {
         return HN_ERR_MEMORY;
     }
-    *b = (beside){.sys = sys, .ref = ref};
-    hn_status status = hn_errors_create(sys, arena, &b->errors);
-    if (status == HN_OK) {
-        status = hn_mode_watch_create(sys, arena, &b->modes);
-    }
-    if (status == HN_OK) {
-        const size_t loops = (size_t)hn_mode_watch_count(b->modes) + 1;
-        b->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
-        b->mine = hn_arena_doubles(arena, loops);
-        b->theirs = hn_arena_doubles(arena, loops);
-        status = hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
-    }
-    return status;
+    *b = (beside){.ref = ref};
+    return hn_errors_create(sys, arena, &b->errors);
 }
 
 void hn_survival_unjudge(hn_survival_judge *judge) {
     beside *b = judge->user;
     if (b) {
         hn_errors_free(b->errors);
-        hn_mode_watch_free(b->modes);
         judge->user = NULL;
     }
 }
