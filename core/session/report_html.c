@@ -141,7 +141,7 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
     hn_html_text(b, v.why);
     hn_strbuf_printf(b, "\">%s", v.text);
     if (v.skipped > 0 && v.done > 0) {
-        hn_strbuf_printf(b, " <small>%d sizes left</small>", v.skipped);
+        hn_strbuf_printf(b, " <small>%d left</small>", v.skipped);
     }
     if (s->strips && s->strips[m].n > 0) {
         hn_strbuf_printf(b, " <small>survives %d/%d</small>", hn_strip_survived(&s->strips[m]),
@@ -173,12 +173,12 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(
-        b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
-           "or tolerance did not come to the end. “2 sizes left”: the budget left so many finer "
-           "ones out, the method may reach more. “elsewhere”: it converges, but not to "
-           "the motion of the scene. “survives n/m”: so many other step sizes came "
-           "through the singular poses within 1e-2.</p>\n");
+    hn_strbuf_add(b,
+                  "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
+                  "or tolerance did not come to the end. “3 left”: the budget left so many finer "
+                  "ones out, the method may reach more. “elsewhere”: it converges, but not to "
+                  "the motion of the scene. “survives n/m”: so many other step sizes came "
+                  "through the singular poses within 1e-2.</p>\n");
 }
 
 static void put_top(hn_strbuf *b, const hn_report *r) {
