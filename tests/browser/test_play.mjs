@@ -423,7 +423,7 @@ test("the dialog offers what fits the formulation, and says why the rest does no
 
 test("a method that cannot serve the scene stands in the table with its reason, and the others go on", async () => {
   const page = await open();
-  await page.route("**/api/v1/scenes/heavy-top", async (route) => {
+  await page.route("**/api/v1/scenes/delta-robot", async (route) => {
     const answer = await route.fetch();
     const scene = await answer.json();
     await route.fulfill({
@@ -431,9 +431,9 @@ test("a method that cannot serve the scene stands in the table with its reason, 
       json: { ...scene, methods: ["index3@rattle:h=1e-3", ...scene.methods] },
     });
   });
-  await page.selectOption("#scene", "heavy-top");
-  await until(page, (data) => data.scene.id === "heavy-top" && data.refused.length === 1);
-  assert.match(await page.textContent(".refused"), /does not serve this scene: .*ball/);
+  await page.selectOption("#scene", "delta-robot");
+  await until(page, (data) => data.scene.id === "delta-robot" && data.refused.length === 1);
+  assert.match(await page.textContent(".refused"), /does not serve this scene: .*speed/);
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.2);
