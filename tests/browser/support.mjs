@@ -145,16 +145,26 @@ export async function screenshot(page, name) {
   await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
 }
 
-/** A line that can be cut: what connects through it loses its connection, and gets none until it is mended. */
+/** What asks for the events of a comparison. */
+const ASKS_EVENTS = /^GET \S+\/events[? ]/m;
+
+/**
+ * A line between page and server. Cut, what connects through it loses its connection, and gets none until it is mended.
+ * Held, the events of comparisons wait, and answers to all else overtake them, until they are let go.
+ */
 export async function startLine(port) {
   const open = new Set();
   let cut = false;
+  let held = false;
+  /** events that wait @type {(() => void)[]} */
+  let waiting = [];
   const line = net.createServer((client) => {
     if (cut) {
       client.destroy();
       return;
     }
     const server = net.connect(port, "127.0.0.1");
+    let events = false;
     for (const socket of [client, server]) {
       open.add(socket);
       socket.on("error", () => socket.destroy());
@@ -164,7 +174,18 @@ export async function startLine(port) {
         server.destroy();
       });
     }
-    client.pipe(server).pipe(client);
+    client.on("data", (chunk) => {
+      events ||= ASKS_EVENTS.test(chunk.toString("latin1"));
+      server.write(chunk);
+    });
+    server.on("data", (chunk) => {
+      const pass = () => client.destroyed || client.write(chunk);
+      if (held && events) {
+        waiting.push(pass);
+      } else {
+        pass();
+      }
+    });
   });
   await new Promise((resolve) => line.listen(0, "127.0.0.1", resolve));
   return {
@@ -175,6 +196,14 @@ export async function startLine(port) {
     },
     mend() {
       cut = false;
+    },
+    hold() {
+      held = true;
+    },
+    letGo() {
+      held = false;
+      waiting.forEach((pass) => pass());
+      waiting = [];
     },
     close() {
       open.forEach((socket) => socket.destroy());

@@ -45,6 +45,36 @@ async function type(page, field, text) {
   await page.press(field, "Enter");
 }
 
+/** The greatest speed; then Play has the focus. */
+async function fastest(page) {
+  for (let k = 0; k < 3; k++) {
+    await page.getByRole("button", { name: /^Faster/ }).click();
+  }
+  await until(page, (data) => data.speed === 10);
+  await page.focus("#play");
+}
+
+/** Hides the page, or shows it again. */
+function show(page, visible) {
+  return page.evaluate((hidden) => {
+    Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, !visible);
+}
+
+/** Waits until a comparison is in a state, asked of the server itself. */
+async function stateOnServer(id, state) {
+  const end = Date.now() + 20000;
+  for (;;) {
+    const answer = await fetch(`${server.url}api/v1/comparisons/${id}`);
+    if ((await answer.json()).state === state) {
+      return;
+    }
+    assert.ok(Date.now() < end, `${id} is not ${state}`);
+    await new Promise((resolve) => setTimeout(resolve, 25));
+  }
+}
+
 const time = (page) => read(page, (data) => data.latest.t);
 
 test("opens paused on five methods of the four-bar, with Play focused", async () => {
@@ -302,17 +332,12 @@ test("a hidden page closes its stream and catches up when it is shown", async ()
   const page = await open();
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest.t > 0.3);
-  const show = (hidden) =>
-    page.evaluate((value) => {
-      Object.defineProperty(document, "hidden", { configurable: true, get: () => value });
-      document.dispatchEvent(new Event("visibilitychange"));
-    }, hidden);
-  await show(true);
+  await show(page, false);
   assert.match(await page.textContent(".stream"), /paused while hidden/);
   const seen = await read(page, (data) => data.latest.frame);
   await page.waitForTimeout(800);
   assert.equal(await read(page, (data) => data.latest.frame), seen);
-  await show(false);
+  await show(page, true);
   await until(page, `(data) => data.latest.frame > ${seen} + 40`);
   const whole = await read(page, (data) => data.history.count === data.latest.frame + 1);
   assert.ok(whole, "no frame is missing");
@@ -335,6 +360,94 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest.t > 0.3);
+});
+
+test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async () => {
+  const line = await startLine(server.port);
+  try {
+    opened = await openPage(browser, line.url);
+    const page = opened.page;
+    await fastest(page);
+    await page.keyboard.press("Space");
+    await until(page, (data) => data.latest?.t > 0.5);
+    line.hold();
+    const { id, generation } = await read(page, (data) => data);
+    await stateOnServer(id, "finished");
+    assert.equal(await read(page, (data) => data.state), "running", "the end has not been heard of");
+    await type(page, "#set-h", "0.002");
+    await until(page, `(data) => data.generation > ${generation}`);
+    line.letGo();
+    await until(page, (data) => data.latest?.t > 1);
+    await until(page, (data) => data.state === "finished" && data.stream.state === "ended");
+    const t = await read(page, (data) => Array.from(data.history.t.subarray(0, data.history.count)));
+    const dt = await read(page, (data) => data.frameDt);
+    assert.ok(
+      t.every((at, k) => Math.abs(at - k * dt) < 1e-9),
+      "every frame of the new run is there",
+    );
+  } finally {
+    await opened.close();
+    await line.close();
+  }
+});
+
+test("answers that overtake the stream are not undone by what the stream tells later", async () => {
+  const line = await startLine(server.port);
+  try {
+    opened = await openPage(browser, line.url);
+    const page = opened.page;
+    line.hold();
+    for (const speed of [2, 5, 10]) {
+      await page.keyboard.press("=");
+      await until(page, `(data) => data.speed === ${speed}`);
+    }
+    await page.focus("#play");
+    await page.keyboard.press("Space");
+    await until(page, (data) => data.state === "running");
+    await page.keyboard.press("Space");
+    await until(page, (data) => data.state === "paused");
+    await page.evaluate(() => {
+      globalThis.seen = [];
+      new MutationObserver(() =>
+        globalThis.seen.push([
+          document.querySelector("#play").textContent,
+          document.querySelector("#transport .speed").textContent,
+        ]),
+      ).observe(document.querySelector("#transport"), {
+        subtree: true,
+        childList: true,
+        characterData: true,
+      });
+    });
+    const last = await read(page, (data) => Number(data.stream.id));
+    line.letGo();
+    await until(page, `(data) => Number(data.stream.id) >= ${last} + 5`);
+    const seen = await page.evaluate(() => globalThis.seen);
+    assert.deepEqual(
+      seen.filter(([play, speed]) => !/Play/.test(play) || !/10/.test(speed)),
+      [],
+    );
+  } finally {
+    await opened.close();
+    await line.close();
+  }
+});
+
+test("a page that was hidden after the end of a run has nothing to reconnect to", async () => {
+  const page = await open();
+  await fastest(page);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.stream.state === "ended");
+  const asked = [];
+  page.on("request", (request) => asked.push(request.url()));
+  await show(page, false);
+  await show(page, true);
+  await page.evaluate(() => dispatchEvent(new Event("online")));
+  await page.keyboard.press("-");
+  await until(page, (data) => data.speed === 5);
+  await page.waitForTimeout(100);
+  assert.deepEqual(asked.filter((url) => /events/.test(url)), []);
+  assert.equal(await read(page, (data) => data.stream.state), "ended");
 });
 
 test("a method that fails keeps its last pose, under a banner with its name, the time and the cause", async () => {

@@ -20,6 +20,8 @@ export function createStream(id, onEvent, onState) {
   let retry = RETRY_FIRST;
   let timer = 0;
   let closed = false;
+  /** all has been told: there is nothing to connect to until a change asks for it */
+  let resting = false;
 
   /** @param {StreamState} state */
   const tell = (state) => onState(state, lastId);
@@ -32,6 +34,9 @@ export function createStream(id, onEvent, onState) {
 
   /** @param {StreamState} state */
   function open(state) {
+    if (closed) {
+      return;
+    }
     drop();
     tell(state);
     source = new EventSource(api.eventsAddress(id, lastId));
@@ -51,34 +56,27 @@ export function createStream(id, onEvent, onState) {
       lastId = event.lastEventId;
     }
     onEvent(name, JSON.parse(event.data), lastId);
-    if (name === "end") {
-      drop();
-      tell("ended");
-    }
   }
 
   // the browser's own retry would send the id of its own connection only; ours also survives a closed source
   function onError() {
     drop();
-    if (closed) {
-      return;
-    }
     tell("reconnecting");
     timer = window.setTimeout(() => open("reconnecting"), retry);
     retry = Math.min(2 * retry, RETRY_MOST);
   }
 
   function onVisibility() {
-    if (document.hidden && source) {
+    if (document.hidden && !resting) {
       drop();
       tell("hidden");
-    } else if (!document.hidden && !source && !closed) {
+    } else if (!document.hidden && !source && !resting) {
       open("reconnecting");
     }
   }
 
   function onOnline() {
-    if (!document.hidden && !closed) {
+    if (!document.hidden && !resting) {
       open("reconnecting");
     }
   }
@@ -88,8 +86,15 @@ export function createStream(id, onEvent, onState) {
   open("connecting");
 
   return {
+    /** The comparison has come to its end. */
+    rest() {
+      drop();
+      resting = true;
+      tell("ended");
+    },
     /** Opens again after the end of a comparison that was set back or changed. */
     reopen() {
+      resting = false;
       if (!source && !document.hidden) {
         open("connecting");
       }

@@ -55,6 +55,8 @@ export function createSession(store) {
   let queue = Promise.resolve();
   /** the speed that was asked for and not answered yet, or 0: quick presses count from it */
   let asked = 0;
+  /** the newest event that an answer takes in: what an older one tells of the state is past */
+  let covered = 0;
   const endReactions = createReactionFeed(store);
   const reference = createReferenceFeed(store);
   const studies = createStudyFeed(store);
@@ -84,11 +86,11 @@ export function createSession(store) {
 
   /** @param {any} description */
   function startHistory(description) {
-    const sameScene = data.scene?.id === description.scene.id;
-    data.before =
-      sameScene && data.history && data.history.count > 1
-        ? { methods: data.methods, history: data.history }
-        : null;
+    if (data.scene?.id !== description.scene.id) {
+      data.before = null;
+    } else if (data.history?.count > 1) {
+      data.before = { methods: data.methods, history: data.history };
+    }
     data.methods = description.comparison.methods.map(readMethod);
     const labels = labelsOf(data.methods);
     data.methods.forEach((method, m) => (method.label = labels[m]));
@@ -107,12 +109,13 @@ export function createSession(store) {
     }
   }
 
-  /** @param {any} description @param {boolean} [anew] the runs were set back */
-  function applyDescription(description, anew = false) {
-    if (description.generation < data.generation) {
+  /** The answer to a change and the stream come in any order: what is older than what is known says nothing. @param {any} description */
+  function applyDescription(description) {
+    if (description.last_event < covered) {
       return;
     }
-    const restarted = anew || description.generation !== data.generation;
+    covered = description.last_event;
+    const restarted = description.generation !== data.generation;
     data.generation = description.generation;
     data.settings = description.settings ?? {};
     data.frameDt = description.frame_dt ?? description.comparison.frame_dt;
@@ -123,12 +126,8 @@ export function createSession(store) {
       store.emit("methods");
     }
     applyState(description);
-    if (
-      description.latest &&
-      description.latest.frame > (data.history?.lastFrame ?? -1) &&
-      (restarted || !stream)
-    ) {
-      applyFrame({ ...description.latest, generation: description.generation });
+    if (restarted && description.latest?.frame === 0) {
+      applyFrame(description.latest); // later ones come by the stream, none left out
     }
   }
 
@@ -166,25 +165,26 @@ export function createSession(store) {
     store.emit("incident", { incident, again: same >= 0 });
   }
 
-  /** @type {Record<string, (detail: any) => void>} */
+  /** @type {Record<string, (detail: any, id: number) => void>} */
   const onEvent = {
     hello: ({ description }) => applyDescription(description),
     frame: applyFrame,
     incident: applyIncident,
-    reset: (detail) => applyReset(detail),
-    state: applyState,
+    reset: ({ description }) => applyDescription(description),
+    state: (change, id) => {
+      if (id > covered) {
+        applyState(change);
+      }
+    },
     gap: ({ from, to }) =>
       notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
-    end: () => applyState({ state: "finished", speed: data.speed }),
+    end: ({ generation, deleted }) => {
+      if (deleted || generation === data.generation) {
+        stream?.rest();
+        applyState({ state: "finished", speed: data.speed });
+      }
+    },
   };
-
-  /** The answer to our own change may have come first: then the reset is told already. @param {any} detail */
-  function applyReset(detail) {
-    const description = detail.description ?? detail;
-    if (description.generation > data.generation) {
-      applyDescription(description, true);
-    }
-  }
 
   // ---- asking the server ----------------------------------------------------------------------------------------
 
@@ -194,12 +194,13 @@ export function createSession(store) {
     stream = null;
     data.id = description.id;
     data.generation = -1;
-    applyDescription(description, true);
+    covered = 0;
+    applyDescription(description);
     stream = createStream(
       description.id,
       (name, detail, lastId) => {
         data.stream.id = lastId;
-        onEvent[name](detail);
+        onEvent[name](detail, Number(lastId));
       },
       (state, id) => {
         data.stream = { state, id };
@@ -267,21 +268,29 @@ export function createSession(store) {
     }
   }
 
-  /** @param {object} change @returns {Promise<void>} */
-  function change(change) {
+  /** @param {() => object} ask what to ask for, told when its turn has come @returns {Promise<void>} */
+  function inTurn(ask) {
     const done = queue.then(async () => {
-      const description = await changeOrRevive(change);
-      applyDescription(description, "reset" in change);
-      stream?.reopen();
+      applyDescription(await changeOrRevive(ask()));
+      if (data.state !== "finished") {
+        stream?.reopen();
+      }
     });
     queue = done.catch(() => undefined);
     return done;
   }
 
-  /** A change that starts the runs anew; after the end of a run the new one moves as the old one did. @param {object} wanted */
+  /** @param {object} wanted */
+  const change = (wanted) => inTurn(() => wanted);
+
+  /**
+   * A change that starts the runs anew: they move if the old ones did, to their end or until now. It is asked for outright,
+   * since the server may have come to an end that the page has not heard of. @param {object} wanted
+   */
   function restart(wanted) {
-    const moves = data.state === "finished" && !data.view.stepped;
-    return change(moves ? { ...wanted, state: "running" } : wanted);
+    return inTurn(() =>
+      data.state !== "paused" && !data.view.stepped ? { ...wanted, state: "running" } : wanted,
+    );
   }
 
   /** An action whose failure has no field of its own. @param {object} wanted */
@@ -404,7 +413,9 @@ export function createSession(store) {
         return actions.step(Math.max(1, Math.round(stepSeconds(data.duration) / data.frameDt)));
       }
       return changeOrTell(
-        data.state === "finished" ? { reset: true, state: "running" } : { state: "running" },
+        data.state === "finished"
+          ? { reset: true, state: data.view.stepped ? "paused" : "running" }
+          : { state: "running" },
       );
     },
     pause: () => changeOrTell({ state: "paused" }),
