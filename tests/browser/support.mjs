@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync } from "node:fs";
 import net from "node:net";
+import { after, before } from "node:test";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
@@ -34,7 +35,7 @@ function freePort() {
   });
 }
 
-export async function startServer() {
+async function startServer() {
   assert.ok(existsSync(PROGRAM), `${PROGRAM} is built`);
   const child = spawn(PROGRAM, ["serve", "--port", String(await freePort())], {
     cwd: ROOT,
@@ -72,25 +73,14 @@ export async function startServer() {
   return { url, port: Number(new URL(url).port), stop };
 }
 
-export async function startBrowser() {
+async function startBrowser() {
   assert.ok(existsSync(CHROMIUM), `${CHROMIUM} is installed`);
   return chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
 }
 
-/**
- * Opens the page and waits until it can be used.
- * @returns {Promise<{page: any, faults: string[], close: () => Promise<void>}>} `faults` are filled while the page lives
- */
-export async function openPage(browser, url, options = {}) {
-  const { hash = "", wait = true, init, ...context } = options;
-  const home = await browser.newContext({
-    viewport: { width: 1280, height: 900 },
-    reducedMotion: "no-preference",
-    ...context,
-  });
-  const page = await home.newPage();
+/** What the page must not do, noted while it lives. @returns {string[]} */
+function watch(page, host) {
   const faults = [];
-  const host = new URL(url).host;
   page.on("console", (message) => {
     // the browser itself reports each refused request; refusals are part of some tests and shown by the page
     if (message.type() === "error" && !/Failed to load resource/.test(message.text())) {
@@ -109,17 +99,87 @@ export async function openPage(browser, url, options = {}) {
       faults.push(`not found: ${response.url()}`);
     }
   });
-  if (init) {
-    await page.addInitScript(init);
+  return faults;
+}
+
+/**
+ * What a file of tests drives: a server and a browser, from before its first test until after its last. A page, and a line,
+ * live as long as the test that opened them; pages with the same options share what the browser keeps of the files it
+ * loaded, unless they ask to be `fresh`.
+ */
+export function createBench() {
+  let server;
+  let browser;
+  /** by their options @type {Map<string, Promise<any>>} */
+  const homes = new Map();
+  const faultsOf = new WeakMap();
+
+  before(async () => {
+    [server, browser] = await Promise.all([startServer(), startBrowser()]);
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+  });
+
+  function homeOf(fresh, options) {
+    const make = () =>
+      browser.newContext({
+        viewport: { width: 1280, height: 900 },
+        reducedMotion: "no-preference",
+        ...options,
+      });
+    const key = JSON.stringify(options);
+    if (!fresh && !homes.has(key)) {
+      homes.set(key, make());
+    }
+    return fresh ? make() : homes.get(key);
   }
-  await page.goto(`${url}${hash}`);
-  if (wait) {
-    await page.waitForFunction(
-      () => document.querySelector("main")?.getAttribute("aria-busy") === "false",
-    );
-    await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
-  }
-  return { page, faults, close: () => home.close() };
+
+  return {
+    /** Address of the server. */
+    get url() {
+      return server.url;
+    },
+    /** Faults of a page so far; what is taken out of the list is forgiven. */
+    faultsOf: (page) => faultsOf.get(page),
+    /**
+     * Opens the page and waits until it can be used. The test fails if the page does what it must not.
+     * @param {import("node:test").TestContext} t
+     * @param {{url?: string, hash?: string, wait?: boolean, init?: () => void, fresh?: boolean}} [options] and those of a browser's context
+     */
+    async open(t, options = {}) {
+      const { url = server.url, hash = "", wait = true, init, fresh = false, ...context } = options;
+      const home = await homeOf(fresh, context);
+      const page = await home.newPage();
+      const faults = watch(page, new URL(url).host);
+      faultsOf.set(page, faults);
+      t.after(async () => {
+        if (context.javaScriptEnabled !== false) {
+          await page.evaluate(() => localStorage.clear());
+        }
+        await (fresh ? home : page).close();
+        assert.deepEqual(faults, []);
+      });
+      if (init) {
+        await page.addInitScript(init);
+      }
+      await page.goto(`${url}${hash}`);
+      if (wait) {
+        await page.waitForFunction(
+          () => document.querySelector("main")?.getAttribute("aria-busy") === "false",
+        );
+        await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
+      }
+      return page;
+    },
+    /** A line to the server; a page comes over it by its `url`. @param {import("node:test").TestContext} t */
+    async line(t) {
+      const line = await startLine(server.port);
+      t.after(() => line.close());
+      return line;
+    },
+  };
 }
 
 /** A look at the page's data, by a function that gets it. */
@@ -139,10 +199,46 @@ export async function until(page, condition, timeout = 20000) {
   }
 }
 
-export async function screenshot(page, name) {
+/** Until what was told is drawn as well. */
+export function drawn(page) {
+  return page.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+  );
+}
+
+/** Waits until the runs stand, and the last frame that the server made is here and drawn: frames may come after the answer. */
+export async function stood(page) {
+  await until(page, (data) => data.state !== "running");
+  const id = await read(page, (data) => data.id);
+  const answer = await fetch(new URL(`/api/v1/comparisons/${id}`, page.url()));
+  const { frame } = await answer.json();
+  await until(page, `(data) => data.latest?.frame === ${frame}`);
+  await drawn(page);
+}
+
+/** Plays to a time at least and stands. @param {number} t [s] */
+export async function playTo(page, t) {
+  await page.keyboard.press("Space");
+  await until(page, `(data) => data.latest?.t > ${t}`);
+  await page.keyboard.press("Space");
+  await stood(page);
+}
+
+/** The greatest speed; then Play has the focus. */
+export async function fastest(page) {
+  for (let k = 0; k < 9 && (await read(page, (data) => data.speed)) < 10; k++) {
+    const before = await read(page, (data) => data.speed);
+    await page.getByRole("button", { name: /^Faster/ }).click();
+    await until(page, `(data) => data.speed > ${before}`);
+  }
+  await page.focus("#play");
+}
+
+/** A picture of the page for whoever wants to look; of all of it unless only the window is `seen`. */
+export async function screenshot(page, name, { seen = false } = {}) {
   const folder = join(ROOT, "build/screenshots");
   mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: !seen });
 }
 
 /** What asks for the events of a comparison. */
@@ -152,7 +248,7 @@ const ASKS_EVENTS = /^GET \S+\/events[? ]/m;
  * A line between page and server. Cut, what connects through it loses its connection, and gets none until it is mended.
  * Held, the events of comparisons wait, and answers to all else overtake them, until they are let go.
  */
-export async function startLine(port) {
+async function startLine(port) {
   const open = new Set();
   let cut = false;
   let held = false;

@@ -1,472 +1,433 @@
 // What the page is like to look at and to use without a mouse: layout, names, contrast, keys, tables, no script.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { openPage, read, screenshot, startBrowser, startServer, until } from "./support.mjs";
+import { test } from "node:test";
+import { createBench, drawn, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
 
 const SMALLEST_TARGET = 24; // [px] WCAG 2.5.8
 const TEXT_CONTRAST = 4.5; // WCAG 1.4.3
 const THEMES = ["light", "dark"];
 
-let server;
-let browser;
+const bench = createBench();
+const { open } = bench;
 
-before(async () => {
-  server = await startServer();
-  browser = await startBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/** Runs a body on a fresh page and then asks for its faults. */
-async function onPage(options, body) {
-  const opened = await openPage(browser, server.url, options);
-  try {
-    await body(opened.page);
-  } finally {
-    await opened.close();
-  }
-  assert.deepEqual(opened.faults, []);
+/** In the page: what moves without being asked to, by name and place. */
+function noteShifts() {
+  globalThis.shifts = [];
+  new PerformanceObserver((list) => {
+    for (const entry of list.getEntries()) {
+      const nodes = entry.sources.map(
+        ({ node, previousRect: a, currentRect: b }) =>
+          `${node?.getAttribute?.("class") || node?.nodeName} from ${[a.x, a.y, a.width, a.height]} to ${[b.x, b.y, b.width, b.height]}`,
+      );
+      globalThis.shifts.push(`${entry.value.toFixed(5)} ${nodes.join("; ")}`);
+    }
+  }).observe({ type: "layout-shift", buffered: true });
 }
 
 for (const theme of THEMES) {
-  test(`1280 wide, ${theme}: nothing overflows and nothing moves after the first paint`, () =>
-    onPage(
-      {
-        colorScheme: theme,
-        init: () => {
-          globalThis.shifts = [];
-          new PerformanceObserver((list) => {
-            for (const entry of list.getEntries()) {
-              const nodes = entry.sources.map(
-                ({ node, previousRect: a, currentRect: b }) =>
-                  `${node?.getAttribute?.("class") || node?.nodeName} from ${[a.x, a.y, a.width, a.height]} to ${[b.x, b.y, b.width, b.height]}`,
-              );
-              globalThis.shifts.push(`${entry.value.toFixed(5)} ${nodes.join("; ")}`);
-            }
-          }).observe({ type: "layout-shift", buffered: true });
-        },
-      },
-      async (page) => {
-        await page.keyboard.press("Space");
-        await until(page, (data) => data.latest.t > 2.5);
-        await page.keyboard.press("Space");
-        await until(page, (data) => data.state === "paused");
-        await page.waitForTimeout(300);
-        assert.deepEqual(await page.evaluate(() => globalThis.shifts), []);
-        await screenshot(page, `page-1280-${theme}`); // resizes the page, so it comes after
-        assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
-      },
-    ));
+  test(`1280 wide, ${theme}: nothing overflows and nothing moves after the first paint`, async (t) => {
+    const page = await open(t, { colorScheme: theme, fresh: true, init: noteShifts });
+    await playTo(page, 2.5);
+    assert.deepEqual(await page.evaluate(() => globalThis.shifts), []);
+    await screenshot(page, `page-1280-${theme}`); // resizes the page, so it comes after
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
+  });
 }
 
 for (const width of [360, 320]) {
-  test(`${width} wide: one column in reading order, no horizontal scroll`, () =>
-    onPage({ viewport: { width, height: 780 } }, async (page) => {
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.latest.t > 1.5);
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.state === "paused");
-      await page.waitForTimeout(300);
-      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
-      const tops = await page.evaluate(() =>
-        [
-          "mechanism",
-          "transport",
-          "methods",
-          "controls",
-          "happening",
-          "plots",
-          "equations",
-          "status",
-        ].map((id) => document.getElementById(id).getBoundingClientRect().top),
-      );
-      assert.deepEqual(
-        tops,
-        [...tops].sort((a, b) => a - b),
-      );
-      await screenshot(page, `page-${width}`);
-    }));
+  test(`${width} wide: one column in reading order, no horizontal scroll`, async (t) => {
+    const page = await open(t, { viewport: { width, height: 780 } });
+    await playTo(page, 1.5);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    const tops = await page.evaluate(() =>
+      [
+        "mechanism",
+        "transport",
+        "methods",
+        "controls",
+        "happening",
+        "plots",
+        "equations",
+        "status",
+      ].map((id) => document.getElementById(id).getBoundingClientRect().top),
+    );
+    assert.deepEqual(
+      tops,
+      [...tops].sort((a, b) => a - b),
+    );
+    await screenshot(page, `page-${width}`);
+  });
 }
 
 for (const theme of THEMES) {
-  test(`${theme}: all text has a contrast of 4.5 at least`, () =>
-    onPage({ colorScheme: theme }, async (page) => {
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.latest.t > 0.3);
-      await page.keyboard.press("Space");
-      await page.click(".scene-parameters summary");
-      const poor = await page.evaluate((least) => {
-        const parse = (colour) => colour.match(/[\d.]+/g).map(Number);
-        const luminance = ([r, g, b]) => {
-          const [x, y, z] = [r, g, b].map((c) =>
-            c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4,
-          );
-          return 0.2126 * x + 0.7152 * y + 0.0722 * z;
-        };
-        const background = (node) => {
-          for (let at = node; at; at = at.parentElement) {
-            const colour = parse(getComputedStyle(at).backgroundColor);
-            if (colour.length < 4 || colour[3] > 0.99) {
-              return colour;
-            }
-          }
-          return [255, 255, 255];
-        };
-        const out = [];
-        for (const node of document.querySelectorAll("body *")) {
-          const own = [...node.childNodes].some(
-            (child) => child.nodeType === 3 && child.textContent.trim(),
-          );
-          const style = getComputedStyle(node);
-          if (
-            !own ||
-            !node.checkVisibility() ||
-            node.closest("svg, .hidden, .skip, :disabled, .katex, option") ||
-            style.clipPath !== "none"
-          ) {
-            continue;
-          }
-          const [a, b] = [luminance(parse(style.color)), luminance(background(node))].sort(
-            (x, y) => y - x,
-          );
-          const ratio = (a + 0.05) / (b + 0.05);
-          if (ratio < least) {
-            out.push(
-              `${node.className || node.tagName} "${node.textContent.trim().slice(0, 20)}" ${ratio.toFixed(2)}`,
-            );
+  test(`${theme}: all text has a contrast of 4.5 at least`, async (t) => {
+    const page = await open(t, { colorScheme: theme });
+    await playTo(page, 0.3);
+    await page.click(".scene-parameters summary");
+    const poor = await page.evaluate((least) => {
+      const parse = (colour) => colour.match(/[\d.]+/g).map(Number);
+      const luminance = ([r, g, b]) => {
+        const [x, y, z] = [r, g, b].map((c) =>
+          c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4,
+        );
+        return 0.2126 * x + 0.7152 * y + 0.0722 * z;
+      };
+      const background = (node) => {
+        for (let at = node; at; at = at.parentElement) {
+          const colour = parse(getComputedStyle(at).backgroundColor);
+          if (colour.length < 4 || colour[3] > 0.99) {
+            return colour;
           }
         }
-        return out;
-      }, TEXT_CONTRAST);
-      assert.deepEqual(poor, []);
-    }));
+        return [255, 255, 255];
+      };
+      const out = [];
+      for (const node of document.querySelectorAll("body *")) {
+        const own = [...node.childNodes].some(
+          (child) => child.nodeType === 3 && child.textContent.trim(),
+        );
+        const style = getComputedStyle(node);
+        if (
+          !own ||
+          !node.checkVisibility() ||
+          node.closest("svg, .hidden, .skip, :disabled, .katex, option") ||
+          style.clipPath !== "none"
+        ) {
+          continue;
+        }
+        const [a, b] = [luminance(parse(style.color)), luminance(background(node))].sort(
+          (x, y) => y - x,
+        );
+        const ratio = (a + 0.05) / (b + 0.05);
+        if (ratio < least) {
+          out.push(
+            `${node.className || node.tagName} "${node.textContent.trim().slice(0, 20)}" ${ratio.toFixed(2)}`,
+          );
+        }
+      }
+      return out;
+    }, TEXT_CONTRAST);
+    assert.deepEqual(poor, []);
+  });
 }
 
-test("the page's surfaces are those of the look table", () =>
-  onPage({}, async (page) => {
-    for (const theme of THEMES) {
-      const [css, look] = await page.evaluate((name) => {
-        document.documentElement.dataset.theme = name;
-        const style = getComputedStyle(document.documentElement);
-        const surface = globalThis.holonom.data.look.surfaces[name];
-        return [
-          Object.fromEntries(
-            Object.keys(surface).map((key) => [
-              key,
-              style.getPropertyValue(`--${key}`).trim().toUpperCase(),
-            ]),
-          ),
-          surface,
-        ];
-      }, theme);
-      assert.deepEqual(css, look);
-    }
-  }));
-
-test("every control has a name and room, every reference a target, every id one owner", () =>
-  onPage({}, async (page) => {
-    await page.click(".scene-parameters summary");
-    const report = await page.evaluate((least) => {
-      const name = (node) =>
-        node.getAttribute("aria-label") ||
-        [...(node.labels ?? [])].map((label) => label.textContent).join(" ") ||
-        node.textContent.trim() ||
-        node.title;
-      const shown = [...document.querySelectorAll("button, select, input, summary, a")].filter(
-        (node) => node.checkVisibility() && !node.closest(".skip"),
-      );
-      const ids = [...document.querySelectorAll("[id]")].map((node) => node.id);
-      const references = [
-        ...document.querySelectorAll("[aria-labelledby], [aria-describedby], label[for]"),
-      ].flatMap((node) =>
-        ["aria-labelledby", "aria-describedby", "for"].flatMap((attribute) =>
-          (node.getAttribute(attribute) ?? "").split(" ").filter(Boolean),
+test("the page's surfaces are those of the look table", async (t) => {
+  const page = await open(t);
+  for (const theme of THEMES) {
+    const [css, look] = await page.evaluate((name) => {
+      document.documentElement.dataset.theme = name;
+      const style = getComputedStyle(document.documentElement);
+      const surface = globalThis.holonom.data.look.surfaces[name];
+      return [
+        Object.fromEntries(
+          Object.keys(surface).map((key) => [
+            key,
+            style.getPropertyValue(`--${key}`).trim().toUpperCase(),
+          ]),
         ),
-      );
-      return {
-        nameless: shown.filter((node) => !name(node)).map((node) => node.outerHTML.slice(0, 80)),
-        small: shown
-          .map((node) => ({ node, box: node.getBoundingClientRect() }))
-          .filter(
-            ({ node, box }) =>
-              (box.width < least || box.height < least) &&
-              !(node.type === "checkbox" && box.width + 6 >= least),
-          )
-          .map(({ node, box }) => `${node.outerHTML.slice(0, 60)} ${box.width}x${box.height}`),
-        twice: ids.filter((id, i) => ids.indexOf(id) !== i),
-        dangling: references.filter((id) => !document.getElementById(id)),
-        headings: [...document.querySelectorAll("h1, h2")].map((node) => node.tagName)[0],
-        language: document.documentElement.lang,
-      };
-    }, SMALLEST_TARGET);
-    assert.deepEqual(report, {
-      nameless: [],
-      small: [],
-      twice: [],
-      dangling: [],
-      headings: "H1",
-      language: "en",
-    });
-  }));
+        surface,
+      ];
+    }, theme);
+    assert.deepEqual(css, look);
+  }
+});
 
-test("a slider tells its value with the unit; Home is the least, End the most", () =>
-  onPage({}, async (page) => {
-    const slider = page.locator("#set-h-slider");
-    assert.equal(await slider.getAttribute("aria-valuetext"), "0.001 s");
-    await slider.focus();
-    await page.keyboard.press("Home");
-    assert.equal(await slider.getAttribute("aria-valuetext"), "0.0001 s");
-    assert.equal(await slider.inputValue(), await slider.getAttribute("min"));
-    await page.keyboard.press("End");
-    assert.equal(await slider.getAttribute("aria-valuetext"), "0.1 s");
-    assert.equal(await slider.inputValue(), await slider.getAttribute("max"));
-    assert.equal(await read(page, (data) => data.state), "paused");
-  }));
-
-test("everything is reached by Tab, and the first stop leads to Play", () =>
-  onPage({}, async (page) => {
-    await page.evaluate(() => {
-      document.body.tabIndex = -1;
-      document.body.focus();
-    });
-    const stops = [];
-    for (let k = 0; k < 18; k++) {
-      await page.keyboard.press("Tab");
-      stops.push(
-        await page.evaluate(
-          () => document.activeElement.id || document.activeElement.textContent.trim(),
-        ),
-      );
-    }
-    assert.deepEqual(stops.slice(0, 2), ["Skip to play and pause", "Skip to the methods"]);
-    assert.ok(stops.includes("play") && stops.includes("scrub"), stops.join(" | "));
-    await page.locator(".skip a").first().focus();
-    await page.keyboard.press("Enter");
-    assert.equal(await page.evaluate(() => document.activeElement.id), "play");
-  }));
-
-test("digits select, signs change the speed, and single characters can be switched off", () =>
-  onPage({}, async (page) => {
-    await page.keyboard.press("3");
-    await until(page, (data) => data.view.selected === 2);
-    assert.equal(await page.getAttribute("tr:nth-child(3) .select", "aria-pressed"), "true");
-    await page.keyboard.press("=");
-    await until(page, (data) => data.speed === 2);
-    await page.keyboard.press("-");
-    await until(page, (data) => data.speed === 1);
-    await page.keyboard.press("F1");
-    assert.ok(await page.locator("table.keys").isVisible());
-    await page.uncheck("#letters");
-    await page.getByRole("button", { name: "Close" }).click();
-    await page.focus("#play");
-    await page.keyboard.press("1");
-    await page.keyboard.press("=");
-    await page.keyboard.press("ArrowRight");
-    await until(page, (data) => data.latest.frame === 1);
-    assert.equal(await read(page, (data) => data.view.selected), 2);
-    assert.equal(await read(page, (data) => data.speed), 1);
-  }));
-
-test("keys typed into a field stay in the field", () =>
-  onPage({}, async (page) => {
-    await page.focus("#set-h");
-    await page.keyboard.press("3");
-    await page.keyboard.press("Space");
-    await page.keyboard.press("Backspace");
-    assert.deepEqual(await read(page, (data) => [data.view.selected, data.state]), [0, "paused"]);
-  }));
-
-test("each curve has a table with the same numbers", () =>
-  onPage({}, async (page) => {
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.latest.t > 1);
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.state === "paused");
-    await page.waitForTimeout(200);
-    const plots = page.locator("figure.plot");
-    assert.equal(await plots.count(), 4);
-    for (let k = 0; k < 4; k++) {
-      const plot = plots.nth(k);
-      await plot.getByRole("button", { name: "table" }).click();
-      assert.equal(await plot.locator("thead th").count(), 6);
-      assert.ok((await plot.locator("tbody tr").count()) >= 8);
-    }
-    const last = await plots.nth(0).locator("tbody tr").last().locator("td").first().textContent();
-    assert.match(last, /^[\d.]+ [pnµm]m$/);
-    assert.equal(last, await page.textContent("tr:nth-child(1) td[data-label=gap] .number"));
-  }));
-
-test("a click on a curve shows that time, and the table, the drawing and the clock follow", () =>
-  onPage({}, async (page) => {
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.latest.t > 1);
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.state === "paused");
-    await page.waitForTimeout(200);
-    const before = await page.getAttribute(".ghost.selected .outline", "d");
-    const box = await page.locator(".u-over").first().boundingBox();
-    await page.mouse.click(box.x + 0.25 * box.width, box.y + 20);
-    await until(page, (data) => data.view.shown >= 0);
-    await page.waitForTimeout(100);
-    assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), before);
-    const shown = await read(page, (data) => data.history.t[data.view.shown]);
-    assert.equal(await page.textContent(".time"), `t ${shown.toFixed(2)} s`);
-  }));
-
-test("the drawing is described in one sentence on demand", () =>
-  onPage({}, async (page) => {
-    await page.getByRole("button", { name: "describe" }).click();
-    assert.match(
-      await page.textContent(".spoken"),
-      /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/,
+test("every control has a name and room, every reference a target, every id one owner", async (t) => {
+  const page = await open(t);
+  await page.click(".scene-parameters summary");
+  const report = await page.evaluate((least) => {
+    const name = (node) =>
+      node.getAttribute("aria-label") ||
+      [...(node.labels ?? [])].map((label) => label.textContent).join(" ") ||
+      node.textContent.trim() ||
+      node.title;
+    const shown = [...document.querySelectorAll("button, select, input, summary, a")].filter(
+      (node) => node.checkVisibility() && !node.closest(".skip"),
     );
-  }));
+    const ids = [...document.querySelectorAll("[id]")].map((node) => node.id);
+    const references = [
+      ...document.querySelectorAll("[aria-labelledby], [aria-describedby], label[for]"),
+    ].flatMap((node) =>
+      ["aria-labelledby", "aria-describedby", "for"].flatMap((attribute) =>
+        (node.getAttribute(attribute) ?? "").split(" ").filter(Boolean),
+      ),
+    );
+    return {
+      nameless: shown.filter((node) => !name(node)).map((node) => node.outerHTML.slice(0, 80)),
+      small: shown
+        .map((node) => ({ node, box: node.getBoundingClientRect() }))
+        .filter(
+          ({ node, box }) =>
+            (box.width < least || box.height < least) &&
+            !(node.type === "checkbox" && box.width + 6 >= least),
+        )
+        .map(({ node, box }) => `${node.outerHTML.slice(0, 60)} ${box.width}x${box.height}`),
+      twice: ids.filter((id, i) => ids.indexOf(id) !== i),
+      dangling: references.filter((id) => !document.getElementById(id)),
+      headings: [...document.querySelectorAll("h1, h2")].map((node) => node.tagName)[0],
+      language: document.documentElement.lang,
+    };
+  }, SMALLEST_TARGET);
+  assert.deepEqual(report, {
+    nameless: [],
+    small: [],
+    twice: [],
+    dangling: [],
+    headings: "H1",
+    language: "en",
+  });
+});
 
-test("the equations of the scene are set as mathematics", () =>
-  onPage({}, async (page) => {
-    await page.click(".equation-panel summary");
-    await page.waitForSelector(".term-block .katex");
-    assert.ok((await page.locator(".term-block").count()) >= 4);
-    assert.equal(await page.locator(".katex-error").count(), 0);
-    await screenshot(page, "page-1280-light-equations");
-  }));
+test("a slider tells its value with the unit; Home is the least, End the most", async (t) => {
+  const page = await open(t);
+  const slider = page.locator("#set-h-slider");
+  assert.equal(await slider.getAttribute("aria-valuetext"), "0.001 s");
+  await slider.focus();
+  await page.keyboard.press("Home");
+  assert.equal(await slider.getAttribute("aria-valuetext"), "0.0001 s");
+  assert.equal(await slider.inputValue(), await slider.getAttribute("min"));
+  await page.keyboard.press("End");
+  assert.equal(await slider.getAttribute("aria-valuetext"), "0.1 s");
+  assert.equal(await slider.inputValue(), await slider.getAttribute("max"));
+  assert.equal(await read(page, (data) => data.state), "paused");
+});
+
+test("everything is reached by Tab, and the first stop leads to Play", async (t) => {
+  const page = await open(t);
+  await page.evaluate(() => {
+    document.body.tabIndex = -1;
+    document.body.focus();
+  });
+  const stops = [];
+  for (let k = 0; k < 18; k++) {
+    await page.keyboard.press("Tab");
+    stops.push(
+      await page.evaluate(
+        () => document.activeElement.id || document.activeElement.textContent.trim(),
+      ),
+    );
+  }
+  assert.deepEqual(stops.slice(0, 2), ["Skip to play and pause", "Skip to the methods"]);
+  assert.ok(stops.includes("play") && stops.includes("scrub"), stops.join(" | "));
+  await page.locator(".skip a").first().focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "play");
+});
+
+test("digits select, signs change the speed, and single characters can be switched off", async (t) => {
+  const page = await open(t);
+  await page.keyboard.press("3");
+  await until(page, (data) => data.view.selected === 2);
+  assert.equal(await page.getAttribute("tr:nth-child(3) .select", "aria-pressed"), "true");
+  await page.keyboard.press("=");
+  await until(page, (data) => data.speed === 2);
+  await page.keyboard.press("-");
+  await until(page, (data) => data.speed === 1);
+  await page.keyboard.press("F1");
+  assert.ok(await page.locator("table.keys").isVisible());
+  await page.uncheck("#letters");
+  await page.getByRole("button", { name: "Close" }).click();
+  await page.focus("#play");
+  await page.keyboard.press("1");
+  await page.keyboard.press("=");
+  await page.keyboard.press("ArrowRight");
+  await until(page, (data) => data.latest.frame === 1);
+  assert.equal(await read(page, (data) => data.view.selected), 2);
+  assert.equal(await read(page, (data) => data.speed), 1);
+});
+
+test("keys typed into a field stay in the field", async (t) => {
+  const page = await open(t);
+  await page.focus("#set-h");
+  await page.keyboard.press("3");
+  await page.keyboard.press("Space");
+  await page.keyboard.press("Backspace");
+  assert.deepEqual(await read(page, (data) => [data.view.selected, data.state]), [0, "paused"]);
+});
+
+test("each curve has a table with the same numbers", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1);
+  const plots = page.locator("figure.plot");
+  assert.equal(await plots.count(), 4);
+  for (let k = 0; k < 4; k++) {
+    const plot = plots.nth(k);
+    await plot.getByRole("button", { name: "table" }).click();
+    assert.equal(await plot.locator("thead th").count(), 6);
+    assert.ok((await plot.locator("tbody tr").count()) >= 8);
+  }
+  const last = await plots.nth(0).locator("tbody tr").last().locator("td").first().textContent();
+  assert.match(last, /^[\d.]+ [pnµm]m$/);
+  assert.equal(last, await page.textContent("tr:nth-child(1) td[data-label=gap] .number"));
+});
+
+test("a click on a curve shows that time, and the table, the drawing and the clock follow", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1);
+  const before = await page.getAttribute(".ghost.selected .outline", "d");
+  const box = await page.locator(".u-over").first().boundingBox();
+  await page.mouse.click(box.x + 0.25 * box.width, box.y + 20);
+  await until(page, (data) => data.view.shown >= 0);
+  await drawn(page);
+  assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), before);
+  const shown = await read(page, (data) => data.history.t[data.view.shown]);
+  assert.equal(await page.textContent(".time"), `t ${shown.toFixed(2)} s`);
+});
+
+test("the drawing is described in one sentence on demand", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "describe" }).click();
+  assert.match(
+    await page.textContent(".spoken"),
+    /^Four-bar.* at 0\.00 s, drawn by index-1,.*loop gap .*\.$/,
+  );
+});
+
+test("the equations of the scene are set as mathematics", async (t) => {
+  const page = await open(t);
+  await page.click(".equation-panel summary");
+  await page.waitForSelector(".term-block .katex");
+  assert.ok((await page.locator(".term-block").count()) >= 4);
+  assert.equal(await page.locator(".katex-error").count(), 0);
+  await screenshot(page, "page-1280-light-equations");
+});
 
 for (const [theme, width] of [
   ["light", 1280],
   ["dark", 360],
 ]) {
-  test(`${theme}, ${width} wide: the reduced terms unfold, with names, and follow the time shown`, () =>
-    onPage({ colorScheme: theme, viewport: { width, height: 780 } }, async (page) => {
-      await page.click(".equation-panel summary");
-      await page.waitForSelector(".reduced-panel summary");
-      assert.equal(await page.locator(".reduced-tables").isVisible(), false);
-      await page.click(".reduced-panel summary");
-      await page.waitForSelector(".reduced-tables table");
-      assert.match(await page.textContent(".reduced-panel"), /Independent: th1 \(the motors\)/);
-      const acceleration = () =>
-        page.textContent(".reduced-tables table:first-child tbody tr:nth-child(2) td");
-      const [M, C, g, tau, a] = await page.evaluate(() => {
-        const numbers = [...document.querySelectorAll(".reduced-tables table")].map((one) =>
-          [...one.querySelectorAll("tbody td")].map((td) =>
-            Number(td.textContent.replace("−", "-")),
-          ),
-        );
-        const [[v, a, g, tau], [M], [C]] = numbers;
-        return [M, C * v, g, tau, a];
-      });
-      // four digits of each are shown
-      assert.ok(Math.abs(M * a + C + g - tau) < 2e-3 * (Math.abs(g) + Math.abs(C)));
-      // the closed form is set: four parts, and the two coordinates of the dyad
-      assert.equal(await page.locator(".reduced-panel .term-block .katex").count(), 6);
-      assert.equal(await page.locator(".katex-error").count(), 0);
-      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
-      const before = await acceleration();
-      await page.locator(".reduced-panel").scrollIntoViewIfNeeded();
-      await screenshot(page, `page-${width}-${theme}-reduced`);
-      await page.evaluate(() => document.activeElement?.blur());
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.latest.t > 0.3);
-      await page.waitForFunction(
-        (old) =>
-          document.querySelector(".reduced-tables table tbody tr:nth-child(2) td").textContent !==
-          old,
-        before,
+  test(`${theme}, ${width} wide: the reduced terms unfold, with names, and follow the time shown`, async (t) => {
+    const page = await open(t, { colorScheme: theme, viewport: { width, height: 780 } });
+    await page.click(".equation-panel summary");
+    await page.waitForSelector(".reduced-panel summary");
+    assert.equal(await page.locator(".reduced-tables").isVisible(), false);
+    await page.click(".reduced-panel summary");
+    await page.waitForSelector(".reduced-tables table");
+    assert.match(await page.textContent(".reduced-panel"), /Independent: th1 \(the motors\)/);
+    const acceleration = () =>
+      page.textContent(".reduced-tables table:first-child tbody tr:nth-child(2) td");
+    const [M, C, g, tau, a] = await page.evaluate(() => {
+      const numbers = [...document.querySelectorAll(".reduced-tables table")].map((one) =>
+        [...one.querySelectorAll("tbody td")].map((td) =>
+          Number(td.textContent.replace("−", "-")),
+        ),
       );
-    }));
+      const [[v, a, g, tau], [M], [C]] = numbers;
+      return [M, C * v, g, tau, a];
+    });
+    // four digits of each are shown
+    assert.ok(Math.abs(M * a + C + g - tau) < 2e-3 * (Math.abs(g) + Math.abs(C)));
+    // the closed form is set: four parts, and the two coordinates of the dyad
+    assert.equal(await page.locator(".reduced-panel .term-block .katex").count(), 6);
+    assert.equal(await page.locator(".katex-error").count(), 0);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    const before = await acceleration();
+    await page.locator(".reduced-panel").scrollIntoViewIfNeeded();
+    await screenshot(page, `page-${width}-${theme}-reduced`);
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.keyboard.press("Space");
+    await until(page, (data) => data.latest?.t > 0.3);
+    await page.waitForFunction(
+      (old) =>
+        document.querySelector(".reduced-tables table tbody tr:nth-child(2) td").textContent !==
+        old,
+      before,
+    );
+  });
 }
 
-test("where no coordinates can be independent, the reduced terms say so", () =>
-  onPage({ hash: "#heavy-top" }, async (page) => {
-    await page.click(".equation-panel summary");
-    await page.click(".reduced-panel summary");
-    await page.waitForFunction(() =>
-      /There are no such coordinates here: .*ball/.test(
-        document.querySelector(".reduced-panel").textContent,
-      ),
-    );
-  }));
+test("where no coordinates can be independent, the reduced terms say so", async (t) => {
+  const page = await open(t, { hash: "#heavy-top" });
+  await page.click(".equation-panel summary");
+  await page.click(".reduced-panel summary");
+  await page.waitForFunction(() =>
+    /There are no such coordinates here: .*ball/.test(
+      document.querySelector(".reduced-panel").textContent,
+    ),
+  );
+});
 
-test("a formula too long to be read is not set, and said where it is printed", () =>
-  onPage({ hash: "#stewart-6-6" }, async (page) => {
-    await page.click(".equation-panel summary");
-    await page.waitForFunction(() =>
-      /thousand characters: "holonom equations" prints it/.test(
-        document.querySelector(".equation-body").textContent,
-      ),
-    );
-    assert.equal(await page.locator(".katex-error").count(), 0);
-    assert.match(await page.textContent(".equation-body"), /rotation vector of the unit quaternion/);
-  }));
+test("a formula too long to be read is not set, and said where it is printed", async (t) => {
+  const page = await open(t, { hash: "#stewart-6-6" });
+  await page.click(".equation-panel summary");
+  await page.waitForFunction(() =>
+    /thousand characters: "holonom equations" prints it/.test(
+      document.querySelector(".equation-body").textContent,
+    ),
+  );
+  assert.equal(await page.locator(".katex-error").count(), 0);
+  assert.match(await page.textContent(".equation-body"), /rotation vector of the unit quaternion/);
+});
 
 for (const width of [360, 768]) {
-  test(`${width} wide, in space, with forces and the dialog open: no horizontal scroll`, () =>
-    onPage({ viewport: { width, height: 780 }, hash: "#delta-robot" }, async (page) => {
-      await page.click("#reactions summary");
-      await page.waitForSelector("#reactions tbody tr");
-      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
-      await page.getByRole("button", { name: "add a method" }).click();
-      await page.selectOption("#pick-formulation", "ggl");
-      await page.click(".misfits summary");
-      const [dialog, inner] = await page.evaluate(() => {
-        const node = document.querySelector(".dialog");
-        return [node.clientWidth, node.scrollWidth];
-      });
-      assert.equal(inner, dialog);
-      await screenshot(page, `dialog-${width}`);
-    }));
+  test(`${width} wide, in space, with forces and the dialog open: no horizontal scroll`, async (t) => {
+    const page = await open(t, { viewport: { width, height: 780 }, hash: "#delta-robot" });
+    await page.click("#reactions summary");
+    await page.waitForSelector("#reactions tbody tr");
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await page.getByRole("button", { name: "add a method" }).click();
+    await page.selectOption("#pick-formulation", "ggl");
+    await page.click(".misfits summary");
+    const [dialog, inner] = await page.evaluate(() => {
+      const node = document.querySelector(".dialog");
+      return [node.clientWidth, node.scrollWidth];
+    });
+    assert.equal(inner, dialog);
+    await screenshot(page, `dialog-${width}`);
+  });
 }
 
-test("every shipped scene opens, moves and draws no NaN", () =>
-  onPage({}, async (page) => {
-    const ids = await read(page, (data) => data.scenes.map(({ id }) => id));
-    assert.ok(ids.length >= 6, ids.join(", "));
-    for (const id of ids) {
-      await page.selectOption("#scene", id);
-      await until(page, `(data) => data.scene.id === "${id}" && data.history.count > 0`);
-      await page.focus("#play");
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.latest?.t > Math.min(0.4, 0.1 * data.duration));
-      await page.keyboard.press("Space");
-      await until(page, (data) => data.state !== "running");
-      assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/, id);
-      assert.doesNotMatch(
-        await page.evaluate(() => document.querySelector(".picture").outerHTML),
-        /NaN|Infinity/,
-        id,
-      );
-      await screenshot(page, `scene-${id}`);
+test("every shipped scene opens, moves and draws no NaN", async (t) => {
+  const page = await open(t);
+  const ids = await read(page, (data) => data.scenes.map(({ id }) => id));
+  assert.ok(ids.length >= 6, ids.join(", "));
+  for (const id of ids) {
+    await page.selectOption("#scene", id);
+    await until(page, `(data) => data.scene.id === "${id}" && data.history.count > 0`);
+    if (await read(page, (data) => data.speed >= 1)) {
+      await fastest(page); // a short run is shown slowly, and stays so
     }
-  }));
-
-test("who wants less motion gets steps until he asks for more", () =>
-  onPage({ reducedMotion: "reduce" }, async (page) => {
-    assert.match(await page.textContent("#play"), /Step/);
+    await page.focus("#play");
     await page.keyboard.press("Space");
-    await until(page, (data) => data.latest.t > 0.09);
-    assert.equal(await read(page, (data) => data.state), "paused");
-    await page.getByRole("button", { name: "animate" }).click();
-    await until(page, (data) => data.state === "running");
-  }));
-
-test("the theme can be chosen and is remembered", () =>
-  onPage({ colorScheme: "light" }, async (page) => {
-    await page.getByRole("button", { name: "dark theme" }).click();
-    assert.equal(
-      await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
-      "rgb(20, 23, 27)",
+    await until(page, (data) => data.latest?.t > Math.min(0.4, 0.1 * data.duration));
+    await page.keyboard.press("ArrowRight"); // a run that moves stops, one that has ended stays as it is
+    await stood(page);
+    assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/, id);
+    assert.doesNotMatch(
+      await page.evaluate(() => document.querySelector(".picture").outerHTML),
+      /NaN|Infinity/,
+      id,
     );
-    await page.reload();
-    await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
-  }));
+    await screenshot(page, `scene-${id}`, { seen: true });
+  }
+});
 
-test("without script there is a picture, an explanation and the way to the JSON", () =>
-  onPage({ javaScriptEnabled: false, wait: false }, async (page) => {
-    assert.ok(await page.locator(".still img").isVisible());
-    assert.ok((await page.locator(".still img").boundingBox()).height > 100);
-    assert.equal(await page.locator(".still a").first().getAttribute("href"), "/api/v1/");
-    assert.equal(await page.locator("main").isVisible(), false);
-    await screenshot(page, "page-no-script");
-  }));
+test("who wants less motion gets steps until he asks for more", async (t) => {
+  const page = await open(t, { reducedMotion: "reduce" });
+  assert.match(await page.textContent("#play"), /Step/);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.09);
+  assert.equal(await read(page, (data) => data.state), "paused");
+  await page.getByRole("button", { name: "animate" }).click();
+  await until(page, (data) => data.state === "running");
+});
+
+test("the theme can be chosen and is remembered", async (t) => {
+  const page = await open(t, { colorScheme: "light" });
+  await page.getByRole("button", { name: "dark theme" }).click();
+  assert.equal(
+    await page.evaluate(() => getComputedStyle(document.body).backgroundColor),
+    "rgb(20, 23, 27)",
+  );
+  await page.reload();
+  await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
+});
+
+test("without script there is a picture, an explanation and the way to the JSON", async (t) => {
+  const page = await open(t, { javaScriptEnabled: false, wait: false });
+  assert.ok(await page.locator(".still img").isVisible());
+  assert.ok((await page.locator(".still img").boundingBox()).height > 100);
+  assert.equal(await page.locator(".still a").first().getAttribute("href"), "/api/v1/");
+  assert.equal(await page.locator("main").isVisible(), false);
+  await screenshot(page, "page-no-script");
+});

@@ -1,57 +1,18 @@
 // The main journey on the real server: play, pause, step, change the step size, read the gap, lose the line and find it again.
 import assert from "node:assert/strict";
-import { after, afterEach, before, test } from "node:test";
-import {
-  openPage,
-  read,
-  screenshot,
-  startBrowser,
-  startLine,
-  startServer,
-  until,
-} from "./support.mjs";
+import { test } from "node:test";
+import { createBench, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
 
 const ROUNDING = 1e-12; // [m] a loop that a method keeps closed
+const LONG = 60000; // [ms] that a run may take on a busy machine
 const METHODS = ["index1", "baumgarte", "projection", "nullspace", "reduced"];
 
-let server;
-let browser;
-let opened;
-
-before(async () => {
-  server = await startServer();
-  browser = await startBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-afterEach(async () => {
-  const faults = opened?.faults ?? [];
-  await opened?.close();
-  opened = undefined;
-  assert.deepEqual(faults, []);
-});
-
-async function open(options) {
-  opened = await openPage(browser, server.url, options);
-  return opened.page;
-}
+const bench = createBench();
+const { open } = bench;
 
 async function type(page, field, text) {
   await page.fill(field, text);
   await page.press(field, "Enter");
-}
-
-/** The greatest speed; then Play has the focus. */
-async function fastest(page) {
-  for (let k = 0; k < 3; k++) {
-    await page.getByRole("button", { name: /^Faster/ }).click();
-  }
-  await until(page, (data) => data.speed === 10);
-  await page.focus("#play");
 }
 
 /** Hides the page, or shows it again. */
@@ -66,7 +27,7 @@ function show(page, visible) {
 async function stateOnServer(id, state) {
   const end = Date.now() + 20000;
   for (;;) {
-    const answer = await fetch(`${server.url}api/v1/comparisons/${id}`);
+    const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`);
     if ((await answer.json()).state === state) {
       return;
     }
@@ -77,8 +38,8 @@ async function stateOnServer(id, state) {
 
 const time = (page) => read(page, (data) => data.latest.t);
 
-test("opens paused on five methods of the four-bar, with Play focused", async () => {
-  const page = await open();
+test("opens paused on five methods of the four-bar, with Play focused", async (t) => {
+  const page = await open(t);
   assert.equal(await page.evaluate(() => document.activeElement.id), "play");
   assert.deepEqual(await read(page, (data) => data.methods.map((m) => m.formulation)), METHODS);
   assert.equal(await read(page, (data) => data.state), "paused");
@@ -91,18 +52,17 @@ test("opens paused on five methods of the four-bar, with Play focused", async ()
   );
 });
 
-test("Space plays and pauses; the unstabilised gap grows and the others stay closed", async () => {
-  const page = await open();
+test("Space plays and pauses; the unstabilised gap grows and the others stay closed", async (t) => {
+  const page = await open(t);
   const still = await page.getAttribute(".ghost.selected .outline", "d");
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 2);
+  await until(page, (data) => data.latest?.t > 2);
   assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), still);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
-  await page.waitForTimeout(200);
-  const t = await time(page);
+  await stood(page);
+  const stands = await time(page);
   await page.waitForTimeout(300);
-  assert.equal(await time(page), t);
+  assert.equal(await time(page), stands);
   const worst = await read(page, (data) =>
     data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)),
   );
@@ -118,8 +78,8 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   assert.match(await page.textContent("tr:nth-child(3) .trend"), /closed/);
 });
 
-test("the arrows step by one frame, back as well, and Backspace returns to the start", async () => {
-  const page = await open();
+test("the arrows step by one frame, back as well, and Backspace returns to the start", async (t) => {
+  const page = await open(t);
   const dt = await read(page, (data) => data.frameDt);
   for (let k = 1; k <= 3; k++) {
     await page.keyboard.press("ArrowRight");
@@ -140,8 +100,8 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
   await page.waitForFunction(() => document.querySelector(".time").textContent === "t 0.00 s");
 });
 
-test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async () => {
-  const page = await open();
+test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async (t) => {
+  const page = await open(t);
   await type(page, "#set-h", "0,02");
   await until(
     page,
@@ -152,7 +112,7 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
   await page.keyboard.press("=");
   await until(page, (data) => data.speed === 2);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t >= 4.5);
+  await until(page, (data) => data.latest?.t >= 4.5);
   const passed = await read(page, (data) =>
     [1e-2, 1e-1].map(
       (limit) => data.history.t[data.history.columns[0].gap.findIndex((gap) => gap > limit)],
@@ -166,12 +126,12 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
   assert.ok(projection < ROUNDING, `${projection} m`);
   assert.match(await page.textContent(".tear-inset"), /×[\d.]+.*gap \d+ .?m/s);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
+  await stood(page);
   await screenshot(page, "page-1280-light-open-loop");
 });
 
-test("the same step is reached by the slider and by 2e-2 s", async () => {
-  const page = await open();
+test("the same step is reached by the slider and by 2e-2 s", async (t) => {
+  const page = await open(t);
   await page.focus("#set-h-slider");
   for (let k = 0; k < 9; k++) {
     await page.keyboard.press("ArrowUp");
@@ -187,22 +147,22 @@ test("the same step is reached by the slider and by 2e-2 s", async () => {
   assert.equal(await page.inputValue("#set-h"), "0.01");
 });
 
-test("a step of 0 is refused at the field and the old run goes on", async () => {
-  const page = await open();
+test("a step of 0 is refused at the field and the old run goes on", async (t) => {
+  const page = await open(t);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 0.2);
+  await until(page, (data) => data.latest?.t > 0.2);
   const before = await read(page, (data) => ({ generation: data.generation, t: data.latest.t }));
   await type(page, "#set-h", "0");
   assert.equal(await page.textContent("#set-h-hint"), "dt must be > 0");
   assert.equal(await page.getAttribute("#set-h", "aria-invalid"), "true");
-  await until(page, `(data) => data.latest.t > ${before.t} + 0.3`);
+  await until(page, `(data) => data.latest?.t > ${before.t} + 0.3`);
   assert.equal(await read(page, (data) => data.generation), before.generation);
   await page.press("#set-h", "Escape");
   assert.equal(await page.inputValue("#set-h"), "0.001");
 });
 
-test("a spelling that the server refuses is told in the dialog and changes nothing", async () => {
-  const page = await open();
+test("a spelling that the server refuses is told in the dialog and changes nothing", async (t) => {
+  const page = await open(t);
   await page.getByRole("button", { name: "add a method" }).click();
   await page.fill("#pick-spelling", "projektion@rk4:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
@@ -218,8 +178,8 @@ test("a spelling that the server refuses is told in the dialog and changes nothi
   await until(page, (data) => data.methods.length === 5);
 });
 
-test("a length that cannot close the loop is refused at its field with the reason, and the old one goes on", async () => {
-  const page = await open();
+test("a length that cannot close the loop is refused at its field with the reason, and the old one goes on", async (t) => {
+  const page = await open(t);
   await page.click(".scene-parameters summary");
   const before = await read(page, (data) => data.generation);
   await type(page, "#parameter-l2", "3");
@@ -236,24 +196,20 @@ test("a length that cannot close the loop is refused at its field with the reaso
   );
 });
 
-test("a negative Baumgarte constant is allowed with a warning", async () => {
-  const page = await open();
+test("a negative Baumgarte constant is allowed with a warning", async (t) => {
+  const page = await open(t);
   await type(page, "#set-beta", "-3");
   await until(page, (data) => /beta=-3/.test(data.methods[1].spelling));
   assert.equal(await page.textContent("#set-beta-hint"), "pushes the loop apart");
 });
 
-test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/20 closes the gap and says so", async () => {
-  const page = await open();
+test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/20 closes the gap and says so", async (t) => {
+  const page = await open(t);
   await type(page, "#set-h", "0.02");
   await until(page, (data) => /h=0\.02$/.test(data.methods[0].spelling));
-  for (let k = 0; k < 3; k++) {
-    await page.getByRole("button", { name: /^Faster/ }).click();
-  }
-  await until(page, (data) => data.speed === 10);
-  await page.focus("#play");
+  await fastest(page);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 5);
+  await until(page, (data) => data.latest?.t > 5);
   await page.getByRole("button", { name: "Why? index-1" }).click();
   const card = await page.textContent(".card");
   assert.match(card, /After [\d.]+ s the loop gap is .*m \(growing\)/);
@@ -273,8 +229,8 @@ test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/
   );
 });
 
-test("the printed null-space form keeps the loop closed while its energy climbs, and wears its badge", async () => {
-  const page = await open();
+test("the printed null-space form keeps the loop closed while its energy climbs, and wears its badge", async (t) => {
+  const page = await open(t);
   await page.getByRole("button", { name: "add a method" }).click();
   await page.fill("#pick-spelling", "nullspace-as-printed@rk4:h=1e-3");
   await page.getByRole("button", { name: "Add", exact: true }).click();
@@ -282,7 +238,7 @@ test("the printed null-space form keeps the loop closed while its energy climbs,
   assert.equal(await page.textContent(".badge"), "model error: halving h does not help");
   await page.focus("#play");
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 1.02);
+  await until(page, (data) => data.latest?.t > 1.02);
   const second = await read(page, (data) => {
     const i = data.history.indexAt(1);
     return {
@@ -294,44 +250,38 @@ test("the printed null-space form keeps the loop closed while its energy climbs,
   assert.ok(second.energy > 20 && second.energy < 100, `${second.energy} J`);
 });
 
-test("a line that drops is told, and mended it resumes without a missing or repeated frame", async () => {
-  const line = await startLine(server.port);
-  try {
-    opened = await openPage(browser, line.url);
-    const page = opened.page;
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.latest.t > 0.5);
-    line.cut();
-    await page.waitForFunction(() =>
-      /reconnecting/.test(document.querySelector(".stream").textContent),
-    );
-    const seen = await read(page, (data) => data.latest.frame);
-    await page.waitForTimeout(1200);
-    line.mend();
-    await until(page, `(data) => data.stream.state === "live" && data.latest.frame > ${seen} + 30`);
-    const { stride, steps, dt } = await read(page, (data) => ({
-      stride: data.history.stride,
-      dt: data.frameDt,
-      steps: Array.from(
-        data.history.t.subarray(1, data.history.count),
-        (t, i) => t - data.history.t[i],
-      ),
-    }));
-    assert.equal(stride, 1);
-    assert.ok(
-      steps.every((step) => Math.abs(step - dt) < 1e-9),
-      "every frame follows the one before it",
-    );
-  } finally {
-    await opened.close();
-    await line.close();
-  }
+test("a line that drops is told, and mended it resumes without a missing or repeated frame", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url });
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  line.cut();
+  await page.waitForFunction(() =>
+    /reconnecting/.test(document.querySelector(".stream").textContent),
+  );
+  const seen = await read(page, (data) => data.latest.frame);
+  await page.waitForTimeout(1200);
+  line.mend();
+  await until(page, `(data) => data.stream.state === "live" && data.latest.frame > ${seen} + 30`);
+  const { stride, steps, dt } = await read(page, (data) => ({
+    stride: data.history.stride,
+    dt: data.frameDt,
+    steps: Array.from(
+      data.history.t.subarray(1, data.history.count),
+      (t, i) => t - data.history.t[i],
+    ),
+  }));
+  assert.equal(stride, 1);
+  assert.ok(
+    steps.every((step) => Math.abs(step - dt) < 1e-9),
+    "every frame follows the one before it",
+  );
 });
 
-test("a hidden page closes its stream and catches up when it is shown", async () => {
-  const page = await open();
+test("a hidden page closes its stream and catches up when it is shown", async (t) => {
+  const page = await open(t);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 0.3);
+  await until(page, (data) => data.latest?.t > 0.3);
   await show(page, false);
   assert.match(await page.textContent(".stream"), /paused while hidden/);
   const seen = await read(page, (data) => data.latest.frame);
@@ -343,14 +293,14 @@ test("a hidden page closes its stream and catches up when it is shown", async ()
   assert.ok(whole, "no frame is missing");
 });
 
-test("a finished run stops the clock; another step runs it again, Backspace sets it back", async () => {
-  const page = await open({ hash: "#pendulum" });
+test("a finished run stops the clock; another step runs it again, Backspace sets it back", async (t) => {
+  const page = await open(t, { hash: "#pendulum" });
   for (let k = 0; k < 3; k++) {
     await page.keyboard.press("=");
   }
   await until(page, (data) => data.speed === 10);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "finished", 60000);
+  await until(page, (data) => data.state === "finished", LONG);
   assert.match(await page.textContent("#play"), /Again/);
   const generation = await read(page, (data) => data.generation);
   await type(page, "#set-h", "0.002");
@@ -359,82 +309,72 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   await page.keyboard.press("Backspace");
   await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 0.3);
+  await until(page, (data) => data.latest?.t > 0.3);
 });
 
-test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async () => {
-  const line = await startLine(server.port);
-  try {
-    opened = await openPage(browser, line.url);
-    const page = opened.page;
-    await fastest(page);
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.latest?.t > 0.5);
-    line.hold();
-    const { id, generation } = await read(page, (data) => data);
-    await stateOnServer(id, "finished");
-    assert.equal(await read(page, (data) => data.state), "running", "the end has not been heard of");
-    await type(page, "#set-h", "0.002");
-    await until(page, `(data) => data.generation > ${generation}`);
-    line.letGo();
-    await until(page, (data) => data.latest?.t > 1);
-    await until(page, (data) => data.state === "finished" && data.stream.state === "ended");
-    const t = await read(page, (data) => Array.from(data.history.t.subarray(0, data.history.count)));
-    const dt = await read(page, (data) => data.frameDt);
-    assert.ok(
-      t.every((at, k) => Math.abs(at - k * dt) < 1e-9),
-      "every frame of the new run is there",
-    );
-  } finally {
-    await opened.close();
-    await line.close();
+test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url });
+  await fastest(page);
+  line.hold();
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running");
+  const { id, generation } = await read(page, ({ id, generation }) => ({ id, generation }));
+  await stateOnServer(id, "finished");
+  assert.equal(await read(page, (data) => data.state), "running", "the end has not been heard of");
+  await type(page, "#set-h", "0.002");
+  await until(page, `(data) => data.generation > ${generation}`);
+  line.letGo();
+  await until(page, (data) => data.latest?.t > 1);
+  await until(page, (data) => data.state === "finished" && data.stream.state === "ended");
+  const { times, dt } = await read(page, (data) => ({
+    times: Array.from(data.history.t.subarray(0, data.history.count)),
+    dt: data.frameDt,
+  }));
+  assert.ok(
+    times.every((at, k) => Math.abs(at - k * dt) < 1e-9),
+    "every frame of the new run is there",
+  );
+});
+
+test("answers that overtake the stream are not undone by what the stream tells later", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url });
+  line.hold();
+  for (const speed of [2, 5, 10]) {
+    await page.keyboard.press("=");
+    await until(page, `(data) => data.speed === ${speed}`);
   }
-});
-
-test("answers that overtake the stream are not undone by what the stream tells later", async () => {
-  const line = await startLine(server.port);
-  try {
-    opened = await openPage(browser, line.url);
-    const page = opened.page;
-    line.hold();
-    for (const speed of [2, 5, 10]) {
-      await page.keyboard.press("=");
-      await until(page, `(data) => data.speed === ${speed}`);
-    }
-    await page.focus("#play");
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.state === "running");
-    await page.keyboard.press("Space");
-    await until(page, (data) => data.state === "paused");
-    await page.evaluate(() => {
-      globalThis.seen = [];
-      new MutationObserver(() =>
-        globalThis.seen.push([
-          document.querySelector("#play").textContent,
-          document.querySelector("#transport .speed").textContent,
-        ]),
-      ).observe(document.querySelector("#transport"), {
-        subtree: true,
-        childList: true,
-        characterData: true,
-      });
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "running");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  await page.evaluate(() => {
+    globalThis.seen = [];
+    new MutationObserver(() =>
+      globalThis.seen.push([
+        document.querySelector("#play").textContent,
+        document.querySelector("#transport .speed").textContent,
+      ]),
+    ).observe(document.querySelector("#transport"), {
+      subtree: true,
+      childList: true,
+      characterData: true,
     });
-    const last = await read(page, (data) => Number(data.stream.id));
-    line.letGo();
-    await until(page, `(data) => Number(data.stream.id) >= ${last} + 5`);
-    const seen = await page.evaluate(() => globalThis.seen);
-    assert.deepEqual(
-      seen.filter(([play, speed]) => !/Play/.test(play) || !/10/.test(speed)),
-      [],
-    );
-  } finally {
-    await opened.close();
-    await line.close();
-  }
+  });
+  const last = await read(page, (data) => Number(data.stream.id));
+  line.letGo();
+  await until(page, `(data) => Number(data.stream.id) >= ${last} + 5`);
+  const seen = await page.evaluate(() => globalThis.seen);
+  assert.deepEqual(
+    seen.filter(([play, speed]) => !/Play/.test(play) || !/10/.test(speed)),
+    [],
+  );
 });
 
-test("a page that was hidden after the end of a run has nothing to reconnect to", async () => {
-  const page = await open();
+test("a page that was hidden after the end of a run has nothing to reconnect to", async (t) => {
+  const page = await open(t);
   await fastest(page);
   await page.keyboard.press("Space");
   await until(page, (data) => data.stream.state === "ended");
@@ -450,19 +390,16 @@ test("a page that was hidden after the end of a run has nothing to reconnect to"
   assert.equal(await read(page, (data) => data.stream.state), "ended");
 });
 
-test("a method that fails keeps its last pose, under a banner with its name, the time and the cause", async () => {
-  const page = await open();
+test("a method that fails keeps its last pose, under a banner with its name, the time and the cause", async (t) => {
+  const page = await open(t);
   await type(page, "#set-beta", "-120");
   await until(page, (data) => /beta=-120/.test(data.methods[1].spelling));
   await type(page, "#set-alpha", "-10");
   await until(page, (data) => /alpha=-10/.test(data.methods[1].spelling));
   await page.keyboard.press("2");
-  for (let k = 0; k < 3; k++) {
-    await page.getByRole("button", { name: /^Faster/ }).click();
-  }
-  await page.focus("#play");
+  await fastest(page);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.methods[1].state === "failed", 30000);
+  await until(page, (data) => data.latest?.methods[1].state === "failed", LONG);
   await page.waitForSelector(".banner:not([hidden])");
   assert.match(await page.textContent(".banner"), /Baumgarte stopped at [\d.]+ s: .{10}/);
   await page.waitForFunction(() =>
@@ -472,21 +409,23 @@ test("a method that fails keeps its last pose, under a banner with its name, the
   assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/);
 });
 
-test("a comparison that the server has forgotten is made again, and said so", async () => {
-  const page = await open();
+test("a comparison that the server has forgotten is made again, and said so", async (t) => {
+  const page = await open(t);
   const id = await read(page, (data) => data.id);
-  const answer = await fetch(`${server.url}api/v1/comparisons/${id}`, { method: "DELETE" });
+  const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
   assert.equal(answer.status, 204);
   await until(page, (data) => data.stream.state === "ended");
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
   assert.notEqual(await read(page, (data) => data.id), id);
   assert.match(await page.textContent(".notice"), /started again/);
-  assert.deepEqual(opened.faults.splice(0), [`not found: ${server.url}api/v1/comparisons/${id}`]);
+  assert.deepEqual(bench.faultsOf(page).splice(0), [
+    `not found: ${bench.url}api/v1/comparisons/${id}`,
+  ]);
 });
 
-test("the scenes stand under their lessons, in the order of the lessons", async () => {
-  const page = await open();
+test("the scenes stand under their lessons, in the order of the lessons", async (t) => {
+  const page = await open(t);
   const groups = await page.evaluate(() =>
     [...document.querySelectorAll("#scene optgroup")].map((group) => ({
       label: group.label,
@@ -505,8 +444,8 @@ test("the scenes stand under their lessons, in the order of the lessons", async 
   );
 });
 
-test("the dialog offers what fits the formulation, and says why the rest does not", async () => {
-  const page = await open();
+test("the dialog offers what fits the formulation, and says why the rest does not", async (t) => {
+  const page = await open(t);
   const catalogue = await read(page, (data) => data.catalogue);
   await page.getByRole("button", { name: "add a method" }).click();
   for (const { name, integrators } of catalogue.formulations) {
@@ -534,8 +473,8 @@ test("the dialog offers what fits the formulation, and says why the rest does no
   assert.match(await page.textContent("#pick-error"), /Runge-Kutta 4 takes an ordinary/);
 });
 
-test("a method that cannot serve the scene stands in the table with its reason, and the others go on", async () => {
-  const page = await open();
+test("a method that cannot serve the scene stands in the table with its reason, and the others go on", async (t) => {
+  const page = await open(t);
   await page.route("**/api/v1/scenes/delta-robot", async (route) => {
     const answer = await route.fetch();
     const scene = await answer.json();
@@ -554,17 +493,15 @@ test("a method that cannot serve the scene stands in the table with its reason, 
   assert.equal(await page.locator(".refused").count(), 0);
 });
 
-test("the forces in the joints are those of the state shown, as numbers and as arrows", async () => {
-  const page = await open();
+test("the forces in the joints are those of the state shown, as numbers and as arrows", async (t) => {
+  const page = await open(t);
   await page.click("#reactions summary");
   await page.getByRole("button", { name: "draw as arrows" }).click();
   await page.focus("#play");
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.5);
-  await page.keyboard.press("Space");
+  await playTo(page, 0.5);
   await until(page, (data) => data.state === "paused" && data.reactions?.t === data.latest.t);
-  const { t, list, state } = await read(page, (data) => ({
-    t: data.reactions.t,
+  const { at, list, state } = await read(page, (data) => ({
+    at: data.reactions.t,
     list: data.reactions.list,
     state: Object.fromEntries(
       data.scene.coordinates.flatMap(({ name, rate }, i) => [
@@ -573,10 +510,10 @@ test("the forces in the joints are those of the state shown, as numbers and as a
       ]),
     ),
   }));
-  const answer = await fetch(`${server.url}api/v1/terms`, {
+  const answer = await fetch(`${bench.url}api/v1/terms`, {
     method: "POST",
     headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ scene: "four-bar", t, state, reactions: true }),
+    body: JSON.stringify({ scene: "four-bar", t: at, state, reactions: true }),
   });
   const { reactions } = await answer.json();
   assert.deepEqual(
@@ -600,8 +537,8 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   assert.equal(await page.locator(".arrows path").count(), 0);
 });
 
-test("a link opens the same comparison at the same frame with the same numbers", async () => {
-  const page = await open();
+test("a link opens the same comparison at the same frame with the same numbers", async (t) => {
+  const page = await open(t);
   await page.click(".scene-parameters summary");
   await type(page, "#parameter-l2", "1.3");
   await until(page, (data) => data.settings.l2 === 1.3);
@@ -609,10 +546,7 @@ test("a link opens the same comparison at the same frame with the same numbers",
   await page.getByRole("button", { name: "paths" }).click();
   await page.keyboard.press("3");
   await page.focus("#play");
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.5);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
+  await playTo(page, 0.5);
   await page.keyboard.press("l");
   await until(page, (data) => /link copied|address line/.test(data.notice));
   const what = (data) => ({
@@ -626,33 +560,29 @@ test("a link opens the same comparison at the same frame with the same numbers",
   const before = await read(page, what);
   const fragment = new URL(page.url()).hash;
   assert.match(fragment, /^#scene=four-bar&set\.l2=1\.3&method=/);
-  const other = await openPage(browser, server.url, { hash: fragment });
-  await until(other.page, `(data) => data.latest?.frame === ${before.frame} && data.view.traces`);
-  assert.deepEqual(await read(other.page, what), before);
-  assert.equal(await other.page.locator("#reactions details[open]").count(), 1);
-  await other.page.evaluate(() => {
+  const other = await open(t, { hash: fragment });
+  await until(other, `(data) => data.latest?.frame === ${before.frame} && data.view.traces`);
+  assert.deepEqual(await read(other, what), before);
+  assert.equal(await other.locator("#reactions details[open]").count(), 1);
+  await other.evaluate(() => {
     location.hash = "scene=four-baar&frame=3";
   });
-  await until(other.page, (data) => /no scene is called 'four-baar'/.test(data.notice));
-  assert.deepEqual(other.faults, []);
-  await other.close();
+  await until(other, (data) => /no scene is called 'four-baar'/.test(data.notice));
 });
 
-test("a singular pose is counted down, and then told with what became of each method there", async () => {
-  const page = await open();
+test("a singular pose is counted down, and then told with what became of each method there", async (t) => {
+  const page = await open(t);
   await page.selectOption("#scene", "parallelogram");
   await until(page, (data) => data.scene.id === "parallelogram" && data.history.count > 0);
   await page.focus("#play");
-  while (!(await read(page, (data) => data.incidents.some(({ code }) => code === "rank-ahead")))) {
+  for (let k = 1; !(await read(page, (data) => data.incidents.some(({ code }) => code === "rank-ahead"))); k++) {
     await page.keyboard.press("ArrowRight");
+    await until(page, `(data) => data.latest?.frame === ${k}`);
   }
   await page.waitForFunction(() =>
     /J loses rank in 0\.\d\d s/.test(document.querySelector(".ahead").textContent),
   );
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest.t > 0.5);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
+  await playTo(page, 0.5);
   const met = await read(page, (data) =>
     data.incidents.filter(({ code, t }) => code === "near-singular" && t < 0.5),
   );

@@ -1,42 +1,13 @@
 // The reference solution on the page: a grey ghost, grey curves, and how far each method is off it.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { openPage, startBrowser, startServer, until } from "./support.mjs";
+import { test } from "node:test";
+import { createBench, playTo, until } from "./support.mjs";
 import { createGrowing, offReference, referenceAt } from "../../web/state/reference.js";
 
-let server;
-let browser;
-
-before(async () => {
-  server = await startServer();
-  browser = await startBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/** Runs a body on a fresh page and then asks for its faults. */
-async function onPage(options, body) {
-  const opened = await openPage(browser, server.url, options);
-  try {
-    await body(opened.page);
-  } finally {
-    await opened.close();
-  }
-  assert.deepEqual(opened.faults, []);
-}
+const bench = createBench();
+const { open } = bench;
 
 const isReady = (data) => data.reference?.state === "ready";
-
-/** Plays to a time and stands. @param {number} t [s] */
-async function playTo(page, t) {
-  await page.keyboard.press("Space");
-  await page.waitForFunction((least) => globalThis.holonom.data.latest.t > least, t);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
-}
 
 const ready = (points, stride = 1, own = 1e-9) => ({
   state: "ready",
@@ -79,83 +50,83 @@ test("columns grow with the run and start anew with another reference", () => {
   assert.equal(asked, 12, "all anew");
 });
 
-test("the reference is a grey ghost that moves, names its digits and can be put away", () =>
-  onPage({ hash: "#scene=four-bar&method=index1@rk4:h=0.02" }, async (page) => {
-    await until(page, isReady);
-    const ghost = page.locator(".truth path");
-    const button = page.getByRole("button", { name: "reference", exact: true });
-    assert.ok((await ghost.count()) > 0);
-    assert.match(await button.getAttribute("title"), /in long double .* agree to 1\d\.\d digits to 10 s/);
-    const grey = await page.evaluate(() => {
-      const { look, theme } = globalThis.holonom.data;
-      const probe = document.createElement("i");
-      probe.style.color = look.reference[theme];
-      document.body.append(probe);
-      return [
-        getComputedStyle(probe).color,
-        getComputedStyle(document.querySelector(".truth path")).stroke,
-      ];
-    });
-    assert.equal(grey[1], grey[0]);
-    const at = () => ghost.first().getAttribute("d");
-    const before = await at();
-    await playTo(page, 3);
-    assert.notEqual(await at(), before, "it moves");
-    await button.click();
-    assert.equal(await ghost.count(), 0);
-    await button.click();
-    assert.ok((await ghost.count()) > 0);
-  }));
+test("the reference is a grey ghost that moves, names its digits and can be put away", async (t) => {
+  const page = await open(t, { hash: "#scene=four-bar&method=index1@rk4:h=0.02" });
+  await until(page, isReady);
+  const ghost = page.locator(".truth path");
+  const button = page.getByRole("button", { name: "reference", exact: true });
+  assert.ok((await ghost.count()) > 0);
+  assert.match(await button.getAttribute("title"), /in long double .* agree to 1\d\.\d digits to 10 s/);
+  const grey = await page.evaluate(() => {
+    const { look, theme } = globalThis.holonom.data;
+    const probe = document.createElement("i");
+    probe.style.color = look.reference[theme];
+    document.body.append(probe);
+    return [
+      getComputedStyle(probe).color,
+      getComputedStyle(document.querySelector(".truth path")).stroke,
+    ];
+  });
+  assert.equal(grey[1], grey[0]);
+  const at = () => ghost.first().getAttribute("d");
+  const before = await at();
+  await playTo(page, 3);
+  assert.notEqual(await at(), before, "it moves");
+  await button.click();
+  assert.equal(await ghost.count(), 0);
+  await button.click();
+  assert.ok((await ghost.count()) > 0);
+});
 
-test("the error in the table of methods and in its curve is the distance from the reference", () =>
-  onPage({}, async (page) => {
-    await until(page, isReady);
-    await playTo(page, 2);
-    const figure = page.locator("figure.plot").nth(1);
-    await figure.getByRole("button", { name: "error", exact: true }).click();
-    assert.match(await figure.locator(".axis-title").textContent(), /Off the reference, m/);
-    assert.ok(await figure.locator(".no-curve").isHidden());
-    await figure.getByRole("button", { name: "table" }).click();
-    const heads = await figure.locator("thead th").allTextContents();
-    const cells = await figure.locator("tbody tr").last().locator("td").allTextContents();
-    const named = await page.evaluate(() =>
-      globalThis.holonom.data.methods.map(({ label }) => label),
-    );
-    assert.deepEqual(heads.slice(1), named);
-    assert.ok(
-      cells.every((text) => /^[\d.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ ?[a-zµ]*m$/.test(text)),
-      cells.join("; "),
-    );
-    const subs = await page.locator(".method-table tbody tr td:nth-child(4) .sub").allTextContents();
-    assert.equal(subs.length, named.length);
-    assert.ok(
-      subs.every((text) => /^off (< )?\S+ \S*m$/.test(text)),
-      subs.join("; "),
-    );
-    // the loop stays shut to rounding, and yet the motion is off: not the same number
-    const own = await page.evaluate(() => globalThis.holonom.data.reference.own);
-    assert.ok(own > 0 && own < 1e-9, `the reference's own error is ${own} m`);
-  }));
+test("the error in the table of methods and in its curve is the distance from the reference", async (t) => {
+  const page = await open(t);
+  await until(page, isReady);
+  await playTo(page, 2);
+  const figure = page.locator("figure.plot").nth(1);
+  await figure.getByRole("button", { name: "error", exact: true }).click();
+  assert.match(await figure.locator(".axis-title").textContent(), /Off the reference, m/);
+  assert.ok(await figure.locator(".no-curve").isHidden());
+  await figure.getByRole("button", { name: "table" }).click();
+  const heads = await figure.locator("thead th").allTextContents();
+  const cells = await figure.locator("tbody tr").last().locator("td").allTextContents();
+  const named = await page.evaluate(() =>
+    globalThis.holonom.data.methods.map(({ label }) => label),
+  );
+  assert.deepEqual(heads.slice(1), named);
+  assert.ok(
+    cells.every((text) => /^[\d.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ ?[a-zµ]*m$/.test(text)),
+    cells.join("; "),
+  );
+  const subs = await page.locator(".method-table tbody tr td:nth-child(4) .sub").allTextContents();
+  assert.equal(subs.length, named.length);
+  assert.ok(
+    subs.every((text) => /^off (< )?\S+ \S*m$/.test(text)),
+    subs.join("; "),
+  );
+  // the loop stays shut to rounding, and yet the motion is off: not the same number
+  const own = await page.evaluate(() => globalThis.holonom.data.reference.own);
+  assert.ok(own > 0 && own < 1e-9, `the reference's own error is ${own} m`);
+});
 
-test("other parameters have no stored reference: it is said, and computed when asked for", () =>
-  onPage({}, async (page) => {
-    await until(page, isReady);
-    const figure = page.locator("figure.plot").nth(1);
-    await figure.getByRole("button", { name: "error", exact: true }).click();
-    await page.evaluate(() => {
-      const [{ name, initial }] = globalThis.holonom.data.scene.parameters;
-      globalThis.changed = [name, 1.02 * initial];
-    });
-    await page.click(".scene-parameters summary");
-    const field = page.locator(".scene-parameters input:not([type=range])").first();
-    await field.fill(String((await page.evaluate(() => globalThis.changed))[1]));
-    await field.press("Enter");
-    await until(page, (data) => data.reference?.state === "none");
-    const note = figure.locator(".no-curve");
-    assert.match(await note.textContent(), /none is stored for these parameters/);
-    assert.equal(await page.locator(".truth path").count(), 0);
-    await note.getByRole("button", { name: "compute it" }).click();
-    await until(page, isReady);
-    assert.ok(await note.isHidden());
-    assert.ok((await page.locator(".truth path").count()) > 0);
-  }));
+test("other parameters have no stored reference: it is said, and computed when asked for", async (t) => {
+  const page = await open(t);
+  await until(page, isReady);
+  const figure = page.locator("figure.plot").nth(1);
+  await figure.getByRole("button", { name: "error", exact: true }).click();
+  await page.evaluate(() => {
+    const [{ name, initial }] = globalThis.holonom.data.scene.parameters;
+    globalThis.changed = [name, 1.02 * initial];
+  });
+  await page.click(".scene-parameters summary");
+  const field = page.locator(".scene-parameters input:not([type=range])").first();
+  await field.fill(String((await page.evaluate(() => globalThis.changed))[1]));
+  await field.press("Enter");
+  await until(page, (data) => data.reference?.state === "none");
+  const note = figure.locator(".no-curve");
+  assert.match(await note.textContent(), /none is stored for these parameters/);
+  assert.equal(await page.locator(".truth path").count(), 0);
+  await note.getByRole("button", { name: "compute it" }).click();
+  await until(page, isReady);
+  assert.ok(await note.isHidden());
+  assert.ok((await page.locator(".truth path").count()) > 0);
+});

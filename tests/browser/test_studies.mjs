@@ -1,7 +1,7 @@
 // Studies on the page: what accuracy costs, where steps are stable, where the error comes from.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { openPage, read, screenshot, startBrowser, startServer, until } from "./support.mjs";
+import { test } from "node:test";
+import { createBench, read, screenshot, until } from "./support.mjs";
 import {
   barsOf,
   boundaryOf,
@@ -19,29 +19,8 @@ const STABILISED =
   "#scene=four-bar&method=index1@rk4:h=1e-3&method=baumgarte:alpha=5,beta=5@rk4:h=1e-3";
 const LONG = 60000; // [ms] that a study may take on a busy machine
 
-let server;
-let browser;
-
-before(async () => {
-  server = await startServer();
-  browser = await startBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/** Runs a body on a fresh page and then asks for its faults. */
-async function onPage(options, body) {
-  const opened = await openPage(browser, server.url, options);
-  try {
-    await body(opened.page);
-  } finally {
-    await opened.close();
-  }
-  assert.deepEqual(opened.faults, []);
-}
+const bench = createBench();
+const { open } = bench;
 
 const hasEnded = (kind) =>
   `(data) => ["finished", "stopped"].includes(data.studies["${kind}"].state) && data.studies["${kind}"].document`;
@@ -135,95 +114,95 @@ test("a link names the study that is open, and no other word", () => {
 
 // ---- the page ---------------------------------------------------------------------------------------------------
 
-test("W draws error against cost; a point's step is taken over by click and by keyboard", () =>
-  onPage({ hash: SHORT }, async (page) => {
-    await page.keyboard.press("w");
-    const dialog = page.getByRole("dialog", { name: /Studies/ });
-    await dialog.getByRole("progressbar").waitFor();
-    await until(page, hasEnded("work-precision"), LONG);
-    const spots = dialog.locator(".scatter [data-spot]");
-    const drawn = await spots.count();
-    const points = await read(page, (data) =>
-      data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
-    );
-    assert.equal(drawn, points, "every point is there, failed ones too");
-    assert.match(await spots.first().getAttribute("aria-label"), /h = .*: (error .* operations|error .*op|failed)/);
-    await dialog.getByRole("button", { name: "evaluations" }).click();
-    assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/);
-    assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes");
-    const wanted = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[2].method);
-    await dialog.locator('.scatter [data-m="0"][data-spot="2"]').click({ force: true });
-    await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(wanted)}`);
-    await page.keyboard.press("ArrowRight");
-    await page.keyboard.press("Enter");
-    const next = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[3].method);
-    await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(next)}`);
-    await dialog.getByText("on the page now").waitFor();
-    await page.keyboard.press("Escape");
-    await page.keyboard.press("Space"); // keys are the page's again
-    await until(page, (data) => data.state === "running");
-  }));
+test("W draws error against cost; a point's step is taken over by click and by keyboard", async (t) => {
+  const page = await open(t, { hash: SHORT });
+  await page.keyboard.press("w");
+  const dialog = page.getByRole("dialog", { name: /Studies/ });
+  await dialog.getByRole("progressbar").waitFor();
+  await until(page, hasEnded("work-precision"), LONG);
+  const spots = dialog.locator(".scatter [data-spot]");
+  const drawn = await spots.count();
+  const points = await read(page, (data) =>
+    data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
+  );
+  assert.equal(drawn, points, "every point is there, failed ones too");
+  assert.match(await spots.first().getAttribute("aria-label"), /h = .*: (error .* operations|error .*op|failed)/);
+  await dialog.getByRole("button", { name: "evaluations" }).click();
+  assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/);
+  assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes");
+  const wanted = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[2].method);
+  await dialog.locator('.scatter [data-m="0"][data-spot="2"]').click({ force: true });
+  await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(wanted)}`);
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  const next = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[3].method);
+  await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(next)}`);
+  await dialog.getByText("on the page now").waitFor();
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Space"); // keys are the page's again
+  await until(page, (data) => data.state === "running");
+});
 
-test("a finished study is saved as one file without network", () =>
-  onPage({ hash: SHORT }, async (page) => {
-    await page.getByRole("button", { name: "studies" }).click();
-    await until(page, hasEnded("work-precision"), LONG);
-    const [download] = await Promise.all([
-      page.waitForEvent("download"),
-      page.getByRole("link", { name: "Save as a report" }).click(),
-    ]);
-    assert.equal(download.suggestedFilename(), "holonom-work-precision.html");
-    const chunks = [];
-    for await (const chunk of await download.createReadStream()) {
-      chunks.push(chunk);
-    }
-    const text = Buffer.concat(chunks).toString();
-    assert.match(text, /<svg/);
-    assert.doesNotMatch(text, /(src|href)="https?:/);
-  }));
+test("a finished study is saved as one file without network", async (t) => {
+  const page = await open(t, { hash: SHORT });
+  await page.getByRole("button", { name: "studies" }).click();
+  await until(page, hasEnded("work-precision"), LONG);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("link", { name: "Save as a report" }).click(),
+  ]);
+  assert.equal(download.suggestedFilename(), "holonom-work-precision.html");
+  const chunks = [];
+  for await (const chunk of await download.createReadStream()) {
+    chunks.push(chunk);
+  }
+  const text = Buffer.concat(chunks).toString();
+  assert.match(text, /<svg/);
+  assert.doesNotMatch(text, /(src|href)="https?:/);
+});
 
-test("a study that is stopped shows what was done, and says so", () =>
-  onPage({}, async (page) => {
-    await page.keyboard.press("w");
-    await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
-    await page.getByRole("button", { name: "Stop" }).click();
-    await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
-    await page.locator(".study-run").getByText(/stopped on request/).waitFor();
-    assert.ok((await page.locator(".scatter .spot").count()) > 0);
-  }));
+test("a study that is stopped shows what was done, and says so", async (t) => {
+  const page = await open(t);
+  await page.keyboard.press("w");
+  await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
+  await page.getByRole("button", { name: "Stop" }).click();
+  await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
+  await page.locator(".study-run").getByText(/stopped on request/).waitFor();
+  assert.ok((await page.locator(".scatter .spot").count()) > 0);
+});
 
-test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", () =>
-  onPage({ hash: STABILISED }, async (page) => {
-    await page.keyboard.press("b");
-    await until(page, hasEnded("stability"), LONG);
-    const letters = await page.locator(".maps .cell .letter").allTextContents();
-    assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
-    assert.ok((await page.locator(".maps .boundary").count()) > 0);
-    await page.locator('.maps [data-spot="3 2"]').click();
-    const axes = await read(page, (data) => {
-      const { x, y } = data.studies.stability.document;
-      return [x.values[3], y.values[2]].map((value) => Number(value.toPrecision(4)));
-    });
-    await until(page, `(data) => data.methods[1].spelling.startsWith("baumgarte:alpha=${axes[0]},beta=${axes[1]}@")`);
-    await page.locator(".maps .here").waitFor();
-    await page.keyboard.press("ArrowUp");
-    assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
-    await page.getByLabel("over").selectOption("limits");
-    await until(page, (data) => data.studies.stability.document?.x === null, LONG);
-    assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side");
-    assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each");
-  }));
+test("B maps alpha and beta with letters and the predicted boundary; a cell sets both", async (t) => {
+  const page = await open(t, { hash: STABILISED });
+  await page.keyboard.press("b");
+  await until(page, hasEnded("stability"), LONG);
+  const letters = await page.locator(".maps .cell .letter").allTextContents();
+  assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
+  assert.ok((await page.locator(".maps .boundary").count()) > 0);
+  await page.locator('.maps [data-spot="3 2"]').click();
+  const axes = await read(page, (data) => {
+    const { x, y } = data.studies.stability.document;
+    return [x.values[3], y.values[2]].map((value) => Number(value.toPrecision(4)));
+  });
+  await until(page, `(data) => data.methods[1].spelling.startsWith("baumgarte:alpha=${axes[0]},beta=${axes[1]}@")`);
+  await page.locator(".maps .here").waitFor();
+  await page.keyboard.press("ArrowUp");
+  assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
+  await page.getByLabel("over").selectOption("limits");
+  await until(page, (data) => data.studies.stability.document?.x === null, LONG);
+  assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side");
+  assert.equal(await page.locator('.maps [data-spot$=" 0"]').count(), 2, "a column each");
+});
 
-test("E shows the parts of each method's error, that add up to it", () =>
-  onPage({ hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" }, async (page) => {
-    await until(page, hasEnded("budget"), LONG);
-    const { value, parts } = await read(page, (data) => data.studies.budget.document.methods[0].error);
-    const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
-    assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
-    assert.ok((await page.locator(".account .part").count()) > 0);
-    await page.getByRole("button", { name: "energy" }).last().click();
-    assert.match(await page.locator(".accounts").textContent(), /energy at the end has changed by/);
-  }));
+test("E shows the parts of each method's error, that add up to it", async (t) => {
+  const page = await open(t, { hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" });
+  await until(page, hasEnded("budget"), LONG);
+  const { value, parts } = await read(page, (data) => data.studies.budget.document.methods[0].error);
+  const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
+  assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
+  assert.ok((await page.locator(".account .part").count()) > 0);
+  await page.getByRole("button", { name: "energy" }).last().click();
+  assert.match(await page.locator(".accounts").textContent(), /energy at the end has changed by/);
+});
 
 test("what a study chooses itself makes no other study of it", () => {
   const of = (kind, method, preset) => signatureOf({ kind, methods: [method], preset });
@@ -236,28 +215,29 @@ test("what a study chooses itself makes no other study of it", () => {
   assert.ok(!same("stability", low, low.replace("1e-3", "1e-2"), "baumgarte"));
 });
 
-test("a link opens its study, and other methods ask for it anew", () =>
-  onPage({ hash: `${SHORT}&study=work-precision` }, async (page) => {
-    await until(page, hasEnded("work-precision"), LONG);
-    await page.locator(".study-run").getByText(/^done in|left something out$/).waitFor();
-    await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
-    await until(page, (data) => data.methods.length === 1 && data.view.study === "");
-    assert.equal(await page.getByRole("dialog").count(), 0);
-    await page.keyboard.press("w");
-    await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
-  }));
+test("a link opens its study, and other methods ask for it anew", async (t) => {
+  const page = await open(t, { hash: `${SHORT}&study=work-precision` });
+  await until(page, hasEnded("work-precision"), LONG);
+  await page.locator(".study-run").getByText(/^done in|left something out$/).waitFor();
+  await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
+  await until(page, (data) => data.methods.length === 1 && data.view.study === "");
+  assert.equal(await page.getByRole("dialog").count(), 0);
+  await page.keyboard.press("w");
+  await until(page, (data) => data.studies["work-precision"].document?.methods.length === 1, LONG);
+});
 
-test("the dialog fits 360 pixels in both themes, and the page does not scroll sideways", async () => {
+test("the dialog fits 360 pixels in both themes, and the page does not scroll sideways", async (t) => {
+  const page = await open(t, { hash: SHORT, viewport: { width: 360, height: 760 } });
+  await page.keyboard.press("w");
+  await until(page, hasEnded("work-precision"), LONG);
   for (const colorScheme of ["light", "dark"]) {
-    await onPage({ hash: SHORT, viewport: { width: 360, height: 760 }, colorScheme }, async (page) => {
-      await page.keyboard.press("w");
-      await until(page, hasEnded("work-precision"), LONG);
-      const wide = await page.evaluate(() => {
-        const dialog = document.querySelector("dialog[open]");
-        return [dialog.scrollWidth - dialog.clientWidth, document.body.scrollWidth - innerWidth];
-      });
-      assert.deepEqual(wide.map((extra) => extra <= 0), [true, true], String(wide));
-      await screenshot(page, `studies-360-${colorScheme}`);
+    await page.emulateMedia({ colorScheme });
+    await until(page, `(data) => data.theme === "${colorScheme}"`);
+    const wide = await page.evaluate(() => {
+      const dialog = document.querySelector("dialog[open]");
+      return [dialog.scrollWidth - dialog.clientWidth, document.body.scrollWidth - innerWidth];
     });
+    assert.deepEqual(wide.map((extra) => extra <= 0), [true, true], String(wide));
+    await screenshot(page, `studies-360-${colorScheme}`);
   }
 });
