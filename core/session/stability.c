@@ -1,18 +1,13 @@
 #include "session/stability_internal.h"
 
+#include "study/timing.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { COARSEST_STRIDE = 8, PATH_SHARE = 10 }; // of the budget, for the motion of one scene
 static const double PATH_SECONDS = 5; // computing time of a motion where there is no budget
-
-static double wall_seconds(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
 
 hn_map_request hn_map_request_default(void) {
     return (hn_map_request){.time = (double)NAN, .budget = (double)NAN};
@@ -59,7 +54,7 @@ hn_status hn_map_open(const hn_model *model, const hn_map_request *request, hn_m
     }
     if (status == HN_OK) {
         blank(map);
-        status = request->folder ? hn_map_open_log(map, diags) : HN_OK;
+        status = request->folder ? hn_map_open_journal(map, diags) : HN_OK;
     }
     if (status != HN_OK) {
         hn_map_free(map);
@@ -71,7 +66,7 @@ hn_status hn_map_open(const hn_model *model, const hn_map_request *request, hn_m
 
 void hn_map_free(hn_map *map) {
     if (map) {
-        hn_map_close_log(map, 0);
+        hn_journal_end(&map->journal, 0);
         for (int i = 0; map->scenes && i < map->n_scenes; i++) {
             hn_stability_path_free(map->scenes[i].path);
             hn_model_free(map->scenes[i].model);
@@ -165,7 +160,7 @@ int hn_map_must_end(hn_map *map) {
     if (map->request.stop && map->request.stop(map->request.user)) {
         map->stopped = 1;
     }
-    if (map->request.budget > 0 && wall_seconds() - map->started > map->request.budget) {
+    if (map->request.budget > 0 && hn_wall_seconds() - map->started > map->request.budget) {
         map->out_of_time = 1;
     }
     return map->stopped || map->out_of_time;
@@ -190,7 +185,7 @@ static int try_cell(hn_map *map, int m, int column, int row) {
         return 0;
     }
     cell->trial = trial;
-    hn_map_log_cell(map, m, column, row);
+    hn_map_keep_cell(map, m, column, row);
     return 1;
 }
 
@@ -242,7 +237,7 @@ static int observe(hn_map *map) {
 }
 
 int hn_map_run(hn_map *map) {
-    map->started = wall_seconds();
+    map->started = hn_wall_seconds();
     map->stopped = map->out_of_time = 0;
     int going = 1;
     for (int stride = COARSEST_STRIDE; stride >= 1 && going; stride /= 2) {
@@ -255,8 +250,8 @@ int hn_map_run(hn_map *map) {
             hn_map_judge_column(map, m, i);
         }
     }
-    map->elapsed = wall_seconds() - map->started;
-    hn_map_close_log(map, finished);
+    map->elapsed = hn_wall_seconds() - map->started;
+    hn_journal_end(&map->journal, finished);
     return finished;
 }
 

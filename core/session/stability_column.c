@@ -120,7 +120,7 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
     }
     c->stable = low;
     c->unstable = high;
-    hn_map_log_column(map, m, column);
+    hn_map_keep_column(map, m, column);
     return 1;
 }
 

@@ -1,3 +1,4 @@
+#include "session/csv.h"
 #include "session/stability.h"
 
 #include <math.h>
@@ -112,31 +113,32 @@ void hn_map_json(hn_strbuf *b, const hn_map *map) {
     hn_json_end_object(b);
 }
 
-static void put_number(hn_strbuf *b, double value) {
-    hn_strbuf_printf(b, isfinite(value) ? ",%.17g" : ",", value);
-}
-
 static void put_row(hn_strbuf *b, const hn_map *map, int m, int column, int row) {
     const hn_map_axis *x = hn_map_x(map), *y = hn_map_y(map);
     const hn_map_cell *cell = hn_map_get(map, m, column, row);
     const hn_map_column *c = hn_map_get_column(map, m, column);
     const hn_stability_trial *t = &cell->trial;
-    hn_strbuf_printf(b, "\"%s\"", hn_map_method(map, m));
-    put_number(b, x->name[0] ? x->value[column] : (double)NAN);
-    put_number(b, y->value[row]);
-    hn_strbuf_printf(b, ",%s", hn_stability_class_name(t->kind));
-    put_number(b, t->error);
-    put_number(b, t->energy);
-    put_number(b, t->gap);
-    put_number(b, t->t_reached);
-    hn_strbuf_printf(b, ",%lld", t->steps);
-    put_number(b, cell->margin);
-    put_number(b, c->n_predicted ? c->predicted[0] : (double)NAN);
-    hn_strbuf_add(b, ",\"");
-    for (const char *p = t->reason; *p; p++) {
-        hn_strbuf_add_n(b, *p == '"' ? "'" : p, 1);
+    const double at[] = {x->name[0] ? x->value[column] : (double)NAN, y->value[row]};
+    const double seen[] = {t->error,
+                           t->energy,
+                           t->gap,
+                           t->t_reached,
+                           (double)t->steps,
+                           cell->margin,
+                           c->n_predicted ? c->predicted[0] : (double)NAN};
+    hn_csv_text(b, hn_map_method(map, m));
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        hn_strbuf_add(b, ",");
+        hn_csv_number(b, at[i]);
     }
-    hn_strbuf_add(b, "\"\n");
+    hn_strbuf_printf(b, ",%s", hn_stability_class_name(t->kind));
+    for (size_t i = 0; i < sizeof seen / sizeof *seen; i++) {
+        hn_strbuf_add(b, ",");
+        hn_csv_number(b, seen[i]);
+    }
+    hn_strbuf_add(b, ",");
+    hn_csv_text(b, t->reason);
+    hn_strbuf_add(b, "\n");
 }
 
 void hn_map_csv(hn_strbuf *b, const hn_map *map) {

@@ -1,11 +1,10 @@
 #ifndef HN_SESSION_STABILITY_INTERNAL_H
 #define HN_SESSION_STABILITY_INTERNAL_H
 // The inside of a map: stability.c (life and running), stability_axes.c (what is asked for), stability_column.c (what a column says),
-// stability_store.c (the log), and the documents.
+// stability_store.c (what is kept of an unfinished one), and the documents.
 
+#include "session/journal.h"
 #include "session/stability.h"
-
-#include <stdio.h>
 
 /// One scene of the map with its motion; made when a cell first needs it.
 typedef struct hn_map_scene {
@@ -30,9 +29,7 @@ struct hn_map {
     hn_stability_forecast forecasts[HN_MAP_METHODS]; ///< the last made, for reasons
     int resumed, stopped, out_of_time;
     double elapsed, started;
-    FILE *log;
-    char log_path[512];
-    int log_failed;
+    hn_journal journal;
 };
 
 hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row);
@@ -56,8 +53,8 @@ void hn_map_predict_column(hn_map *map, int m, int column);
 int hn_map_observe_column(hn_map *map, int m, int column);
 void hn_map_judge_column(hn_map *map, int m, int column);
 
-HN_MUST_CHECK hn_status hn_map_open_log(hn_map *map, hn_diags *diags);
-void hn_map_close_log(hn_map *map, int finished);
-void hn_map_log_cell(hn_map *map, int m, int column, int row);
-void hn_map_log_column(hn_map *map, int m, int column);
+/// Opens the journal of this map and reads what it holds into the map. Fails as hn_journal_open().
+HN_MUST_CHECK hn_status hn_map_open_journal(hn_map *map, hn_diags *diags);
+void hn_map_keep_cell(hn_map *map, int m, int column, int row);
+void hn_map_keep_column(hn_map *map, int m, int column);
 #endif

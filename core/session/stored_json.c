@@ -52,6 +52,14 @@ int hn_stored_number(const cJSON *object, const char *key, double *out) {
     return cJSON_IsNumber(item) || cJSON_IsNull(item);
 }
 
+int hn_stored_int(const cJSON *object, const char *key, int below, int *out) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+    const int fits = cJSON_IsNumber(item) && item->valuedouble == item->valueint &&
+                     item->valueint >= 0 && item->valueint < below;
+    *out = fits ? item->valueint : 0;
+    return fits;
+}
+
 int hn_stored_text(const cJSON *object, const char *key, char *out, size_t size) {
     const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
     return text && (size_t)snprintf(out, size, "%s", text) < size;

@@ -121,7 +121,7 @@ static hn_status set_up(hn_study *s, hn_diags *diags) {
         const hn_walk_limits limits = {CHAOS_SHARE * r->budget, r->hooks.stop, r->hooks.user};
         hn_study_find_chaos(s, &limits);
     }
-    return r->folder ? hn_store_open_log(s, diags) : HN_OK;
+    return r->folder ? hn_store_open(s, diags) : HN_OK;
 }
 
 hn_status hn_study_open(const hn_model *model, const hn_study_request *request, hn_study **out,
@@ -148,7 +148,7 @@ hn_status hn_study_open(const hn_model *model, const hn_study_request *request, 
 
 void hn_study_free(hn_study *s) {
     if (s) {
-        hn_store_close_log(s, 0);
+        hn_journal_end(&s->journal, 0);
         hn_wp_free(s->wp);
         hn_ref_free(s->ref);
         hn_model_free(s->own_model);
@@ -169,11 +169,11 @@ static void pass_progress(void *user, double share) {
 }
 
 static void keep_point(void *user, int m, int k) {
-    hn_store_log_point(user, m, k);
+    hn_store_keep_point(user, m, k);
 }
 
 static void keep_sample(void *user, int m, int k) {
-    hn_store_log_sample(user, m, k);
+    hn_store_keep_sample(user, m, k);
 }
 
 int hn_study_run(hn_study *s) {
@@ -182,15 +182,12 @@ int hn_study_run(hn_study *s) {
     for (int m = 0; m < s->wp->n_methods; m++) {
         hn_wp_classify(s->wp, m, &s->classes[m]);
     }
-    hn_store_close_log(s, finished && !s->request.keep);
+    hn_journal_end(&s->journal, finished && !s->request.keep);
     return finished;
 }
 
 void hn_study_forget(hn_study *s) {
-    hn_store_close_log(s, 0);
-    if (s->log_path[0]) {
-        remove(s->log_path);
-    }
+    hn_journal_end(&s->journal, 1);
 }
 
 const hn_chaos *hn_study_chaos(const hn_study *s) {

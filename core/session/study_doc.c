@@ -1,4 +1,5 @@
 // The study as JSON and as CSV.
+#include "session/csv.h"
 #include "session/study_internal.h"
 
 #include "base/hash.h"
@@ -251,34 +252,16 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     hn_json_end_object(b);
 }
 
+/// A number behind a comma.
 static void put_cell(hn_strbuf *b, double value) {
-    if (isfinite(value)) {
-        hn_strbuf number; // a buffer of its own: JSON's commas are not these
-        hn_strbuf_init(&number);
-        hn_json_number(&number, value);
-        hn_strbuf_printf(b, ",%s", hn_strbuf_text(&number));
-        b->failed |= number.failed;
-        hn_strbuf_reset(&number);
-    } else {
-        hn_strbuf_add(b, ",");
-    }
-}
-
-static void put_quoted(hn_strbuf *b, const char *text) {
-    hn_strbuf_add(b, "\"");
-    for (; *text; text++) {
-        hn_strbuf_add_n(b, text, 1);
-        if (*text == '"') {
-            hn_strbuf_add(b, "\"");
-        }
-    }
-    hn_strbuf_add(b, "\"");
+    hn_strbuf_add(b, ",");
+    hn_csv_number(b, value);
 }
 
 static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp_point *p = &s->wp->methods[m].point[k];
     const int done = p->state == HN_WP_DONE;
-    put_quoted(b, s->wp->methods[m].spelling);
+    hn_csv_text(b, s->wp->methods[m].spelling);
     put_cell(b, p->size);
     hn_strbuf_printf(b, ",%s", hn_wp_state_name(p->state));
     put_cell(b, done || p->state == HN_WP_FAILED ? p->t_reached : (double)NAN);
@@ -299,7 +282,7 @@ static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     put_cell(b, p->n_samples);
     put_cell(b, p->busy);
     hn_strbuf_printf(b, ",%s,", hn_class_name(s->classes[m].kind));
-    put_quoted(b, p->reason);
+    hn_csv_text(b, p->reason);
     hn_strbuf_add(b, "\n");
 }
 

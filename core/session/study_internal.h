@@ -3,14 +3,11 @@
 // The inside of a study: study.c (life), study_store.c (files), study_part.c and study_merge.c (parts), study_doc.c and study_html.c
 // (documents).
 
+#include "session/journal.h"
 #include "session/study.h"
-
-#include <stdio.h>
 
 #define HN_PART_STUDY "part of work-precision" ///< what a part says it is
 enum { HN_PART_FORMAT = 1 }; // counts up when the meaning of a part's fields changes
-
-struct cJSON;
 
 struct hn_study {
     const hn_model *model;
@@ -20,25 +17,22 @@ struct hn_study {
     hn_wp *wp;
     hn_class classes[HN_WP_METHODS];
     int resumed, kept_reference;
-    hn_chaos chaos;     ///< `why` "": not asked
-    FILE *log;          ///< lines of the unfinished study, NULL: nothing is kept
-    char log_path[512]; ///< "" while there is none
-    int log_failed;     ///< a line could not be written: nothing more is
+    hn_chaos chaos; ///< `why` "": not asked
+    hn_journal journal;
 };
 
 /// Fills `chaos`, and the horizon of the study. Cut short by the limits it says that it is not known.
 void hn_study_find_chaos(hn_study *study, const hn_walk_limits *limits);
 
-/// Opens the log of this study, reads what it holds into the study, and goes on behind its last whole line. HN_ERR_IO: another program has it.
-HN_MUST_CHECK hn_status hn_store_open_log(hn_study *study, hn_diags *diags);
-void hn_store_close_log(hn_study *study, int finished); ///< a finished one is deleted
+/// Opens the journal of this study and reads what it holds into the study. Fails as hn_journal_open().
+HN_MUST_CHECK hn_status hn_store_open(hn_study *study, hn_diags *diags);
 /// What of a point is no clock's: members of the open object. `q`: n_user values.
 void hn_store_put_point(hn_strbuf *b, const hn_study *study, int m, int k);
 /// The same back; 0 when it is none, and then the point is not to be used.
-int hn_store_take_point(const hn_study *study, const struct cJSON *o, hn_wp_point *p);
+int hn_store_take_point(const hn_study *study, const cJSON *o, hn_wp_point *p);
 /// One more sample of time; 0 when it cannot be one.
 int hn_store_take_sample(hn_wp_point *p, double cpu, double busy);
 
-void hn_store_log_point(hn_study *study, int m, int k);
-void hn_store_log_sample(hn_study *study, int m, int k);
+void hn_store_keep_point(hn_study *study, int m, int k);
+void hn_store_keep_sample(hn_study *study, int m, int k);
 #endif

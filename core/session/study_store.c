@@ -1,23 +1,17 @@
-// What is kept of an unfinished study between two runs of the program: a log that is read up to its last whole line.
+// What is kept of an unfinished study between two runs of the program: a line a point, a line a sample of time.
 #include "session/stored_json.h"
 #include "session/study_internal.h"
 
 #include "base/hash.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 // counted up when the meaning of a line changes
 enum { FORMAT = 2 };
 static const double LARGEST_COUNT = 9e15; // whole numbers are exact up to here
 
-// the log of an unfinished study -----------------------------------------------------------------------------------
-
-/// All that decides what the points are: everything but the budget. A part of a study has a log of its own.
+/// All that decides what the points are: everything but the budget. A part of a study has a journal of its own.
 static uint64_t study_key(const hn_study *s) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &s->ref->scene, sizeof s->ref->scene);
     hash = hn_hash_double(hash, s->ref->T);
@@ -140,98 +134,37 @@ static int take_sample_line(hn_wp_point *p, const cJSON *o) {
            hn_store_take_sample(p, cpu, busy);
 }
 
-/// One line of the log; 0 when it is none, or torn. m = -1 is the yardstick.
-static int take_line(hn_study *s, const char *line) {
-    cJSON *o = cJSON_Parse(line);
+/// m = -1 is the yardstick.
+static int take_line(void *user, const cJSON *o) {
+    hn_study *s = user;
     const int is_sample = cJSON_HasObjectItem(o, "cpu");
     double m = -2, k = -1;
-    int ok = hn_stored_number(o, "m", &m) && hn_stored_number(o, "k", &k) && m >= -1 && k >= 0 &&
-             m < s->wp->n_methods && k < s->wp->n_levels;
-    if (ok && m < 0) {
-        ok = is_sample && take_sample_line(&s->wp->yardstick, o);
-    } else if (ok) {
-        hn_wp_point *p = &s->wp->methods[(int)m].point[(int)k];
-        ok =
-            is_sample ? p->state == HN_WP_DONE && take_sample_line(p, o) : take_point_line(s, o, p);
+    if (!hn_stored_number(o, "m", &m) || !hn_stored_number(o, "k", &k) ||
+        !(m >= -1 && k >= 0 && m < s->wp->n_methods && k < s->wp->n_levels)) {
+        return 0;
     }
-    cJSON_Delete(o);
-    return ok;
+    if (m < 0) {
+        return is_sample && take_sample_line(&s->wp->yardstick, o);
+    }
+    hn_wp_point *p = &s->wp->methods[(int)m].point[(int)k];
+    return is_sample ? p->state == HN_WP_DONE && take_sample_line(p, o) : take_point_line(s, o, p);
 }
 
-/// Reads whole lines into the study; returns the bytes they take.
-static size_t take_lines(hn_study *s, char *text) {
-    size_t used = 0;
-    for (char *end; (end = strchr(text + used, '\n')) != NULL;) {
-        *end = 0;
-        if (!take_line(s, text + used)) {
-            break;
-        }
-        used = (size_t)(end - text) + 1;
-    }
-    return used;
+hn_status hn_store_open(hn_study *s, hn_diags *diags) {
+    return hn_journal_open(&s->journal, s->request.folder, "study", study_key(s), take_line, s,
+                           diags);
 }
 
-hn_status hn_store_open_log(hn_study *s, hn_diags *diags) {
-    char hex[17];
-    size_t n = 0;
-    hn_hash_hex(study_key(s), hex);
-    if (snprintf(s->log_path, sizeof s->log_path, "%s/study-%s.ndjson", s->request.folder, hex) >=
-        (int)sizeof s->log_path) {
-        s->log_path[0] = 0;
-        return HN_OK;
-    }
-    s->log = fopen(s->log_path, "a+b");
-    if (!s->log) {
-        return hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot keep the study in '%.200s': %s",
-                            s->log_path, strerror(errno));
-    }
-    if (flock(fileno(s->log), LOCK_EX | LOCK_NB) != 0) {
-        fclose(s->log);
-        s->log = NULL;
-        return hn_diags_add(diags, HN_ERR_IO, NULL,
-                            "wait for it, or change the time or the methods",
-                            "another program is at this very study");
-    }
-    char *text = hn_stored_text_of(s->log, &n);
-    const size_t used = text ? take_lines(s, text) : 0;
-    free(text);
-    // what comes next is written behind the last whole line
-    if (ftruncate(fileno(s->log), (off_t)used) != 0) {
-        s->log_failed = 1;
-    }
-    return HN_OK;
-}
-
-void hn_store_close_log(hn_study *s, int finished) {
-    if (s->log) {
-        if (finished) {
-            remove(s->log_path);
-        }
-        fclose(s->log);
-        s->log = NULL;
-    }
-}
-
-static void write_line(hn_study *s, hn_strbuf *b) {
-    hn_strbuf_add(b, "\n");
-    if (s->log && !s->log_failed) {
-        s->log_failed =
-            b->failed || fwrite(hn_strbuf_text(b), 1, b->n, s->log) != b->n || fflush(s->log) != 0;
-    }
-    hn_strbuf_reset(b);
-}
-
-void hn_store_log_point(hn_study *s, int m, int k) {
+void hn_store_keep_point(hn_study *s, int m, int k) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
     hn_store_put_point(&b, s, m, k);
     hn_json_put_number(&b, "first_cpu", s->wp->methods[m].point[k].first_cpu);
-    hn_json_end_object(&b);
-    write_line(s, &b);
+    hn_journal_write(&s->journal, &b);
 }
 
-void hn_store_log_sample(hn_study *s, int m, int k) {
+void hn_store_keep_sample(hn_study *s, int m, int k) {
     const hn_wp_point *p = m < 0 ? &s->wp->yardstick : &s->wp->methods[m].point[k];
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -240,6 +173,5 @@ void hn_store_log_sample(hn_study *s, int m, int k) {
     hn_json_put_int(&b, "k", k);
     hn_json_put_number(&b, "cpu", p->sample[p->n_samples - 1]);
     hn_json_put_int(&b, "busy", p->busy);
-    hn_json_end_object(&b);
-    write_line(s, &b);
+    hn_journal_write(&s->journal, &b);
 }
