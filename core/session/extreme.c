@@ -1,10 +1,11 @@
 // Trials run, and what is seen compared with what is predicted.
 #include "session/extreme_internal.h"
 
+#include "study/timing.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 const char *hn_extreme_verdict_name(hn_extreme_verdict verdict) {
     static const char *const names[] = {
@@ -15,16 +16,10 @@ const char *hn_extreme_verdict_name(hn_extreme_verdict verdict) {
     return names[verdict];
 }
 
-double hn_extreme_clock(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 int hn_extreme_is_stopped(void *user) {
     const hn_extreme_bench *bench = user;
     return (bench->opts->stop && bench->opts->stop(bench->opts->user)) ||
-           (bench->deadline > 0 && hn_extreme_clock() > bench->deadline);
+           (bench->deadline > 0 && hn_wall_seconds() > bench->deadline);
 }
 
 // verdicts -----------------------------------------------------------------------------------------------------------
@@ -96,28 +91,29 @@ static void tell_numbers(hn_extreme_trial *t) {
 
 // runs -----------------------------------------------------------------------------------------------------------------
 
-static void run_trial(hn_extreme_bench *bench, hn_extreme_trial *t) {
-    t->n_seen = 0;
-    for (int s = 0; s < t->n_scenes; s++) {
-        for (int m = 0; m < t->n_methods; m++) {
-            hn_extreme_seen *seen = &t->seen[t->n_seen];
-            memset(seen, 0, sizeof *seen);
-            seen->scene = t->scenes[s]->name;
-            seen->method = t->methods[m];
-            t->measure->see(bench, t, t->scenes[s], t->methods[m], seen);
-            if (hn_extreme_is_stopped(bench)) {
-                t->n_seen = 0; // half a trial says nothing
-                return;
-            }
-            t->n_seen++;
-        }
-    }
+void hn_extreme_conclude(hn_extreme_trial *t) {
+    t->n_seen = t->n_scenes * t->n_methods;
     t->verdict = judge(t);
     if (t->expect.word) {
         tell_words(t);
     } else {
         tell_numbers(t);
     }
+}
+
+/// 0 when it was stopped: half a trial says nothing.
+static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t) {
+    for (int i = 0; i < t->n_scenes * t->n_methods; i++) {
+        const hn_extreme_scene *scene = t->scenes[i / t->n_methods];
+        const char *method = t->methods[i % t->n_methods];
+        t->seen[i] = (hn_extreme_seen){.scene = scene->name, .method = method};
+        t->measure->see(bench, t, scene, method, &t->seen[i]);
+        if (hn_extreme_is_stopped(bench)) {
+            return 0;
+        }
+    }
+    hn_extreme_conclude(t);
+    return 1;
 }
 
 static hn_extreme_verdict case_verdict(const hn_extreme_case *c) {
@@ -145,25 +141,29 @@ void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts) {
     hn_extreme_bench bench = {.lib = x->lib, .opts = opts};
     const int all = n_trials(x);
     int done = 0;
-    bench.deadline = opts->budget > 0 ? hn_extreme_clock() + opts->budget : 0;
+    bench.deadline = opts->budget > 0 ? hn_wall_seconds() + opts->budget : 0;
     for (int i = 0; i < x->n_cases; i++) {
         hn_extreme_case *c = &x->cases[i];
         for (int k = 0; k < c->n_trials; k++) {
             hn_extreme_trial *t = &c->trials[k];
-            if (opts->progress) {
-                opts->progress(opts->user, c->id, (double)done / all);
-            }
-            if (t->is_long && !opts->run_long) {
-                t->verdict = HN_EXTREME_LONG;
-            } else if (!hn_extreme_is_stopped(&bench)) {
-                run_trial(&bench, t);
-            }
+            const int is_left_out = t->is_long && !opts->run_long && t->n_seen == 0;
             done++;
+            if (is_left_out || t->n_seen > 0) { // done before: what is left is told by the others
+                t->verdict = is_left_out ? HN_EXTREME_LONG : t->verdict;
+                continue;
+            }
+            if (opts->progress) {
+                opts->progress(opts->user, c->id, (done - 1.0) / all);
+            }
+            if (!hn_extreme_is_stopped(&bench) && run_trial(&bench, t)) {
+                hn_extreme_keep(x, i, k);
+            }
         }
         c->verdict = case_verdict(c);
     }
     x->stopped = opts->stop && opts->stop(opts->user);
     x->out_of_time = !x->stopped && hn_extreme_is_stopped(&bench);
+    hn_journal_end(&x->journal, !x->stopped && !x->out_of_time);
     hn_extreme_bench_clear(&bench);
 }
 

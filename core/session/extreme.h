@@ -14,6 +14,7 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/strbuf.h"
+#include "session/journal.h"
 #include "session/library.h"
 
 enum {
@@ -123,6 +124,9 @@ typedef struct hn_extreme {
     const hn_library *lib;
     int n_cases;
     hn_extreme_case cases[HN_EXTREME_CASES];
+    uint64_t hash; ///< of the files
+    hn_journal journal;
+    int resumed; ///< trials that were done before
     int stopped, out_of_time;
 } hn_extreme;
 
@@ -142,7 +146,11 @@ HN_MUST_CHECK hn_status hn_extreme_load(const hn_library *lib, const char *const
 HN_MUST_CHECK hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n,
                                              hn_extreme **out, hn_diags *diags);
 void hn_extreme_free(hn_extreme *x); ///< NULL is legal
-/// Runs all trials; those that were stopped, or stand behind the budget, say so.
+/// Takes the trials that the same cases have done before from the folder, and keeps those to come there until all are done. Before
+/// hn_extreme_run(). `build`: of the program. Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
+HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, const char *build,
+                                          hn_diags *diags);
+/// Runs all trials that are not done; those that were stopped, or stand behind the budget, say so.
 void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts);
 int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials
 

@@ -1,4 +1,5 @@
 // The extreme matrix as JSON and CSV.
+#include "session/csv.h"
 #include "session/extreme_internal.h"
 
 #include <math.h>
@@ -95,15 +96,6 @@ void hn_extreme_json(hn_strbuf *b, const hn_extreme *x) {
     hn_json_end_object(b);
 }
 
-/// Quotes doubled, in quotes.
-static void put_cell(hn_strbuf *b, const char *text) {
-    hn_strbuf_add(b, "\"");
-    for (const char *p = text ? text : ""; *p; p++) {
-        hn_strbuf_add_n(b, *p == '"' ? "\"\"" : p, *p == '"' ? 2 : 1);
-    }
-    hn_strbuf_add(b, "\"");
-}
-
 void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x) {
     hn_strbuf_add(b, "id,what,predicted,observed,verdict,reason,source,corrected\n");
     for (int i = 0; i < x->n_cases; i++) {
@@ -120,7 +112,7 @@ void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x) {
                                    t->expect.was_why};
             for (size_t j = 0; j < sizeof cells / sizeof *cells; j++) {
                 hn_strbuf_add(b, j ? "," : "");
-                put_cell(b, cells[j]);
+                hn_csv_text(b, cells[j]);
             }
             hn_strbuf_add(b, "\n");
         }

@@ -1,6 +1,7 @@
 // The files of the extreme matrix: lessons/extreme/xNN-....json.
 #include "session/extreme_reader.h"
 
+#include "base/hash.h"
 #include "base/json_text.h"
 
 #include <ctype.h>
@@ -20,6 +21,7 @@ static hn_extreme *make(const hn_library *lib) {
     memset(x, 0, sizeof *x);
     x->arena = arena;
     x->lib = lib;
+    x->hash = HN_HASH_START;
     return x;
 }
 
@@ -37,6 +39,7 @@ static hn_status add_case(hn_extreme *x, const char *file, const char *text, siz
     }
     hn_xr_case(&r, root);
     cJSON_Delete(root);
+    x->hash = hn_hash_bytes(x->hash, text, n);
     x->n_cases += r.status == HN_OK;
     return r.status;
 }
@@ -141,6 +144,7 @@ hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_i
 
 void hn_extreme_free(hn_extreme *x) {
     if (x) {
+        hn_journal_end(&x->journal, 0);
         hn_arena_free(x->arena);
     }
 }

@@ -1,6 +1,6 @@
 #ifndef HN_SESSION_EXTREME_INTERNAL_H
 #define HN_SESSION_EXTREME_INTERNAL_H
-// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see extreme_reader.h), extreme.c (trials and verdicts), extreme_model.c (scene and start of
+// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts), extreme_model.c (scene and start of
 // a point), extreme_walk.c (a run), extreme_quantity.c and extreme_measure.c (the two tables), extreme_solve.c,
 // extreme_stable.c (measures with a loop of their own).
 
@@ -36,7 +36,6 @@ typedef struct hn_extreme_bench {
 } hn_extreme_bench;
 
 int hn_extreme_is_stopped(void *bench); ///< as the `stop` of a walk
-double hn_extreme_clock(void);          ///< monotonic [s]
 
 /// Value of a number at a point; HN_ERR_INPUT (told in diags) for a formula that has none.
 HN_MUST_CHECK hn_status hn_extreme_value(const hn_extreme_number *number, const char *name,
@@ -52,6 +51,11 @@ HN_MUST_CHECK hn_status hn_extreme_start(hn_extreme_bench *bench, const hn_model
                                          double **v);
 /// Unloads the model.
 void hn_extreme_bench_clear(hn_extreme_bench *bench);
+
+/// Verdict and words of a trial whose numbers are all there.
+void hn_extreme_conclude(hn_extreme_trial *trial);
+/// Puts trial k of case i into the journal.
+void hn_extreme_keep(hn_extreme *x, int i, int k);
 
 /// A run at its end, and what was seen on its way.
 typedef struct hn_extreme_look {
