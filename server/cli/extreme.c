@@ -1,4 +1,5 @@
 // holonom extreme [ID...]: cases in which methods break, predicted and observed.
+#include "build.h"
 #include "cli/study.h"
 #include "session/extreme.h"
 
@@ -10,28 +11,6 @@ static void show_progress(void *user, const char *id, double share) {
     char what[40];
     snprintf(what, sizeof what, "extreme %.20s", id);
     hn_progress_tell(user, what, share);
-}
-
-static void (*writer_of(const char *path))(hn_strbuf *, const hn_extreme *) {
-    return hn_path_ends_in(path, ".html")   ? hn_extreme_html
-           : hn_path_ends_in(path, ".json") ? hn_extreme_json
-           : hn_path_ends_in(path, ".csv")  ? hn_extreme_csv
-                                            : NULL;
-}
-
-static hn_status check_args(const hn_args *args, hn_diags *diags) {
-    if (args->out && !writer_of(args->out)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .html, .json or .csv",
-                            "what to write into '%.200s' cannot be told from its name", args->out);
-    }
-    if (args->json && args->csv) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
-                            "standard output cannot be JSON and CSV at once");
-    }
-    if (args->budget < 0) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL, "a budget is not negative");
-    }
-    return HN_OK;
 }
 
 // the table for people -----------------------------------------------------------------------------------------------
@@ -104,7 +83,7 @@ static void put_case(hn_strbuf *b, const hn_extreme_case *c) {
     hn_strbuf_add(b, "\n");
 }
 
-static void put_text(hn_strbuf *b, const hn_extreme *x) {
+static void put_table(hn_strbuf *b, const hn_extreme *x) {
     put_row(b, "what", "predicted", "observed", "verdict");
     hn_strbuf_add(b, "\n");
     for (int i = 0; i < x->n_cases; i++) {
@@ -123,44 +102,41 @@ static void put_text(hn_strbuf *b, const hn_extreme *x) {
 
 // the command --------------------------------------------------------------------------------------------------------
 
-/// Into the file first, so that a broken pipe does not cost it.
-static hn_exit write_results(const hn_args *args, const hn_extreme *x) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    if (args->out) {
-        writer_of(args->out)(&b, x);
-        const hn_exit written = hn_cli_write_file(args, args->out, &b);
-        if (written != HN_EXIT_DONE) {
-            return written;
-        }
-    }
-    if (args->json) {
-        hn_extreme_json(&b, x);
-    } else if (args->csv) {
-        hn_extreme_csv(&b, x);
-    } else {
-        put_text(&b, x);
-    }
-    return hn_cli_print(&b);
+HN_FORM(html, hn_extreme, hn_extreme_html)
+HN_FORM(json, hn_extreme, hn_extreme_json)
+HN_FORM(csv, hn_extreme, hn_extreme_csv)
+HN_FORM(text, hn_extreme, put_table)
+static const hn_forms FORMS = {{{".html", put_html}, {".json", put_json}, {".csv", put_csv}},
+                               put_text};
+
+static hn_status check_args(const hn_args *args, hn_diags *diags) {
+    const hn_status status = hn_forms_check(&FORMS, args, diags);
+    return status == HN_OK && args->budget < 0
+               ? hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL, "a budget is not negative")
+               : status;
 }
 
-static void tell_end(const hn_extreme *x, double budget) {
-    if (x->stopped) {
-        fprintf(stderr, "holonom: stopped on request; what was done stands\n");
-    } else if (x->out_of_time) {
-        fprintf(stderr, "holonom: the budget of %g s left trials out\n", budget);
+static hn_status load(const hn_library *lib, const hn_args *args, const char *folder,
+                      hn_extreme **out, hn_diags *diags) {
+    hn_status status = check_args(args, diags);
+    if (status == HN_OK) {
+        status = hn_extreme_load(lib, args->words.word, args->words.n, out, diags);
     }
+    if (status == HN_OK && folder) {
+        status = hn_extreme_resume(*out, folder, HN_BUILD, diags);
+    }
+    return status;
 }
 
 hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args) {
+    char place[400];
+    const char *folder = hn_study_folder(args, place);
     hn_extreme *x = NULL;
     hn_diags diags = {0};
     hn_progress progress = {0};
-    hn_status status = check_args(args, &diags);
-    if (status == HN_OK) {
-        status = hn_extreme_load(lib, args->words.word, args->words.n, &x, &diags);
-    }
+    const hn_status status = load(lib, args, folder, &x, &diags);
     if (status != HN_OK) {
+        hn_extreme_free(x);
         return hn_report_diags(args, status, &diags);
     }
     const hn_extreme_opts opts = {.budget = isnan(args->budget) ? 0 : args->budget,
@@ -168,12 +144,13 @@ hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args) {
                                   .user = &progress,
                                   .stop = hn_is_interrupted,
                                   .progress = show_progress};
+    hn_study_tell_resumed(args, x->resumed, "trials");
     hn_interrupt_begin();
     hn_extreme_run(x, &opts);
     hn_interrupt_end();
     hn_progress_end(&progress);
-    tell_end(x, opts.budget);
-    hn_exit result = write_results(args, x);
+    hn_study_tell_end(x->stopped, x->out_of_time, opts.budget, "trials", folder);
+    hn_exit result = hn_forms_write(&FORMS, args, x);
     const int whole = hn_extreme_count(x, HN_EXTREME_FAIL) == 0 && !x->stopped;
     if (result == HN_EXIT_DONE && !whole) {
         result = HN_EXIT_ENDED;

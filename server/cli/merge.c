@@ -39,7 +39,7 @@ static hn_status read_file(const char *path, hn_strbuf *b, hn_diags *diags) {
 static hn_status merge_files(const hn_args *args, hn_strbuf *texts, hn_study **out,
                              hn_diags *diags) {
     hn_study_part_text parts[HN_CLI_MAX_WORDS];
-    hn_status status = hn_study_check_output(args, diags);
+    hn_status status = hn_forms_check(&hn_study_forms, args, diags);
     for (int i = 0; i < args->words.n && status == HN_OK; i++) {
         status = read_file(args->words.word[i], &texts[i], diags);
         parts[i] = (hn_study_part_text){args->words.word[i], hn_strbuf_text(&texts[i]), texts[i].n};
@@ -62,7 +62,7 @@ hn_exit hn_command_merge(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
-    const hn_exit result = hn_study_write(args, study);
+    const hn_exit result = hn_forms_write(&hn_study_forms, args, study);
     hn_study_free(study);
     return result;
 }

@@ -1,9 +1,9 @@
 #include "cli/cli.h"
+#include "study/timing.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static hn_exit exit_of(hn_status status) {
@@ -101,12 +101,6 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
     return HN_EXIT_DONE;
 }
 
-static double now(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 /// As a person would say it.
 static void put_left(double seconds) {
     if (seconds < 90) {
@@ -131,7 +125,7 @@ static void put_bar(const char *what, double share, double risen, double elapsed
 
 void hn_progress_tell(hn_progress *p, const char *what, double share) {
     static const double PATIENCE = 1, BETWEEN = 0.1; // [s]
-    double t = now();
+    double t = hn_wall_seconds();
     if (p->started == 0) {
         p->started = t;
     }

@@ -57,9 +57,28 @@ int hn_find_cache(char out[400]) {
     return mkdir(out, 0700) == 0 || errno == EEXIST;
 }
 
-int hn_path_ends_in(const char *path, const char *suffix) {
-    const size_t n = strlen(path), m = strlen(suffix);
-    return n > m && strcmp(path + n - m, suffix) == 0;
+const char *hn_study_folder(const hn_args *args, char out[400]) {
+    const int found = hn_find_cache(out);
+    if (!found && !args->json) {
+        fprintf(stderr, "holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
+    }
+    return found ? out : NULL;
+}
+
+void hn_study_tell_resumed(const hn_args *args, int n, const char *pieces) {
+    if (n > 0 && !args->json) {
+        fprintf(stderr, "holonom: going on with %d %s from before\n", n, pieces);
+    }
+}
+
+void hn_study_tell_end(int stopped, int out_of_time, double budget, const char *pieces,
+                       const char *folder) {
+    const char *kept = folder ? "; the same command goes on from here" : "";
+    if (stopped) {
+        fprintf(stderr, "holonom: stopped on request%s\n", kept);
+    } else if (out_of_time) {
+        fprintf(stderr, "holonom: the budget of %g s left %s out%s\n", budget, pieces, kept);
+    }
 }
 
 static hn_status find_kind(const hn_args *args, const hn_study_kind **out, hn_diags *diags) {

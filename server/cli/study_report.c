@@ -88,7 +88,7 @@ static void put_survival(hn_strbuf *b, const hn_report_scene *s) {
     }
 }
 
-static void put_text(hn_strbuf *b, const hn_report *r) {
+static void put_tables(hn_strbuf *b, const hn_report *r) {
     const hn_study *any = NULL;
     put_answers(b, r);
     for (int i = 0; i < hn_report_n_scenes(r) && !any; i++) {
@@ -181,41 +181,22 @@ static hn_exit write_plots(const hn_args *args, const hn_report *r) {
 
 // the command --------------------------------------------------------------------------------------------------------
 
+HN_FORM(html, hn_report, hn_report_html)
+HN_FORM(json, hn_report, hn_report_json)
+HN_FORM(text, hn_report, put_tables)
+static const hn_forms FORMS = {{{".html", put_html}, {".json", put_json}}, put_text};
+
+/// Plots come first: they are files too.
 static hn_exit write_report(const hn_args *args, const hn_report *r) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_exit result = HN_EXIT_DONE;
-    if (args->out) {
-        if (hn_path_ends_in(args->out, ".json")) {
-            hn_report_json(&b, r);
-        } else {
-            hn_report_html(&b, r);
-        }
-        result = hn_cli_write_file(args, args->out, &b);
-    }
-    if (result == HN_EXIT_DONE && args->plots) {
-        result = write_plots(args, r);
-    }
-    if (result != HN_EXIT_DONE) {
-        return result;
-    }
-    if (args->json) {
-        hn_report_json(&b, r);
-    } else {
-        put_text(&b, r);
-    }
-    return hn_cli_print(&b);
+    const hn_exit drawn = args->plots ? write_plots(args, r) : HN_EXIT_DONE;
+    return drawn == HN_EXIT_DONE ? hn_forms_write(&FORMS, args, r) : drawn;
 }
 
 static hn_status load(const hn_library *lib, const hn_args *args, hn_model **models, int *n,
                       hn_diags *diags) {
     int n_words = args->words.n;
     const char *const *words = n_words > 0 ? args->words.word : hn_report_standard(&n_words);
-    hn_status status = HN_OK;
-    if (args->out && !hn_path_ends_in(args->out, ".html") && !hn_path_ends_in(args->out, ".json")) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .html or .json",
-                            "what to write into '%.200s' cannot be told from its name", args->out);
-    }
+    hn_status status = hn_forms_check(&FORMS, args, diags);
     for (*n = 0; *n < n_words && status == HN_OK; *n += status == HN_OK) {
         status = hn_args_load_model(lib, args, words[*n], 0, &models[*n], diags);
     }
@@ -239,7 +220,7 @@ static hn_status make(const hn_args *args, hn_model *const *models, int n, hn_re
     q.levels = whole(args->levels);
     q.samples = isnan(args->samples) ? 0 : args->samples == 0 ? -1 : whole(args->samples);
     q.build = HN_BUILD;
-    q.folder = hn_find_cache(folder) ? folder : NULL;
+    q.folder = hn_study_folder(args, folder);
     q.stop = hn_is_interrupted;
     q.progress = show_progress;
     q.user = &progress;
@@ -247,9 +228,8 @@ static hn_status make(const hn_args *args, hn_model *const *models, int n, hn_re
     const hn_status status = hn_report_make(&q, out, diags);
     hn_progress_end(&progress);
     hn_interrupt_end();
-    if (status == HN_OK && hn_report_stopped(*out)) {
-        fprintf(stderr, "holonom: stopped on request after %.3g s%s\n", hn_report_elapsed(*out),
-                q.folder ? "; the same command goes on from here" : "");
+    if (status == HN_OK) {
+        hn_study_tell_end(hn_report_stopped(*out), 0, args->budget, "", q.folder);
     }
     return status;
 }

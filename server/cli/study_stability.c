@@ -1,4 +1,5 @@
 // holonom study SCENE stability: where steps are stable, predicted and tried.
+#include "build.h"
 #include "cli/study.h"
 #include "cli/study_stability.h"
 
@@ -12,15 +13,18 @@ static void write_png(hn_strbuf *b, const hn_map *map) {
     b->failed |= hn_map_png(b, map, &diag) != HN_OK;
 }
 
-/// What a file of this name holds; NULL: nothing this command writes.
-static void (*writer_of(const char *path))(hn_strbuf *, const hn_map *) {
-    return hn_path_ends_in(path, ".html")   ? hn_map_html
-           : hn_path_ends_in(path, ".json") ? hn_map_json
-           : hn_path_ends_in(path, ".csv")  ? hn_map_csv
-           : hn_path_ends_in(path, ".svg")  ? hn_map_svg
-           : hn_path_ends_in(path, ".png")  ? write_png
-                                            : NULL;
-}
+HN_FORM(html, hn_map, hn_map_html)
+HN_FORM(json, hn_map, hn_map_json)
+HN_FORM(csv, hn_map, hn_map_csv)
+HN_FORM(svg, hn_map, hn_map_svg)
+HN_FORM(png, hn_map, write_png)
+HN_FORM(text, hn_map, hn_map_text)
+static const hn_forms FORMS = {{{".html", put_html},
+                                {".json", put_json},
+                                {".csv", put_csv},
+                                {".svg", put_svg},
+                                {".png", put_png}},
+                               put_text};
 
 /// "24x16"; 0 when it is not that.
 static int read_grid(const char *text, int *columns, int *rows) {
@@ -38,14 +42,9 @@ static int read_grid(const char *text, int *columns, int *rows) {
 
 static hn_status check_args(const hn_args *args, hn_diags *diags) {
     int columns, rows;
-    if (args->out && !writer_of(args->out)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/out",
-                            "end it in .html, .json, .csv, .svg or .png",
-                            "what to write into '%.200s' cannot be told from its name", args->out);
-    }
-    if (args->json && args->csv) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
-                            "standard output cannot be JSON and CSV at once");
+    const hn_status status = hn_forms_check(&FORMS, args, diags);
+    if (status != HN_OK) {
+        return status;
     }
     if (args->grid && !read_grid(args->grid, &columns, &rows)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/grid", "as in 24x16",
@@ -103,6 +102,7 @@ static hn_map_request request_of(const hn_args *args, source *from, const char *
     r.n_methods = args->methods.n;
     r.time = args->time;
     r.budget = args->budget;
+    r.build = HN_BUILD;
     r.folder = folder;
     r.load = load;
     r.load_user = from;
@@ -112,51 +112,18 @@ static hn_map_request request_of(const hn_args *args, source *from, const char *
     return r;
 }
 
-static void tell_end(const hn_map *map, const char *folder) {
-    const char *kept = folder ? "; the same command goes on from here" : "";
-    if (hn_map_stopped(map)) {
-        fprintf(stderr, "holonom: stopped on request after %.3g s%s\n", hn_map_elapsed(map), kept);
-    } else if (hn_map_out_of_time(map)) {
-        fprintf(stderr, "holonom: the budget left cells out after %.3g s%s\n", hn_map_elapsed(map),
-                kept);
-    }
-}
-
-/// Into the file first, so that a broken pipe does not cost it.
-static hn_exit write_results(const hn_args *args, const hn_map *map) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    if (args->out) {
-        writer_of(args->out)(&b, map);
-        const hn_exit written = hn_cli_write_file(args, args->out, &b);
-        if (written != HN_EXIT_DONE) {
-            return written;
-        }
-    }
-    if (args->json) {
-        hn_map_json(&b, map);
-    } else if (args->csv) {
-        hn_map_csv(&b, map);
-    } else {
-        hn_map_text(&b, map);
-    }
-    return hn_cli_print(&b);
-}
-
 static hn_exit study_model(const hn_library *lib, const hn_args *args, const hn_model *model) {
     char folder[400];
     source from = {lib, args};
     hn_diags diags = {0};
     hn_map *map = NULL;
     hn_progress progress = {0};
-    const int keeps = hn_find_cache(folder);
+    const hn_map_request request =
+        request_of(args, &from, hn_study_folder(args, folder), &progress);
     hn_interrupt_begin();
-    const hn_map_request request = request_of(args, &from, keeps ? folder : NULL, &progress);
     const hn_status status = hn_map_open(model, &request, &map, &diags);
     if (status == HN_OK) {
-        if (hn_map_resumed(map) > 0 && !args->json) {
-            fprintf(stderr, "holonom: going on with %d cells from before\n", hn_map_resumed(map));
-        }
+        hn_study_tell_resumed(args, hn_map_resumed(map), "cells");
         hn_map_run(map);
     }
     hn_progress_end(&progress);
@@ -164,8 +131,9 @@ static hn_exit study_model(const hn_library *lib, const hn_args *args, const hn_
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
-    tell_end(map, keeps ? folder : NULL);
-    hn_exit result = write_results(args, map);
+    hn_study_tell_end(hn_map_stopped(map), hn_map_out_of_time(map), args->budget, "cells",
+                      request.folder);
+    hn_exit result = hn_forms_write(&FORMS, args, map);
     if (result == HN_EXIT_DONE && hn_map_stopped(map)) {
         result = HN_EXIT_ENDED;
     }

@@ -12,25 +12,12 @@ static void show_progress(void *user, double share) {
     hn_progress_tell(user, "work-precision", share);
 }
 
-/// What a file of this name holds; NULL: nothing this command writes.
-static void (*writer_of(const char *path))(hn_strbuf *, const hn_study *) {
-    return hn_path_ends_in(path, ".html")   ? hn_study_html
-           : hn_path_ends_in(path, ".json") ? hn_study_json
-           : hn_path_ends_in(path, ".csv")  ? hn_study_csv
-                                            : NULL;
-}
-
-hn_status hn_study_check_output(const hn_args *args, hn_diags *diags) {
-    if (args->out && !writer_of(args->out)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .html, .json or .csv",
-                            "what to write into '%.200s' cannot be told from its name", args->out);
-    }
-    if (args->json && args->csv) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
-                            "standard output cannot be JSON and CSV at once");
-    }
-    return HN_OK;
-}
+HN_FORM(html, hn_study, hn_study_html)
+HN_FORM(json, hn_study, hn_study_json)
+HN_FORM(csv, hn_study, hn_study_csv)
+HN_FORM(text, hn_study, hn_study_text)
+const hn_forms hn_study_forms = {{{".html", put_html}, {".json", put_json}, {".csv", put_csv}},
+                                 put_text};
 
 /// "2/4" to 2 and 4. Bounds are the study's own.
 static int read_shard(const char *text, int *shard, int *n) {
@@ -43,7 +30,7 @@ static int read_shard(const char *text, int *shard, int *n) {
 
 static hn_status check_args(const hn_args *args, hn_diags *diags) {
     int shard, n;
-    const hn_status status = hn_study_check_output(args, diags);
+    const hn_status status = hn_forms_check(&hn_study_forms, args, diags);
     if (status != HN_OK || !args->shard) {
         return status;
     }
@@ -78,39 +65,6 @@ static hn_study_request request_of(const hn_args *args, const char *folder, hn_p
     r.folder = folder;
     r.hooks = (hn_wp_hooks){.user = progress, .stop = hn_is_interrupted, .progress = show_progress};
     return r;
-}
-
-/// What a person should know of how it ended.
-static void tell_end(const hn_study *study, const char *folder) {
-    const hn_wp *wp = hn_study_wp(study);
-    const char *kept = folder ? "; the same command goes on from here" : "";
-    if (wp->stopped) {
-        fprintf(stderr, "holonom: stopped on request after %.3g s%s\n", wp->elapsed, kept);
-    } else if (wp->out_of_time) {
-        fprintf(stderr, "holonom: the budget of %g s left points or samples out%s\n",
-                wp->opts.budget, kept);
-    }
-}
-
-/// Into the file first, so that a broken pipe does not cost it.
-hn_exit hn_study_write(const hn_args *args, const hn_study *study) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    if (args->out) {
-        writer_of(args->out)(&b, study);
-        const hn_exit written = hn_cli_write_file(args, args->out, &b);
-        if (written != HN_EXIT_DONE) {
-            return written;
-        }
-    }
-    if (args->json) {
-        hn_study_json(&b, study);
-    } else if (args->csv) {
-        hn_study_csv(&b, study);
-    } else {
-        hn_study_text(&b, study);
-    }
-    return hn_cli_print(&b);
 }
 
 /// The points of a part, counted, for people.
@@ -158,18 +112,11 @@ static hn_exit study_model(const hn_library *lib, const hn_args *args, const hn_
     hn_diags diags = {0};
     hn_study *study = NULL;
     hn_progress progress = {0};
-    const int keeps = hn_find_cache(folder);
-    if (!keeps && !args->json) {
-        fprintf(stderr, "holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
-    }
+    const hn_study_request request = request_of(args, hn_study_folder(args, folder), &progress);
     hn_interrupt_begin();
-    const hn_study_request request = request_of(args, keeps ? folder : NULL, &progress);
     const hn_status status = hn_study_open(model, &request, &study, &diags);
     if (status == HN_OK) {
-        if (hn_study_resumed(study) > 0 && !args->json) {
-            fprintf(stderr, "holonom: going on with %d points from before\n",
-                    hn_study_resumed(study));
-        }
+        hn_study_tell_resumed(args, hn_study_resumed(study), "points");
         hn_study_run(study);
     }
     hn_progress_end(&progress);
@@ -178,9 +125,12 @@ static hn_exit study_model(const hn_library *lib, const hn_args *args, const hn_
         const hn_exit told = hn_report_diags(args, status, &diags);
         return hn_is_interrupted(NULL) ? HN_EXIT_ENDED : told;
     }
-    tell_end(study, keeps ? folder : NULL);
-    hn_exit result = args->shard ? write_part(args, study) : hn_study_write(args, study);
-    if (result == HN_EXIT_DONE && hn_study_wp(study)->stopped) {
+    const hn_wp *wp = hn_study_wp(study);
+    hn_study_tell_end(wp->stopped, wp->out_of_time, wp->opts.budget, "points or samples",
+                      request.folder);
+    hn_exit result =
+        args->shard ? write_part(args, study) : hn_forms_write(&hn_study_forms, args, study);
+    if (result == HN_EXIT_DONE && wp->stopped) {
         result = HN_EXIT_ENDED;
     }
     hn_study_free(study);
