@@ -108,7 +108,7 @@ static void account(hn_report *r, hn_report_scene *s) {
     const double T = hn_study_wp(s->study)->ref->T;
     const hn_account_opts opts = {.stop = ask_end, .progress = tell_account, .user = r};
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
-        hn_report_account *a = &s->accounts[s->n_accounts];
+        hn_account_row *a = &s->accounts[s->n_accounts];
         hn_diag diag = {0};
         hn_method_spec spec;
         snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", ACCOUNTED[s->n_accounts],

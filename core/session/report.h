@@ -9,8 +9,8 @@
 // Studies are kept in the folder as they are made, finished ones too, until the report is whole: the same request goes on where it was
 // interrupted. Accounts and survivals take seconds and are made anew.
 
+#include "session/accounts.h"
 #include "session/study.h"
-#include "study/account.h"
 #include "study/survival.h"
 
 enum { HN_REPORT_SCENES = 12, HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
@@ -47,18 +47,11 @@ typedef struct hn_strip {
     char reason[200];
 } hn_strip;
 
-typedef struct hn_report_account {
-    char spelling[HN_SPEC_MAX];
-    hn_status status; ///< HN_OK: `account` is one; HN_ERR_BUDGET: left out
-    char reason[HN_DIAG_MESSAGE];
-    hn_account account;
-} hn_report_account;
-
 typedef struct hn_report_scene {
     const hn_model *model;
     hn_study *study;              ///< NULL: `reason`
     char reason[HN_DIAG_MESSAGE]; ///< why there is no study
-    hn_report_account accounts[HN_REPORT_ACCOUNTS];
+    hn_account_row accounts[HN_REPORT_ACCOUNTS];
     int n_accounts;
     int singular;       ///< 1: it passes near singular poses
     double singular_at; ///< the first of them [s]
@@ -102,7 +95,7 @@ typedef struct hn_verdict {
 hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
 
 // documents
-/// {"report","budget","elapsed","stopped","scenes":[{"scene","title","reason","study": as hn_study_json(),"accounts":[...],
+/// {"report","budget","elapsed","stopped","scenes":[{"scene","title","reason","study": as hn_study_json(),"accounts":[as in hn_accounts_json()],
 /// "singular_at","survival":[{"method","survived","tried","runs":[...]}...]}...]}
 void hn_report_json(hn_strbuf *b, const hn_report *report);
 /// One file without network: the answer in a table, then each scene with its plots; works without scripts, and with them points tell their

@@ -82,32 +82,6 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
 
 // JSON ---------------------------------------------------------------------------------------------------------------
 
-static void put_account(hn_strbuf *b, const hn_report_account *a) {
-    hn_json_object(b);
-    hn_json_put_string(b, "method", a->spelling);
-    hn_json_put_string(b, "status", hn_status_name(a->status));
-    hn_json_put_string(b, "reason", a->reason);
-    if (a->status == HN_OK) {
-        hn_json_put_number(b, "t", a->account.t);
-        hn_json_put_number(b, "error", a->account.coordinate < 0 ? (double)NAN : a->account.error);
-        hn_json_put_number(b, "sum", a->account.coordinate < 0 ? (double)NAN : a->account.sum);
-        hn_json_key(b, "parts");
-        hn_json_object(b);
-        for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-            hn_json_put_number(b, hn_cause_name((hn_cause)i), a->account.part[i]);
-        }
-        hn_json_end_object(b);
-        hn_json_put_number(b, "energy", a->account.energy);
-        hn_json_key(b, "bill");
-        hn_json_object(b);
-        for (int i = 0; i < HN_BILL_COUNT; i++) {
-            hn_json_put_number(b, hn_bill_name((hn_bill_item)i), a->account.bill[i]);
-        }
-        hn_json_end_object(b);
-    }
-    hn_json_end_object(b);
-}
-
 static void put_strip(hn_strbuf *b, const hn_report_scene *s, int m) {
     const hn_strip *strip = &s->strips[m];
     hn_json_object(b);
@@ -184,7 +158,7 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s) {
     hn_json_key(b, "accounts");
     hn_json_array(b);
     for (int i = 0; i < s->n_accounts; i++) {
-        put_account(b, &s->accounts[i]);
+        hn_account_put(b, s->model, &s->accounts[i]);
     }
     hn_json_end_array(b);
     hn_json_put_number(b, "singular_at", s->singular ? s->singular_at : (double)NAN);

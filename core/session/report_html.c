@@ -205,7 +205,7 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
 // a scene ------------------------------------------------------------------------------------------------------------
 
 static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
-    if (!hn_report_has_accounts(s)) {
+    if (!hn_accounts_can_plot(s->accounts, s->n_accounts)) {
         hn_strbuf_add(b, "<p class=\"quiet\">No account of errors and energy: ");
         hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
         hn_strbuf_add(b, ".</p>");
@@ -214,7 +214,7 @@ static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
     hn_strbuf_add(b, "<h3>Where errors and energy come from</h3><div class=\"lines\">");
     for (int energy = 0; energy < 2; energy++) {
         hn_strbuf_add(b, "<div class=\"scroll\">");
-        hn_report_account_plot(b, s, energy);
+        hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, energy);
         hn_strbuf_add(b, "</div>");
     }
     hn_strbuf_add(b, "</div>\n");

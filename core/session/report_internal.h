@@ -15,10 +15,6 @@ struct hn_report {
     double until; ///< when the present part of it has to end, wall clock [s]
 };
 
-/// Where the errors come from (energy = 0) or who put energy in (1), a bar a method.
-void hn_report_account_plot(hn_strbuf *b, const hn_report_scene *scene, int energy);
 /// Every run that was counted: its size across, where it ended up.
 void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *scene);
-/// 1 if there is anything for these to draw.
-int hn_report_has_accounts(const hn_report_scene *scene);
 #endif

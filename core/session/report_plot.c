@@ -1,4 +1,4 @@
-// The pictures of a report that are not those of a study: bars of accounts, strips of survival; and any of them as a file.
+// Strips of survival, the pictures that a report alone has; and any picture as a file.
 #include "session/report_internal.h"
 
 #include "base/units.h"
@@ -8,191 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 900, LABELS = 196, RIGHT = 744, TEXT_STEP = 16 };
-enum { SIGNED_TEXT = HN_SI_TEXT + 4 }; // a sign may take three bytes
-enum { BAR_TOP = 58, BAR_ROW = 62, BAR = 24, FEWEST_PIXELS = 1, SAID_MOST = 4 };
+enum { WIDTH = 900, LABELS = 196, RIGHT = 744 };
 enum { STRIP_TOP = 66, STRIP_ROW = 46, STRIP = 32, STRIP_BOTTOM = 40 };
 static const double LETTER = 6.6; // about the width of one in a label [px]
-static const double SAID = 0.01;  // parts below this share of the largest are not named
-
-static void put_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text) {
-    hn_strbuf_printf(b, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, class_name);
-    hn_html_text(b, text);
-    hn_strbuf_add(b, "</text>");
-}
-
-static void begin(hn_strbuf *b, int height, const char *about) {
-    hn_strbuf_printf(b, "<svg viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">", WIDTH, height,
-                     about);
-}
-
-// accounts -----------------------------------------------------------------------------------------------------------
-
-/// The parts of one bar, whatever they are of.
-typedef struct parts {
-    int n;
-    const char *name[HN_CAUSE_COUNT];
-    double value[HN_CAUSE_COUNT];
-    double sum, whole; ///< of the parts; what they are parts of
-    const char *unit;
-    char of[120]; ///< "th1 at the end"
-} parts;
-
-static void take_causes(const hn_report_scene *s, const hn_account *a, parts *p) {
-    const hn_coordinate *c =
-        &hn_model_scene(s->model)
-             ->coordinates[hn_system_user_coordinate(hn_model_system(s->model), a->coordinate)];
-    p->n = HN_CAUSE_COUNT;
-    p->unit = c->kind == HN_LENGTH ? "m" : "rad";
-    p->sum = a->sum;
-    p->whole = a->error;
-    snprintf(p->of, sizeof p->of, "error of %.60s", c->name);
-    for (int i = 0; i < HN_CAUSE_COUNT; i++) {
-        p->name[i] = hn_cause_name((hn_cause)i);
-        p->value[i] = a->part[i];
-    }
-}
-
-static void take_bill(const hn_account *a, parts *p) {
-    p->n = HN_BILL_COUNT;
-    p->unit = "J";
-    p->whole = a->energy;
-    p->sum = 0;
-    snprintf(p->of, sizeof p->of, "change of energy");
-    for (int i = 0; i < HN_BILL_COUNT; i++) {
-        p->name[i] = hn_bill_name((hn_bill_item)i);
-        p->value[i] = a->bill[i];
-        p->sum += isfinite(a->bill[i]) ? a->bill[i] : 0;
-    }
-}
-
-/// 0 where the account has no such parts.
-static int take_parts(const hn_report_scene *s, const hn_report_account *a, int energy, parts *p) {
-    if (a->status != HN_OK || (!energy && a->account.coordinate < 0)) {
-        return 0;
-    }
-    if (energy) {
-        take_bill(&a->account, p);
-    } else {
-        take_causes(s, &a->account, p);
-    }
-    return isfinite(p->whole);
-}
-
-int hn_report_has_accounts(const hn_report_scene *s) {
-    parts p;
-    for (int i = 0; i < s->n_accounts; i++) {
-        if (take_parts(s, &s->accounts[i], 0, &p)) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-static void format_signed(double value, const char *unit, char out[SIGNED_TEXT]) {
-    char text[HN_SI_TEXT];
-    hn_si_format(fabs(value), unit, 3, text);
-    snprintf(out, SIGNED_TEXT, "%s%s", value < 0 ? "\xe2\x88\x92" : "+", text);
-}
-
-/// Positive parts to the right of the middle, negative ones to the left; `largest` fills half the width.
-static void put_bar(hn_strbuf *b, const parts *p, double y, double largest) {
-    const double middle = (LABELS + RIGHT) / 2.0, scale = (RIGHT - LABELS) / 2.0 / largest;
-    double right = middle, left = middle;
-    for (int i = 0; i < p->n; i++) {
-        const double width = fabs(p->value[i]) * scale;
-        char amount[SIGNED_TEXT];
-        if (!(width >= FEWEST_PIXELS)) { // also NaN: it cannot be told
-            continue;
-        }
-        const double x = p->value[i] > 0 ? right : left - width;
-        right += p->value[i] > 0 ? width : 0;
-        left -= p->value[i] > 0 ? 0 : width;
-        format_signed(p->value[i], p->unit, amount);
-        hn_strbuf_printf(b, "<g class=\"part\"><title>%s: %s</title>", p->name[i], amount);
-        hn_strbuf_printf(b,
-                         "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%d\" "
-                         "style=\"fill:var(--slot-%d)\"/>",
-                         x, y, width, BAR, hn_look_slot(i));
-        if (width > LETTER * (double)strlen(p->name[i]) + 6) {
-            put_text(b, x + width / 2, y + BAR / 2.0 + 4, "inside middle", p->name[i]);
-        }
-        hn_strbuf_add(b, "</g>");
-    }
-    hn_strbuf_printf(b, "<path class=\"axis\" d=\"M%.1f %.1fV%.1f\"/>", middle, y - 4, y + BAR + 4);
-}
-
-/// The largest few in words, under the bar: for paper, and for what is too narrow to see.
-static void put_words(hn_strbuf *b, const parts *p, double y, double largest) {
-    int said[HN_CAUSE_COUNT] = {0};
-    hn_strbuf_printf(b, "<text x=\"%d\" y=\"%.1f\" class=\"note\">", LABELS, y);
-    for (int count = 0; count < SAID_MOST; count++) {
-        int next = -1;
-        for (int i = 0; i < p->n; i++) {
-            if (!said[i] && fabs(p->value[i]) > SAID * largest &&
-                (next < 0 || fabs(p->value[i]) > fabs(p->value[next]))) {
-                next = i;
-            }
-        }
-        if (next < 0) {
-            break;
-        }
-        char amount[SIGNED_TEXT];
-        said[next] = 1;
-        format_signed(p->value[next], p->unit, amount);
-        hn_strbuf_printf(b, "%s%s %s", count ? ", " : "", p->name[next], amount);
-    }
-    hn_strbuf_add(b, "</text>");
-}
-
-static double largest_side(const parts *p) {
-    double right = 0, left = 0;
-    for (int i = 0; i < p->n; i++) {
-        right += p->value[i] > 0 ? p->value[i] : 0;
-        left -= p->value[i] < 0 ? p->value[i] : 0;
-    }
-    return fmax(right, left);
-}
-
-static void put_account(hn_strbuf *b, const hn_report_scene *s, const hn_report_account *a,
-                        int energy, double y) {
-    parts p = {0};
-    char amount[SIGNED_TEXT], text[200];
-    put_text(b, 0, y + BAR / 2.0 + 4, "label", a->spelling);
-    if (!take_parts(s, a, energy, &p)) {
-        snprintf(text, sizeof text, "%.110s", a->reason[0] ? a->reason : "no account");
-        put_text(b, LABELS, y + BAR / 2.0 + 4, "note", text);
-        return;
-    }
-    const double largest = largest_side(&p);
-    if (largest > 0) {
-        put_bar(b, &p, y, largest);
-        put_words(b, &p, y + BAR + 16, largest);
-    }
-    format_signed(p.whole, p.unit, amount);
-    put_text(b, RIGHT + 12, y + 10, "label", amount);
-    put_text(b, RIGHT + 12, y + 26, "note", p.of);
-    if (a->account.state == HN_RUN_FAILED) {
-        snprintf(text, sizeof text, "run ended at t = %.3g s", a->account.t);
-        put_text(b, RIGHT + 12, y + 42, "note", text);
-    }
-}
-
-void hn_report_account_plot(hn_strbuf *b, const hn_report_scene *s, int energy) {
-    const char *title = energy ? "who put energy in (right) or took it out (left)"
-                               : "where the error at the end comes from, signed";
-    begin(b, BAR_TOP + BAR_ROW * s->n_accounts, title);
-    put_text(b, 0, 14, "title", title);
-    put_text(b, 0, 34, "note",
-             energy
-                 ? "each bar to its own scale; the parts add up to the number at its right"
-                 : "each bar to its own scale; the parts add up, to first order, to the number at "
-                   "its right");
-    for (int i = 0; i < s->n_accounts; i++) {
-        put_account(b, s, &s->accounts[i], energy, BAR_TOP + BAR_ROW * i);
-    }
-    hn_strbuf_add(b, "</svg>");
-}
 
 // survival -----------------------------------------------------------------------------------------------------------
 
@@ -220,7 +38,7 @@ static void put_signs_legend(hn_strbuf *b) {
     double x = 6;
     for (int end = 0; end < HN_SURVIVAL_SILENT; end++) { // which the reference cannot tell
         put_sign(b, (hn_survival_end)end, x, 31);
-        put_text(b, x + 10, 35, "note", MEANINGS[end]);
+        hn_plot_text(b, x + 10, 35, "note", MEANINGS[end]);
         x += 34 + LETTER * (double)strlen(MEANINGS[end]);
     }
 }
@@ -258,7 +76,7 @@ static void put_strip(hn_strbuf *b, const hn_report_scene *s, int m, double top)
     const hn_strip *strip = &s->strips[m];
     char text[80];
     hn_strbuf_printf(b, "<g class=\"series\" data-m=\"%d\">", m);
-    put_text(b, 0, top + STRIP / 2.0 + 4, "label", wp->methods[m].spelling);
+    hn_plot_text(b, 0, top + STRIP / 2.0 + 4, "label", wp->methods[m].spelling);
     hn_strbuf_printf(b, "<path class=\"grid\" d=\"M%d %.1fH%dM%d %.1fH%d\"/>", LABELS, top, RIGHT,
                      LABELS, top + STRIP, RIGHT);
     for (int i = 0; i < strip->n; i++) {
@@ -270,7 +88,7 @@ static void put_strip(hn_strbuf *b, const hn_report_scene *s, int m, double top)
     } else {
         snprintf(text, sizeof text, "not tried");
     }
-    put_text(b, RIGHT + 12, top + STRIP / 2.0 + 4, strip->n > 0 ? "label" : "note", text);
+    hn_plot_text(b, RIGHT + 12, top + STRIP / 2.0 + 4, strip->n > 0 ? "label" : "note", text);
     hn_strbuf_add(b, "</g>");
 }
 
@@ -283,19 +101,19 @@ void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *s) {
              wp->ref->T);
     hn_si_format(hn_survival_step(usual, 0, HN_REPORT_SIZES), "s", 2, low);
     hn_si_format(hn_survival_step(usual, HN_REPORT_SIZES - 1, HN_REPORT_SIZES), "s", 2, high);
-    begin(b, height, title);
-    put_text(b, 0, 14, "title", title);
+    hn_plot_begin(b, WIDTH, height, title);
+    hn_plot_text(b, 0, 14, "title", title);
     put_signs_legend(b);
     for (int m = 0; m < wp->n_methods; m++) {
         put_strip(b, s, m, STRIP_TOP + STRIP_ROW * m);
     }
     snprintf(axis, sizeof axis, "%.3g s", wp->ref->T);
-    put_text(b, LABELS - 4, STRIP_TOP + 4, "tick end", axis);
-    put_text(b, LABELS - 4, STRIP_TOP + STRIP + 4, "tick end", "0");
+    hn_plot_text(b, LABELS - 4, STRIP_TOP + 4, "tick end", axis);
+    hn_plot_text(b, LABELS - 4, STRIP_TOP + STRIP + 4, "tick end", "0");
     snprintf(axis, sizeof axis, "fine: h = %s, rtol = 1e-9", low);
-    put_text(b, LABELS, height - 12, "tick", axis);
+    hn_plot_text(b, LABELS, height - 12, "tick", axis);
     snprintf(axis, sizeof axis, "coarse: h = %s, rtol = 1e-3", high);
-    put_text(b, RIGHT, height - 12, "tick end", axis);
+    hn_plot_text(b, RIGHT, height - 12, "tick end", axis);
     hn_strbuf_add(b, "</svg>");
 }
 
@@ -336,7 +154,8 @@ static int draw(hn_strbuf *b, const hn_report_plot *p) {
     const int timed = s->study && hn_study_is_timed(s->study);
     if (!s->study || (p->kind == KIND_STUDY && p->cost == HN_COST_TIME && !timed) ||
         (p->kind == KIND_SURVIVAL && !s->strips) ||
-        ((p->kind == KIND_ERRORS || p->kind == KIND_ENERGY) && !hn_report_has_accounts(s))) {
+        ((p->kind == KIND_ERRORS || p->kind == KIND_ENERGY) &&
+         !hn_accounts_can_plot(s->accounts, s->n_accounts))) {
         return 0;
     }
     if (p->kind == KIND_STUDY) {
@@ -344,7 +163,7 @@ static int draw(hn_strbuf *b, const hn_report_plot *p) {
     } else if (p->kind == KIND_SURVIVAL) {
         hn_report_survival_plot(b, s);
     } else {
-        hn_report_account_plot(b, s, p->kind == KIND_ENERGY);
+        hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, p->kind == KIND_ENERGY);
     }
     return strncmp(hn_strbuf_text(b), "<svg ", 5) ==
            0; // a paragraph says that nothing came to its end

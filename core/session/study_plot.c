@@ -60,6 +60,17 @@ void hn_html_text(hn_strbuf *b, const char *text) {
     }
 }
 
+void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about) {
+    hn_strbuf_printf(b, "<svg viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">", width, height,
+                     about);
+}
+
+void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text) {
+    hn_strbuf_printf(b, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, class_name);
+    hn_html_text(b, text);
+    hn_strbuf_add(b, "</text>");
+}
+
 static double floor_of(const hn_wp *wp, hn_error_kind error) {
     return HN_WP_ABOVE_REFERENCE * wp->ref->error[error];
 }
@@ -151,12 +162,6 @@ void hn_study_key(hn_strbuf *b, int m) {
     hn_strbuf_add(b, "</svg>");
 }
 
-static void put_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text) {
-    hn_strbuf_printf(b, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, class_name);
-    hn_html_text(b, text);
-    hn_strbuf_add(b, "</text>");
-}
-
 static void put_error_axis(hn_strbuf *b, const frame *f) {
     const int every = f->y1 - f->y0 > 9 ? 2 : 1;
     for (int d = (int)f->y0; d <= (int)f->y1; d++) {
@@ -183,9 +188,10 @@ static void put_cost_axis(hn_strbuf *b, const frame *f) {
         if (f->cost == HN_COST_EVALS) {
             snprintf(text, sizeof text, "%.0f", pow(10, d));
         }
-        put_text(b, x, HEIGHT - BOTTOM + 18, "tick middle", text);
+        hn_plot_text(b, x, HEIGHT - BOTTOM + 18, "tick middle", text);
     }
-    put_text(b, LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 10, "title middle", titles[f->cost]);
+    hn_plot_text(b, LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 10, "title middle",
+                 titles[f->cost]);
 }
 
 /// What the reference cannot resolve.
@@ -196,8 +202,8 @@ static void put_band(hn_strbuf *b, const hn_wp *wp, const frame *f) {
         hn_strbuf_printf(b,
                          "<rect class=\"band\" x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%.1f\"/>",
                          LEFT, y, WIDTH - LEFT - RIGHT, HEIGHT - BOTTOM - y);
-        put_text(b, LEFT + 6, HEIGHT - BOTTOM - 6, "note",
-                 "not resolved by the reference solution");
+        hn_plot_text(b, LEFT + 6, HEIGHT - BOTTOM - 6, "note",
+                     "not resolved by the reference solution");
     }
 }
 
@@ -315,7 +321,7 @@ static void put_labels(hn_strbuf *b, const hn_wp *wp, const frame *f) {
         hn_strbuf_printf(b, "<path class=\"leader\" d=\"M%.1f %.1fL%.1f %.1fH%.1f\"/>",
                          list[i].x + MARKER + 2, list[i].y, edge + 2, list[i].at, edge + 8);
         put_marker(b, list[i].method, edge + 15, list[i].at, MARKER);
-        put_text(b, edge + 24, list[i].at + 4, "label", wp->methods[list[i].method].spelling);
+        hn_plot_text(b, edge + 24, list[i].at + 4, "label", wp->methods[list[i].method].spelling);
         hn_strbuf_add(b, "</g>");
     }
 }
@@ -337,7 +343,7 @@ void hn_study_plot(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost
     put_band(b, wp, &f);
     hn_strbuf_printf(b, "<path class=\"axis\" d=\"M%d %dV%dH%d\"/>", LEFT, TOP, HEIGHT - BOTTOM,
                      WIDTH - RIGHT);
-    put_text(b, 6, 14, "title", title);
+    hn_plot_text(b, 6, 14, "title", title);
     for (int m = 0; m < wp->n_methods; m++) {
         hn_strbuf_printf(b, "<g class=\"series\" data-m=\"%d\">", m);
         put_curve(b, s, &f, m);

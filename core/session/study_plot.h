@@ -12,6 +12,10 @@ void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_
 void hn_study_key(hn_strbuf *b, int m);
 /// What plots need of a style sheet, beside the variables.
 const char *hn_plot_style(void);
+/// Begins an <svg> of this size, with what it shows in words.
+void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about);
+/// Text at (x, y) in a class of hn_plot_style().
+void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text);
 /// Text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);
 #endif

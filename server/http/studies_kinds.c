@@ -2,7 +2,7 @@
 #include "http/studies_internal.h"
 
 #include "http/live_internal.h"
-#include "session/account_doc.h"
+#include "session/accounts.h"
 #include "session/stability.h"
 #include "session/study.h"
 
@@ -97,19 +97,25 @@ static void run_work_precision(hn_study_work *w, hn_study_result *out) {
 // ---- budget -----------------------------------------------------------------------------------------------------
 
 static void run_budget(hn_study_work *w, hn_study_result *out) {
-    const hn_accounts_request request = {.methods = (const char *const *)w->order.methods,
-                                         .n_methods = w->order.n_methods,
-                                         .time = w->order.time,
-                                         .stop = must_stop_in_time,
-                                         .progress = tell_share,
-                                         .user = w};
+    hn_accounts_request request = hn_accounts_request_default();
+    request.methods = (const char *const *)w->order.methods;
+    request.n_methods = w->order.n_methods;
+    request.time = w->order.time;
+    request.stop = must_stop_in_time;
+    request.progress = tell_share;
+    request.user = w;
+    hn_accounts *accounts = NULL;
     hn_diags diags = {0};
-    const hn_status status = hn_accounts_json(&out->document, w->model, &request, &diags);
-    if (status == HN_OK || status == HN_ERR_BUDGET) {
-        tell_end(w, w->out_of_time, out);
-    } else {
+    const hn_status status = hn_accounts_open(w->model, &request, &accounts, &diags);
+    if (status != HN_OK) {
         tell_failure(w, status, &diags, out);
+        return;
     }
+    hn_accounts_run(accounts);
+    tell_end(w, w->out_of_time, out);
+    hn_accounts_json(&out->document, accounts);
+    hn_accounts_html(&out->report, accounts);
+    hn_accounts_free(accounts);
 }
 
 // ---- stability --------------------------------------------------------------------------------------------------
