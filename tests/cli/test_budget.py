@@ -1,28 +1,35 @@
 """Where errors and energy come from, from the command line: the parts add up, and what cannot be told is null."""
 
+import csv
+import io
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT, driver, strict  # noqa: E402
 
-DONE, INPUT = 0, 2
 METHODS = ["index1@rk4:h=1e-2", "projection@rk4:h=1e-2", "ggl@radau5:rtol=1e-6", "projection@rk4:h=1e-6"]
 
 
+SECONDS = ["study", "fb0", "budget", "--time", "4", "--methods", "index1@rk4:h=2e-3", "projection@rk4:h=2e-3", "baumgarte@rk4:h=2e-3",
+           "nullspace@rk4:h=2e-3", "partitioning@rk4:h=2e-3", "index1@rk4:h=1e-3"]
+
+
 def call(*words):
-    return subprocess.run([driver.PROGRAM, *words], capture_output=True, text=True, timeout=120 * driver.SLOW)
+    """With a folder of its own for what is unfinished."""
+    with tempfile.TemporaryDirectory() as folder:
+        return studies.call(words, folder, text=True)
 
 
 class Budget(unittest.TestCase):
     def test_json_adds_up_and_says_what_cannot_be_told(self):
         done = call("study", "fb0", "budget", "--time", "1", "--methods", *METHODS, "--json")
         self.assertEqual(done.returncode, DONE, done.stderr)
-        methods = json.loads(done.stdout)["methods"]
+        methods = strict(done.stdout)["methods"]
         self.assertEqual([m["method"] for m in methods[:2]], ["index1@rk4:h=0.01", "projection@rk4:h=0.01"])
         for m in methods[:3]:
             self.assertEqual(m["state"], "done")
@@ -47,16 +54,60 @@ class Budget(unittest.TestCase):
             with open(path, encoding="utf-8") as f:
                 self.assertEqual(json.load(f)["methods"][0]["method"], "index1@rk4:h=0.01")
 
+    def test_csv_and_page_tell_what_json_tells(self):
+        words = ["study", "fb0", "budget", "--time", "0.5", "--methods", *METHODS]
+        document = strict(call(*words, "--json").stdout)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "budget.html")
+            rows = list(csv.DictReader(io.StringIO(call(*words, "--csv", "--out", path).stdout)))
+            with open(path, encoding="utf-8") as f:
+                page = f.read()
+        self.assertEqual([r["method"] for r in rows], [m["method"] for m in document["methods"]])
+        for row, m in zip(rows, document["methods"]):
+            self.assertEqual((row["state"], row["reason"]), (m["state"], m["reason"]))
+            for prefix, whole, parts in (("error_", "error", m.get("error")), ("energy_", "energy_change", m.get("energy"))):
+                told = {whole: parts.get("value", parts.get("change")), **{prefix + n: v for n, v in parts["parts"].items()}} if parts else {whole: None}
+                for name, value in told.items():
+                    self.assertEqual(float(row[name]) if row[name] else None, value, name)
+        studies.assert_page(self, page)
+        self.assertEqual(page.count("<svg"), 2)
+        for text in (*[m["method"] for m in document["methods"]], "the account is for 200000 steps at most", "Who put energy in"):
+            self.assertIn(text, page)
+        # a block of its colour a part, its number where it is pointed at
+        self.assertRegex(page, r"<g class=\"part\"><title>truncation: [+\u2212][0-9.]+ .rad</title>")
+
+    def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(self):
+        with tempfile.TemporaryDirectory() as folder:
+            status, out, err = studies.interrupt([*SECONDS, "--json"], folder, "budget")
+            self.assertEqual(status, ENDED, err)
+            self.assertIn("stopped on request; the same command goes on from here", err)
+            states = [m["state"] for m in strict(out)["methods"]]
+            self.assertEqual(len(states), 6)
+            self.assertEqual(sorted(set(states)), ["done", "left out"])
+            done = studies.call(SECONDS, folder, text=True)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertIn(f"going on with {states.count('done')} methods from before", done.stderr)
+            self.assertEqual(studies.journals(folder, "budget"), [], "nothing is left of whole accounts")
+
+    def test_killed_ten_times_it_ends_with_the_bytes_of_an_undisturbed_one(self):
+        undisturbed = call(*SECONDS, "--json")
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertGreaterEqual(studies.kill_often(SECONDS, folder, 11, 0.4), 3)
+            done = studies.call([*SECONDS, "--json"], folder, text=True)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(done.stdout, undisturbed.stdout)
+
     def test_options_of_other_kinds_and_names_that_tell_no_form_are_refused(self):
         for words, said in (
             (["--levels", "3"], "--levels"),
-            (["--out", "budget.txt"], ".json"),
+            (["--out", "budget.txt"], "end it in .html, .json or .csv"),
+            (["--json", "--csv"], "JSON and CSV at once"),
             (["--methods", "projecton@rk4"], "projection"),
             (["--time", "-1"], "above 0"),
         ):
             done = call("study", "fb0", "budget", *words)
             self.assertEqual(done.returncode, INPUT, words)
-            self.assertIn(said, done.stderr)
+            self.assertIn(said, done.stderr + done.stdout)
 
 
 if __name__ == "__main__":

@@ -7,23 +7,23 @@ import json
 import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT, driver  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
 HERE = "lessons/extreme"
+SECONDS = ["x4", "x6", "x16"]  # cases that take some together
 CHEAP = ["x3", "x7", "x8", "x12", "x13", "x19", "x21", "x22"]
 
 
 def call(words, **more):
-    return subprocess.run([driver.PROGRAM, "extreme", *words], capture_output=True, text=True, timeout=120 * driver.SLOW, **more)
+    """With a folder of its own for what is unfinished."""
+    with tempfile.TemporaryDirectory() as folder:
+        return studies.call(["extreme", *words], folder, text=True, **more)
 
 
 def verdicts(document):
@@ -84,17 +84,51 @@ class Extreme(unittest.TestCase):
             self.assertEqual(done.returncode, INPUT)
             self.assertIn(says, done.stderr)
 
-    def test_ctrl_c_keeps_what_is_done(self):
-        process = subprocess.Popen([driver.PROGRAM, "extreme", "x3", "x11", "--long", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(1.0 * driver.SLOW)
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60 * driver.SLOW)
-        self.assertEqual(process.returncode, ENDED)
-        self.assertIn("stopped on request", err)
-        document = json.loads(out)
-        self.assertTrue(document["stopped"])
-        self.assertEqual({v for c, _, v, _ in verdicts(document) if c == "X3"}, {"pass"})
-        self.assertIn("not run", {v for c, _, v, _ in verdicts(document) if c == "X11"})
+    def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(self):
+        words = ["extreme", *SECONDS, "--json"]
+        with tempfile.TemporaryDirectory() as folder:
+            status, out, err = studies.interrupt(words, folder, "extreme")
+            self.assertEqual(status, ENDED, err)
+            self.assertIn("stopped on request; the same command goes on from here", err)
+            document = json.loads(out)
+            self.assertTrue(document["stopped"])
+            seen = [t for t in verdicts(document) if t[2] == "pass"]
+            self.assertTrue(seen)
+            self.assertIn("not run", {v for _, _, v, _ in verdicts(document)})
+            done = studies.call([w for w in words if w != "--json"], folder, text=True)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertIn(f"going on with {len(seen)} trials from before", done.stderr)
+            self.assertEqual(studies.journals(folder, "extreme"), [], "nothing is left of a whole matrix")
+
+    def test_killed_ten_times_it_ends_with_the_bytes_of_an_undisturbed_one(self):
+        words = [*SECONDS, "--json"]
+        undisturbed = call(words)
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertGreaterEqual(studies.kill_often(["extreme", *words], folder, 3, 0.4), 3)
+            done = studies.call(["extreme", *words], folder, text=True)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(done.stdout, undisturbed.stdout)
+
+    def test_a_budget_leaves_trials_that_a_richer_run_of_the_same_does(self):
+        with tempfile.TemporaryDirectory() as folder:
+            poor = studies.call(["extreme", *SECONDS, "--json", "--budget", "0.2"], folder, text=True)
+            self.assertTrue(json.loads(poor.stdout)["out_of_time"])
+            self.assertIn("the budget of 0.2 s left trials out; the same command goes on from here", poor.stderr)
+            rich = studies.call(["extreme", *SECONDS, "--json"], folder, text=True)
+        self.assertEqual(rich.stdout, call([*SECONDS, "--json"]).stdout)
+
+    def test_a_journal_that_was_cut_or_damaged_is_used_as_far_as_it_is_whole(self):
+        words = ["extreme", *SECONDS, "--json"]
+        undisturbed = call(SECONDS + ["--json"]).stdout
+        with tempfile.TemporaryDirectory() as folder:
+            studies.interrupt(words, folder, "extreme")
+            path, = [os.path.join(folder, name) for name in studies.journals(folder, "extreme")]
+            with open(path, encoding="utf-8") as f:
+                lines = f.readlines()
+            for text in (lines[0] + lines[0][:40], lines[0] + '{"case":99,"trial":0,"seen":[]}\n', '{"case":0,"trial":0,"seen":[]}\n', "[1]\n", "\0\n"):
+                with open(path, "w", encoding="utf-8") as f:
+                    f.write(text)
+                self.assertEqual(studies.call(words, folder, text=True).stdout, undisturbed, text[:80])
 
 
 class Files(unittest.TestCase):
@@ -116,7 +150,7 @@ class Files(unittest.TestCase):
     def run_changed(self):
         with open(self.path, "w", encoding="utf-8") as f:
             json.dump(self.case, f)
-        return call(["x3"], env=dict(os.environ, HOLONOM_HOME=self.folder.name))
+        return call(["x3"], HOLONOM_HOME=self.folder.name)
 
     def test_a_wrong_prediction_is_a_failure_and_a_near_one_a_warning(self):
         predicted = self.case["trials"][0]["predicted"]

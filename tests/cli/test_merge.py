@@ -3,19 +3,15 @@ the study of one process; parts that do not belong together are refused by the f
 
 import json
 import os
-import random
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT, driver  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
 METHODS = ["projection@rk4", "projection@dopri5", "nullspace-as-printed@rk4", "ggl@radau5"]
 STUDY = ["study", "fb0", "work-precision", "--methods", *METHODS, "--time", "1", "--levels", "5"]
 COUNTED = [*STUDY, "--samples", "0"]
@@ -51,15 +47,13 @@ class Merge(unittest.TestCase):
         cls.kept.cleanup()
 
     @classmethod
-    def command(cls, words, cache=None):
-        env = dict(os.environ, HOLONOM_CACHE=cache or os.path.join(cls.folder, "cache"))
-        os.makedirs(env["HOLONOM_CACHE"], exist_ok=True)
-        return [driver.PROGRAM, *words], env
+    def cache(cls, name="cache"):
+        os.makedirs(cls.path(name), exist_ok=True)
+        return cls.path(name)
 
     @classmethod
     def call(cls, words):
-        argv, env = cls.command(words)
-        return subprocess.run(argv, capture_output=True, env=env, timeout=120 * driver.SLOW)
+        return studies.call(words, cls.cache())
 
     @classmethod
     def path(cls, name):
@@ -263,20 +257,12 @@ class Merge(unittest.TestCase):
         undisturbed = [self.path(f"calm-{i}.json") for i in (1, 2)]
         for i in (1, 2):
             self.assertEqual(self.call([*words, f"{i}/2", "--out", undisturbed[i - 1]]).returncode, DONE)
-        out, cache = self.path("killed.json"), self.path("cache-of-the-killed")
-        argv, env = self.command([*words, "1/2", "--out", out], cache)
-        chance = random.Random(7)
-        killed = 0
-        for _ in range(10):
-            with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-                time.sleep(chance.uniform(0.05, 0.3) * driver.SLOW)
-                killed += process.poll() is None
-                process.kill()
-                process.communicate()
-        self.assertGreaterEqual(killed, 3)
-        done = subprocess.run(argv, env=env, capture_output=True, timeout=120 * driver.SLOW)
+        out, cache = self.path("killed.json"), self.cache("cache-of-the-killed")
+        words = [*words, "1/2", "--out", out]
+        self.assertGreaterEqual(studies.kill_often(words, cache, 7, 0.3), 3)
+        done = studies.call(words, cache)
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertEqual([f for f in os.listdir(cache) if f.startswith("study")], [], "nothing is left of a finished part")
+        self.assertEqual(studies.journals(cache, "study"), [], "nothing is left of a finished part")
         together = json.loads(self.merged([out, undisturbed[1]]))
         calm = json.loads(self.merged(undisturbed))
         self.assertEqual(json.dumps(without_clock(together)), json.dumps(without_clock(calm)))
@@ -285,28 +271,19 @@ class Merge(unittest.TestCase):
         words = [*STUDY[:-4], "--time", "4", "--levels", "6", "--samples", "2", "--budget", "0", "--shard"]
         files = [self.path(f"int-{i}.json") for i in (1, 2)]
         self.assertEqual(self.call([*words, "2/2", "--out", files[1]]).returncode, DONE)
-        cache = self.path("cache-of-the-interrupted")
-        argv, env = self.command([*words, "1/2", "--out", files[0]], cache)
-        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-            deadline = time.monotonic() + 30 * driver.SLOW
-            log = []
-            while time.monotonic() < deadline and not (log and os.path.getsize(os.path.join(cache, log[0])) > 0):
-                time.sleep(0.01)
-                log = [k for k in os.listdir(cache) if k.startswith("study")]
-            process.send_signal(signal.SIGINT)
-            _, err = process.communicate(timeout=30 * driver.SLOW)
-        self.assertEqual(process.returncode, ENDED, err)
-        self.assertIn(b"goes on from here", err)
+        words, cache = [*words, "1/2", "--out", files[0]], self.cache("cache-of-the-interrupted")
+        status, _, err = studies.interrupt(words, cache, "study")
+        self.assertEqual(status, ENDED, err)
+        self.assertIn("goes on from here", err)
         self.refused(files, "1 of 2 parts are missing: 1/2", "stopped before its end")
-        done = subprocess.run(argv, env=env, capture_output=True, timeout=120 * driver.SLOW)
+        done = studies.call(words, cache)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertRegex(done.stderr, rb"going on with \d+ points")
         self.assertEqual(self.call(["merge", *files]).returncode, DONE)
 
     def test_what_the_budget_left_out_stays_and_a_richer_run_of_that_part_fills_it(self):
         poor, rich = self.path("poor.json"), self.parts(2)
-        env = dict(os.environ, HOLONOM_CACHE=self.path("cache"))
-        done = subprocess.run([driver.PROGRAM, *COUNTED, "--budget", "1e-4", "--shard", "1/2", "--out", poor], env=env, capture_output=True)
+        done = self.call([*COUNTED, "--budget", "1e-4", "--shard", "1/2", "--out", poor])
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn(b"the budget of 0.0001 s left", done.stderr)
         study = json.loads(self.merged([poor, rich[1]]))

@@ -2,37 +2,25 @@
 
 import csv
 import io
-import json
 import os
 import re
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT, call, driver, strict  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
 SCENE = "stiff-four-bar"
 STUDY = ["study", SCENE, "stability"]
 SMALL = [*STUDY, "--over", "h=1e-4..1e-1,k=1e5..1e8", "--grid", "4x5", "--time", "0.1", "--methods", "projection@rk4"]
-
-
-def strict(text):
-    def refuse(word):
-        raise ValueError("JSON holds " + word)
-
-    return json.loads(text, parse_constant=refuse)
 
 
 class Stability(unittest.TestCase):
     def setUp(self):
         self.kept = tempfile.TemporaryDirectory()
         self.folder = self.kept.name
-        self.env = dict(os.environ, HOLONOM_CACHE=self.folder)
 
     def tearDown(self):
         self.kept.cleanup()
@@ -41,7 +29,7 @@ class Stability(unittest.TestCase):
         return os.path.join(self.folder, name)
 
     def call(self, *words):
-        return subprocess.run([driver.PROGRAM, *words], capture_output=True, env=self.env, timeout=120 * driver.SLOW)
+        return call(words, self.folder)
 
     def test_the_last_stable_step_of_each_method_is_the_predicted_one(self):
         done = self.call(*STUDY, "--preset", "limits", "--json")
@@ -118,15 +106,10 @@ class Stability(unittest.TestCase):
         words = [*SMALL[:-1], "projection@rk4", "projection@dop853", "projection@symplectic-euler", "--csv"]
         words[words.index("4x5")] = "24x24"
         with tempfile.TemporaryDirectory() as other:
-            whole = subprocess.run([driver.PROGRAM, *words], capture_output=True, env=dict(self.env, HOLONOM_CACHE=other))
-        with subprocess.Popen([driver.PROGRAM, *words], env=self.env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as p:
-            deadline = time.monotonic() + 30 * driver.SLOW
-            while time.monotonic() < deadline and not any(os.path.getsize(self.path(k)) for k in os.listdir(self.folder)):
-                time.sleep(0.005)
-            p.send_signal(signal.SIGINT)
-            _, told = p.communicate(timeout=30 * driver.SLOW)
-        self.assertEqual(p.returncode, ENDED, told)
-        self.assertIn(b"goes on from here", told)
+            whole = call(words, other)
+        status, _, told = studies.interrupt(words, self.folder, "stability")
+        self.assertEqual(status, ENDED, told)
+        self.assertIn("goes on from here", told)
         done = self.call(*words)
         self.assertEqual(done.returncode, DONE)
         self.assertIn(b"going on with", done.stderr)

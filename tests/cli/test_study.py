@@ -5,7 +5,6 @@ import io
 import json
 import os
 import pty
-import random
 import re
 import signal
 import subprocess
@@ -13,31 +12,13 @@ import sys
 import tempfile
 import time
 import unittest
-from html.parser import HTMLParser
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT, call, command, driver, strict  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
 METHODS = ["projection@rk4", "projection@dopri5", "nullspace-as-printed@rk4"]
 SMALL = ["study", "fb0", "work-precision", "--methods", *METHODS, "--time", "1", "--levels", "5", "--samples", "0"]
-VOID = {"meta", "input", "br", "circle", "path", "rect"}
-
-
-def command(words, folder):
-    return [driver.PROGRAM, *words], dict(os.environ, HOLONOM_CACHE=folder)
-
-
-def call(words, folder):
-    argv, env = command(words, folder)
-    return subprocess.run(argv, capture_output=True, env=env, timeout=120 * driver.SLOW)
-
-
-def strict(text):
-    def refuse(word):
-        raise ValueError("JSON holds " + word)
-
-    return json.loads(text, parse_constant=refuse)
 
 
 def without_times(document):
@@ -115,26 +96,10 @@ class Study(unittest.TestCase):
         self.assertEqual(done.returncode, DONE, done.stderr)
         with open(self.path("report.html"), encoding="utf-8") as f:
             text = f.read()
-        self.assertNotRegex(text, r"https?://|src=|@import|url\(|<script|<link")
-        self.assertNotRegex(text, r"\bnan\b|\binf\b")
+        studies.assert_page(self, text)
         self.assertEqual(text.count("<svg viewBox=\"0 0 900"), 12, "6 errors x 2 costs that were measured")
         for method in METHODS:
             self.assertIn(method, text)
-        open_tags = []
-
-        class Balance(HTMLParser):
-            def handle_starttag(self, tag, attrs):
-                if tag not in VOID:
-                    open_tags.append(tag)
-
-            def handle_startendtag(self, tag, attrs):
-                pass
-
-            def handle_endtag(self, tag):
-                assert open_tags.pop() == tag, tag
-
-        Balance().feed(text)
-        self.assertEqual(open_tags, [])
 
     def test_what_is_at_fault_is_told(self):
         for words, said in (
@@ -166,34 +131,18 @@ class Study(unittest.TestCase):
         whole = tempfile.TemporaryDirectory()
         undisturbed = strict(call(words, whole.name).stdout)
         whole.cleanup()
-        chance = random.Random(5)
-        killed = 0
-        argv, env = command(words, self.folder)
-        for _ in range(10):
-            with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-                time.sleep(chance.uniform(0.05, 0.25) * driver.SLOW)
-                killed += process.poll() is None
-                process.kill()
-                process.communicate()
-        self.assertGreaterEqual(killed, 3)
+        self.assertGreaterEqual(studies.kill_often(words, self.folder, 5, 0.25), 3)
         done = call(words, self.folder)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(without_times(strict(done.stdout)), without_times(undisturbed))
 
     def test_an_interrupt_keeps_what_is_done_and_the_same_command_goes_on(self):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "2", "--samples", "3", "--json", "--budget", "0"]
-        argv, env = command(words, self.folder)
-        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-            deadline = time.monotonic() + 30 * driver.SLOW
-            while time.monotonic() < deadline and not any(k.startswith("study") for k in os.listdir(self.folder)):
-                time.sleep(0.02)
-            time.sleep(0.3 * driver.SLOW)
-            process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=30 * driver.SLOW)
-        self.assertEqual(process.returncode, ENDED, err)
+        status, out, err = studies.interrupt(words, self.folder, "study")
+        self.assertEqual(status, ENDED, err)
         study = strict(out)
         self.assertTrue(study["stopped"])
-        self.assertIn(b"goes on from here", err)
+        self.assertIn("goes on from here", err)
         done = sum(p["state"] == "done" for m in study["methods"] for p in m["points"])
         text = call([w for w in words if w != "--json"], self.folder)
         self.assertEqual(text.returncode, DONE)

@@ -1,0 +1,85 @@
+"""What the tests of studies from the command line share: calls with a folder of their own, strict documents, interrupts and kills."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from html.parser import HTMLParser
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+DONE, INPUT, ENDED = 0, 2, 4
+VOID = {"meta", "input", "br", "circle", "path", "rect"}
+
+
+def command(words, folder, **more):
+    """What to run, and in which environment: unfinished work is kept in the folder."""
+    return [driver.PROGRAM, *words], dict(os.environ, HOLONOM_CACHE=folder, **more)
+
+
+def call(words, folder, text=False, **more):
+    argv, env = command(words, folder, **more)
+    return subprocess.run(argv, capture_output=True, env=env, timeout=200 * driver.SLOW, check=False, text=text)
+
+
+def strict(text):
+    """JSON without the NaN and Infinity that Python would let pass."""
+    def refuse(word):
+        raise ValueError("JSON holds " + word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def journals(folder, kind):
+    return [name for name in os.listdir(folder) if name.startswith(kind)]
+
+
+def interrupt(words, folder, kind):
+    """Ctrl-C once there is a piece in the journal: exit status, what was written and what was told."""
+    argv, env = command(words, folder)
+    with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        deadline = time.monotonic() + 60 * driver.SLOW
+        while time.monotonic() < deadline and not any(os.path.getsize(os.path.join(folder, k)) for k in journals(folder, kind)):
+            time.sleep(0.005)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60 * driver.SLOW)
+    return process.returncode, out, err.decode()
+
+
+def kill_often(words, folder, seed, longest, times=10):
+    """Starts the command so many times and kills it at a random moment; how often it had not come to its end."""
+    argv, env = command(words, folder)
+    chance = random.Random(seed)
+    killed = 0
+    for _ in range(times):
+        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            time.sleep(chance.uniform(0.05, longest) * driver.SLOW)
+            killed += process.poll() is None
+            process.kill()
+            process.communicate()
+    return killed
+
+
+def assert_page(test, text, scripts=False):
+    """One file: no network, no number that is none, every tag closed; and no script, where it is not to have one."""
+    test.assertNotRegex(text, r"https?://|src=|@import|url\(|<link|fetch\(|XMLHttpRequest" + ("" if scripts else "|<script"))
+    test.assertNotRegex(text, r">[^<]*\b(nan|inf)\b[^<]*<")
+    open_tags = []
+
+    class Balance(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            if tag not in VOID:
+                open_tags.append(tag)
+
+        def handle_startendtag(self, tag, attrs):
+            pass
+
+        def handle_endtag(self, tag):
+            test.assertEqual(open_tags.pop(), tag)
+
+    Balance().feed(text)
+    test.assertEqual(open_tags, [])
