@@ -507,8 +507,7 @@ void hn_handle_study_report(hn_request *r) {
                             s->work.kind->name);
     } else {
         hn_strbuf_reset(&b);
-        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, NULL,
-                         "this study has no report: it is not done, or its kind has none");
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, NULL, "this study has no report: it is not done");
     }
     release(s);
 }
