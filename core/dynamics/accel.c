@@ -117,10 +117,6 @@ static hn_status compile_tape(hn_accel *s, hn_system *sys, hn_arena *arena) {
     return status;
 }
 
-double hn_accel_row_unit(const hn_system *sys, int row) {
-    return hn_system_row_is_length(sys, row) ? hn_system_length(sys) : 1;
-}
-
 static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     const unsigned terms =
         HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | HN_TERM_PHI | HN_TERM_PHI_T;
@@ -136,7 +132,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
         return HN_ERR_MEMORY;
     }
     for (int i = 0; i < s->nc; i++) {
-        s->row_unit[i] = hn_accel_row_unit(sys, i);
+        s->row_unit[i] = hn_system_row_unit(sys, i);
     }
     hn_status status = hn_eval_create(sys, terms, arena, &s->terms);
     if (status != HN_OK) {

@@ -120,7 +120,7 @@ static hn_status start(hn_assembler *s) {
         }
     }
     for (int i = 0; i < s->nc; i++) {
-        s->row_scale[i] = hn_system_row_is_length(s->sys, i) ? 1 / s->length : 1;
+        s->row_scale[i] = 1 / hn_system_row_unit(s->sys, i);
     }
     hn_status status = check_orientations(s);
     if (status == HN_OK) {

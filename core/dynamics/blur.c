@@ -17,7 +17,6 @@ double hn_blur_of_sides(double gap) {
 double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *v, double *rate,
                    double *size) {
     const hn_system_info info = hn_system_get_info(sys);
-    const double length = hn_system_length(sys);
     double gap = 0, rates = 0, sizes = 0;
     for (int i = 0; i < info.nc; i++) {
         rate[i] = at->phi_t[i];
@@ -30,7 +29,7 @@ double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *
         size[i] = fmax(size[i], fabs(part));
     }
     for (int i = 0; i < info.nc; i++) {
-        const double unit = hn_system_row_is_length(sys, i) ? length : 1;
+        const double unit = hn_system_row_unit(sys, i);
         gap = fmax(gap, fabs(at->phi[i]) / unit);
         rates = fmax(rates, fabs(rate[i]) / unit);
         sizes = fmax(sizes, size[i] / unit);

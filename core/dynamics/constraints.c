@@ -11,7 +11,7 @@
 #include "dynamics/closure.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <string.h>
 
 // between points -----------------------------------------------------------------------------------------------
 
@@ -164,13 +164,8 @@ static hn_status begin_coordinates(hn_system *sys, coordinate_row *row) {
     if (hn_arena_failed(sys->arena)) {
         return HN_ERR_MEMORY;
     }
-    for (int i = 0; i < n; i++) {
-        char name[160];
-        snprintf(name, sizeof name, "coordinate %s", sys->scene->coordinates[i].name);
-        row->x[i] = hn_symbol(sys->g, name, NULL);
-        row->symbols[i] = hn_ex_symbol(sys->g, row->x[i]);
-        row->seeds[i] = sys->user_v[i];
-    }
+    hn_system_stand_ins(sys, "coordinate", row->x, row->symbols);
+    memcpy(row->seeds, sys->user_v, (size_t)n * sizeof *row->seeds);
     row->x[n] = sys->t;
     row->symbols[n] = sys->t_symbol;
     row->seeds[n] = hn_num(1);
@@ -240,7 +235,7 @@ static hn_status add_formula(hn_system *sys, int index, const hn_constraint *k) 
     hn_ex phi;
     hn_status status = begin_coordinates(sys, &row);
     if (status == HN_OK) {
-        status = hn_system_quantity_of(sys, &k->value, row.x, &phi);
+        status = hn_system_quantity_of(sys, &k->value, row.x, sys->user_v, &phi);
     }
     return status == HN_OK ? add_coordinate_row(sys, &row, phi, k, index, 0) : status;
 }

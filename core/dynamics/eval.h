@@ -94,8 +94,6 @@ HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, co
 /// 15.6 - log10 of it. Fails as the least-norm solve does. Allocates nothing.
 HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
                                            double *condition);
-/// Unit in which lengths of closure rows are compared: the characteristic length for a row in metres, else 1.
-double hn_accel_row_unit(const hn_system *sys, int row);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 long long hn_accel_count(const hn_accel *s);
 long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's

@@ -2,14 +2,16 @@
 #include "dynamics/system_impl.h"
 #include "expr/parse.h"
 
+#include <stdio.h>
 #include <string.h>
 
 typedef struct scope {
     hn_system *sys;
     int with_state;         ///< coordinates, rates and t may appear
     const hn_ex *positions; ///< of the scene coordinates
-    const char *refused;    ///< a name that exists but has no expression here
-    int refused_ball;       ///< because it is an entry of an orientation
+    const hn_ex *rates;
+    const char *refused; ///< a name that exists but has no expression here
+    int refused_ball;    ///< because it is an entry of an orientation
 } scope;
 
 static int find_state(scope *s, const char *name, hn_ex *out) {
@@ -31,7 +33,7 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
             *out = hn_num(0);
             return 1;
         }
-        *out = is_position ? s->positions[i] : sys->user_v[i];
+        *out = is_position ? s->positions[i] : s->rates[i];
         return 1;
     }
     return 0;
@@ -49,16 +51,16 @@ static int find_name(void *user, const char *name, hn_ex *out) {
 }
 
 hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out) {
-    return hn_system_quantity_of(sys, quantity, sys->user_q, out);
+    return hn_system_quantity_of(sys, quantity, sys->user_q, sys->user_v, out);
 }
 
 hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, const hn_ex *positions,
-                                hn_ex *out) {
+                                const hn_ex *rates, hn_ex *out) {
     *out = hn_num(quantity->value);
     if (!quantity->formula || (!quantity->varies && !sys->opts.symbolic_params)) {
         return HN_OK;
     }
-    scope s = {.sys = sys, .with_state = quantity->varies, .positions = positions};
+    scope s = {.sys = sys, .with_state = quantity->varies, .positions = positions, .rates = rates};
     hn_parse_opts opts = {.lookup = find_name, .user = &s};
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
@@ -82,6 +84,15 @@ hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, con
                            quantity->formula, diag.message);
     }
     return status;
+}
+
+void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symbols) {
+    for (int i = 0; i < sys->scene->n_coordinates; i++) {
+        char name[160];
+        snprintf(name, sizeof name, "%s %s", kind, sys->scene->coordinates[i].name);
+        out[i] = hn_symbol(sys->g, name, NULL);
+        symbols[i] = hn_ex_symbol(sys->g, out[i]);
+    }
 }
 
 hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out) {

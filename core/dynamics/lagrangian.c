@@ -84,9 +84,9 @@ static hn_status list_plain(hn_system *sys, plain *p) {
     return HN_OK;
 }
 
-/// Beside bodies an entry may be there already.
-static void add_mass(hn_system *sys, int row, int col, hn_ex e) {
-    for (int k = 0; sys->scene->has_formulas && !hn_is_zero(e) && k < sys->M.n; k++) {
+/// The first `n_theirs` entries of M are the bodies': one that is there already takes the formulas' share.
+static void add_mass(hn_system *sys, int n_theirs, int row, int col, hn_ex e) {
+    for (int k = 0; k < n_theirs && !hn_is_zero(e); k++) {
         hn_entry *at = &sys->M.at[k];
         if (at->row == row && at->col == col) {
             at->e = hn_add(sys->g, at->e, e);
@@ -98,6 +98,7 @@ static void add_mass(hn_system *sys, int row, int col, hn_ex e) {
 
 static hn_status trace_mass(hn_system *sys, const plain *c, const hn_ex *p) {
     hn_ex *row = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *row);
+    const int n_theirs = sys->M.n;
     if (!row) {
         return HN_ERR_MEMORY;
     }
@@ -108,7 +109,7 @@ static hn_status trace_mass(hn_system *sys, const plain *c, const hn_ex *p) {
                 return refuse_kinetic(sys,
                                       "its second derivative by the rates still contains a rate");
             }
-            add_mass(sys, c->speed[i], c->speed[j], row[j]);
+            add_mass(sys, n_theirs, c->speed[i], c->speed[j], row[j]);
         }
         if (!hn_is_zero(at_rest(sys, p[i]))) {
             return refuse_kinetic(sys, "it has a term that is linear in a rate");
@@ -212,7 +213,12 @@ static hn_status add_constraint(hn_system *sys, int i) {
     }
     row.J = entries;
     row.n_J = n;
-    return hn_system_add_row(sys, &row);
+    const int before = sys->nc;
+    status = hn_system_add_row(sys, &row);
+    for (int j = 0; j < n && sys->nc > before; j++) {
+        hn_entries_add(&sys->efforts, before, j, J[j]);
+    }
+    return status;
 }
 
 static hn_status trace_constraints(hn_system *sys) {

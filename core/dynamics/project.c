@@ -120,18 +120,15 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
 // Where all rows are lengths an angular speed counts by the length and nothing depends on the size of the mechanism. Rows of a
 // scene of formulas have no unit; the length of such a scene is the arm by which angles move them, so it is the same there.
 static void find_speed_units(hn_projector *p) {
+    const hn_scene *scene = hn_system_scene(p->sys);
     int only_lengths = 1;
     for (int i = 0; i < p->nc; i++) {
         only_lengths &= hn_system_row_is_length(p->sys, i);
     }
-    const int n_user = hn_system_get_info(p->sys).n_user;
-    const int formulas = hn_system_scene(p->sys)->is_lagrangian;
     for (int i = 0; i < p->nv; i++) {
-        const hn_scene *scene = hn_system_scene(p->sys);
-        const hn_unit_kind kind =
-            i < n_user ? scene->coordinates[hn_system_user_coordinate(p->sys, i)].kind : HN_OTHER;
+        const hn_unit_kind kind = scene->coordinates[hn_system_user_coordinate(p->sys, i)].kind;
         p->speed_unit[i] = 1 + p->length;
-        if (formulas && kind == HN_ANGLE) {
+        if (scene->is_lagrangian && kind == HN_ANGLE) {
             p->speed_unit[i] = p->length;
         } else if (only_lengths && kind != HN_OTHER) {
             p->speed_unit[i] = kind == HN_ANGLE ? p->length : 1;

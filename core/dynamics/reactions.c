@@ -104,7 +104,18 @@ static void put_row(output_list *list, hn_graph *g, const hn_row_wrench *w) {
     put3(list, hn_mat3_apply_transposed(g, &w->turn, w->moment_b));
 }
 
-static hn_status relate_bodies(hn_reactions *r, hn_mech *m, hn_arena *arena, hn_relative *rel) {
+/// What is told beside the terms that the system has anyway.
+typedef struct terms {
+    hn_relative *bodies;
+    hn_ex *energies; ///< r->n_energies, in the arena
+    hn_entries inertia;
+} terms;
+
+static hn_status relate_bodies(hn_reactions *r, hn_arena *arena, hn_relative *rel) {
+    if (r->n_bodies == 0) {
+        return HN_OK;
+    }
+    hn_mech own = *r->sys->mech, *m = &own;
     for (int b = 0; b < r->n_bodies; b++) {
         hn_reaction_body *body = &r->bodies[b];
         const int link = hn_tree_link(m->tree, b);
@@ -131,7 +142,8 @@ static hn_status relate_bodies(hn_reactions *r, hn_mech *m, hn_arena *arena, hn_
 }
 
 static size_t count_outputs(const hn_reactions *r) {
-    size_t n = HN_REACTION_LOAD * (size_t)r->scene->n_loads + HN_REACTION_ROW * (size_t)r->nc +
+    size_t n = (size_t)r->n_energies + (size_t)r->n_inertia +
+               HN_REACTION_LOAD * (size_t)r->scene->n_loads + HN_REACTION_ROW * (size_t)r->nc +
                (size_t)r->sys->efforts.n + (size_t)r->sys->J.n;
     for (int b = 0; b < r->n_bodies; b++) {
         n += HN_REACTION_POSE + HN_REACTION_LEVER * (size_t)r->bodies[b].n;
@@ -139,11 +151,22 @@ static size_t count_outputs(const hn_reactions *r) {
     return n;
 }
 
-static void put_all(hn_reactions *r, const hn_relative *rel, output_list *list) {
+static void put_energies(hn_reactions *r, const terms *t, output_list *list) {
+    r->first_energy = list->n;
+    for (int i = 0; i < r->n_energies; i++) {
+        list->at[list->n++] = t->energies[i];
+    }
+    r->first_inertia = list->n;
+    for (int k = 0; k < t->inertia.n; k++) {
+        list->at[list->n++] = t->inertia.at[k].e;
+    }
+}
+
+static void put_all(hn_reactions *r, const terms *t, output_list *list) {
     const hn_system *sys = r->sys;
     for (int b = 0; b < r->n_bodies; b++) {
         r->bodies[b].first = list->n;
-        put_body(list, sys->g, &rel[b].a);
+        put_body(list, sys->g, &t->bodies[b].a);
     }
     r->first_load = list->n;
     for (int k = 0; k < r->scene->n_loads; k++) {
@@ -158,6 +181,7 @@ static void put_all(hn_reactions *r, const hn_relative *rel, output_list *list) 
     for (int k = 0; k < sys->efforts.n; k++) {
         list->at[list->n++] = sys->efforts.at[k].e;
     }
+    put_energies(r, t, list);
     r->first_jacobian = list->n;
     for (int k = 0; k < sys->J.n; k++) {
         list->at[list->n++] = sys->J.at[k].e;
@@ -165,21 +189,24 @@ static void put_all(hn_reactions *r, const hn_relative *rel, output_list *list) 
 }
 
 static hn_status compile(hn_reactions *r, hn_arena *arena) {
-    hn_system *sys = (hn_system *)r->sys; // only its graph grows
-    hn_mech m = *sys->mech;
-    hn_relative *rel = malloc(((size_t)r->n_bodies + 1) * sizeof *rel);
+    terms t = {.bodies = malloc(((size_t)r->n_bodies + 1) * sizeof *t.bodies)};
     output_list list = {0};
-    hn_status status = rel ? relate_bodies(r, &m, arena, rel) : HN_ERR_MEMORY;
+    hn_status status = t.bodies ? relate_bodies(r, arena, t.bodies) : HN_ERR_MEMORY;
+    if (status == HN_OK && r->scene->has_formulas) {
+        status = hn_reaction_derive_energies(r, arena, &t.energies, &t.inertia);
+    }
     if (status == HN_OK) {
         list.at = malloc((count_outputs(r) + 1) * sizeof *list.at);
         status = list.at ? HN_OK : HN_ERR_MEMORY;
     }
     if (status == HN_OK) {
-        put_all(r, rel, &list);
-        status = hn_inputs_compile(sys, list.at, list.n, arena, &r->in);
+        put_all(r, &t, &list);
+        // only the graph of the system grows
+        status = hn_inputs_compile((hn_system *)r->sys, list.at, list.n, arena, &r->in);
     }
     free(list.at);
-    free(rel);
+    hn_entries_reset(&t.inertia);
+    free(t.bodies);
     return status;
 }
 
@@ -197,15 +224,6 @@ static void list_order(hn_reactions *r) {
 hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reactions **out,
                               hn_diag *diag) {
     *out = NULL;
-    if (sys->scene->is_lagrangian) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "write it with bodies and joints",
-                           "a scene of formulas has no joints that could carry anything");
-    }
-    if (sys->scene->has_formulas) {
-        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "write its terms as bodies and loads",
-                           "energies given as formulas act at no place, so joints cannot be told "
-                           "what they carry");
-    }
     hn_reactions *r = hn_arena_get(arena, sizeof *r);
     hn_status status = HN_ERR_MEMORY;
     if (r) {
@@ -224,6 +242,9 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
         if (made && !hn_arena_failed(arena)) {
             list_order(r);
             status = compile(r, arena);
+        }
+        if (status == HN_OK) {
+            status = hn_reaction_list_efforts(r, arena);
         }
     }
     if (status != HN_OK) {
@@ -355,6 +376,11 @@ static void find_undetermined(hn_reactions *r, hn_wrench *joints, hn_wrench *con
         for (int j = 0; j < r->scene->n_constraints && constraints; j++) {
             constraints[j].determined &= !touches(&scratch[j], scale);
         }
+        for (int j = 0; j < r->sys->efforts.n; j++) {
+            const double effort =
+                r->lambda[r->efforts[j].row] * hn_reaction_value(r, r->first_effort + j);
+            r->efforts[j].determined &= fabs(effort) <= TOUCHED * scale;
+        }
     }
 }
 
@@ -379,12 +405,13 @@ static void axes_of(const hn_reactions *r, const hn_joint *joint, double axes[3]
     hn_reaction_to_world(r, joint->parent, joint->parent_axis, axes[2]);
 }
 
-/// A constraint on coordinates: its effort along the first of them, on the child of that joint.
+/// A constraint on coordinates: its effort along the first that a joint has, on the child of that joint.
 static void effort_of(hn_reactions *r, int constraint, const double *lambda, hn_wrench *out) {
     const hn_system *sys = r->sys;
     for (int k = 0; k < sys->efforts.n; k++) {
         const hn_entry *e = &sys->efforts.at[k];
-        if (sys->loops[sys->rows[e->row].loop].constraint != constraint) {
+        if (sys->loops[sys->rows[e->row].loop].constraint != constraint ||
+            hn_reaction_is_formal(r, e->col)) {
             continue;
         }
         const int index = r->scene->coordinates[e->col].joint;
@@ -417,6 +444,9 @@ static void hand_out_constraint(hn_reactions *r, int k, const double *lambda, hn
 
 static int is_finite_state(const hn_reactions *r, const hn_wrench *joints) {
     double sum = r->defect;
+    for (int k = 0; k < r->n_efforts; k++) {
+        sum += r->efforts[k].value;
+    }
     for (int j = 0; j < r->scene->n_joints; j++) {
         for (int i = 0; i < 3; i++) {
             sum += joints[j].force[i] + joints[j].moment[i] + joints[j].place[i];
@@ -431,6 +461,8 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
     const hn_scene *scene = r->scene;
     hn_inputs_set(&r->in, t, q, v, 0, 0);
     hn_tape_run(r->in.tape, r->in.x);
+    hn_reaction_read_energies(r, a);
+    hn_reaction_read_efforts(r, lambda);
     for (int b = 0; b < r->n_bodies; b++) {
         read_body(r, b, a);
     }

@@ -102,6 +102,13 @@ static void act_loads(hn_reactions *r) {
     }
 }
 
+/// Along coordinates, as a motor in their joints would.
+static void act_energies(hn_reactions *r) {
+    for (int i = 0; i < r->n_energies; i++) {
+        r->tau[r->energy_coordinate[i]] += r->energy[i];
+    }
+}
+
 typedef struct row_ends {
     int body[2];
     const hn_quantity *at[2];
@@ -194,6 +201,9 @@ static void hand_down(hn_reactions *r) {
 
 void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
                          hn_reaction_wrench *constraint) {
+    if (r->n_bodies == 0) {
+        return; // formulas alone: efforts, but no wrenches
+    }
     memset(r->tau, 0, (size_t)r->scene->n_coordinates * sizeof *r->tau);
     memset(r->joints, 0, (size_t)r->scene->n_joints * sizeof *r->joints);
     for (int b = 0; b < r->n_bodies; b++) {
@@ -201,6 +211,7 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
     }
     if (!bare) {
         act_loads(r);
+        act_energies(r);
     }
     act_rows(r, lambda, constraint);
     act_along_coordinates(r);

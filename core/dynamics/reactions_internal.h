@@ -41,6 +41,14 @@ struct hn_reactions {
     double *tau;                     ///< per scene coordinate: effort along it
     double *lambda;                  ///< nc, a free combination
     hn_reaction_wrench *constraints; ///< per constraint
+    int n_energies,
+        n_inertia;          ///< beside bodies, energies given as formulas: see reactions_efforts.c
+    int *energy_coordinate; ///< n_energies coordinates of the scene that they move
+    double *energy;         ///< n_energies: what they do along those
+    hn_entry *inertia;      ///< n_inertia: which of these, which acceleration
+    int first_energy, first_inertia;
+    int n_efforts;
+    hn_effort *efforts;
     hn_qr qr;
     double defect;
 };
@@ -60,6 +68,15 @@ void hn_reaction_values3(const hn_reactions *r, int k, double out[3]);
 void hn_reaction_to_world(const hn_reactions *r, int body, const double v[3], double out[3]);
 /// A point of a body, in the world.
 void hn_reaction_place_of(const hn_reactions *r, int body, const hn_quantity *at, double out[3]);
+
+// along coordinates (reactions_efforts.c) -----------------------------------------------------------------------------
+/// Which coordinates the energies move, what they do there at zero accelerations (one expression each, in the arena), and per acceleration.
+HN_MUST_CHECK hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena,
+                                                    hn_ex **at_zero, hn_entries *inertia);
+void hn_reaction_read_energies(hn_reactions *r, const double *a); ///< of the last run of the tape
+HN_MUST_CHECK hn_status hn_reaction_list_efforts(hn_reactions *r, hn_arena *arena);
+void hn_reaction_read_efforts(hn_reactions *r, const double *lambda);
+int hn_reaction_is_formal(const hn_reactions *r, int coordinate); ///< no joint of bodies has it
 
 // the balance (reactions_balance.c) --------------------------------------------------------------------------------
 /// Wrenches of all joints for these multipliers, and of constraints between points; of a scene without mass or loads if `bare`.

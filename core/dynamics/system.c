@@ -316,6 +316,10 @@ int hn_system_row_is_length(const hn_system *sys, int row) {
     return sys->rows[row].is_length;
 }
 
+double hn_system_row_unit(const hn_system *sys, int row) {
+    return sys->rows[row].is_length ? sys->length : 1;
+}
+
 int hn_system_loop_joint(const hn_system *sys, int loop) {
     HN_ASSERT(loop >= 0 && loop < sys->n_loops);
     return sys->loops[loop].joint;

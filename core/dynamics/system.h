@@ -53,6 +53,8 @@ int hn_system_user_coordinate(const hn_system *sys, int i);
 const char *hn_system_row_name(const hn_system *sys, int row);
 int hn_system_row_loop(const hn_system *sys, int row);
 int hn_system_row_is_length(const hn_system *sys, int row);
+/// Unit in which rows are compared: the characteristic length for a row in metres, else 1.
+double hn_system_row_unit(const hn_system *sys, int row);
 /// The joint (scene index) that closes loop i, or -1 for a tear or formula loop; name of the loop.
 int hn_system_loop_joint(const hn_system *sys, int loop);
 const char *hn_system_loop_name(const hn_system *sys, int loop);

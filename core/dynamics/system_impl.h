@@ -86,9 +86,12 @@ struct hn_system {
 
 /// The expression of a quantity: its number, or its formula in parameters and, where it varies, the state.
 HN_MUST_CHECK hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out);
-/// The same with these expressions for the scene's coordinates (by index) instead of their own.
+/// The same with these expressions for the scene's coordinates and their rates (by index) instead of their own.
 HN_MUST_CHECK hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity,
-                                              const hn_ex *positions, hn_ex *out);
+                                              const hn_ex *positions, const hn_ex *rates,
+                                              hn_ex *out);
+/// Symbols "kind name" to stand for the scene's coordinates (or their rates) while a formula is differentiated by them.
+void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symbols);
 /// Three at once.
 HN_MUST_CHECK hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out);
 /// A closure row: kept, dropped when it vanishes identically, or refused when it is a constant that is not zero. `J`

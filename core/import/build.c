@@ -9,6 +9,32 @@
 
 enum { MAX_NAME = 60, MAX_IDENTIFIER = 50, MAX_TEXT = 400 };
 
+// files ----------------------------------------------------------------------------------------------------
+
+int hn_im_begin_files(hn_build *b, const char *name) {
+    b->files = hn_arena_get(b->arena, HN_IMPORT_MAX_FILES * sizeof *b->files);
+    if (!b->files) {
+        return hn_im_out_of_memory(b);
+    }
+    b->files[0] = (hn_im_file){.name = name ? name : ""};
+    b->n_files = 1;
+    return 1;
+}
+
+hn_im_file *hn_im_file_of(const hn_build *b, const xmlNode *node) {
+    return node->_private ? node->_private : &b->files[0];
+}
+
+const char *hn_im_line(hn_build *b, const hn_im_file *file, long line) {
+    const char *text = file->order > 0 ? hn_im_text(b, "%.100s, line %ld", file->name, line)
+                                       : hn_im_text(b, "line %ld", line);
+    return text ? text : "";
+}
+
+const char *hn_im_line_of(hn_build *b, const xmlNode *node) {
+    return hn_im_line(b, hn_im_file_of(b, node), xmlGetLineNo(node));
+}
+
 // faults and notes -----------------------------------------------------------------------------------------
 
 int hn_im_out_of_memory(hn_build *b) {
@@ -46,8 +72,7 @@ int hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const c
     va_end(args);
     put_path(node, attribute, path, sizeof path);
     b->status = b->status == HN_OK ? HN_ERR_INPUT : b->status;
-    (void)hn_diags_add(b->diags, HN_ERR_INPUT, path, hint, "line %ld: %s", xmlGetLineNo(node),
-                       text);
+    (void)hn_diags_add(b->diags, b->status, path, hint, "%s: %s", hn_im_line_of(b, node), text);
     return 0;
 }
 
@@ -78,8 +103,8 @@ void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, con
     if (b->n_notes == HN_IMPORT_MAX_NOTES) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
-                           "line %ld: more than %d things in this file are not in the scene",
-                           xmlGetLineNo(node), HN_IMPORT_MAX_NOTES);
+                           "%s: more than %d things of this model are not in the scene",
+                           hn_im_line_of(b, node), HN_IMPORT_MAX_NOTES);
     }
     hn_import_note *notes = b->n_notes < HN_IMPORT_MAX_NOTES
                                 ? hn_im_grow(b, b->notes, b->n_notes, &b->cap_notes, sizeof *notes)
@@ -87,7 +112,9 @@ void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, con
     if (notes) {
         put_path(node, attribute, path, sizeof path);
         b->notes = notes;
+        const hn_im_file *file = hn_im_file_of(b, node);
         notes[b->n_notes++] = (hn_import_note){.outcome = outcome,
+                                               .file = file->order > 0 ? file->name : NULL,
                                                .line = (int)xmlGetLineNo(node),
                                                .where = hn_im_text(b, "%s", path),
                                                .what = hn_im_text(b, "%s", text)};
@@ -217,7 +244,7 @@ int hn_im_add_body(hn_build *b, const xmlNode *node, const char *source, const h
     }
     b->bodies = bodies;
     bodies[b->n_bodies] = (hn_im_body){
-        .source = source, .name = name, .world = *world, .line = (int)xmlGetLineNo(node)};
+        .source = source, .name = name, .world = *world, .line = hn_im_line_of(b, node)};
     return b->n_bodies++;
 }
 
@@ -259,7 +286,7 @@ int hn_im_add_joint(hn_build *b, const xmlNode *node, const hn_im_joint *joint,
     hn_im_joint *j = &joints[b->n_joints++];
     *j = *joint;
     j->name = name;
-    j->line = (int)xmlGetLineNo(node);
+    j->line = hn_im_line_of(b, node);
     name_coordinates(b, j);
     b->n_closing += j->cut;
     return b->n_joints - 1;

@@ -11,14 +11,21 @@
 
 #include <libxml/tree.h>
 
+/// One of a model's files; a pointer to it stands in _private of the elements of those that are included.
+typedef struct hn_im_file {
+    const char *name;
+    int order, depth;            ///< in which it was met; 0: the model's own
+    struct hn_im_file *includer; ///< NULL: none
+} hn_im_file;
+
 typedef struct hn_im_body {
     const char *source; ///< its name in the file, or NULL
     const char *name;   ///< in the scene
     const char *about;
     hn_im_mass mass;
     int has_mass;
-    int line;
-    int is_carrier; ///< between several joints of one body
+    const char *line; ///< "line 3", "leg.xml, line 3"
+    int is_carrier;   ///< between several joints of one body
     hn_im_frame world;
 } hn_im_body;
 
@@ -27,7 +34,7 @@ typedef struct hn_im_joint {
     hn_joint_type type;
     int parent, child; ///< HN_GROUND
     double parent_at[3], child_at[3], parent_axis[3], child_axis[3], parent_ref[3], child_ref[3];
-    int line;
+    const char *line;
     int cut, actuated, limited;
     double min, max;
     int n; ///< coordinates
@@ -52,6 +59,8 @@ typedef struct hn_build {
     hn_diags *diags;
     hn_status status; ///< of the first fault
     const char *format, *name, *about;
+    hn_im_file *files; ///< HN_IMPORT_MAX_FILES, the model's own first
+    int n_files;
     hn_im_body *bodies;
     hn_im_joint *joints;
     hn_im_param *params;
@@ -65,6 +74,14 @@ typedef struct hn_build {
     int n_closing;                       ///< joints and constraints that close loops
     int guess; ///< the start need not satisfy what closes the loops: it is where assembly begins
 } hn_build;
+
+// files ---------------------------------------------------------------------------------------------------
+/// The list of files, with the model's own in it; `name` may be NULL. 0 without memory.
+int hn_im_begin_files(hn_build *b, const char *name);
+hn_im_file *hn_im_file_of(const hn_build *b, const xmlNode *node);
+/// "line 12", or "leg.xml, line 12" in an included file; in the arena, never NULL.
+const char *hn_im_line(hn_build *b, const hn_im_file *file, long line);
+const char *hn_im_line_of(hn_build *b, const xmlNode *node);
 
 // faults and notes ---------------------------------------------------------------------------------------
 /// "line 12: ..." at the node (and its attribute, which may be NULL). Always returns 0.
@@ -99,6 +116,8 @@ hn_im_frame hn_im_axis_frame(const double at[3], const double axis[3]);
 const char *hn_im_number(hn_build *b, double x);
 
 // the parts ----------------------------------------------------------------------------------------------
+/// Puts the files that an MJCF includes in their places; 0 after a fault.
+int hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source);
 int hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source);
 int hn_im_read_urdf(hn_build *b, const xmlNode *root);
 /// The loop file: joints that close loops, constraints, gravity.

@@ -19,22 +19,36 @@ const char *hn_import_outcome_name(hn_import_outcome outcome) {
     return OUTCOMES[outcome];
 }
 
-/// By line; in the order they were met within one.
+static int file_order(const hn_build *b, const hn_import_note *note) {
+    int i = note->file ? b->n_files - 1 : 0;
+    while (i > 0 && b->files[i].name != note->file) {
+        i--;
+    }
+    return i;
+}
+
+static int comes_after(const hn_build *b, const hn_import_note *x, const hn_import_note *y) {
+    const int one = file_order(b, x), two = file_order(b, y);
+    return one != two ? one > two : x->line > y->line;
+}
+
+/// By file and line; in the order they were met within one.
 static void sort_notes(hn_build *b) {
     for (int i = 1; i < b->n_notes; i++) {
         const hn_import_note note = b->notes[i];
         int k = i;
-        for (; k > 0 && b->notes[k - 1].line > note.line; k--) {
+        for (; k > 0 && comes_after(b, &b->notes[k - 1], &note); k--) {
             b->notes[k] = b->notes[k - 1];
         }
         b->notes[k] = note;
     }
 }
 
-static void read_root(hn_build *b, const xmlNode *root, const hn_import_source *source) {
+static void read_root(hn_build *b, xmlDoc *doc, const hn_import_source *source) {
+    const xmlNode *root = xmlDocGetRootElement(doc);
     if (hn_im_is(root, "mujoco")) {
         b->format = "MJCF";
-        (void)hn_im_read_mjcf(b, root, source);
+        (void)(hn_im_include(b, doc, source) && hn_im_read_mjcf(b, root, source));
     } else if (hn_im_is(root, "robot")) {
         b->format = "URDF";
         (void)hn_im_read_urdf(b, root);
@@ -83,11 +97,11 @@ static void sum_up(hn_import *im) {
 static void tell_at_source(const hn_build *b, const hn_diag *d) {
     int i = -1;
     if (sscanf(d->pointer, "/bodies/%d", &i) == 1 && i >= 0 && i < b->n_bodies) {
-        (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "line %d: %s",
-                           b->bodies[i].line, d->message);
+        (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "%s: %s", b->bodies[i].line,
+                           d->message);
     } else if (sscanf(d->pointer, "/joints/%d", &i) == 1 && i >= 0 && i < b->n_joints) {
-        (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "line %d: %s",
-                           b->joints[i].line, d->message);
+        (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "%s: %s", b->joints[i].line,
+                           d->message);
     } else if (i >= b->n_joints) {
         const char *rest = strchr(d->pointer + strlen("/joints/"), '/');
         char pointer[HN_DIAG_POINTER + 32];
@@ -117,10 +131,12 @@ static void check_scene(hn_build *b, const hn_strbuf *text) {
 
 static void read_all(hn_import *im, const hn_import_source *source) {
     hn_build *b = &im->build;
-    xmlDoc *doc = hn_im_parse(b, source->text, source->n);
+    xmlDoc *doc = hn_im_begin_files(b, source->file)
+                      ? hn_im_parse(b, &b->files[0], source->text, source->n, NULL)
+                      : NULL;
     if (doc) {
         b->n_own_constraints = HN_SCENE_MAX_JOINTS;
-        read_root(b, xmlDocGetRootElement(doc), source);
+        read_root(b, doc, source);
         if (b->status == HN_OK) {
             name_scene(b, source);
             sort_notes(b);

@@ -237,11 +237,7 @@ static void skip_section(hn_mj *m, const xmlNode *c) {
             return;
         }
     }
-    if (strcmp(name, "include") == 0) {
-        hn_im_fault(m->b, c, NULL, "put the text of that file in its place",
-                    "other files are not read, and '%.80s' may hold parts of the mechanism",
-                    hn_im_attr(m->b, c, "file") ? hn_im_attr(m->b, c, "file") : "");
-    } else if (!hn_im_lists(READ, name)) {
+    if (!hn_im_lists(READ, name)) {
         hn_im_skip(m->b, HN_IMPORT_REFUSED, c, "unknown element: not read");
     }
 }

@@ -45,8 +45,8 @@ static int collect(hn_mj *m, const xmlNode *cls) {
     if (other && !(is_top(m, cls) && is_top(m, other))) {
         return hn_im_fault(m->b, cls, "class",
                            "a class is made once and cannot stand inside itself",
-                           "the default class '%.60s' stands in line %ld already",
-                           class_name(m, cls), xmlGetLineNo(other));
+                           "the default class '%.60s' stands in %s already", class_name(m, cls),
+                           hn_im_line_of(m->b, other));
     }
     if (!check_size(m, cls)) {
         return 0;

@@ -25,7 +25,7 @@ static void keep_quiet(void *context, xmlErrorPtr error) {
     (void)error;
 }
 
-static int tell_syntax(hn_build *b, const xmlParserCtxt *parser) {
+static int tell_syntax(hn_build *b, const hn_im_file *file, const xmlParserCtxt *parser) {
     const xmlError *e = &parser->lastError;
     char text[300];
     (void)snprintf(text, sizeof text, "%s", e->message ? e->message : "not XML");
@@ -35,28 +35,40 @@ static int tell_syntax(hn_build *b, const xmlParserCtxt *parser) {
         (void)snprintf(text, sizeof text, "elements are nested far too deep");
     }
     b->status = HN_ERR_INPUT;
-    (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, NULL, "line %d, column %d: %s",
-                       e->line > 0 ? e->line : 1, e->int2 > 0 ? e->int2 : 1, text);
+    (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, NULL, "%s, column %d: %s",
+                       hn_im_line(b, file, e->line > 0 ? e->line : 1), e->int2 > 0 ? e->int2 : 1,
+                       text);
     return 0;
 }
 
-static int check_depth(hn_build *b, const xmlNode *node, int depth) {
+int hn_im_check_depth(hn_build *b, const xmlNode *node, int depth) {
     if (depth > HN_IMPORT_MAX_DEPTH) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
-                           "line %ld: elements are nested more than %d deep", xmlGetLineNo(node),
+                           "%s: elements are nested more than %d deep", hn_im_line_of(b, node),
                            HN_IMPORT_MAX_DEPTH);
         return 0;
     }
     for (const xmlNode *c = hn_im_first(node); c; c = hn_im_next(c)) {
-        if (!check_depth(b, c, depth + 1)) {
+        if (!hn_im_check_depth(b, c, depth + 1)) {
             return 0;
         }
     }
     return 1;
 }
 
-static xmlDoc *parse(hn_build *b, xmlParserCtxt *parser, const char *text, size_t n) {
+/// Only included files need telling.
+static void tell_file(xmlNode *node, hn_im_file *file) {
+    for (; node; node = node->next) {
+        node->_private = file;
+        if (node->type == XML_ELEMENT_NODE) {
+            tell_file(node->children, file);
+        }
+    }
+}
+
+static xmlDoc *parse(hn_build *b, hn_im_file *file, xmlParserCtxt *parser, const char *text,
+                     size_t n) {
     int document_type = 0;
     parser->_private = &document_type;
     parser->sax->internalSubset = meet_document_type;
@@ -67,17 +79,24 @@ static xmlDoc *parse(hn_build *b, xmlParserCtxt *parser, const char *text, size_
     if (document_type) {
         b->status = HN_ERR_INPUT;
         (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, "take the <!DOCTYPE ...> out",
-                           "line %d: a document type and its entities are not read", document_type);
+                           "%s: a document type and its entities are not read",
+                           hn_im_line(b, file, document_type));
     } else if (!doc || !parser->wellFormed) {
-        tell_syntax(b, parser);
-    } else if (xmlDocGetRootElement(doc) && check_depth(b, xmlDocGetRootElement(doc), 1)) {
-        return doc;
+        tell_syntax(b, file, parser);
+    } else {
+        if (file->order > 0) {
+            tell_file(doc->children, file);
+        }
+        if (hn_im_check_depth(b, xmlDocGetRootElement(doc), 1)) {
+            return doc;
+        }
     }
     xmlFreeDoc(doc);
     return NULL;
 }
 
-xmlDoc *hn_im_parse(hn_build *b, const char *text, size_t n) {
+xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
+                    const xmlDoc *beside) {
     if (n > HN_IMPORT_MAX_BYTES) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
@@ -89,7 +108,12 @@ xmlDoc *hn_im_parse(hn_build *b, const char *text, size_t n) {
         hn_im_out_of_memory(b);
         return NULL;
     }
-    xmlDoc *doc = parse(b, parser, text, n);
+    if (beside && beside->dict) {
+        xmlDictFree(parser->dict);
+        parser->dict = beside->dict;
+        xmlDictReference(parser->dict);
+    }
+    xmlDoc *doc = parse(b, file, parser, text, n);
     xmlFreeParserCtxt(parser);
     return doc;
 }

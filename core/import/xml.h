@@ -5,8 +5,12 @@
 
 #include "import/build.h"
 
-/// Returns owned (xmlFreeDoc); NULL after a fault with line and column.
-xmlDoc *hn_im_parse(hn_build *b, const char *text, size_t n);
+/// Returns owned (xmlFreeDoc); NULL after a fault with line and column. Elements know `file`; the names are shared with `beside` (or NULL), so
+/// that elements may be moved there.
+xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
+                    const xmlDoc *beside);
+/// 0 after a fault: elements within each other deeper than are read. `depth` is that of the node.
+int hn_im_check_depth(hn_build *b, const xmlNode *node, int depth);
 
 int hn_im_is(const xmlNode *node, const char *name); ///< an element of this name
 const xmlNode *hn_im_first(const xmlNode *parent);   ///< first child that is an element, or NULL

@@ -217,10 +217,10 @@ static const double *scale_rows(const hn_accel_jacobian *j) {
             sum += e * e;
         }
         scale[i] = sqrt(sum);
-        longest = fmax(longest, scale[i] / hn_accel_row_unit(j->sys, i));
+        longest = fmax(longest, scale[i] / hn_system_row_unit(j->sys, i));
     }
     for (int i = 0; i < j->nc; i++) {
-        const double least = HN_BLUR_ROW_FLOOR * longest * hn_accel_row_unit(j->sys, i);
+        const double least = HN_BLUR_ROW_FLOOR * longest * hn_system_row_unit(j->sys, i);
         scale[i] = fmax(scale[i], least);
         scale[i] = scale[i] > 0 ? 1 / scale[i] : 1;
     }

@@ -64,7 +64,7 @@ typedef struct hn_run_request {
     long long max_samples; ///< bound
     long long max_steps;
     int raw_lambda; ///< 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
-    int reactions; ///< 1: columns "reaction_force" and "reaction_moment" too, and their names as "carriers"
+    int reactions; ///< 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names: "efforts") too
     /// called now and then with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
     const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"

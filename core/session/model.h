@@ -60,7 +60,7 @@ void hn_model_assembly_json(hn_strbuf *b, const hn_model *model);
 HN_MUST_CHECK hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
                                             const hn_state_entry *entries, int n_entries,
                                             hn_diags *diags);
-/// The same with "reactions" too: what every joint and constraint carries (reactions_json.h). HN_ERR_UNSUPPORTED for formulas.
+/// The same with "reactions" too: what every joint and constraint carries (reactions_json.h).
 HN_MUST_CHECK hn_status hn_model_terms_json_with_reactions(hn_strbuf *b, const hn_model *model,
                                                            double t, const hn_state_entry *entries,
                                                            int n_entries, hn_diags *diags);

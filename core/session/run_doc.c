@@ -18,9 +18,11 @@ typedef struct table {
     int n_user, nc;
     long long n, cap;
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
-    double *raw_lambda;             ///< NULL: not asked for, or the method has none
-    hn_reaction_writer *reactions;  ///< NULL: not asked for
-    double *force, *moment, *state; ///< 3 per carrier; q and v of a sample in system coordinates
+    double *raw_lambda;            ///< NULL: not asked for, or the method has none
+    hn_reaction_writer *reactions; ///< NULL: not asked for
+    double *force, *moment;        ///< 3 per carrier
+    double *effort;                ///< one per effort
+    double *state;                 ///< q and v of a sample in system coordinates
     const hn_system *sys;
 } table;
 
@@ -57,31 +59,39 @@ static hn_status table_want_reactions(table *tab, const hn_model *model, hn_diag
     if (status != HN_OK) {
         return status;
     }
-    const size_t n = 3 * (size_t)tab->cap * (size_t)hn_reaction_writer_count(tab->reactions);
-    if ((double)n * 2 > LARGEST_TABLE) {
+    const int carriers = hn_reaction_writer_count(tab->reactions),
+              efforts = hn_reaction_writer_efforts(tab->reactions);
+    if ((double)tab->cap * (6.0 * carriers + efforts) > LARGEST_TABLE) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/reactions", "ask for fewer output times",
                             "%lld samples of %d reactions are more than one answer may hold",
-                            tab->cap, hn_reaction_writer_count(tab->reactions));
+                            tab->cap, carriers + efforts);
     }
+    const size_t n = 3 * (size_t)tab->cap * (size_t)carriers;
     tab->sys = hn_model_system(model);
     tab->force = hn_arena_doubles(tab->arena, n + 1);
     tab->moment = hn_arena_doubles(tab->arena, n + 1);
+    tab->effort = hn_arena_doubles(tab->arena, (size_t)tab->cap * (size_t)efforts + 1);
     tab->state = hn_arena_doubles(tab->arena, (size_t)info.nq + (size_t)info.nv + 1);
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
 /// A state without accelerations has no reactions either: told as null.
 static void add_reactions(table *tab, const hn_sample *s, size_t k) {
-    const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions);
+    const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions),
+                 n_efforts = (size_t)hn_reaction_writer_efforts(tab->reactions);
     double *q = tab->state, *v = tab->state + hn_system_get_info(tab->sys).nq;
+    double *effort = tab->effort + k * n_efforts;
     hn_system_from_user(tab->sys, s->q, q);
     hn_system_rates_from_user(tab->sys, s->v, v);
     if (hn_reaction_writer_eval(tab->reactions, s->t, q, v) == HN_OK) {
-        hn_reaction_writer_rows(tab->reactions, tab->force + k * n, tab->moment + k * n);
+        hn_reaction_writer_rows(tab->reactions, tab->force + k * n, tab->moment + k * n, effort);
         return;
     }
     for (size_t i = 0; i < n; i++) {
         tab->force[k * n + i] = tab->moment[k * n + i] = nan("");
+    }
+    for (size_t i = 0; i < n_efforts; i++) {
+        effort[i] = nan("");
     }
 }
 
@@ -244,6 +254,7 @@ static void put_samples(hn_strbuf *b, const table *tab) {
         const int width = 3 * hn_reaction_writer_count(tab->reactions);
         put_rows(b, "reaction_force", tab->force, tab->n, width);
         put_rows(b, "reaction_moment", tab->moment, tab->n, width);
+        put_rows(b, "effort", tab->effort, tab->n, hn_reaction_writer_efforts(tab->reactions));
     }
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);

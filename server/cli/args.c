@@ -38,7 +38,8 @@ static const option OPTIONS[] = {
     {"--every", "DT", OPTION_NUMBER, AT(every),
      "output interval [s]; 200 samples when neither is given"},
     {"--reactions", NULL, OPTION_FLAG, AT(reactions),
-     "what every joint and constraint carries too: forces [N] and moments [N m], world axes"},
+     "what every joint and constraint carries too: forces [N] and moments [N m], world axes, and "
+     "efforts along coordinates"},
     {"--raw-lambda", NULL, OPTION_FLAG, AT(raw_lambda),
      "a column raw_lambda too: the multipliers the scheme itself found, where it has some"},
     {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},

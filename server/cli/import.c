@@ -4,19 +4,27 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-/// A file, or "-", at most one byte beyond what is read of one.
+/// Adds a file's bytes, at most one more than `most`. 0 where it cannot be read, with errno.
+static int add_bytes(FILE *f, size_t most, hn_strbuf *text) {
+    char piece[1 << 14];
+    size_t left = most + 1, n = 1;
+    while (f && left > 0 && n > 0) {
+        n = fread(piece, 1, left < sizeof piece ? left : sizeof piece, f);
+        hn_strbuf_add_n(text, piece, n);
+        left -= n;
+    }
+    return f && !ferror(f);
+}
+
+/// A file, or "-".
 static hn_status read_file(const char *path, hn_strbuf *text, hn_diags *diags) {
     FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
-    char piece[1 << 14];
-    size_t n = 0;
-    while (f && text->n <= HN_IMPORT_MAX_BYTES && (n = fread(piece, 1, sizeof piece, f)) > 0) {
-        hn_strbuf_add_n(text, piece, n);
-    }
-    int bad = !f || ferror(f);
+    const int ok = add_bytes(f, HN_IMPORT_MAX_BYTES, text);
     hn_status status = text->failed ? HN_ERR_MEMORY : HN_OK;
-    if (bad) {
+    if (!ok) {
         status = hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s': %s", path,
                               strerror(errno));
     } else if (text->n > HN_IMPORT_MAX_BYTES) {
@@ -29,21 +37,66 @@ static hn_status read_file(const char *path, hn_strbuf *text, hn_diags *diags) {
     return status;
 }
 
+/// A file below the folder `user` (as realpath tells it): a link that leads out of it is not followed.
+static hn_status read_included(void *user, const char *name, size_t most, hn_strbuf *text,
+                               hn_diag *diag) {
+    const char *folder = user;
+    const size_t n = strlen(folder);
+    hn_strbuf path;
+    hn_strbuf_init(&path);
+    hn_strbuf_printf(&path, "%s/%s", folder, name);
+    char *real = path.failed ? NULL : realpath(hn_strbuf_text(&path), NULL);
+    hn_status status = path.failed ? HN_ERR_MEMORY : HN_OK;
+    const int below = real && strncmp(real, folder, n) == 0 && (real[n] == '/' || n == 1);
+    FILE *f = below ? fopen(real, "rb") : NULL;
+    if (status == HN_OK && real && !below) {
+        status = hn_diag_set(diag, HN_ERR_IO, NULL, "copy it beside the model",
+                             "'%.100s' is a link out of the model's folder, and files there are "
+                             "not read",
+                             name);
+    } else if (status == HN_OK && !add_bytes(f, most, text)) {
+        status = hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot read '%.100s': %s", name,
+                             strerror(errno));
+    }
+    if (f) {
+        (void)fclose(f);
+    }
+    free(real);
+    hn_strbuf_reset(&path);
+    return status;
+}
+
+/// The folder of a file, as realpath tells it; owned. NULL: standard input, or it cannot be told.
+static char *folder_of(const char *path) {
+    char *real = strcmp(path, "-") == 0 ? NULL : realpath(path, NULL);
+    char *slash = real ? strrchr(real, '/') : NULL;
+    if (slash) {
+        slash[slash == real] = '\0';
+    }
+    return real;
+}
+
 static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *diags) {
+    const char *path = args->words.word[0], *slash = strrchr(path, '/');
     hn_strbuf text, loops;
     hn_strbuf_init(&text);
     hn_strbuf_init(&loops);
-    hn_status status = read_file(args->words.word[0], &text, diags);
+    hn_status status = read_file(path, &text, diags);
     if (status == HN_OK && args->loops) {
         status = read_file(args->loops, &loops, diags);
     }
     if (status == HN_OK) {
+        char *folder = folder_of(path);
         hn_import_source source = {.text = hn_strbuf_text(&text),
                                    .n = text.n,
                                    .loops = args->loops ? hn_strbuf_text(&loops) : NULL,
                                    .n_loops = loops.n,
-                                   .key = args->key};
+                                   .key = args->key,
+                                   .file = folder ? (slash ? slash + 1 : path) : NULL,
+                                   .read = folder ? read_included : NULL,
+                                   .user = folder};
         status = hn_import_read(&source, out, diags);
+        free(folder);
     }
     hn_strbuf_reset(&text);
     hn_strbuf_reset(&loops);
@@ -98,6 +151,9 @@ static void put_notes(hn_strbuf *b, const hn_import *im) {
         const hn_import_note *note = hn_import_note_at(im, i);
         hn_json_object(b);
         hn_json_put_string(b, "outcome", hn_import_outcome_name(note->outcome));
+        if (note->file) {
+            hn_json_put_string(b, "file", note->file);
+        }
         hn_json_put_int(b, "line", note->line);
         hn_json_put_string(b, "where", note->where);
         hn_json_put_string(b, "what", note->what);
@@ -130,7 +186,8 @@ static hn_exit print_json(const hn_args *args, const hn_import *im, const hn_mod
 static void tell_notes(const hn_import *im) {
     for (int i = 0; i < hn_import_note_count(im); i++) {
         const hn_import_note *note = hn_import_note_at(im, i);
-        fprintf(stderr, "line %d: %s: %s (%s)\n", note->line, hn_import_outcome_name(note->outcome),
+        fprintf(stderr, "%s%sline %d: %s: %s (%s)\n", note->file ? note->file : "",
+                note->file ? ", " : "", note->line, hn_import_outcome_name(note->outcome),
                 note->what, note->where);
     }
 }

@@ -49,7 +49,24 @@ static int add_wrenches(column *columns, int n, const cJSON *run, const char *ke
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row, reactions, and the three measures.
+/// One column for each effort: "effort gear along th1 [N m]".
+static int add_efforts(column *columns, int n, const cJSON *run) {
+    const cJSON *list = hn_document_get(hn_document_get(run, "samples"), "effort"), *item;
+    int part = 0;
+    cJSON_ArrayForEach(item, hn_document_get(run, "efforts")) {
+        if (n == MAX_RUN_COLUMNS) {
+            return n;
+        }
+        column *c = &columns[n++];
+        snprintf(c->name, sizeof c->name, "effort %s along %s [%s]", hn_document_text(item, "name"),
+                 hn_document_text(item, "coordinate"), hn_document_text(item, "unit"));
+        c->list = list;
+        c->part = part++;
+    }
+    return n;
+}
+
+/// t, coordinates, rates, multipliers by row, reactions, efforts, and the three measures.
 static int find_columns(column *columns, const cJSON *run) {
     static const char *const last[] = {"gap", "velocity_gap", "energy"};
     const cJSON *samples = hn_document_get(run, "samples");
@@ -63,6 +80,7 @@ static int find_columns(column *columns, const cJSON *run) {
     }
     n = add_wrenches(columns, n, run, "reaction_force", "force");
     n = add_wrenches(columns, n, run, "reaction_moment", "moment");
+    n = add_efforts(columns, n, run);
     for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
         columns[n] = (column){.list = hn_document_get(samples, last[i]), .part = -1};
         snprintf(columns[n++].name, sizeof columns[0].name, "%s", last[i]);

@@ -113,7 +113,7 @@ static double largest_of(const cJSON *list, const char *key) {
 static void put_reactions(hn_strbuf *b, const cJSON *list) {
     static const char *const keys[] = {"force", "moment"};
     const cJSON *item;
-    if (!list) {
+    if (cJSON_GetArraySize(list) == 0) {
         return;
     }
     const double force = largest_of(list, "force"), moment = largest_of(list, "moment");
@@ -133,6 +133,22 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
         hn_strbuf_add(b, cJSON_IsTrue(hn_document_get(item, "determined"))
                              ? "\n"
                              : "  * one of many: rows are redundant\n");
+    }
+}
+
+/// What acts along coordinates, and at no place.
+static void put_efforts(hn_strbuf *b, const cJSON *list) {
+    const cJSON *item;
+    if (cJSON_GetArraySize(list) > 0) {
+        hn_strbuf_add(b, "efforts along coordinates\n");
+    }
+    cJSON_ArrayForEach(item, list) {
+        hn_strbuf_printf(b, "  %-16s  along %-12s %12.6g %s%s\n", hn_document_text(item, "name"),
+                         hn_document_text(item, "coordinate"), hn_document_number(item, "value"),
+                         hn_document_text(item, "unit"),
+                         cJSON_IsTrue(hn_document_get(item, "determined"))
+                             ? ""
+                             : "  * one of many: rows are redundant");
     }
 }
 
@@ -207,6 +223,7 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
     }
     put_reduced(b, hn_document_get(d, "reduced"), names);
     put_reactions(b, hn_document_get(d, "reactions"));
+    put_efforts(b, hn_document_get(d, "efforts"));
     hn_strbuf_printf(b, "rank %g, gap %.3g, velocity gap %.3g, energy %.9g J\n",
                      hn_document_number(d, "rank"), hn_document_number(d, "gap"),
                      hn_document_number(d, "velocity_gap"),

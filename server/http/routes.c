@@ -40,7 +40,8 @@ static const hn_field TERMS[] = {
      .about = "coordinates and rates that differ from the assembled start"},
     {.name = "reactions",
      .type = HN_FIELD_BOOL,
-     .about = "what every joint and constraint carries too: forces [N] and moments [N m]"},
+     .about = "what every joint and constraint carries too: forces [N] and moments [N m], and "
+              "efforts along coordinates"},
     END_OF_FIELDS};
 
 static const hn_field EQUATIONS[] = {SCENE_FIELDS,
@@ -74,7 +75,8 @@ static const hn_field RUN[] = {SCENE_FIELDS,
                                {.name = "reactions",
                                 .type = HN_FIELD_BOOL,
                                 .about = "columns reaction_force [N] and reaction_moment [N m] "
-                                         "too, three numbers for each of carriers"},
+                                         "too, three numbers for each of carriers, and effort, "
+                                         "one for each of efforts"},
                                {.name = "raw_lambda",
                                 .type = HN_FIELD_BOOL,
                                 .about =

@@ -129,6 +129,21 @@ class Stateless(driver.ServerCase):
         for got, want in zip(run["samples"]["reaction_force"][0], flat, strict=True):
             self.assertAlmostEqual(got, want, delta=1e-9)
 
+    def test_rows_of_formulas_are_told_as_efforts_along_coordinates(self):
+        asked = {"scene": "fb0-lagrangian", "reactions": True}
+        t = self.post("terms", asked).json()
+        self.assertEqual(t["reactions"], [])
+        self.assertEqual({e["unit"] for e in t["efforts"]}, {"N m"})
+        for j, name in enumerate(t["coordinates"]):  # M a = f + J' lambda
+            lacks = sum(m * a for m, a in zip(t["M"][j], t["a"], strict=True)) - t["f"][j]
+            given = sum(e["value"] for e in t["efforts"] if e["coordinate"] == name)
+            self.assertAlmostEqual(given, lacks, delta=1e-11 * (1 + abs(lacks)))
+        run = self.post("runs", {**asked, "method": "projection@rk4:h=1e-3", "time": 0.01, "at": [0, 0.01]}).json()
+        self.assertEqual(run["carriers"], [])
+        for got, want in zip(run["samples"]["effort"][0], t["efforts"], strict=True):
+            self.assertAlmostEqual(got, want["value"], delta=1e-9)
+        self.assertEqual([e["name"] for e in run["efforts"]], [e["name"] for e in t["efforts"]])
+
     def test_terms_take_a_state(self):
         start = self.post("terms", {"scene": "pendulum"}).json()
         name = start["coordinates"][0]

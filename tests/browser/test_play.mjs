@@ -532,8 +532,13 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   assert.match(await page.textContent(".arrows text"), /^[\d.]+ m?N$/);
   await page.selectOption("#scene", "fb0-lagrangian");
   await page.waitForFunction(() =>
-    /no joints that could carry/.test(document.querySelector("#reactions").textContent),
+    /Formulas have no joints/.test(document.querySelector("#reactions").textContent),
   );
+  const efforts = await page.evaluate(() =>
+    [...document.querySelectorAll(".reaction-table tbody tr")].map((row) => row.textContent),
+  );
+  assert.equal(efforts.length, 6);
+  assert.match(efforts[0], /th1[−\d.]+ [mk]?N m$/);
   assert.equal(await page.locator(".arrows path").count(), 0);
 });
 

@@ -119,6 +119,23 @@ class CommandLine(unittest.TestCase):
         self.assertIn("RRR of B: x and B: y (a circle and a circle) went over to its other assembly mode",
                       strict(flat.stdout)["reason"])
 
+    def test_formulas_beside_bodies_act_in_the_joints(self):
+        scene = "tests/scenes/formulas-beside-bodies.json"
+        text = self.assert_exit(call("terms", scene, "--reactions"), 0)
+        self.assertIn("reactions on the child, world axes\n  O ", text)
+        self.assertIn("efforts along coordinates\n  energies          along a ", text)
+        t = json.loads(call("terms", scene, "--reactions", "--json").stdout)
+        self.assertEqual([r["name"] for r in t["reactions"]], ["O"])  # the formulas' own coordinate has no joint
+        effort = next(e for e in t["efforts"] if e["coordinate"] == "a")
+        self.assertEqual((effort["name"], effort["kind"], effort["unit"]), ("energies", "energies", "N m"))
+        self.assertAlmostEqual(t["reactions"][0]["moment"][2], effort["value"], delta=1e-11)
+        head = call("run", scene, "--time", "0.01", "--reactions").stdout.decode().splitlines()[0].split(",")
+        self.assertIn("effort energies along a [N m]", head)
+        self.assertIn("moment O z", head)
+        alone = self.assert_exit(call("terms", "fb0-lagrangian", "--reactions"), 0)
+        self.assertIn("loop x            along th1", alone)
+        self.assertNotIn("reactions on the child", alone)
+
     def test_raw_multipliers_come_when_asked_for_and_where_there_are_some(self):
         words = ("run", "four-bar", "--method", "ggl@radau5:h=0.01", "--time", "0.1", "--every", "0.05")
         plain = strict(self.assert_exit(call(*words, "--json"), DONE))["samples"]

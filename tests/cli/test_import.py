@@ -65,6 +65,42 @@ class Import(unittest.TestCase):
         with open(HERE + "four-bar.xml", "rb") as f:
             self.assertEqual(json.loads(self.done("import", "-", stdin=f.read()).stdout)["name"], "four-bar")
 
+    def test_files_of_the_model_s_folder_are_included_and_no_others(self):
+        with open(HERE + "four-bar.xml") as f:
+            whole = f.read()
+        world = whole.index("<worldbody>")
+        end = whole.index("</worldbody>") + len("</worldbody>")
+        with tempfile.TemporaryDirectory() as top:
+            folder = os.path.join(top, "model")
+            os.makedirs(os.path.join(folder, "parts"))
+
+            def put(name, text):
+                with open(os.path.join(folder, name), "w") as f:
+                    f.write(text)
+                return os.path.join(folder, name)
+
+            put("parts/world.xml", "<mujoco>" + whole[world:end] + "</mujoco>")
+            main = put("main.xml", whole[:world] + '<include file="parts/world.xml"/>' + whole[end:])
+            answer = json.loads(self.done("import", main, "--json").stdout)
+            self.assertEqual(answer["scene"], json.loads(self.done("import", HERE + "four-bar.xml", "--json").stdout)["scene"])
+            self.assertIn("parts/world.xml", {n.get("file") for n in answer["notes"]})
+            self.assertIn("parts/world.xml, line ", self.done("import", main).stderr.decode())
+
+            with open(main, "rb") as f:
+                result = call("import", "-", stdin=f.read())
+            self.assertEqual(result.returncode, INPUT)
+            self.assertIn("not known", result.stderr.decode())
+
+            os.rename(os.path.join(folder, "parts", "world.xml"), os.path.join(top, "world.xml"))
+            os.symlink(os.path.join(top, "world.xml"), os.path.join(folder, "parts", "world.xml"))
+            result = call("import", main)
+            self.assertEqual(result.returncode, INPUT)
+            self.assertIn("a link out of the model's folder", result.stderr.decode())
+            os.remove(os.path.join(folder, "parts", "world.xml"))
+            result = call("import", main)
+            self.assertEqual(result.returncode, INPUT)
+            self.assertIn("cannot read 'parts/world.xml': No such file", result.stderr.decode())
+
     def test_what_is_no_mechanism_is_at_fault(self):
         for text, says in ((b"", "line 1"), (b"<html/>", "<mujoco>"), (b"<mujoco><worldbody>", "line 1, column"),
                            (b"<mujoco>" + b" " * (5 << 20), "more than 4194304 bytes"),

@@ -9,6 +9,7 @@ const NEAR = 1e-6; // of the scene's length: a drawn point at a joint
 
 /** @typedef {{name: string, kind: string, force: number[], moment: number[], place: number[], joint_force?: number[], joint_moment?: number[],
  *   determined: boolean}} Reaction */
+/** @typedef {{name: string, kind: string, coordinate: string, unit: string, value: number, determined: boolean}} Effort */
 
 /** @param {number[]} vector */
 export const sizeOf = (vector) => Math.hypot(...vector);

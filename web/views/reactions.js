@@ -41,10 +41,12 @@ export function createReactions(el, store, actions) {
     h("button", { type: "button", class: "quiet", title, onclick: () => chooseAxes(key) }, word),
   );
   const table = h("table", { class: "numbers" });
+  const along = h("table", { class: "numbers" });
   const scroll = h(
     "div",
     { class: "reaction-table", tabindex: "0", role: "region", "aria-labelledby": "reactions-title" },
     table,
+    along,
   );
   const details = h(
     "details",
@@ -104,6 +106,37 @@ export function createReactions(el, store, actions) {
     );
   }
 
+  /** What acts along coordinates and at no place: formulas, gears. @param {import("../state/reactions.js").Effort[]} efforts */
+  function showEfforts(efforts) {
+    const cell = (text) => h("th", { scope: "col" }, text);
+    const rows = efforts.map(({ name, kind, coordinate, unit, value, determined }) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, name),
+        h("td", {}, coordinate),
+        h("td", {}, quantity(value, unit, DIGITS)),
+        h("td", { class: "note" }, noteOf(kind, determined)),
+      ),
+    );
+    along.replaceChildren(
+      ...(rows.length > 0
+        ? [
+            h("thead", {}, h("tr", {}, cell("Formula"), cell("Along"), cell("Effort"), cell(""))),
+            h("tbody", {}, ...rows),
+          ]
+        : []),
+    );
+  }
+
+  /** @param {string} kind @param {boolean} determined */
+  function noteOf(kind, determined) {
+    if (!determined) {
+      return "one of many: rows depend on each other";
+    }
+    return kind === "energies" ? "in the joint's moment or force above" : "";
+  }
+
   function show() {
     set(arrows, { "aria-pressed": String(data.view.arrows) });
     frames.forEach((button, i) => set(button, { "aria-pressed": String(AXES[i].key === axes) }));
@@ -115,12 +148,17 @@ export function createReactions(el, store, actions) {
     if (answer.reason || !method) {
       say(whose, answer.reason);
       table.replaceChildren();
+      showEfforts([]);
       return;
     }
-    say(
-      whose,
-      `What each joint's parent exerts on its child, at the joint: ${method.label} at ${seconds(answer.t, data.duration)}.`,
-    );
+    const when = `${method.label} at ${seconds(answer.t, data.duration)}.`;
+    showEfforts(answer.efforts);
+    if (answer.list.length === 0) {
+      say(whose, `Formulas have no joints; what each constraint does along each coordinate: ${when}`);
+      table.replaceChildren();
+      return;
+    }
+    say(whose, `What each joint's parent exerts on its child, at the joint: ${when}`);
     const shown = columns();
     const zero = zeroOf(answer.list, data.scene.length);
     table.replaceChildren(

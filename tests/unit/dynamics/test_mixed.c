@@ -1,6 +1,5 @@
 // A Lagrangian's terms beside bodies: the same mechanism written in both ways, and closed forms.
 #include "dynamics/eval.h"
-#include "dynamics/reactions.h"
 
 #include "support/near.h"
 
@@ -192,17 +191,6 @@ static void what_formulas_cannot_be_is_told(void **state) {
     }
 }
 
-static void reactions_are_not_told_where_energies_act_at_no_place(void **state) {
-    (void)state;
-    setup s;
-    begin(&s, ELASTIC);
-    hn_reactions *r = NULL;
-    hn_diag diag = {0};
-    assert_int_equal(hn_reactions_create(s.sys, s.arena, &r, &diag), HN_ERR_UNSUPPORTED);
-    assert_non_null(strstr(diag.message, "formulas"));
-    end(&s);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_link_as_formulas_moves_as_the_link_does),
@@ -210,7 +198,6 @@ int main(void) {
         cmocka_unit_test(constraints_reach_over_both_kinds_of_coordinates),
         cmocka_unit_test(entries_of_orientations_are_refused),
         cmocka_unit_test(what_formulas_cannot_be_is_told),
-        cmocka_unit_test(reactions_are_not_told_where_energies_act_at_no_place),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

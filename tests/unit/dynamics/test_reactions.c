@@ -217,18 +217,6 @@ static void redundant_rows_are_told_at_the_joints_they_touch(void **state) {
     hn_model_close(&m);
 }
 
-static void a_lagrangian_is_refused_with_the_reason(void **state) {
-    (void)state;
-    hn_model m;
-    hn_reactions *r = NULL;
-    hn_diag diag = {0};
-    hn_model_open_closed(&m, "fb0-lagrangian", NULL);
-    assert_int_equal(hn_reactions_create(m.sys, m.arena, &r, &diag), HN_ERR_UNSUPPORTED);
-    assert_non_null(strstr(diag.message, "no joints"));
-    assert_null(r);
-    hn_model_close(&m);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_body_of_random_mechanisms_is_in_balance),
@@ -236,7 +224,6 @@ int main(void) {
         cmocka_unit_test(a_bracket_carries_its_weight_as_statics_says),
         cmocka_unit_test(reactions_do_not_depend_on_which_joint_is_cut),
         cmocka_unit_test(redundant_rows_are_told_at_the_joints_they_touch),
-        cmocka_unit_test(a_lagrangian_is_refused_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

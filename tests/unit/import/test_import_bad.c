@@ -40,7 +40,7 @@ static const struct {
      "default class 'a' stands in line 1 already"},
     {"<mujoco><include file='x.xml'/><worldbody><body><joint/><geom "
      "size='1'/></body></worldbody></mujoco>",
-     "other files are not read"},
+     "where 'x.xml' is is not known"},
     {"<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody><equality>"
      "<connect body1='b' body2='c' anchor='0 0 0'/></equality></mujoco>",
      "no body named 'c'"},
