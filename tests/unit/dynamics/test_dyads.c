@@ -98,6 +98,68 @@ static void the_coupler_of_fb0_follows_the_formula_with_the_arc_cosine(void **st
     close_probe(&p);
 }
 
+/// A scene of formulas with the crank's angle a and two unknowns behind it.
+#define CRANK_AND(first, unit, second, rows)                                           \
+    "{\"holonom\":1,\"name\":\"x\",\"lagrangian\":{\"coordinates\":["                  \
+    "{\"name\":\"a\",\"rate\":\"da\"},{\"name\":\"" first "\",\"rate\":\"d" first      \
+    "\",\"unit\":\"" unit "\"},{\"name\":\"" second "\",\"rate\":\"d" second           \
+    "\",\"unit\":\"m\"}],"                                                             \
+    "\"kinetic\":\"(da^2+d" first "^2+d" second "^2)/2\",\"constraints\":[" rows "]}," \
+    "\"start\":{\"positions\":{\"a\":0.3,\"" second "\":{\"guess\":2.5}}}}"
+
+static void open_text(probe *p, const char *text) {
+    memset(p, 0, sizeof *p);
+    hn_model_open_text(&p->model, text, NULL);
+    assert_int_equal(p->model.status, HN_OK);
+    p->dep[0] = 1;
+    p->dep[1] = 2;
+    p->n_dep = 2;
+    assert_int_equal(hn_dyads_create(p->model.sys, p->dep, 2, p->model.arena, &p->dyads), HN_OK);
+    assert_int_equal(hn_eval_create(p->model.sys, HN_TERM_PHI, p->model.arena, &p->loop), HN_OK);
+    assert_null(hn_dyads_refusal(p->dyads));
+    assert_int_equal(hn_dyads_count(p->dyads), 1);
+    assert_int_equal(hn_dyads_take_branch(p->dyads, 0, p->model.q), 1);
+}
+
+// a line at the angle g, cos g = 0.8: across it 2 sin(b - g) + 0.8 sin a - 0.6 (cos a + 0.1) = 0
+static void a_slide_on_an_oblique_line_follows_the_arc_sine(void **state) {
+    (void)state;
+    probe p;
+    open_text(
+        &p, CRANK_AND("b", "rad", "s", "\"cos(a)+0.1+2*cos(b)-0.8*s\",\"sin(a)+2*sin(b)-0.6*s\""));
+    assert_int_equal(hn_dyads_at(p.dyads, 0).kind, HN_DYAD_RRP);
+    double q[3] = {p.model.q[0], p.model.q[1], p.model.q[2]};
+    const double g = atan2(0.6, 0.8);
+    assert_true(cos(q[1] - g) > 0); // the slide stands ahead of the crank
+    for (int k = 0; k < 200; k++) { // the crank goes round
+        q[0] += 0.05;
+        assert_int_equal(hn_dyads_solve(p.dyads, 0, q), -1);
+        const double x = cos(q[0]) + 0.1, y = sin(q[0]), b = asin((0.6 * x - 0.8 * y) / 2);
+        assert_near(remainder(q[1] - g - b, 2 * M_PI), 0, 1e-13);
+        assert_near(q[2], 0.8 * x + 0.6 * y + 2 * cos(b), 1e-13);
+        assert_true(gap(&p, q) < 1e-14);
+    }
+    close_probe(&p);
+}
+
+// u and w solve two linear equations with the determinant -0.76, in one way
+static void two_slides_are_where_two_lines_meet(void **state) {
+    (void)state;
+    probe p;
+    open_text(&p, CRANK_AND("u", "m", "w", "\"cos(a)-0.8*u-0.6*w\",\"sin(a)-0.6*u+0.5*w\""));
+    assert_int_equal(hn_dyads_at(p.dyads, 0).kind, HN_DYAD_PRP);
+    assert_null(hn_dyads_sign_name(p.dyads, 0));
+    double q[3] = {p.model.q[0], p.model.q[1], p.model.q[2]};
+    for (int k = 0; k < 200; k++) {
+        q[0] += 0.05;
+        assert_int_equal(hn_dyads_solve(p.dyads, 0, q), -1);
+        assert_near(q[1], (0.5 * cos(q[0]) + 0.6 * sin(q[0])) / 0.76, 1e-14);
+        assert_near(q[2], (0.6 * cos(q[0]) - 0.8 * sin(q[0])) / 0.76, 1e-14);
+        assert_true(gap(&p, q) < 1e-14);
+    }
+    close_probe(&p);
+}
+
 static void what_cannot_be_closed_is_named_and_leaves_the_pose_alone(void **state) {
     (void)state;
     probe p;
@@ -179,6 +241,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mechanisms_fall_apart_into_the_groups_of_the_textbooks),
         cmocka_unit_test(the_coupler_of_fb0_follows_the_formula_with_the_arc_cosine),
+        cmocka_unit_test(a_slide_on_an_oblique_line_follows_the_arc_sine),
+        cmocka_unit_test(two_slides_are_where_two_lines_meet),
         cmocka_unit_test(what_cannot_be_closed_is_named_and_leaves_the_pose_alone),
         cmocka_unit_test(the_equations_told_to_people_hold_at_the_start),
         cmocka_unit_test(what_hangs_together_is_left_to_newton_and_named),

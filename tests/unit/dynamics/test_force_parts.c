@@ -56,8 +56,10 @@ static void next_state(probe *p) {
 
 static void forces_without_loads_are_velocity_part_and_potential(void **state) {
     (void)state;
-    static const char *const names[] = {"heavy-top", "spinning-block",   "rssr", "watt-six-bar",
-                                        "bennett",   "oblique-four-bar", "fb0",  "double-pendulum"};
+    static const char *const names[] = {
+        "heavy-top",    "spinning-block",  "rssr",
+        "watt-six-bar", "bennett",         "oblique-four-bar",
+        "fb0",          "double-pendulum", "formulas-beside-bodies"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         probe p;
         open_probe(&p, names[k]);
