@@ -18,6 +18,9 @@ const char *hn_extreme_verdict_name(hn_extreme_verdict verdict) {
 
 int hn_extreme_is_stopped(void *user) {
     const hn_extreme_bench *bench = user;
+    if (bench->opts->progress) {
+        bench->opts->progress(bench->opts->user, bench->id, bench->share);
+    }
     return (bench->opts->stop && bench->opts->stop(bench->opts->user)) ||
            (bench->deadline > 0 && hn_wall_seconds() > bench->deadline);
 }
@@ -101,13 +104,15 @@ void hn_extreme_conclude(hn_extreme_trial *t) {
     }
 }
 
-/// 0 when it was stopped: half a trial says nothing.
-static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t) {
-    for (int i = 0; i < t->n_scenes * t->n_methods; i++) {
+/// `whole`: its share of the matrix. 0 when it was stopped: half a trial says nothing.
+static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t, double whole) {
+    const int n = t->n_scenes * t->n_methods;
+    for (int i = 0; i < n; i++) {
         const hn_extreme_scene *scene = t->scenes[i / t->n_methods];
         const char *method = t->methods[i % t->n_methods];
         t->seen[i] = (hn_extreme_seen){.scene = scene->name, .method = method};
         t->measure->see(bench, t, scene, method, &t->seen[i]);
+        bench->share += whole / n;
         if (hn_extreme_is_stopped(bench)) {
             return 0;
         }
@@ -152,10 +157,9 @@ void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts) {
                 t->verdict = is_left_out ? HN_EXTREME_LONG : t->verdict;
                 continue;
             }
-            if (opts->progress) {
-                opts->progress(opts->user, c->id, (done - 1.0) / all);
-            }
-            if (!hn_extreme_is_stopped(&bench) && run_trial(&bench, t)) {
+            bench.id = c->id;
+            bench.share = (done - 1.0) / all;
+            if (!hn_extreme_is_stopped(&bench) && run_trial(&bench, t, 1.0 / all)) {
                 hn_extreme_keep(x, i, k);
             }
         }

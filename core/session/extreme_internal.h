@@ -21,7 +21,9 @@ typedef struct hn_extreme_point {
 typedef struct hn_extreme_bench {
     const hn_library *lib;
     const hn_extreme_opts *opts;
-    double deadline; ///< monotonic clock [s]; 0: none
+    double deadline; ///< wall clock [s]; 0: none
+    const char *id;  ///< of the present case
+    double share;    ///< of all that is done
     hn_model *model;
     const hn_extreme_scene *scene; ///< of the model
     int n_set, is_open;            ///< open: loaded though its loops do not close
@@ -35,7 +37,8 @@ typedef struct hn_extreme_bench {
     double *truth_q, *truth_v, *truth_lambda;
 } hn_extreme_bench;
 
-int hn_extreme_is_stopped(void *bench); ///< as the `stop` of a walk
+/// Tells how far it is, and asks whether to stop: as the `stop` of a walk.
+int hn_extreme_is_stopped(void *bench);
 
 /// Value of a number at a point; HN_ERR_INPUT (told in diags) for a formula that has none.
 HN_MUST_CHECK hn_status hn_extreme_value(const hn_extreme_number *number, const char *name,

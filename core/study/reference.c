@@ -76,6 +76,8 @@ double hn_ref_digits(const hn_ref *ref) {
 /// What one computation leaves, and what scales are made of.
 typedef struct recorder {
     hn_ref *ref;
+    const hn_ref_opts *opts;
+    int found;                 ///< computations that came to the end before this one
     double kinetic, low, high; ///< largest kinetic energy; range of the potential
 } recorder;
 
@@ -89,6 +91,9 @@ static int record(void *user, int k, const hn_sample *s) {
         memcpy(ref->lambda + (size_t)k * nc, s->lambda, nc * sizeof(double));
     }
     ref->energy[k] = s->energy;
+    if (r->opts->progress) {
+        r->opts->progress(r->opts->user, (r->found + (double)k / ref->n) / HN_REF_MEANS);
+    }
     r->kinetic = k == 0 ? s->kinetic : fmax(r->kinetic, s->kinetic);
     r->low = k == 0 ? s->potential : fmin(r->low, s->potential);
     r->high = k == 0 ? s->potential : fmax(r->high, s->potential);
@@ -211,7 +216,7 @@ static hn_status find_two(const hn_system *sys, const double *q, const double *v
         if (!kept[found]) {
             return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
         }
-        seen[found] = (recorder){.ref = kept[found]};
+        seen[found] = (recorder){.ref = kept[found], .opts = opts, .found = found};
         const hn_status status =
             compute(sys, &MEANS[i], q, v, &opts->limits, &seen[found], &end, diag);
         if (status == HN_OK) {

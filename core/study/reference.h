@@ -35,6 +35,11 @@ typedef struct hn_ref_opts {
     int n;                 ///< intervals; 0: HN_REF_TIMES
     hn_walk_limits limits; ///< of each computation; those in extended precision get 0.4 of the time
     int skip_precise;      ///< 1: those in double alone
+    void (*progress)(
+        void *user,
+        double
+            share); ///< of both computations; falls where one did not come to the end. NULL: not told
+    void *user;     ///< of `progress`
 } hn_ref_opts;
 hn_ref_opts hn_ref_opts_default(void);
 

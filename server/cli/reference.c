@@ -79,6 +79,10 @@ static hn_status shorten(const hn_model *model, hn_ref_request *request, hn_ref 
     return hn_reference_get(model, request, ref, NULL, diags);
 }
 
+static void show_progress(void *user, double share) {
+    hn_progress_tell(user, "reference", share);
+}
+
 static hn_status check_time(const hn_args *args, hn_diags *diags) {
     if (!isnan(args->time) && !(args->time > 0 && args->time <= 1e7)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
@@ -111,6 +115,7 @@ hn_exit hn_command_reference(const hn_library *lib, const hn_args *args) {
     hn_ref *ref = NULL;
     hn_diags diags = {0};
     hn_diag diag = {0};
+    hn_progress progress = {0};
     hn_ref_source source = HN_REF_COMPUTED;
     hn_ref_request request = hn_ref_request_default();
     hn_status status = check_time(args, &diags);
@@ -125,11 +130,14 @@ hn_exit hn_command_reference(const hn_library *lib, const hn_args *args) {
     request.again = args->again;
     request.opts.limits =
         (hn_walk_limits){isnan(args->budget) ? 0 : args->budget, hn_is_interrupted, NULL};
+    request.opts.progress = show_progress;
+    request.opts.user = &progress;
     hn_interrupt_begin();
     status = hn_reference_get(model, &request, &ref, &source, &diags);
     if (status == HN_OK && args->hold) {
         status = shorten(model, &request, &ref, &diags);
     }
+    hn_progress_end(&progress);
     hn_interrupt_end();
     hn_exit result = HN_EXIT_DONE;
     if (status != HN_OK) {

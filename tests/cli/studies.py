@@ -2,6 +2,7 @@
 
 import json
 import os
+import pty
 import random
 import signal
 import subprocess
@@ -62,6 +63,25 @@ def kill_often(words, folder, seed, longest, times=10):
             process.kill()
             process.communicate()
     return killed
+
+
+def watch_terminal(words, folder, interrupt=False):
+    """The command with a terminal for what it tells, stopped by Ctrl-C once time left is told, if asked for: exit status and what was told."""
+    argv, env = command(words, folder)
+    terminal, end = pty.openpty()
+    process = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=end, env=env)
+    os.close(end)
+    seen = b""
+    try:
+        while piece := os.read(terminal, 4096):
+            seen += piece
+            if interrupt and b" left" in seen:
+                process.send_signal(signal.SIGINT)
+                interrupt = False
+    except OSError:  # the other end is closed
+        pass
+    os.close(terminal)
+    return process.wait(), seen.decode()
 
 
 def assert_page(test, text, scripts=False):

@@ -89,6 +89,12 @@ class Budget(unittest.TestCase):
             self.assertIn(f"going on with {states.count('done')} methods from before", done.stderr)
             self.assertEqual(studies.journals(folder, "budget"), [], "nothing is left of whole accounts")
 
+    def test_time_left_is_shown(self):
+        with tempfile.TemporaryDirectory() as folder:
+            status, seen = studies.watch_terminal(["study", "fb0", "budget", "--time", "60", "--methods", "index1@rk4:h=1e-3", "projection@rk4:h=1e-3"], folder, interrupt=True)
+        self.assertEqual(status, ENDED, seen)
+        self.assertRegex(seen, r"budget \[[#.]+\] +\d+ %, \d+ (?:s|min) left")
+
     def test_killed_ten_times_it_ends_with_the_bytes_of_an_undisturbed_one(self):
         undisturbed = call(*SECONDS, "--json")
         with tempfile.TemporaryDirectory() as folder:

@@ -109,6 +109,12 @@ class Extreme(unittest.TestCase):
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(done.stdout, undisturbed.stdout)
 
+    def test_time_left_is_shown_in_a_trial_that_lasts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            status, seen = studies.watch_terminal(["extreme", "x6", "x4", "x16", "x11", "--long"], folder, interrupt=True)
+        self.assertEqual(status, ENDED, seen)
+        self.assertRegex(seen, r"extreme X\d+ \[[#.]+\] +\d+ %, \d+ (?:s|min) left")
+
     def test_a_budget_leaves_trials_that_a_richer_run_of_the_same_does(self):
         with tempfile.TemporaryDirectory() as folder:
             poor = studies.call(["extreme", *SECONDS, "--json", "--budget", "0.2"], folder, text=True)

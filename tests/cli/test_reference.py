@@ -2,15 +2,14 @@
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
-import driver  # noqa: E402
+sys.path.insert(0, os.path.dirname(__file__))
+import studies  # noqa: E402
+from studies import DONE, ENDED, INPUT  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
 SCENE = os.path.join("lessons", "01-closed-loops", "scenes", "fb0-lagrangian.json")
 
 
@@ -23,8 +22,7 @@ class Reference(unittest.TestCase):
         self.kept.cleanup()
 
     def call(self, *words):
-        return subprocess.run([driver.PROGRAM, "reference", *words], capture_output=True, text=True, check=False,
-                              env=dict(os.environ, HOLONOM_CACHE=self.folder), timeout=120 * driver.SLOW)
+        return studies.call(["reference", *words], self.folder, text=True)
 
     def answer(self, *words):
         done = self.call(*words, "--json")
@@ -107,6 +105,12 @@ class Reference(unittest.TestCase):
         self.assertIn("the motion is chaotic", done.stdout)
         self.assertIn("digits", done.stdout)
 
+    def test_time_left_is_shown_and_ctrl_c_ends_it(self):
+        status, seen = studies.watch_terminal(["reference", "ring", "--set", "n=12", "--time", "60", "--again"], self.folder, interrupt=True)
+        self.assertEqual(status, ENDED, seen)
+        self.assertRegex(seen, r"reference \[[#.]+\] +\d+ %, \d+ (?:s|min) left")
+        self.assertIn("stopped on request", seen)
+
     def test_faults_are_told(self):
         for words, status, text in ((["fb0", "--time", "-1"], INPUT, "above 0"), (["fbo"], INPUT, "did you mean"),
                                     (["fb0", "--again", "--budget", "1e-9"], ENDED, "takes more"),
@@ -117,4 +121,4 @@ class Reference(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    driver.main()
+    studies.driver.main()

@@ -4,10 +4,7 @@ import csv
 import io
 import json
 import os
-import pty
 import re
-import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -15,7 +12,7 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(__file__))
 import studies  # noqa: E402
-from studies import DONE, ENDED, INPUT, call, command, driver, strict  # noqa: E402
+from studies import DONE, ENDED, INPUT, call, driver, strict  # noqa: E402
 
 METHODS = ["projection@rk4", "projection@dopri5", "nullspace-as-printed@rk4"]
 SMALL = ["study", "fb0", "work-precision", "--methods", *METHODS, "--time", "1", "--levels", "5", "--samples", "0"]
@@ -151,28 +148,10 @@ class Study(unittest.TestCase):
 
     def test_time_left_is_shown_and_again_when_the_study_goes_on(self):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--budget", "0"]
-        argv, env = command(words, self.folder)
-
-        def watch(interrupt_after):
-            terminal, end = pty.openpty()
-            process = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=end, env=env)
-            os.close(end)
-            seen = b""
-            try:
-                while piece := os.read(terminal, 4096):
-                    seen += piece
-                    if interrupt_after and b" s left" in seen:
-                        process.send_signal(signal.SIGINT)
-                        interrupt_after = None
-            except OSError:  # the other end is closed
-                pass
-            os.close(terminal)
-            return process.wait(), seen.decode()
-
-        status, seen = watch(True)
+        status, seen = studies.watch_terminal(words, self.folder, interrupt=True)
         self.assertEqual(status, ENDED)
         self.assertRegex(seen, r"work-precision \[[#.]+\] +\d+ %, \d+ s left")
-        status, seen = watch(None)
+        status, seen = studies.watch_terminal(words, self.folder)
         self.assertEqual(status, DONE)
         left = [(int(a), int(b)) for a, b in re.findall(r"(\d+) %, (\d+) s left", seen)]
         self.assertTrue(left)
