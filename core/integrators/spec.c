@@ -287,18 +287,34 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     return HN_OK;
 }
 
+/// The place of a key in a table; n where it is not.
+static int place_of(const hn_setting_info *settings, int n, const char *key) {
+    int i = 0;
+    while (i < n && strcmp(settings[i].key, key) != 0) {
+        i++;
+    }
+    return i;
+}
+
+double *hn_method_find_setting(hn_method_spec *spec, const char *key,
+                               const hn_setting_info **info) {
+    const hn_formulation *f = spec->formulation;
+    const hn_stepper *s = spec->stepper;
+    const int i = place_of(f->settings, f->n_settings, key);
+    const int k = place_of(s->settings, s->n_settings, key);
+    if (i == f->n_settings && k == s->n_settings) {
+        return NULL;
+    }
+    if (info) {
+        *info = i < f->n_settings ? &f->settings[i] : &s->settings[k];
+    }
+    return i < f->n_settings ? &spec->formulation_set[i] : &spec->stepper_set[k];
+}
+
 double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise) {
-    for (int i = 0; i < spec->formulation->n_settings; i++) {
-        if (strcmp(spec->formulation->settings[i].key, key) == 0) {
-            return spec->formulation_set[i];
-        }
-    }
-    for (int i = 0; i < spec->stepper->n_settings; i++) {
-        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
-            return spec->stepper_set[i];
-        }
-    }
-    return otherwise;
+    hn_method_spec copy = *spec;
+    const double *value = hn_method_find_setting(&copy, key, NULL);
+    return value ? *value : otherwise;
 }
 
 int hn_method_is_adaptive(const hn_method_spec *spec) {

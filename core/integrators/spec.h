@@ -22,7 +22,9 @@ typedef struct hn_method_spec {
 HN_MUST_CHECK hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag);
 /// The normal spelling: only settings that differ from their defaults, plus h or rtol (what the step is taken or chosen by) always. Reads back to the same spec.
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]);
-/// The value of a setting by key, of the formulation or else of the integrator; `otherwise` when neither has it.
+/// Where the value of a setting stands, of the formulation or else of the integrator, and its entry in *info (may be NULL). NULL: neither has it.
+double *hn_method_find_setting(hn_method_spec *spec, const char *key, const hn_setting_info **info);
+/// The value of a setting by key; `otherwise` when neither has it.
 double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise);
 /// The form in which this pair takes the constraints: the formulation's own, or else the one it has also.
 hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper);

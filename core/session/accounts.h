@@ -62,8 +62,8 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *accounts);
 
 /// One row as it stands in "methods".
 void hn_account_put(hn_strbuf *b, const hn_model *model, const hn_account_row *row);
-/// 1 if one of the rows has an error at the end to draw.
-int hn_accounts_can_plot(const hn_account_row *rows, int n);
+/// 1 if one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
+int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
 /// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a row; colours as in study_plot.h.
 void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,
                       int energy);

@@ -105,6 +105,9 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
         a->request.time);
     put_reasons(b, a);
     for (int energy = 0; energy < 2; energy++) {
+        if (!hn_accounts_can_plot(a->rows, a->n, energy)) {
+            continue;
+        }
         hn_strbuf_printf(b, "<h2>%s</h2><div class=\"scroll\">", heads[energy]);
         hn_accounts_plot(b, a->model, a->rows, a->n, energy);
         hn_strbuf_add(b, "</div>");

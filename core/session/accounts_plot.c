@@ -43,9 +43,9 @@ static int take_parts(const hn_model *model, const hn_account_row *row, int ener
     return isfinite(p->whole);
 }
 
-int hn_accounts_can_plot(const hn_account_row *rows, int n) {
+int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy) {
     for (int i = 0; i < n; i++) {
-        if (rows[i].status == HN_OK && rows[i].account.coordinate >= 0) {
+        if (rows[i].status == HN_OK && (energy || rows[i].account.coordinate >= 0)) {
             return 1;
         }
     }

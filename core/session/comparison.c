@@ -32,16 +32,6 @@ hn_comparison_opts hn_comparison_opts_default(void) {
     return (hn_comparison_opts){.cpu_budget = 5};
 }
 
-/// The value of a setting by its key, or `otherwise` when the integrator has none of that name.
-static double stepper_setting(const hn_method_spec *spec, const char *key, double otherwise) {
-    for (int i = 0; i < spec->stepper->n_settings; i++) {
-        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
-            return spec->stepper_set[i];
-        }
-    }
-    return otherwise;
-}
-
 /// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when two methods share it.
 static int choose_slot(const hn_comparison *c, const hn_formulation *formulation) {
     int wanted = 0;
@@ -81,7 +71,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
         return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
     }
     entry *e = &c->entries[c->n];
-    e->h = hn_method_is_adaptive(&spec) ? 0 : stepper_setting(&spec, "h", 0);
+    e->h = hn_method_is_adaptive(&spec) ? 0 : hn_method_setting(&spec, "h", 0);
     e->slot = choose_slot(c, spec.formulation);
     c->n++;
     return HN_OK;

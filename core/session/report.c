@@ -133,7 +133,6 @@ static void find_singular(hn_report_scene *s) {
     hn_method_spec spec;
     hn_diag diag = {0};
     hn_run *run = NULL;
-    const hn_incident *incident = NULL;
     char spelling[HN_SPEC_MAX];
     snprintf(spelling, sizeof spelling, "projection@rk4:h=%.6g", hn_model_scene(s->model)->step);
     if (hn_method_parse(spelling, &spec, &diag) != HN_OK ||
@@ -142,12 +141,7 @@ static void find_singular(hn_report_scene *s) {
         return;
     }
     hn_run_advance(run, hn_study_wp(s->study)->ref->T); // how it ends is told by its incidents
-    const int n = hn_run_incidents(run, &incident);
-    for (int i = 0; i < n && !s->singular; i++) {
-        s->singular = incident[i].code == HN_INCIDENT_NEAR_SINGULAR ||
-                      incident[i].code == HN_INCIDENT_RANK_LOSS;
-        s->singular_at = incident[i].t;
-    }
+    s->singular = hn_run_passed_singular(run, &s->singular_at);
     hn_run_free(run);
 }
 

@@ -205,19 +205,25 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
 // a scene ------------------------------------------------------------------------------------------------------------
 
 static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
-    if (!hn_accounts_can_plot(s->accounts, s->n_accounts)) {
-        hn_strbuf_add(b, "<p class=\"quiet\">No account of errors and energy: ");
+    const int error = hn_accounts_can_plot(s->accounts, s->n_accounts, 0);
+    const int energy = hn_accounts_can_plot(s->accounts, s->n_accounts, 1);
+    if (error || energy) {
+        hn_strbuf_printf(b, "<h3>Where %senergy come%s from</h3>", error ? "errors and " : "",
+                         error ? "" : "s");
+    }
+    if (!error) {
+        hn_strbuf_printf(
+            b, "<p class=\"quiet\">No account of %s: ", energy ? "errors" : "errors and energy");
         hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
         hn_strbuf_add(b, ".</p>");
-        return;
     }
-    hn_strbuf_add(b, "<h3>Where errors and energy come from</h3><div class=\"lines\">");
-    for (int energy = 0; energy < 2; energy++) {
-        hn_strbuf_add(b, "<div class=\"scroll\">");
-        hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, energy);
-        hn_strbuf_add(b, "</div>");
+    for (int k = 0; k < 2; k++) {
+        if (k ? energy : error) {
+            hn_strbuf_add(b, "<div class=\"lines\"><div class=\"scroll\">");
+            hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, k);
+            hn_strbuf_add(b, "</div></div>\n");
+        }
     }
-    hn_strbuf_add(b, "</div>\n");
 }
 
 static void put_survival(hn_strbuf *b, const hn_report_scene *s) {

@@ -155,7 +155,7 @@ static int draw(hn_strbuf *b, const hn_report_plot *p) {
     if (!s->study || (p->kind == KIND_STUDY && p->cost == HN_COST_TIME && !timed) ||
         (p->kind == KIND_SURVIVAL && !s->strips) ||
         ((p->kind == KIND_ERRORS || p->kind == KIND_ENERGY) &&
-         !hn_accounts_can_plot(s->accounts, s->n_accounts))) {
+         !hn_accounts_can_plot(s->accounts, s->n_accounts, p->kind == KIND_ENERGY))) {
         return 0;
     }
     if (p->kind == KIND_STUDY) {

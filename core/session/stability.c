@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { COARSEST_STRIDE = 8, PATH_SHARE = 10 }; // of the budget, for the motion of one scene
 static const double PATH_SECONDS = 5; // computing time of a motion where there is no budget
@@ -130,28 +129,13 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
 
 // cells ------------------------------------------------------------------------------------------------------------
 
-static void set_value(hn_method_spec *spec, const char *key, double value) {
-    for (int i = 0; i < spec->formulation->n_settings; i++) {
-        if (strcmp(spec->formulation->settings[i].key, key) == 0) {
-            spec->formulation_set[i] = value;
-            return;
-        }
-    }
-    for (int i = 0; i < spec->stepper->n_settings; i++) {
-        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
-            spec->stepper_set[i] = value;
-            return;
-        }
-    }
-}
-
 hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
     hn_method_spec spec = map->specs[m];
     if (map->x.name[0] && !map->x.is_param) {
-        set_value(&spec, map->x.name, map->x.value[column]);
+        *hn_method_find_setting(&spec, map->x.name, NULL) = map->x.value[column];
     }
     if (!map->y.is_param) {
-        set_value(&spec, map->y.name, y);
+        *hn_method_find_setting(&spec, map->y.name, NULL) = y;
     }
     return spec;
 }

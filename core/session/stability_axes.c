@@ -63,18 +63,8 @@ static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high,
     // a setting: every method has to have it
     a->is_step = strcmp(a->name, "h") == 0;
     for (int m = 0; m < map->n_methods; m++) {
-        const hn_method_spec *s = &map->specs[m];
         const hn_setting_info *info = NULL;
-        for (int i = 0; i < s->formulation->n_settings; i++) {
-            info = strcmp(s->formulation->settings[i].key, a->name) == 0
-                       ? &s->formulation->settings[i]
-                       : info;
-        }
-        for (int i = 0; i < s->stepper->n_settings; i++) {
-            info =
-                strcmp(s->stepper->settings[i].key, a->name) == 0 ? &s->stepper->settings[i] : info;
-        }
-        if (!info || info->choices) {
+        if (!hn_method_find_setting(&map->specs[m], a->name, &info) || info->choices) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over",
                                 "name a parameter of the scene, h, or a setting of every method",
                                 "'%s' is no parameter of the scene and no number that %s takes",

@@ -179,11 +179,10 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
         owned = 1;
     }
     if (status != HN_OK) {
-        return hn_diag_set(
-            diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
-            "the equations of motion could not be followed beside the step at t = %g "
-            "s: %s",
-            t, hn_status_text(status));
+        return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                           "the equations of motion could not be followed beside the step from t = "
+                           "%.4g to %.4g s: %s",
+                           t, run->now.t, hn_status_text(status));
     }
     const double *after_own = is_ode(b) ? b->owned : b->flowed;
     double *unmended = b->unmended.q; // q and v stand together
@@ -282,6 +281,18 @@ static hn_status create_parts(hn_books *b) {
     return status == HN_OK && !b->saddle ? HN_ERR_MEMORY : status;
 }
 
+/// Where flows cannot be followed, a singular pose on the way is mostly why.
+static void explain(const hn_books *b, hn_diag *diag) {
+    double t;
+    if (hn_run_passed_singular(b->run, &t)) {
+        const size_t used = strlen(diag->message);
+        snprintf(diag->message + used, sizeof diag->message - used,
+                 "; J all but loses rank near t = %.3g s, and neighbours off the loops cannot be "
+                 "followed past that",
+                 t);
+    }
+}
+
 static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     hn_account *out = b->out;
     hn_books_present(b, b->y);
@@ -301,7 +312,13 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     if (failed) {
         return HN_OK; // up to there the bill of energy stands; an error at the end there is none
     }
-    return status == HN_OK ? hn_books_look_back(b, out->t, diag) : status;
+    if (status == HN_OK) {
+        status = hn_books_look_back(b, out->t, diag);
+    }
+    if (status == HN_ERR_NO_CONVERGENCE) {
+        explain(b, diag);
+    }
+    return status;
 }
 
 hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, const double *q,

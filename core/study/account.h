@@ -58,7 +58,7 @@ typedef struct hn_account {
     char reason[256];
     double t; ///< reached [s]
     long long steps;
-    int coordinate; ///< user coordinate whose error is largest at the end; -1: there is no reference
+    int coordinate; ///< user coordinate whose error is largest at the end; -1: the run ended early
     double error;   ///< of it, signed: the run's value less the reference's [rad or m]
     double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: cannot be told for this method
     double sum;                  ///< of the parts: equals `error` as far as first order holds
@@ -79,8 +79,8 @@ typedef struct hn_account_opts {
 } hn_account_opts;
 
 /// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some 20 (1 + nv) times the run. Fails: HN_ERR_LIMIT (more steps than
-/// can be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run could not be
-/// followed, or the reference), HN_ERR_MEMORY; and as hn_run_create().
+/// can be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run, or
+/// the exact motion, could not be followed: where J loses rank on the way, neighbours off the loops cannot be), HN_ERR_MEMORY; and as hn_run_create().
 HN_MUST_CHECK hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec,
                                         const double *q, const double *v, double T,
                                         const hn_account_opts *opts, hn_account *out,

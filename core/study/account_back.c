@@ -98,9 +98,11 @@ static hn_status carry_back(hn_books *b, size_t k) {
 
 static hn_status settle_all(hn_books *b, hn_diag *diag) {
     const double *y_end = b->y; // of the last step
+    double at = b->out->t;
     hn_status status = HN_OK;
     hn_books_present(b, b->y);
     for (size_t k = b->kept; status == HN_OK && k-- > 0;) {
+        at = hn_books_record(b, k)[0];
         if (k % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
             hn_books_asked_to_stop(b, 0.4 + 0.6 * (1 - (double)k / (double)b->kept))) {
             return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
@@ -109,11 +111,10 @@ static hn_status settle_all(hn_books *b, hn_diag *diag) {
         status = status == HN_OK && k > 0 ? carry_back(b, k) : status;
         y_end = hn_books_record(b, k) + 2;
     }
-    return status == HN_OK
-               ? HN_OK
-               : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
-                             "the parts of the error could not be carried to the end: %s",
-                             hn_status_text(status));
+    return status == HN_OK ? HN_OK
+                           : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                                         "its parts could not be carried on from t = %.4g s: %s",
+                                         at, hn_status_text(status));
 }
 
 /// How large a nudge of each unknown is: by its unit, and rates by the fastest rate of the run.
@@ -141,12 +142,13 @@ static void choose_nudges(hn_books *b) {
     }
 }
 
-/// The end of another run to the same time, user coordinates into `out`; 0 when it did not get there.
-static int end_of(const hn_books *b, const hn_method_spec *spec, double T, double *out) {
+/// The end of another run to the same time, user coordinates into `out`; 0 when it did not get there, and then *t is where it got [s].
+static int end_of(const hn_books *b, const hn_method_spec *spec, double T, double *out, double *t) {
     hn_run *run = NULL;
     hn_sample sample;
     const hn_run_opts opts = hn_run_opts_default();
     int arrived = 0;
+    *t = 0;
     if (hn_run_create(b->sys, spec, b->run->start.q, b->run->start.v, &opts, &run, NULL) == HN_OK) {
         hn_run_watch(run, 0);
         const double early = hn_method_is_adaptive(spec) ? 0 : 1e-9 * run->h_next;
@@ -155,6 +157,7 @@ static int end_of(const hn_books *b, const hn_method_spec *spec, double T, doubl
         if (arrived) {
             memcpy(out, sample.q, (size_t)b->info.n_user * sizeof *out);
         }
+        *t = hn_run_get_summary(run).t;
     }
     hn_run_free(run);
     return arrived;
@@ -196,21 +199,13 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
 /// run chooses its steps, which would change with it.
 static double told_by(const hn_books *b, const char *key, double value, double T) {
     hn_method_spec spec = *hn_run_spec(b->run);
-    int found = 0;
-    double *end = b->up, *delta = b->split, *q = b->down, *user = b->column;
-    for (int i = 0; i < spec.formulation->n_settings; i++) {
-        if (strcmp(spec.formulation->settings[i].key, key) == 0) {
-            found = spec.formulation_set[i] != value;
-            spec.formulation_set[i] = value;
-        }
+    double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;
+    double *setting = hn_method_find_setting(&spec, key, NULL);
+    if (!setting || *setting == value || b->run->adaptive) {
+        return (double)NAN;
     }
-    for (int i = 0; i < spec.stepper->n_settings; i++) {
-        if (strcmp(spec.stepper->settings[i].key, key) == 0) {
-            found = spec.stepper_set[i] != value;
-            spec.stepper_set[i] = value;
-        }
-    }
-    if (!found || b->run->adaptive || !end_of(b, &spec, T, end)) {
+    *setting = value;
+    if (!end_of(b, &spec, T, end, &t)) {
         return (double)NAN;
     }
     hn_system_from_user(b->sys, end, q);
@@ -239,10 +234,10 @@ hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag) {
     if (status != HN_OK) {
         return status;
     }
-    double *reference = b->y_own;
-    if (!end_of(b, &exact, T, reference)) {
+    double *reference = b->y_own, t;
+    if (!end_of(b, &exact, T, reference, &t)) {
         return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
-                           "the exact motion (%s) did not come to t = %g s", REFERENCE, T);
+                           "the exact motion (%s) ended at t = %.4g s", REFERENCE, t);
     }
     status = choose_coordinate(b, reference, diag);
     if (status == HN_OK) {

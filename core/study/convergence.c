@@ -1,7 +1,6 @@
 #include "study/convergence.h"
 
 #include <math.h>
-#include <string.h>
 
 double hn_fit_order(int n, const double *x, const double *y) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -29,14 +28,9 @@ static double max_difference(int n, const double *x, const double *y) {
     return worst;
 }
 
+/// What the error is set by.
 static double *accuracy(hn_method_spec *spec) {
-    const char *key = hn_method_is_adaptive(spec) ? "rtol" : "h";
-    for (int i = 0; i < spec->stepper->n_settings; i++) {
-        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
-            return &spec->stepper_set[i];
-        }
-    }
-    return NULL;
+    return hn_method_find_setting(spec, hn_method_is_adaptive(spec) ? "rtol" : "h", NULL);
 }
 
 static hn_status run_one(const hn_system *sys, const hn_method_spec *spec, const double *q,

@@ -2,10 +2,10 @@
 
 #include "base/strbuf.h"
 #include "base/units.h"
+#include "study/timing.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const char *const cost_names[HN_COST_COUNT] = {"time", "operations", "evaluations"};
 static const char *const cost_units[HN_COST_COUNT] = {"s", "op", ""};
@@ -253,11 +253,6 @@ static double error_at(const hn_wp *wp, const hn_class *classes, hn_error_kind e
     return before ? smallest : (double)NAN;
 }
 
-static int ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /// To two digits.
 static double round_2(double x) {
     const double unit = pow(10, floor(log10(x)) - 1);
@@ -285,8 +280,8 @@ static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind er
     if (n == 0) {
         return 0;
     }
-    qsort(low, (size_t)n, sizeof *low, ascending);
-    qsort(high, (size_t)n, sizeof *high, ascending);
+    hn_timing_sort(low, n);
+    hn_timing_sort(high, n);
     const double a = low[n / 2], b = high[n / 2];
     for (int i = 0; i < HN_RACE_COSTS; i++) {
         cost[i] = round_2(a * pow(b / a, (i + 0.5) / HN_RACE_COSTS));

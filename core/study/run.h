@@ -147,6 +147,8 @@ const char *hn_run_sample_why(const hn_run *run, hn_status status);
 int hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);
 int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; borrowed
+/// 1 where the run has passed a singular pose, or near one: *t the first time [s].
+int hn_run_passed_singular(const hn_run *run, double *t);
 /// Back to the start; counters and incidents forgotten.
 hn_status hn_run_reset(hn_run *run);
 /// A run's watch (gap, energy per step) costs an extra evaluation a step that is not counted as method cost; 0 switches it off, n: every n-th step.

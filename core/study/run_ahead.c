@@ -55,6 +55,19 @@ int hn_run_is_near_singular(const hn_run *run) {
     return run->info.nc > 0 && a->info.sigma_min < CLOSE * a->largest;
 }
 
+int hn_run_passed_singular(const hn_run *run, double *t) {
+    const hn_incident *incident = NULL;
+    const int n = hn_run_incidents(run, &incident);
+    for (int i = 0; i < n; i++) {
+        if (incident[i].code == HN_INCIDENT_NEAR_SINGULAR ||
+            incident[i].code == HN_INCIDENT_RANK_LOSS) {
+            *t = incident[i].t;
+            return 1;
+        }
+    }
+    return 0;
+}
+
 void hn_run_explain_pose(hn_run *run) {
     const hn_run_ahead *a = ahead_of(run);
     char *reason = run->summary.reason;

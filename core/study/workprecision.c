@@ -20,15 +20,6 @@ const char *hn_wp_state_name(hn_wp_state state) {
     return state_names[state];
 }
 
-static double *setting_of(hn_method_spec *spec, const char *key) {
-    for (int i = 0; i < spec->stepper->n_settings; i++) {
-        if (strcmp(spec->stepper->settings[i].key, key) == 0) {
-            return &spec->stepper_set[i];
-        }
-    }
-    return NULL;
-}
-
 static const char *size_key(const hn_wp_method *m) {
     return m->adaptive ? "rtol" : "h";
 }
@@ -53,7 +44,7 @@ static void strip_size(char *spelling, const char *key) {
 
 hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size) {
     hn_method_spec spec = wp->methods[m].spec;
-    *setting_of(&spec, size_key(&wp->methods[m])) = size;
+    *hn_method_find_setting(&spec, size_key(&wp->methods[m]), NULL) = size;
     return spec;
 }
 
@@ -85,7 +76,7 @@ static hn_status set_up_method(hn_wp *wp, const hn_method_spec *spec, int i, hn_
     m->spec = *spec;
     m->adaptive = hn_method_is_adaptive(spec);
     hn_method_format(spec, m->spelling);
-    if (!setting_of(&m->spec, size_key(m))) {
+    if (!hn_method_find_setting(&m->spec, size_key(m), NULL)) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "%s has neither a step nor a tolerance to vary", m->spelling);
     }

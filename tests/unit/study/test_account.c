@@ -151,6 +151,23 @@ static void a_run_that_fails_keeps_its_bill_and_has_no_error_at_the_end(void **s
     assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
 }
 
+static void past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", NULL); // all links in one line first at 0.71 s
+    const hn_account before = account_of(&m, "projection@rk4:h=4e-3", 0.4);
+    const hn_method_spec spec = hn_trial_spec("projection@rk4:h=4e-3");
+    hn_account past;
+    hn_diag diag = {0};
+    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, NULL, &past, &diag),
+                     HN_ERR_NO_CONVERGENCE);
+    hn_model_close(&m);
+    assert_non_null(strstr(diag.message, "J all but loses rank near t = 0.712 s"));
+    assert_true(before.coordinate >= 0);
+    // the error is some 1e-10, against a motion known to 1e-12
+    assert_near(before.sum, before.error, 1e-3 * fabs(before.error) + 2e-12);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_add_up_to_the_error_and_the_energy_of_every_kind_of_method),
@@ -160,6 +177,7 @@ int main(void) {
         cmocka_unit_test(what_explicit_euler_puts_in_is_of_first_order),
         cmocka_unit_test(drives_and_dampers_stand_as_outside),
         cmocka_unit_test(what_cannot_be_accounted_for_is_told),
+        cmocka_unit_test(past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told),
         cmocka_unit_test(a_run_that_fails_keeps_its_bill_and_has_no_error_at_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
