@@ -43,15 +43,15 @@ static double choose_weight(augmented *al) {
     if (al->p.a > 0) {
         return al->p.a;
     }
-    const size_t nv = (size_t)ode->nv;
-    memset(al->size, 0, (size_t)ode->nc * sizeof *al->size);
+    const size_t nv = (size_t)ode->base.nv;
+    memset(al->size, 0, (size_t)ode->base.nc * sizeof *al->size);
     for (int e = 0; e < ode->n_J; e++) {
         const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
         const double m = ode->M[j * nv + j], entry = ode->J[i * nv + j];
         al->size[i] += m > 0 ? entry * entry / m : 0;
     }
     int n = 0;
-    for (int k = 0; k < ode->nc; k++) {
+    for (int k = 0; k < ode->base.nc; k++) {
         if (al->size[k] > 0) {
             al->size[n++] = al->size[k];
         }
@@ -63,9 +63,9 @@ static double choose_weight(augmented *al) {
 // residual (nv) = f - M acc + J' (lambda - weight (J acc + r)): what (1) still misses at acc
 static void find_residual(augmented *al, double weight, const double *acc) {
     const hn_dense_ode *ode = &al->p.ode;
-    const size_t nv = (size_t)ode->nv;
+    const size_t nv = (size_t)ode->base.nv;
     hn_dense_ode_rows(ode, acc, al->p.work);
-    for (int k = 0; k < ode->nc; k++) {
+    for (int k = 0; k < ode->base.nc; k++) {
         al->p.work[k] = al->lambda[k] - weight * (al->p.work[k] + al->p.pull[k]);
     }
     memcpy(al->residual, ode->f, nv * sizeof *al->residual);
@@ -81,7 +81,7 @@ static void find_residual(augmented *al, double weight, const double *acc) {
 static hn_status accelerate(void *self, double t, const double *v, double *acc) {
     augmented *al = self;
     hn_penalised *p = &al->p;
-    const int nv = p->ode.nv, nc = p->ode.nc;
+    const int nv = p->ode.base.nv, nc = p->ode.base.nc;
     const double weight = choose_weight(al);
     hn_dense_ode_pull(&p->ode, v, p->omega, p->xi, p->pull);
     const hn_status status = hn_penalised_factor(p, t, weight);
@@ -98,10 +98,10 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
         for (int k = 0; k < nc; k++) {
             al->lambda[k] -= weight * (p->work[k] + p->pull[k]);
         }
-        p->ode.cost.newton++;
-        p->ode.cost.ops += 6.0 * p->ode.n_J + 4.0 * p->ode.n_M + 6.0 * nc;
+        p->ode.base.cost.newton++;
+        p->ode.base.cost.ops += 6.0 * p->ode.n_J + 4.0 * p->ode.n_M + 6.0 * nc;
     }
-    p->ode.cost.ops += 5.0 * p->ode.n_J;
+    p->ode.base.cost.ops += 5.0 * p->ode.n_J;
     return HN_OK;
 }
 
@@ -119,15 +119,15 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = al;
     al->p.ode.accelerate = accelerate;
-    al->p.ode.law = law;
+    al->p.ode.base.law = law;
     al->iterations = (int)settings[SET_ITERATIONS];
     const hn_status status = hn_penalised_init(&al->p, sys, settings, arena, diag);
     if (status != HN_OK) {
         return status;
     }
-    al->lambda = hn_arena_doubles(arena, (size_t)al->p.ode.nc);
-    al->residual = hn_arena_doubles(arena, (size_t)al->p.ode.nv);
-    al->size = hn_arena_doubles(arena, (size_t)al->p.ode.nc);
+    al->lambda = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);
+    al->residual = hn_arena_doubles(arena, (size_t)al->p.ode.base.nv);
+    al->size = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);
     return hn_arena_failed(arena) ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory")
                                   : HN_OK;
 }
@@ -168,10 +168,10 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
     .create = create,
     .destroy = hn_dense_ode_destroy,
     .ode = hn_dense_ode_get,
-    .set_state = hn_dense_ode_set_state,
-    .get_state = hn_dense_ode_get_state,
-    .after_step = hn_dense_ode_after_step,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = hn_state_ode_after_step,
     .set = set,
     .add_cost = hn_dense_ode_add_cost,
-    .why = hn_dense_ode_why,
+    .why = hn_state_ode_why,
 };

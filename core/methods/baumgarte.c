@@ -56,12 +56,12 @@ static hn_status set_state(void *self, double t, const double *q, const double *
     if (b->rule == RULE_AUTO) {
         b->ode.alpha = b->ode.beta = 0;
     }
-    return hn_accel_ode_set_state(self, t, q, v, y);
+    return hn_state_ode_set_state(self, t, q, v, y);
 }
 
 static double fastest_rate(baumgarte *b, const double *v) {
     double fastest = 0;
-    hn_system_rates_to_user(b->ode.sys, v, b->user_rates);
+    hn_system_rates_to_user(b->ode.base.sys, v, b->user_rates);
     for (int i = 0; i < b->n_user; i++) {
         fastest = fmax(fastest, fabs(b->user_rates[i]) * b->rate_scale[i]);
     }
@@ -71,12 +71,12 @@ static double fastest_rate(baumgarte *b, const double *v) {
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     baumgarte *b = self;
     const double h = t - b->t_last;
-    (void)hn_accel_ode_after_step(self, t, y, changed);
+    (void)hn_state_ode_after_step(self, t, y, changed);
     b->t_last = t;
     if (b->rule != RULE_AUTO || !(h > 0)) {
         return HN_OK;
     }
-    const double rate = fastest_rate(b, y + b->ode.nq);
+    const double rate = fastest_rate(b, y + b->ode.base.nq);
     b->sum_square += h * rate * rate;
     b->sum_time += h;
     b->ode.alpha = fmin(AUTO_RATE * sqrt(b->sum_square / b->sum_time), AUTO_STEP / h);
@@ -135,9 +135,9 @@ const hn_formulation hn_formulation_baumgarte = {
     .destroy = hn_accel_ode_destroy,
     .ode = hn_accel_ode_get,
     .set_state = set_state,
-    .get_state = hn_accel_ode_get_state,
+    .get_state = hn_state_ode_get_state,
     .after_step = after_step,
     .set = set,
     .add_cost = hn_accel_ode_add_cost,
-    .why = hn_accel_ode_why,
+    .why = hn_state_ode_why,
 };

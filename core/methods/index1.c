@@ -32,9 +32,9 @@ const hn_formulation hn_formulation_index1 = {
     .create = create,
     .destroy = hn_accel_ode_destroy,
     .ode = hn_accel_ode_get,
-    .set_state = hn_accel_ode_set_state,
-    .get_state = hn_accel_ode_get_state,
-    .after_step = hn_accel_ode_after_step,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = hn_state_ode_after_step,
     .add_cost = hn_accel_ode_add_cost,
-    .why = hn_accel_ode_why,
+    .why = hn_state_ode_why,
 };

@@ -34,8 +34,8 @@ const hn_formulation hn_formulation_nullspace_solver = {
     .create = create,
     .destroy = hn_accel_ode_destroy,
     .ode = hn_accel_ode_get,
-    .set_state = hn_accel_ode_set_state,
-    .get_state = hn_accel_ode_get_state,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
     .add_cost = hn_accel_ode_add_cost,
-    .why = hn_accel_ode_why,
+    .why = hn_state_ode_why,
 };

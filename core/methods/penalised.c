@@ -7,7 +7,7 @@
 
 // Numbers the entries of G while they are met: place (nv x nv) holds the number + 1.
 static int number_entry(hn_penalised *p, int *place, int i, int j) {
-    int *at = &place[(size_t)(i > j ? i : j) * (size_t)p->ode.nv + (size_t)(i > j ? j : i)];
+    int *at = &place[(size_t)(i > j ? i : j) * (size_t)p->ode.base.nv + (size_t)(i > j ? j : i)];
     if (*at == 0) {
         p->G_row[p->n_G] = i > j ? i : j;
         p->G_col[p->n_G] = i > j ? j : i;
@@ -19,7 +19,7 @@ static int number_entry(hn_penalised *p, int *place, int i, int j) {
 static void list_entries(hn_penalised *p, int *place) {
     const hn_dense_ode *ode = &p->ode;
     p->n_G = p->n_pairs = 0;
-    for (int i = 0; i < ode->nv; i++) {
+    for (int i = 0; i < ode->base.nv; i++) {
         (void)number_entry(p, place, i, i);
     }
     for (int k = 0; k < ode->n_M; k++) {
@@ -48,7 +48,7 @@ static size_t count_pairs(const hn_dense_ode *ode) {
 
 static int make_pattern(hn_penalised *p, hn_arena *arena) {
     const hn_dense_ode *ode = &p->ode;
-    const size_t nv = (size_t)ode->nv, pairs = count_pairs(ode);
+    const size_t nv = (size_t)ode->base.nv, pairs = count_pairs(ode);
     const size_t cap = nv + (size_t)ode->n_M + pairs;
     p->pair = hn_arena_get(arena, (pairs + 1) * sizeof *p->pair);
     p->from_M = hn_arena_ints(arena, (size_t)ode->n_M);
@@ -58,7 +58,7 @@ static int make_pattern(hn_penalised *p, hn_arena *arena) {
     int *place = scratch ? hn_arena_ints(scratch, nv * nv) : NULL;
     if (place && !hn_arena_failed(arena)) {
         list_entries(p, place);
-        p->spd = hn_sparse_spd_create(arena, ode->nv, p->n_G, p->G_row, p->G_col);
+        p->spd = hn_sparse_spd_create(arena, ode->base.nv, p->n_G, p->G_row, p->G_col);
         p->G = hn_arena_doubles(arena, (size_t)p->n_G);
     }
     hn_arena_free(scratch);
@@ -71,7 +71,7 @@ hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double 
     if (status != HN_OK) {
         return status;
     }
-    const size_t nv = (size_t)p->ode.nv, nc = (size_t)p->ode.nc;
+    const size_t nv = (size_t)p->ode.base.nv, nc = (size_t)p->ode.base.nc;
     p->a = settings[HN_PENALISED_A];
     p->omega = settings[HN_PENALISED_OMEGA];
     p->xi = settings[HN_PENALISED_XI];
@@ -85,7 +85,7 @@ hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double 
 
 static void fill(hn_penalised *p, double weight) {
     const hn_dense_ode *ode = &p->ode;
-    const size_t nv = (size_t)ode->nv;
+    const size_t nv = (size_t)ode->base.nv;
     memset(p->G, 0, (size_t)p->n_G * sizeof *p->G);
     for (int k = 0; k < ode->n_M; k++) {
         p->G[p->from_M[k]] = ode->M[(size_t)ode->M_row[k] * nv + (size_t)ode->M_col[k]];
@@ -95,16 +95,16 @@ static void fill(hn_penalised *p, double weight) {
         const double *row = ode->J + (size_t)ode->J_row[a] * nv;
         p->G[p->pair[k][0]] += weight * row[ode->J_col[a]] * row[ode->J_col[b]];
     }
-    p->ode.cost.ops += 3.0 * p->n_pairs;
+    p->ode.base.cost.ops += 3.0 * p->n_pairs;
 }
 
 hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
-    const int nv = p->ode.nv;
+    const int nv = p->ode.base.nv;
     fill(p, weight);
     for (int i = 0; i < nv; i++) {
         const double g = p->G[i]; // the diagonal was numbered first
         if (!(g > 0)) {
-            snprintf(p->ode.why, sizeof p->ode.why,
+            snprintf(p->ode.base.why, sizeof p->ode.base.why,
                      "at t = %.6g s %s has neither mass nor constraint", t,
                      hn_dense_ode_name(&p->ode, i));
             return HN_ERR_SINGULAR;
@@ -114,11 +114,11 @@ hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
     for (int k = 0; k < p->n_G; k++) {
         p->G[k] *= p->scale[p->G_row[k]] * p->scale[p->G_col[k]];
     }
-    p->ode.cost.factorisations++;
-    p->ode.cost.ops += 2.0 * p->n_G + hn_sparse_spd_factor_ops(p->spd);
+    p->ode.base.cost.factorisations++;
+    p->ode.base.cost.ops += 2.0 * p->n_G + hn_sparse_spd_factor_ops(p->spd);
     if (hn_sparse_spd_factor(p->spd, p->G, 4 * nv * DBL_EPSILON) != HN_OK) {
         snprintf(
-            p->ode.why, sizeof p->ode.why,
+            p->ode.base.why, sizeof p->ode.base.why,
             "at t = %.6g s the penalty %.3g has drowned the masses in rounding, or a direction "
             "has neither mass nor constraint",
             t, weight);
@@ -128,7 +128,7 @@ hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
 }
 
 void hn_penalised_solve(hn_penalised *p, double *x) {
-    const int nv = p->ode.nv;
+    const int nv = p->ode.base.nv;
     for (int i = 0; i < nv; i++) {
         x[i] *= p->scale[i];
     }
@@ -136,8 +136,8 @@ void hn_penalised_solve(hn_penalised *p, double *x) {
     for (int i = 0; i < nv; i++) {
         x[i] *= p->scale[i];
     }
-    p->ode.cost.solves++;
-    p->ode.cost.ops += 2.0 * nv + hn_sparse_spd_solve_ops(p->spd);
+    p->ode.base.cost.solves++;
+    p->ode.base.cost.ops += 2.0 * nv + hn_sparse_spd_solve_ops(p->spd);
 }
 
 hn_status hn_penalised_set(void *self, int setting, double value) {

@@ -26,7 +26,7 @@ typedef struct hn_penalised {
 /// Memory and terms; `settings` begin with the three above.
 HN_MUST_CHECK hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys,
                                           const double *settings, hn_arena *arena, hn_diag *diag);
-/// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in ode.why.
+/// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in ode.base.why.
 HN_MUST_CHECK hn_status hn_penalised_factor(hn_penalised *p, double t, double weight);
 /// x <- (M + weight J' J)^-1 x, x (nv).
 void hn_penalised_solve(hn_penalised *p, double *x);

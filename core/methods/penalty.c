@@ -15,13 +15,13 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     if (status != HN_OK) {
         return status;
     }
-    memcpy(acc, p->ode.f, (size_t)p->ode.nv * sizeof *acc);
-    for (int k = 0; k < p->ode.nc; k++) {
+    memcpy(acc, p->ode.f, (size_t)p->ode.base.nv * sizeof *acc);
+    for (int k = 0; k < p->ode.base.nc; k++) {
         p->work[k] = -p->a * p->pull[k];
     }
     hn_dense_ode_add_rows(&p->ode, p->work, acc);
     hn_penalised_solve(p, acc);
-    p->ode.cost.ops += 4.0 * p->ode.n_J;
+    p->ode.base.cost.ops += 4.0 * p->ode.n_J;
     return HN_OK;
 }
 
@@ -39,7 +39,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = p;
     p->ode.accelerate = accelerate;
-    p->ode.law = law;
+    p->ode.base.law = law;
     return hn_penalised_init(p, sys, settings, arena, diag);
 }
 
@@ -68,10 +68,10 @@ const hn_formulation hn_formulation_penalty = {
     .create = create,
     .destroy = hn_dense_ode_destroy,
     .ode = hn_dense_ode_get,
-    .set_state = hn_dense_ode_set_state,
-    .get_state = hn_dense_ode_get_state,
-    .after_step = hn_dense_ode_after_step,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = hn_state_ode_after_step,
     .set = hn_penalised_set,
     .add_cost = hn_dense_ode_add_cost,
-    .why = hn_dense_ode_why,
+    .why = hn_state_ode_why,
 };

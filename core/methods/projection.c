@@ -27,7 +27,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     p->what = (int)settings[SET_WHAT];
     hn_status status =
         hn_accel_ode_init(&p->ode, sys, 0, (hn_solver)settings[SET_SOLVER], arena, diag);
-    if (status != HN_OK || p->ode.nc == 0) {
+    if (status != HN_OK || p->ode.base.nc == 0) {
         return status;
     }
     const hn_weight weight = settings[SET_WEIGHT] > 0 ? HN_WEIGHT_EUCLIDEAN : HN_WEIGHT_MASS;
@@ -47,7 +47,7 @@ static void destroy(void *self) {
 
 static hn_status tell(projection *p, hn_status status, double t, const char *part) {
     if (status != HN_OK) {
-        snprintf(p->ode.why, sizeof p->ode.why,
+        snprintf(p->ode.base.why, sizeof p->ode.base.why,
                  "the projection of %s at t = %.6g s failed: %s; the step was too long for it",
                  part, t, hn_status_text(status));
     }
@@ -55,12 +55,12 @@ static hn_status tell(projection *p, hn_status status, double t, const char *par
 }
 
 static hn_status project_position(projection *p, double t, double *q, hn_project_info *info) {
-    const double tol = GAP_TOL * sqrt(p->ode.nc);
+    const double tol = GAP_TOL * sqrt(p->ode.base.nc);
     hn_status status = hn_project_position(p->projector, t, q, tol, info);
-    p->ode.cost.newton += info->iterations;
+    p->ode.base.cost.newton += info->iterations;
     if (status == HN_ERR_NO_CONVERGENCE) {
         status = hn_project_position(p->projector, t, q, GAP_TOL_COARSE, info);
-        p->ode.cost.newton += info->iterations;
+        p->ode.base.cost.newton += info->iterations;
     }
     return status;
 }
@@ -68,12 +68,12 @@ static hn_status project_position(projection *p, double t, double *q, hn_project
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     projection *p = self;
     hn_project_info info = {0};
-    (void)hn_accel_ode_after_step(self, t, y, changed);
+    (void)hn_state_ode_after_step(self, t, y, changed);
     if (!p->projector) {
         return HN_OK; // no loop to close
     }
     *changed = 1;
-    p->ode.cost.projections++;
+    p->ode.base.cost.projections++;
     if (p->what != WHAT_VELOCITY) {
         const hn_status status = project_position(p, t, y, &info);
         if (status != HN_OK) {
@@ -81,11 +81,11 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
         }
     }
     if (p->what != WHAT_POSITION) {
-        const hn_status status = hn_project_velocity(p->projector, t, y, y + p->ode.nq, &info);
+        const hn_status status = hn_project_velocity(p->projector, t, y, y + p->ode.base.nq, &info);
         if (status != HN_OK) {
             return tell(p, status, t, "the speeds");
         }
-        p->ode.cost.energy_removed += info.energy_removed;
+        p->ode.base.cost.energy_removed += info.energy_removed;
     }
     return HN_OK;
 }
@@ -128,9 +128,9 @@ const hn_formulation hn_formulation_projection = {
     .create = create,
     .destroy = destroy,
     .ode = hn_accel_ode_get,
-    .set_state = hn_accel_ode_set_state,
-    .get_state = hn_accel_ode_get_state,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
     .after_step = after_step,
     .add_cost = add_cost,
-    .why = hn_accel_ode_why,
+    .why = hn_state_ode_why,
 };

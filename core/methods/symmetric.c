@@ -60,7 +60,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         return hn_diag_set(diag, status, NULL, NULL, "the projection cannot be set up: %s",
                            hn_status_text(status));
     }
-    const size_t nv = (size_t)s->ode.nv, nc = (size_t)s->ode.nc;
+    const size_t nv = (size_t)s->ode.base.nv, nc = (size_t)s->ode.base.nc;
     double **of_nv[] = {&s->N0_mu, &s->N0_nu, &s->N1_mu, &s->push, &s->zero};
     double **of_nc[] = {&s->mu, &s->nu, &s->rate, &s->x};
     for (size_t i = 0; i < sizeof of_nv / sizeof *of_nv; i++) {
@@ -72,8 +72,8 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     s->L = hn_arena_doubles(arena, nv * nv);
     s->L0 = hn_arena_doubles(arena, nv * nv);
     s->J0 = hn_arena_doubles(arena, nc * nv);
-    s->q1 = hn_arena_doubles(arena, (size_t)s->ode.nq);
-    s->start = hn_arena_doubles(arena, (size_t)s->ode.nq + nv);
+    s->q1 = hn_arena_doubles(arena, (size_t)s->ode.base.nq);
+    s->start = hn_arena_doubles(arena, (size_t)s->ode.base.nq + nv);
     s->saddle = hn_saddle_ws_create(arena, (int)nv, (int)nc);
     s->length = hn_system_length(sys);
     s->M = hn_eval_get(s->terms, HN_TERM_M);
@@ -91,7 +91,8 @@ static void destroy(void *self) {
 }
 
 static hn_status tell(symmetric *s, hn_status status, double t) {
-    snprintf(s->ode.why, sizeof s->ode.why, "the symmetric projection at t = %.6g s: %s", t,
+    snprintf(s->ode.base.why, sizeof s->ode.base.why, "the symmetric projection at t = %.6g s: %s",
+             t,
              status == HN_ERR_NO_CONVERGENCE
                  ? "it does not converge: the step is too long for it, or the pose is close to one "
                    "where the loops lose rank"
@@ -102,31 +103,31 @@ static hn_status tell(symmetric *s, hn_status status, double t) {
 // out (nv) = M^-1 J' mu with M = L L'
 static void push_along(const symmetric *s, const double *L, const double *J, const double *mu,
                        double *out) {
-    const int nv = s->ode.nv;
+    const int nv = s->ode.base.nv;
     memset(out, 0, (size_t)nv * sizeof *out);
-    for (int k = 0; k < s->ode.nc; k++) {
+    for (int k = 0; k < s->ode.base.nc; k++) {
         hn_axpy(nv, mu[k], J + (size_t)k * nv, out);
     }
     hn_cholesky_solve(nv, L, nv, out);
 }
 
 static hn_status look(symmetric *s, double t, const double *q) {
-    const size_t nv = (size_t)s->ode.nv;
+    const size_t nv = (size_t)s->ode.base.nv;
     hn_eval_run(s->terms, t, q, NULL);
     memcpy(s->L, s->M, nv * nv * sizeof *s->L);
-    s->ode.cost.factorisations++;
-    s->ode.cost.ops += hn_eval_info(s->terms).ops + hn_flops_cholesky((int)nv);
+    s->ode.base.cost.factorisations++;
+    s->ode.base.cost.ops += hn_eval_info(s->terms).ops + hn_flops_cholesky((int)nv);
     return hn_cholesky((int)nv, s->L, (int)nv, 0);
 }
 
 static void move(const symmetric *s, double *y, const double *dq, const double *dv) {
-    hn_system_move(s->ode.sys, y, dq);
-    hn_axpy(s->ode.nv, 1, dv, y + s->ode.nq);
+    hn_system_move(s->ode.base.sys, y, dq);
+    hn_axpy(s->ode.base.nv, 1, dv, y + s->ode.base.nq);
 }
 
 // the last line of (1), with N1 at the point that the last turn found; then (2)'s residuals as fractions of rounding
 static hn_status land(symmetric *s, double t1, double *y, double *q1, double *worst) {
-    const int nq = s->ode.nq, nv = s->ode.nv, nc = s->ode.nc;
+    const int nq = s->ode.base.nq, nv = s->ode.base.nv, nc = s->ode.base.nc;
     hn_status status = look(s, t1, q1);
     if (status != HN_OK) {
         return status;
@@ -157,18 +158,18 @@ static hn_status correct(symmetric *s) {
         if (status != HN_OK) {
             return status;
         }
-        hn_axpy(s->ode.nc, 0.5, s->x, multiplier[i]);
-        s->ode.cost.solves++;
+        hn_axpy(s->ode.base.nc, 0.5, s->x, multiplier[i]);
+        s->ode.base.cost.solves++;
     }
-    s->ode.cost.newton++;
+    s->ode.base.cost.newton++;
     return HN_OK;
 }
 
 // one turn of (1) with the present mu and nu
 static hn_status turn(symmetric *s, const hn_step_call *base, double t, double h, const double *y,
                       double *y_new, double *q1, double *worst, double *err) {
-    memcpy(y_new, y, (size_t)(s->ode.nq + s->ode.nv) * sizeof *y);
-    memcpy(s->start, y, (size_t)(s->ode.nq + s->ode.nv) * sizeof *y);
+    memcpy(y_new, y, (size_t)(s->ode.base.nq + s->ode.base.nv) * sizeof *y);
+    memcpy(s->start, y, (size_t)(s->ode.base.nq + s->ode.base.nv) * sizeof *y);
     move(s, s->start, s->N0_mu, s->N0_nu);
     const hn_status status = hn_step_call_make(base, t, h, s->start, y_new, err);
     return status == HN_OK ? land(s, t + h, y_new, q1, worst) : status;
@@ -176,7 +177,7 @@ static hn_status turn(symmetric *s, const hn_step_call *base, double t, double h
 
 // N0, S0 and no push to begin with
 static hn_status begin(symmetric *s, double t, const double *y) {
-    const int nv = s->ode.nv, nc = s->ode.nc;
+    const int nv = s->ode.base.nv, nc = s->ode.base.nc;
     hn_saddle_opts opts = hn_saddle_opts_default();
     opts.rank_tol = RANK_TOL;
     opts.row_floor = ROW_FLOOR;
@@ -210,16 +211,16 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
                              const double *y, double *y_new, double *err) {
     symmetric *s = self;
     double worst = HUGE_VAL, last;
-    if (s->ode.nc == 0) {
+    if (s->ode.base.nc == 0) {
         return hn_step_call_make(base, t, h, y, y_new, err);
     }
     hn_status status = begin(s, t, y);
-    memcpy(s->q1, y, (size_t)s->ode.nq * sizeof *y);
+    memcpy(s->q1, y, (size_t)s->ode.base.nq * sizeof *y);
     for (int i = 0; i < MAX_TURNS && status == HN_OK; i++) {
         last = worst;
         status = turn(s, base, t, h, y, y_new, s->q1, &worst, err);
         if (status == HN_OK && (worst <= 1 || (worst > last / 2 && worst <= COARSE))) {
-            s->ode.cost.projections++;
+            s->ode.base.cost.projections++;
             return worst > 1 ? polish(s, y_new) : HN_OK;
         }
         if (status == HN_OK) {
@@ -235,8 +236,8 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     const symmetric *s = self;
     (void)t;
-    (void)hn_system_normalise(s->ode.sys, y);
-    *changed = s->ode.nc > 0;
+    (void)hn_system_normalise(s->ode.base.sys, y);
+    *changed = s->ode.base.nc > 0;
     return HN_OK;
 }
 
@@ -260,10 +261,10 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .create = create,
     .destroy = destroy,
     .ode = hn_accel_ode_get,
-    .set_state = hn_accel_ode_set_state,
-    .get_state = hn_accel_ode_get_state,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
     .around_step = around_step,
     .after_step = after_step,
     .add_cost = hn_accel_ode_add_cost,
-    .why = hn_accel_ode_why,
+    .why = hn_state_ode_why,
 };

@@ -43,7 +43,7 @@ typedef struct udwadia_kalaba {
 
 // L and the scale; 0 where M is singular
 static int factor_mass(udwadia_kalaba *u) {
-    const int nv = u->ode.nv;
+    const int nv = u->ode.base.nv;
     for (int i = 0; i < nv; i++) {
         const double m = u->ode.M[(size_t)i * nv + i];
         if (!(m > 0)) {
@@ -56,14 +56,14 @@ static int factor_mass(udwadia_kalaba *u) {
             u->L[(size_t)i * nv + j] = u->ode.M[(size_t)i * nv + j] * u->scale[i] * u->scale[j];
         }
     }
-    u->ode.cost.factorisations++;
-    u->ode.cost.ops += hn_flops_cholesky(nv);
+    u->ode.base.cost.factorisations++;
+    u->ode.base.cost.ops += hn_flops_cholesky(nv);
     return hn_cholesky(nv, u->L, nv, MASS_TOL) == HN_OK;
 }
 
 // scales the columns of u->rows to unit length and factors them; short ones only as far as they are more than blur
 static void factor_rows(udwadia_kalaba *u) {
-    const int nv = u->ode.nv, nc = u->ode.nc;
+    const int nv = u->ode.base.nv, nc = u->ode.base.nc;
     double longest = 0;
     for (int k = 0; k < nc; k++) {
         u->size[k] = hn_norm2(nv, u->rows.a + (size_t)k * nv);
@@ -79,15 +79,15 @@ static void factor_rows(udwadia_kalaba *u) {
         }
     }
     hn_qr_factor(&u->rows, nv, nc, u->rank_tol);
-    u->ode.cost.factorisations++;
-    u->ode.cost.ops += hn_flops_qr(nv, nc);
+    u->ode.base.cost.factorisations++;
+    u->ode.base.cost.ops += hn_flops_qr(nv, nc);
 }
 
 // x (nv) = (A')^+ b with A in u->rows
 static void apply_pseudo_inverse(udwadia_kalaba *u, const double *b, double *x) {
     hn_qr *rows = &u->rows, *kept = &u->kept;
-    const int nc = u->ode.nc, rank = rows->rank;
-    u->ode.cost.ops += hn_flops_qr_solve(u->ode.nv, rank);
+    const int nc = u->ode.base.nc, rank = rows->rank;
+    u->ode.base.cost.ops += hn_flops_qr_solve(u->ode.base.nv, rank);
     if (rank == nc) {
         hn_qr_least_norm(rows, b, x);
         return;
@@ -103,16 +103,16 @@ static void apply_pseudo_inverse(udwadia_kalaba *u, const double *b, double *x) 
     }
     hn_qr_apply_qt(kept, u->right);
     hn_qr_solve_r(kept, u->right);
-    memset(x, 0, (size_t)u->ode.nv * sizeof *x);
+    memset(x, 0, (size_t)u->ode.base.nv * sizeof *x);
     for (int i = 0; i < kept->rank; i++) {
         x[kept->perm[i]] = u->right[i];
     }
     hn_qr_apply_q(rows, x);
-    u->ode.cost.ops += hn_flops_qr(nc, rank) + hn_flops_qr_solve(nc, rank);
+    u->ode.base.cost.ops += hn_flops_qr(nc, rank) + hn_flops_qr_solve(nc, rank);
 }
 
 static void correct_free_motion(udwadia_kalaba *u, double *a) {
-    const int nv = u->ode.nv, nc = u->ode.nc;
+    const int nv = u->ode.base.nv, nc = u->ode.base.nc;
     for (int i = 0; i < nv; i++) {
         a[i] = u->scale[i] * u->ode.f[i];
     }
@@ -135,8 +135,8 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
     for (int i = 0; i < nv; i++) {
         a[i] += u->scale[i] * u->x[i];
     }
-    u->ode.cost.solves++;
-    u->ode.cost.ops +=
+    u->ode.base.cost.solves++;
+    u->ode.base.cost.ops +=
         hn_flops_cholesky_solve(nv) * (1.5 + 0.5 * nc) + 2 * hn_flops_product(nc, nv, 1);
 }
 
@@ -144,7 +144,7 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
 
 // columns of [(I - J^+ J) M; J] into u->stack at unit length; the index of an empty one, or -1
 static int fill_stack(udwadia_kalaba *u) {
-    const int nv = u->ode.nv, nc = u->ode.nc;
+    const int nv = u->ode.base.nv, nc = u->ode.base.nc;
     double heaviest = 0;
     for (int i = 0; i < nv; i++) {
         heaviest = fmax(heaviest, u->ode.M[(size_t)i * nv + i]);
@@ -175,14 +175,14 @@ static int fill_stack(udwadia_kalaba *u) {
 }
 
 static hn_status no_mass(udwadia_kalaba *u, int coordinate, double t) {
-    snprintf(u->ode.why, sizeof u->ode.why,
+    snprintf(u->ode.base.why, sizeof u->ode.base.why,
              "at t = %.6g s %s can move without moving any mass or meeting a constraint", t,
              hn_dense_ode_name(&u->ode, coordinate));
     return HN_ERR_SINGULAR;
 }
 
 static hn_status solve_stack(udwadia_kalaba *u, double t, double *a) {
-    const int nv = u->ode.nv, nc = u->ode.nc, empty = fill_stack(u);
+    const int nv = u->ode.base.nv, nc = u->ode.base.nc, empty = fill_stack(u);
     if (empty >= 0) {
         return no_mass(u, empty, t);
     }
@@ -203,11 +203,11 @@ static hn_status solve_stack(udwadia_kalaba *u, double t, double *a) {
         const int j = u->stack.perm[i];
         a[j] = u->stack_scale[j] * u->right[i];
     }
-    u->ode.cost.fallbacks++;
-    u->ode.cost.factorisations++;
-    u->ode.cost.solves++;
-    u->ode.cost.ops += hn_flops_qr(nv + nc, nv) + hn_flops_qr_solve(nv + nc, nv) +
-                       (nv + 1) * hn_flops_qr_solve(nv, nc) * 2;
+    u->ode.base.cost.fallbacks++;
+    u->ode.base.cost.factorisations++;
+    u->ode.base.cost.solves++;
+    u->ode.base.cost.ops += hn_flops_qr(nv + nc, nv) + hn_flops_qr_solve(nv + nc, nv) +
+                            (nv + 1) * hn_flops_qr_solve(nv, nc) * 2;
     return HN_OK;
 }
 
@@ -234,7 +234,7 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     if (status != HN_OK) {
         return status;
     }
-    const int nv = u->ode.nv, nc = u->ode.nc, small = nv < nc ? nv : nc, big = nv + nc;
+    const int nv = u->ode.base.nv, nc = u->ode.base.nc, small = nv < nc ? nv : nc, big = nv + nc;
     u->L = hn_arena_doubles(arena, (size_t)nv * (size_t)nv);
     u->scale = hn_arena_doubles(arena, (size_t)nv);
     u->row_scale = hn_arena_doubles(arena, (size_t)nc);
@@ -268,9 +268,9 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
     .create = create,
     .destroy = hn_dense_ode_destroy,
     .ode = hn_dense_ode_get,
-    .set_state = hn_dense_ode_set_state,
-    .get_state = hn_dense_ode_get_state,
-    .after_step = hn_dense_ode_after_step,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = hn_state_ode_after_step,
     .add_cost = hn_dense_ode_add_cost,
-    .why = hn_dense_ode_why,
+    .why = hn_state_ode_why,
 };
