@@ -394,6 +394,11 @@ int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows,
     return of->n_entries;
 }
 
+int hn_linear_entries(const hn_linear *l, hn_linear_term term) {
+    const int *rows, *cols;
+    return hn_linear_pattern(l, term, &rows, &cols);
+}
+
 // out += X x, or X' x
 static void add_product(const hn_linear *l, hn_linear_term term, int transposed, const double *x,
                         double *out) {

@@ -38,6 +38,7 @@ void hn_linear_run(hn_linear *l, double t, const double *q, const double *v, con
 const double *hn_linear_get(const hn_linear *l, hn_linear_term term);
 /// Entries of a matrix term that are not identically zero: their number, rows and columns (borrowed).
 int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows, const int **cols);
+int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their number alone
 /// out = X x, or X' x, for a matrix term as last evaluated; out and x must not overlap. Costs two operations an entry.
 void hn_linear_apply(const hn_linear *l, hn_linear_term term, const double *x, double *out);
 void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const double *x,

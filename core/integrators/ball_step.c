@@ -1,5 +1,6 @@
 #include "integrators/ball_step.h"
 
+#include "dynamics/vec3.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -27,13 +28,6 @@ hn_status hn_ball_step_init(hn_ball_step *b, const hn_system *sys, hn_arena *are
     return HN_OK;
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int x = 0; x < 3; x++) {
-        const int y = (x + 1) % 3, z = (x + 2) % 3;
-        out[x] = a[y] * b[z] - a[z] * b[y];
-    }
-}
-
 double hn_ball_step_angle(const hn_ball_step *b, const double *D) {
     double most = 0;
     for (int k = 0; k < b->n; k++) {
@@ -54,9 +48,9 @@ void hn_ball_step_leave(const hn_ball_step *b, double h, const double *D, const 
         const double *d = D + at, a = hn_norm2(3, d), c = curvature(a);
         const double skew = a > 0 ? tan(a / 4) / a : 0.25;
         double once[3], twice[3], force[3];
-        cross(d, X + at, once);
-        cross(d, once, twice);
-        cross(d, F + at, force);
+        hn_num3_cross(d, X + at, once);
+        hn_num3_cross(d, once, twice);
+        hn_num3_cross(d, F + at, force);
         for (int i = 0; i < 3; i++) {
             out[at + i] += once[i] / 2 + c * twice[i] - h / 2 * skew * force[i];
         }
@@ -67,7 +61,7 @@ void hn_ball_step_turn(const hn_ball_step *b, const double *D, const double *X, 
     for (int k = 0; k < b->n; k++) {
         const int at = b->speed[k];
         double turned[3];
-        cross(D + at, X + at, turned);
+        hn_num3_cross(D + at, X + at, turned);
         hn_axpy(3, -1, turned, out + at);
     }
 }

@@ -21,35 +21,34 @@ static int is_index1(const hn_ida_problem *p) {
     return p->form == HN_FORM_INDEX1 || p->form == HN_FORM_STABILISED;
 }
 
-static int entries_of(const hn_linear *l, hn_linear_term term) {
-    const int *rows, *cols;
-    return hn_linear_pattern(l, term, &rows, &cols);
-}
-
 // puts of fill(), at most
 static int count_puts(const hn_ida_jacobian *j) {
     const hn_ida_problem *p = j->problem;
-    const int M = entries_of(j->terms, HN_LINEAR_M), J = entries_of(j->terms, HN_LINEAR_J);
-    int n = p->nq + p->nv + M + entries_of(j->terms, HN_LINEAR_K) +
-            entries_of(j->terms, HN_LINEAR_C) + 2 * J;
+    const int M = hn_linear_entries(j->terms, HN_LINEAR_M),
+              J = hn_linear_entries(j->terms, HN_LINEAR_J);
+    int n = p->nq + p->nv + M + hn_linear_entries(j->terms, HN_LINEAR_K) +
+            hn_linear_entries(j->terms, HN_LINEAR_C) + 2 * J;
     if (is_index1(p)) {
-        n += entries_of(j->terms, HN_LINEAR_GAMMA_Q) + entries_of(j->terms, HN_LINEAR_GAMMA_V) +
-             2 * entries_of(j->turn, HN_LINEAR_V);
+        n += hn_linear_entries(j->terms, HN_LINEAR_GAMMA_Q) +
+             hn_linear_entries(j->terms, HN_LINEAR_GAMMA_V) +
+             2 * hn_linear_entries(j->turn, HN_LINEAR_V);
     }
     if (terms_of(p->form) & HN_LINEAR_V) {
-        n += entries_of(j->terms, HN_LINEAR_V) + 2 * J;
+        n += hn_linear_entries(j->terms, HN_LINEAR_V) + 2 * J;
     }
     return p->form == HN_FORM_GGL ? n + 2 * M + 2 * J : n;
 }
 
 // those that stand where others do
 static int count_doubled(const hn_ida_jacobian *j) {
-    const int J = entries_of(j->terms, HN_LINEAR_J);
+    const int J = hn_linear_entries(j->terms, HN_LINEAR_J);
     if (!is_index1(j->problem)) {
         return 0;
     }
-    return 2 * entries_of(j->turn, HN_LINEAR_V) +
-           (j->problem->form == HN_FORM_STABILISED ? 2 * J + entries_of(j->terms, HN_LINEAR_V) : 0);
+    return 2 * hn_linear_entries(j->turn, HN_LINEAR_V) +
+           (j->problem->form == HN_FORM_STABILISED
+                ? 2 * J + hn_linear_entries(j->terms, HN_LINEAR_V)
+                : 0);
 }
 
 // Large matrices are given to the library entry by entry. With balls, whose columns are mixed by G, they stay full.

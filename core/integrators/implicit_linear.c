@@ -15,27 +15,26 @@ static int has_stabiliser(const hn_implicit_linear *l) {
     return l->form == HN_FORM_GGL;
 }
 
-static int entries_of(const hn_implicit_linear *l, hn_linear_term term) {
-    const int *rows, *cols;
-    return hn_linear_pattern(l->terms, term, &rows, &cols);
-}
-
 // puts into matrix (2) or (3)
 static int count_puts(const hn_implicit_linear *l) {
-    const int motion = entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) +
-                       entries_of(l, HN_LINEAR_K) + 2 * entries_of(l, HN_LINEAR_J) +
-                       entries_of(l, HN_LINEAR_V);
-    const int stabiliser =
-        entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_C) + 2 * entries_of(l, HN_LINEAR_J);
+    const int motion =
+        hn_linear_entries(l->terms, HN_LINEAR_M) + hn_linear_entries(l->terms, HN_LINEAR_C) +
+        hn_linear_entries(l->terms, HN_LINEAR_K) + 2 * hn_linear_entries(l->terms, HN_LINEAR_J) +
+        hn_linear_entries(l->terms, HN_LINEAR_V);
+    const int stabiliser = hn_linear_entries(l->terms, HN_LINEAR_M) +
+                           hn_linear_entries(l->terms, HN_LINEAR_C) +
+                           2 * hn_linear_entries(l->terms, HN_LINEAR_J);
     return motion + (has_stabiliser(l) ? stabiliser : 0);
 }
 
 static int wants_sparse(const hn_implicit_linear *l) {
-    const int mass = entries_of(l, HN_LINEAR_M), stiffness = entries_of(l, HN_LINEAR_K),
-              damping = entries_of(l, HN_LINEAR_C);
+    const int mass = hn_linear_entries(l->terms, HN_LINEAR_M),
+              stiffness = hn_linear_entries(l->terms, HN_LINEAR_K),
+              damping = hn_linear_entries(l->terms, HN_LINEAR_C);
     int most = mass > stiffness ? mass : stiffness;
     most = damping > most ? damping : most;
-    return hn_newton_matrix_wants_sparse(l->nv + l->nc, most + 2LL * entries_of(l, HN_LINEAR_J));
+    return hn_newton_matrix_wants_sparse(l->nv + l->nc,
+                                         most + 2LL * hn_linear_entries(l->terms, HN_LINEAR_J));
 }
 
 static int create_matrices(hn_implicit_linear *l, hn_arena *arena) {
@@ -111,7 +110,7 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     l->C = hn_linear_get(l->terms, HN_LINEAR_C);
     l->J = hn_linear_get(l->terms, HN_LINEAR_J);
     l->V = hn_linear_get(l->terms, HN_LINEAR_V);
-    l->has_damping = entries_of(l, HN_LINEAR_C) > 0;
+    l->has_damping = hn_linear_entries(l->terms, HN_LINEAR_C) > 0;
     l->sparse = wants_sparse(l);
     status = allocate(l, arena);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
@@ -473,74 +472,99 @@ static void constraint_side(const hn_implicit_linear *l, int parts, const double
     }
 }
 
-void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
-    const int nv = l->nv, nc = l->nc, parts = r.n;
-    const double *s = l->s[parts - 1];
-    const hn_complex one = reciprocal(s[0], s[1]);
-    const double two[2] = {one.re * one.re - one.im * one.im, 2 * one.re * one.im};
-    double *r1[2] = {0}, *r2[2] = {0}, *r3[2] = {0}, *r4[2] = {0};
+/// The parts of a right side by rows of the system, and what is made of them, in one or two parts.
+typedef struct sides {
+    int parts;
+    const double *s;
+    double *r1[2], *r2[2], *r3[2], *r4[2]; ///< r4: GGL only
     double *top[2], *along[2], *bottom[2], *rows[2], *scratch[2];
+} sides;
+
+static sides split_sides(const hn_implicit_linear *l, hn_parts r) {
+    sides b = {.parts = r.n, .s = l->s[r.n - 1]};
     for (int p = 0; p < 2; p++) {
-        if (p < parts) {
-            r1[p] = r.at[p];
-            r2[p] = r1[p] + nv;
-            r3[p] = r2[p] + nv;
-            r4[p] = r3[p] + nc; // GGL only
+        if (p < r.n) {
+            b.r1[p] = r.at[p];
+            b.r2[p] = b.r1[p] + l->nv;
+            b.r3[p] = b.r2[p] + l->nv;
+            b.r4[p] = b.r3[p] + l->nc;
         }
-        top[p] = l->work[p][0];
-        along[p] = l->work[p][1];
-        bottom[p] = l->work[p][2];
-        rows[p] = l->work[p][3];
-        scratch[p] = l->work[p][4];
+        b.top[p] = l->work[p][0];
+        b.along[p] = l->work[p][1];
+        b.bottom[p] = l->work[p][2];
+        b.rows[p] = l->work[p][3];
+        b.scratch[p] = l->work[p][4];
     }
-    l->ops +=
-        2.0 * parts *
-        (entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_J) + entries_of(l, HN_LINEAR_C));
-    start_right_side(l, parts, r1, r2, s, top, along, scratch);
-    constraint_side(l, parts, s, r3, along, bottom);
-    if (has_stabiliser(l)) { // e = r3' + J r1 - s r3
-        multiply(parts, nc, r3, s[0], s[1]);
-        add(parts, nc, -1, r3, along);
-        add(parts, nc, 1, r4, along);
-        for (int p = 0; p < parts && l->has_damping && !l->sparse; p++) {
-            push_stabiliser(l, along[p], top[p], rows[p], scratch[p]);
+    return b;
+}
+
+// e = r3' + J r1 - s r3, and what it pushes
+static void add_stabiliser(hn_implicit_linear *l, const sides *b) {
+    multiply(b->parts, l->nc, b->r3, b->s[0], b->s[1]);
+    add(b->parts, l->nc, -1, b->r3, b->along);
+    add(b->parts, l->nc, 1, b->r4, b->along);
+    for (int p = 0; p < b->parts && l->has_damping && !l->sparse; p++) {
+        push_stabiliser(l, b->along[p], b->top[p], b->rows[p], b->scratch[p]);
+    }
+}
+
+// m into r4, w -= Y m, l' -= s m
+static void take_stabiliser(hn_implicit_linear *l, const sides *b) {
+    for (int p = 0; p < b->parts; p++) {
+        if (l->sparse) {
+            memcpy(b->r4[p], b->along[p], (size_t)l->nc * sizeof *b->r4[p]);
+        } else {
+            hn_linear_apply(l->terms, HN_LINEAR_V, b->top[p], b->r4[p]);
+            hn_axpy(l->nc, 1, b->along[p], b->r4[p]);
+            solve_stabiliser(l, b->r4[p]);
+            hn_mat_vec(l->nv, l->nc, l->Y, b->r4[p], b->scratch[p]);
+            l->ops += 2.0 * l->nv * l->nc;
         }
+        hn_axpy(l->nv, -1, b->scratch[p], b->r2[p]);
+        memcpy(b->rows[p], b->r4[p], (size_t)l->nc * sizeof *b->rows[p]);
     }
-    multiply(parts, nv, top, two[0], two[1]);
-    if (has_stabiliser(l) && l->sparse) {
-        solve_extended(l, parts, s, top, bottom, along, scratch);
-    } else {
-        solve_saddle(l, parts, top, bottom);
-    }
-    // l' = s^2 times what was solved for; w = s x + r1 (- Y m)
-    const double square[2] = {s[0] * s[0] - s[1] * s[1], 2 * s[0] * s[1]};
-    multiply(parts, nc, bottom, square[0], square[1]);
+    multiply(b->parts, l->nc, b->rows, b->s[0], b->s[1]);
+    add(b->parts, l->nc, -1, b->rows, b->r3);
+}
+
+// l' = s^2 times what was solved for; w = s x + r1 (- Y m)
+static void take_solution(hn_implicit_linear *l, const sides *b) {
+    const int nv = l->nv, nc = l->nc, parts = b->parts;
+    const double *s = b->s, square[2] = {s[0] * s[0] - s[1] * s[1], 2 * s[0] * s[1]};
+    multiply(parts, nc, b->bottom, square[0], square[1]);
     for (int p = 0; p < parts; p++) {
-        memcpy(r2[p], top[p], (size_t)nv * sizeof *top[p]);
-        memcpy(r3[p], bottom[p], (size_t)nc * sizeof *bottom[p]);
+        memcpy(b->r2[p], b->top[p], (size_t)nv * sizeof *b->top[p]);
+        memcpy(b->r3[p], b->bottom[p], (size_t)nc * sizeof *b->bottom[p]);
     }
-    multiply(parts, nv, r2, s[0], s[1]);
-    add(parts, nv, 1, r1, r2);
+    multiply(parts, nv, b->r2, s[0], s[1]);
+    add(parts, nv, 1, b->r1, b->r2);
     if (has_stabiliser(l)) {
-        for (int p = 0; p < parts; p++) {
-            if (l->sparse) {
-                memcpy(r4[p], along[p], (size_t)nc * sizeof *r4[p]);
-            } else {
-                hn_linear_apply(l->terms, HN_LINEAR_V, top[p], r4[p]);
-                hn_axpy(nc, 1, along[p], r4[p]);
-                solve_stabiliser(l, r4[p]);
-                hn_mat_vec(nv, nc, l->Y, r4[p], scratch[p]);
-                l->ops += 2.0 * nv * nc;
-            }
-            hn_axpy(nv, -1, scratch[p], r2[p]);
-            memcpy(rows[p], r4[p], (size_t)nc * sizeof *rows[p]);
-        }
-        multiply(parts, nc, rows, s[0], s[1]);
-        add(parts, nc, -1, rows, r3);
+        take_stabiliser(l, b);
     }
     for (int p = 0; p < parts; p++) {
-        memcpy(r1[p], top[p], (size_t)nv * sizeof *top[p]);
+        memcpy(b->r1[p], b->top[p], (size_t)nv * sizeof *b->top[p]);
     }
+}
+
+void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r) {
+    sides b = split_sides(l, r);
+    const hn_complex one = reciprocal(b.s[0], b.s[1]);
+    const double two[2] = {one.re * one.re - one.im * one.im, 2 * one.re * one.im};
+    l->ops += 2.0 * b.parts *
+              (hn_linear_entries(l->terms, HN_LINEAR_M) + hn_linear_entries(l->terms, HN_LINEAR_J) +
+               hn_linear_entries(l->terms, HN_LINEAR_C));
+    start_right_side(l, b.parts, b.r1, b.r2, b.s, b.top, b.along, b.scratch);
+    constraint_side(l, b.parts, b.s, b.r3, b.along, b.bottom);
+    if (has_stabiliser(l)) {
+        add_stabiliser(l, &b);
+    }
+    multiply(b.parts, l->nv, b.top, two[0], two[1]);
+    if (has_stabiliser(l) && l->sparse) {
+        solve_extended(l, b.parts, b.s, b.top, b.bottom, b.along, b.scratch);
+    } else {
+        solve_saddle(l, b.parts, b.top, b.bottom);
+    }
+    take_solution(l, &b);
 }
 
 void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out) {
@@ -551,7 +575,8 @@ void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out
     }
     hn_linear_apply_transposed(l->terms, HN_LINEAR_J, m, out);
     hn_sparse_spd_solve(l->mass_factor, out);
-    l->ops += 2.0 * entries_of(l, HN_LINEAR_J) + hn_sparse_spd_solve_ops(l->mass_factor);
+    l->ops +=
+        2.0 * hn_linear_entries(l->terms, HN_LINEAR_J) + hn_sparse_spd_solve_ops(l->mass_factor);
 }
 
 double hn_implicit_linear_ops(const hn_implicit_linear *l) {

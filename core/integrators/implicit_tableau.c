@@ -1,6 +1,7 @@
 #include "integrators/implicit_tableau.h"
 
 #include "base/status.h"
+#include "dynamics/vec3.h"
 
 #include <math.h>
 
@@ -107,12 +108,6 @@ static double real_root(double t, double m, double d) {
     return x;
 }
 
-static void cross(const double *a, const double *b, double *out) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 // columns of T: the eigenvector of a number is perpendicular to the rows of A^-1 minus that number
 static void find_vectors_of_three(hn_collocation *col) {
     double row[2][3], part[3], other[3], turned[3];
@@ -128,15 +123,15 @@ static void find_vectors_of_three(hn_collocation *col) {
             complex_part[i][j] = row[i][j] - (i == j ? col->alpha : 0);
         }
     }
-    cross(real[0], real[1], part);
+    hn_num3_cross(real[0], real[1], part);
     for (int i = 0; i < 3; i++) {
         col->T[i][0] = part[i];
     }
     // (u0 - i beta e0) x (u1 - i beta e1), u the rows minus alpha
     const double e0[3] = {1, 0, 0}, e1[3] = {0, 1, 0};
-    cross(complex_part[0], complex_part[1], part);
-    cross(complex_part[0], e1, other);
-    cross(e0, complex_part[1], turned);
+    hn_num3_cross(complex_part[0], complex_part[1], part);
+    hn_num3_cross(complex_part[0], e1, other);
+    hn_num3_cross(e0, complex_part[1], turned);
     part[2] -= col->beta * col->beta; // e0 x e1 = e2
     for (int i = 0; i < 3; i++) {
         col->T[i][1] = part[i];
@@ -150,7 +145,7 @@ static void split_three(hn_collocation *col) {
     const double minors = P[0][0] * P[1][1] - P[0][1] * P[1][0] + P[0][0] * P[2][2] -
                           P[0][2] * P[2][0] + P[1][1] * P[2][2] - P[1][2] * P[2][1];
     double normal[3];
-    cross(P[1], P[2], normal);
+    hn_num3_cross(P[1], P[2], normal);
     const double det = P[0][0] * normal[0] + P[0][1] * normal[1] + P[0][2] * normal[2];
     col->n_real = col->n_pairs = 1;
     col->gamma = real_root(trace, minors, det);

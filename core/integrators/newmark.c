@@ -11,19 +11,16 @@ static int is_extended(const hn_newmark *s) {
     return s->stabilised && s->base.sparse;
 }
 
-static int entries_of(const hn_newmark *s, hn_linear_term term) {
-    const int *rows, *cols;
-    return hn_linear_pattern(s->matrices, term, &rows, &cols);
-}
-
 static hn_status create_matrix(hn_newmark *s, hn_arena *arena) {
     const int nv = s->base.nv, nc = s->base.nc;
-    int n = nv + nc,
-        puts = entries_of(s, HN_LINEAR_M) + entries_of(s, HN_LINEAR_C) + entries_of(s, HN_LINEAR_K);
+    int n = nv + nc, puts = hn_linear_entries(s->matrices, HN_LINEAR_M) +
+                            hn_linear_entries(s->matrices, HN_LINEAR_C) +
+                            hn_linear_entries(s->matrices, HN_LINEAR_K);
     if (s->stabilised) {
         n = is_extended(s) ? 2 * n : n + nc;
-        puts +=
-            entries_of(s, HN_LINEAR_V) + entries_of(s, HN_LINEAR_M) + entries_of(s, HN_LINEAR_C);
+        puts += hn_linear_entries(s->matrices, HN_LINEAR_V) +
+                hn_linear_entries(s->matrices, HN_LINEAR_M) +
+                hn_linear_entries(s->matrices, HN_LINEAR_C);
     }
     s->matrix =
         hn_dae_matrix_create(&s->base, arena, n, s->stabilised, s->stabilised ? 4 : 2, puts);

@@ -60,11 +60,6 @@ static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
     return c->a && c->lambda;
 }
 
-static int entries_of(const trapezoidal *s, hn_linear_term term) {
-    const int *rows, *cols;
-    return hn_linear_pattern(s->matrices, term, &rows, &cols);
-}
-
 // the last entry of J that stands in the row of entry e, and one more
 static int row_end(const trapezoidal *s, int e) {
     int end = e;
@@ -76,8 +71,9 @@ static int row_end(const trapezoidal *s, int e) {
 
 static int create_tangent(trapezoidal *s, hn_arena *arena) {
     const int nv = s->base.nv;
-    const int square =
-        entries_of(s, HN_LINEAR_M) + entries_of(s, HN_LINEAR_C) + entries_of(s, HN_LINEAR_K);
+    const int square = hn_linear_entries(s->matrices, HN_LINEAR_M) +
+                       hn_linear_entries(s->matrices, HN_LINEAR_C) +
+                       hn_linear_entries(s->matrices, HN_LINEAR_K);
     long long pairs = 0;
     s->n_J = hn_linear_pattern(s->matrices, HN_LINEAR_J, &s->J_row, &s->J_col);
     for (int e = 0, end; e < s->n_J; e = end) {
@@ -85,7 +81,8 @@ static int create_tangent(trapezoidal *s, hn_arena *arena) {
         pairs += (long long)(end - e) * (end - e);
     }
     // most of the pairs stand where M has entries too
-    if (nv < SPARSE_FROM || 4 * (entries_of(s, HN_LINEAR_M) + pairs) > 3LL * nv * nv) {
+    if (nv < SPARSE_FROM ||
+        4 * (hn_linear_entries(s->matrices, HN_LINEAR_M) + pairs) > 3LL * nv * nv) {
         return hn_square_init(&s->square, arena, nv);
     }
     s->sparse = hn_newton_matrix_create(arena, HN_REAL, 1, nv, square + (int)pairs);

@@ -23,11 +23,6 @@ const double *hn_unit_positions(const hn_system *sys, const double *q, double *u
 
 // --- life -----------------------------------------------------------------------------------------------------
 
-static int entries_of(const hn_linear *l, hn_linear_term term) {
-    const int *rows, *cols;
-    return hn_linear_pattern(l, term, &rows, &cols);
-}
-
 static unsigned terms_of(const hn_accel_jacobian *j) {
     return HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_GAMMA_Q |
            HN_LINEAR_GAMMA_V | (j->stabilised ? HN_LINEAR_V : 0u) |
@@ -69,11 +64,12 @@ static void list_balls(hn_accel_jacobian *j) {
 
 static hn_status create_matrices(hn_accel_jacobian *j, hn_arena *arena) {
     const hn_linear *l = j->terms;
-    const int square =
-        entries_of(l, HN_LINEAR_M) + entries_of(l, HN_LINEAR_K) + entries_of(l, HN_LINEAR_C);
-    const int rows = entries_of(l, HN_LINEAR_J) + entries_of(l, HN_LINEAR_GAMMA_Q) +
-                     entries_of(l, HN_LINEAR_GAMMA_V) + entries_of(j->twist, HN_LINEAR_V) +
-                     (j->stabilised ? entries_of(l, HN_LINEAR_V) + entries_of(l, HN_LINEAR_J) : 0);
+    const int square = hn_linear_entries(l, HN_LINEAR_M) + hn_linear_entries(l, HN_LINEAR_K) +
+                       hn_linear_entries(l, HN_LINEAR_C);
+    const int rows =
+        hn_linear_entries(l, HN_LINEAR_J) + hn_linear_entries(l, HN_LINEAR_GAMMA_Q) +
+        hn_linear_entries(l, HN_LINEAR_GAMMA_V) + hn_linear_entries(j->twist, HN_LINEAR_V) +
+        (j->stabilised ? hn_linear_entries(l, HN_LINEAR_V) + hn_linear_entries(l, HN_LINEAR_J) : 0);
     // by position an entry of a ball is spread over its three speeds
     const int spread = j->n_balls > 0 ? 3 : 1;
     const int n = j->nv + j->nc;
@@ -97,7 +93,7 @@ static hn_status allocate(hn_accel_jacobian *j, hn_arena *arena) {
     j->unit = hn_arena_doubles(arena, (size_t)j->nq);
     j->a = hn_arena_doubles(arena, nv);
     j->lambda = hn_arena_doubles(arena, nc);
-    j->twisted = hn_arena_doubles(arena, (size_t)entries_of(j->twist, HN_LINEAR_V));
+    j->twisted = hn_arena_doubles(arena, (size_t)hn_linear_entries(j->twist, HN_LINEAR_V));
     j->packed = hn_arena_doubles(arena, 2 * n);
     j->kept = hn_arena_ints(arena, nc);
     j->place = hn_arena_ints(arena, nc);
@@ -347,8 +343,7 @@ static hn_status give_way(hn_accel_jacobian *j, double t) {
     double *rows = j->work[0][0];
     hn_linear_run(j->terms, t, j->pose, j->v, NULL, NULL);
     keep_rows(j, nc);
-    hn_slopes_put_saddle(j, j->matrix[HN_SLOPES_RESTING]);
-    const hn_status status = hn_newton_matrix_factor(j->matrix[HN_SLOPES_RESTING]);
+    const hn_status status = hn_accel_jacobian_prepare(j);
     if (status != HN_OK) {
         return status;
     }

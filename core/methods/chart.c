@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { MAX_NEWTON = 25 };
-#define FLOOR 1e-11 // ||phi|| / length: what rounding can leave open, generously
+static const double FLOOR = 1e-11; // ||phi|| / length: what rounding can leave open, generously
 
 static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv;
