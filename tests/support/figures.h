@@ -88,5 +88,7 @@ typedef struct hn_figure_result {
 /// Measures a topic and hands over each result as it comes.
 void hn_figure_topic_run(const hn_figure_topic *topic,
                          void (*show)(void *user, const hn_figure_result *result), void *user);
+/// Every topic of this cost as a unit test; returns how many failed.
+int hn_figures_test(hn_figure_cost cost);
 
 #endif

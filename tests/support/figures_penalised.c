@@ -1,6 +1,7 @@
 #include "support/figures_sets.h"
 
 #include "support/dae.h"
+#include "support/lagrangian_turns.h"
 #include "support/near.h"
 
 #include "dynamics/eval.h"
@@ -13,45 +14,6 @@
 // Penalty, augmented Lagrangian, and the trapezoidal rule on index 3 with and without its projections.
 
 enum { NV = 3, NC = 2 };
-
-/// Eigenvalues of S = J M^-1 J' (2 x 2), the smaller first.
-static void eigenvalues(const hn_model *m, double s[2]) {
-    hn_eval *e = NULL;
-    double L[NV * NV], x[NC][NV];
-    assert_int_equal(hn_eval_create(m->sys, HN_TERM_M | HN_TERM_J, m->arena, &e), HN_OK);
-    hn_eval_run(e, 0, m->q, m->v);
-    const double *J = hn_eval_get(e, HN_TERM_J);
-    memcpy(L, hn_eval_get(e, HN_TERM_M), sizeof L);
-    assert_int_equal(hn_cholesky(NV, L, NV, 1e-12), HN_OK);
-    for (int i = 0; i < NC; i++) {
-        memcpy(x[i], J + (size_t)i * NV, sizeof x[i]);
-        hn_lower_solve(NV, L, NV, x[i]);
-    }
-    hn_eval_free(e);
-    const double s11 = hn_dot(NV, x[0], x[0]), s22 = hn_dot(NV, x[1], x[1]),
-                 s12 = hn_dot(NV, x[0], x[1]), d = hypot((s11 - s22) / 2, s12);
-    s[0] = (s11 + s22) / 2 - d;
-    s[1] = (s11 + s22) / 2 + d;
-}
-
-/// Largest error of an acceleration after so many turns of the augmented Lagrangian.
-static double acceleration_error(const hn_model *m, double a, int turns) {
-    const hn_formulation *form = hn_formulation_find("augmented-lagrangian");
-    const double settings[HN_MAX_SETTINGS] = {a, 10, 1, turns};
-    double y[2 * NV], ydot[2 * NV], worst = 0;
-    void *self = NULL;
-    hn_ode ode;
-    hn_diag diag = {0};
-    assert_int_equal(form->create(m->sys, settings, m->arena, &self, &diag), HN_OK);
-    assert_int_equal(form->set_state(self, 0, m->q, m->v, y), HN_OK);
-    form->ode(self, &ode);
-    assert_int_equal(ode.rhs(self, 0, y, ydot), HN_OK);
-    for (int i = 0; i < NV; i++) {
-        worst = fmax(worst, fabs(ydot[NV + i] - m->a[i]));
-    }
-    form->destroy(self);
-    return worst;
-}
 
 #define PENALTY(a, gap, error)                                          \
     {"penalty:a=" a "@rk4:h=5e-4",                                      \
@@ -72,22 +34,22 @@ void hn_figures_penalty(hn_figures *f) {
     hn_model m;
     hn_model_open_closed(&m, "fb0-lagrangian", NULL);
     hn_figure_runs(f, &m, "fb0", runs, (int)(sizeof runs / sizeof *runs));
-    eigenvalues(&m, s);
+    hn_turns_eigenvalues(&m, s);
     hn_figure_put(f, "factor of a turn, 1 / (1 + a s)", "fb0, augmented-lagrangian:a=10", "0.0838",
                   1 / (1 + 10 * s[0]));
     hn_figure_put(f, "factor of a turn, seen", "fb0, augmented-lagrangian:a=10", "0.08",
-                  acceleration_error(&m, 10, 8) / acceleration_error(&m, 10, 7));
+                  hn_turns_error(&m, 10, 8) / hn_turns_error(&m, 10, 7));
     hn_figure_put(f, "factor of a turn, 1 / (1 + a s)", "fb0, augmented-lagrangian:a=1e3", "9.1e-4",
                   1 / (1 + 1e3 * s[0]));
     hn_figure_put(f, "factor of a turn, seen", "fb0, augmented-lagrangian:a=1e3", "9e-4",
-                  acceleration_error(&m, 1e3, 3) / acceleration_error(&m, 1e3, 2));
+                  hn_turns_error(&m, 1e3, 3) / hn_turns_error(&m, 1e3, 2));
     static const hn_figure strong = {
         .what = "error that turns leave, a = 1e6 [rad/s^2]",
         .how = "fb0, augmented-lagrangian:a=1e6",
         .printed = "1e-9",
         .instead = "<1e-12",
         .note = "the solve of each turn is refined here, and loses no digits to the weight"};
-    hn_figure_add(f, &strong, acceleration_error(&m, 1e6, 6));
+    hn_figure_add(f, &strong, hn_turns_error(&m, 1e6, 6));
     hn_model_close(&m);
 }
 

@@ -1,0 +1,50 @@
+#include "support/lagrangian_turns.h"
+
+#include "dynamics/eval.h"
+#include "linalg/dense.h"
+#include "methods/method.h"
+#include "support/near.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NV = 3, NC = 2 };
+
+void hn_turns_eigenvalues(const hn_model *m, double s[2]) {
+    hn_eval *e = NULL;
+    double L[NV * NV], x[NC][NV];
+    assert_int_equal(m->info.nv, NV);
+    assert_int_equal(m->info.nc, NC);
+    assert_int_equal(hn_eval_create(m->sys, HN_TERM_M | HN_TERM_J, m->arena, &e), HN_OK);
+    hn_eval_run(e, 0, m->q, m->v);
+    const double *J = hn_eval_get(e, HN_TERM_J);
+    memcpy(L, hn_eval_get(e, HN_TERM_M), sizeof L);
+    assert_int_equal(hn_cholesky(NV, L, NV, 1e-12), HN_OK);
+    for (int i = 0; i < NC; i++) {
+        memcpy(x[i], J + (size_t)i * NV, sizeof x[i]);
+        hn_lower_solve(NV, L, NV, x[i]);
+    }
+    hn_eval_free(e);
+    const double s11 = hn_dot(NV, x[0], x[0]), s22 = hn_dot(NV, x[1], x[1]),
+                 s12 = hn_dot(NV, x[0], x[1]), d = hypot((s11 - s22) / 2, s12);
+    s[0] = (s11 + s22) / 2 - d;
+    s[1] = (s11 + s22) / 2 + d;
+}
+
+double hn_turns_error(const hn_model *m, double a, int turns) {
+    const hn_formulation *f = hn_formulation_find("augmented-lagrangian");
+    const double settings[HN_MAX_SETTINGS] = {a, 10, 1, turns};
+    double y[2 * NV], ydot[2 * NV], worst = 0;
+    void *self = NULL;
+    hn_ode ode;
+    hn_diag diag = {0};
+    assert_int_equal(f->create(m->sys, settings, m->arena, &self, &diag), HN_OK);
+    assert_int_equal(f->set_state(self, 0, m->q, m->v, y), HN_OK);
+    f->ode(self, &ode);
+    assert_int_equal(ode.rhs(self, 0, y, ydot), HN_OK);
+    for (int i = 0; i < NV; i++) {
+        worst = fmax(worst, fabs(ydot[NV + i] - m->a[i]));
+    }
+    f->destroy(self);
+    return worst;
+}
