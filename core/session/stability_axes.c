@@ -15,24 +15,6 @@ static const char *const STANDARD[] = {"projection@rk4", "projection@dop853:h=1e
                                        "projection@symplectic-euler"};
 static const char *const STABILISED[] = {"baumgarte@rk4", "baumgarte@symplectic-euler"};
 
-static const struct {
-    const char *name, *about;
-} PRESETS[] = {
-    {"stiffness", "steps over a stiffness of the scene"},
-    {"mass-ratio", "steps over a mass of the scene"},
-    {"baumgarte", "beta over alpha at one step"},
-    {"limits", "steps doubled until each method fails"},
-};
-enum { N_PRESETS = sizeof PRESETS / sizeof *PRESETS };
-
-const char *hn_map_preset(int i, const char **about) {
-    if (i < 0 || i >= N_PRESETS) {
-        return NULL;
-    }
-    *about = PRESETS[i].about;
-    return PRESETS[i].name;
-}
-
 // axes -------------------------------------------------------------------------------------------------------------
 
 static void fill_axis(hn_map_axis *a, double low, double high, int n) {
@@ -236,39 +218,74 @@ static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
     return status;
 }
 
-static hn_status take_preset(hn_map *map, hn_diags *diags) {
-    static const char *const stiffness[] = {"N/m", "N*m/rad"}, *const mass[] = {"kg"};
-    const char *preset = map->request.preset;
-    if (strcmp(preset, "stiffness") == 0) {
-        return over_param(map, "a stiffness in N/m or N*m/rad", stiffness, 2, diags);
+static hn_status stiffness_axes(hn_map *map, hn_diags *diags) {
+    static const char *const units[] = {"N/m", "N*m/rad"};
+    return over_param(map, "a stiffness in N/m or N*m/rad", units, 2, diags);
+}
+
+static hn_status mass_axes(hn_map *map, hn_diags *diags) {
+    static const char *const units[] = {"kg"};
+    return over_param(map, "a mass in kg", units, 1, diags);
+}
+
+// steps doubled, one column
+static hn_status limit_axes(hn_map *map, hn_diags *diags) {
+    const double rate = fastest_rate(map->model);
+    const hn_status status = steps_for(map, rate / 40, rate, 2, diags);
+    if (status == HN_OK) {
+        const double low = map->y.value[0], times = floor(log2(map->y.value[1] / low));
+        map->x = (hn_map_axis){.n = 1};
+        fill_axis(&map->y, low, low * pow(2, times), 1 + (int)times);
     }
-    if (strcmp(preset, "mass-ratio") == 0) {
-        return over_param(map, "a mass in kg", mass, 1, diags);
+    return status;
+}
+
+static const struct {
+    const char *name, *about;
+    hn_status (*make)(hn_map *map, hn_diags *diags);
+    int stabilised; ///< 1: of formulations that have alpha and beta
+} PRESETS[] = {
+    {"stiffness", "steps over a stiffness of the scene", stiffness_axes, 0},
+    {"mass-ratio", "steps over a mass of the scene", mass_axes, 0},
+    {"baumgarte", "beta over alpha at one step", baumgarte_axes, 1},
+    {"limits", "steps doubled until each method fails", limit_axes, 0},
+};
+enum { N_PRESETS = sizeof PRESETS / sizeof *PRESETS };
+
+const char *hn_map_preset(int i, const char **about) {
+    if (i < 0 || i >= N_PRESETS) {
+        return NULL;
     }
-    if (strcmp(preset, "baumgarte") == 0) {
-        return baumgarte_axes(map, diags);
-    }
-    if (strcmp(preset, "limits") == 0) {
-        const double rate = fastest_rate(map->model);
-        const hn_status status = steps_for(map, rate / 40, rate, 2, diags);
-        if (status == HN_OK) {
-            const double low = map->y.value[0], high = map->y.value[1];
-            map->x = (hn_map_axis){.n = 1};
-            fill_axis(&map->y, low, low * pow(2, floor(log2(high / low))),
-                      1 + (int)floor(log2(high / low)));
+    *about = PRESETS[i].about;
+    return PRESETS[i].name;
+}
+
+/// -1: there is none of that name.
+static int find_preset(const char *name) {
+    for (int i = 0; i < N_PRESETS; i++) {
+        if (strcmp(PRESETS[i].name, name) == 0) {
+            return i;
         }
-        return status;
+    }
+    return -1;
+}
+
+static hn_status take_preset(hn_map *map, hn_diags *diags) {
+    const int i = find_preset(map->request.preset);
+    if (i >= 0) {
+        return PRESETS[i].make(map, diags);
     }
     return hn_diags_add(diags, HN_ERR_INPUT, "/preset",
                         "there are stiffness, mass-ratio, baumgarte and limits",
-                        "there is no preset called '%.40s'", preset);
+                        "there is no preset called '%.40s'", map->request.preset);
 }
 
 // methods ----------------------------------------------------------------------------------------------------------
 
 static hn_status take_methods(hn_map *map, hn_diags *diags) {
     const hn_map_request *r = &map->request;
-    const int stabilised = r->preset ? strcmp(r->preset, "baumgarte") == 0
+    const int preset = r->preset ? find_preset(r->preset) : -1;
+    const int stabilised = r->preset ? preset >= 0 && PRESETS[preset].stabilised
                                      : strstr(r->over, "alpha=") || strstr(r->over, "beta=");
     const char *const *list = r->n_methods ? r->methods : stabilised ? STABILISED : STANDARD;
     const int n = r->n_methods ? r->n_methods : stabilised ? 2 : 3;
