@@ -2,7 +2,7 @@
 #include "session/extreme_internal.h"
 
 #include "render/look.h"
-#include "session/study_plot.h"
+#include "session/study_page.h"
 
 #include <stdio.h>
 
@@ -23,21 +23,14 @@ static const char STYLE[] =
     "@media print{@page{size:A4;margin:14mm}body{font-size:10pt}main{max-width:none;padding:0}"
     "table{font-size:8pt}h2{break-after:avoid;margin-top:18px}tr{break-inside:avoid}}";
 
-static void put_theme(hn_strbuf *b, hn_theme theme) {
-    const hn_surface *s = hn_surface_get(theme);
-    hn_strbuf_printf(b, "--paper:#%06X;--ink:#%06X;--muted:#%06X;--hairline:#%06X;--tear:#%06X;",
-                     (unsigned)s->paper, (unsigned)s->ink, (unsigned)s->muted,
-                     (unsigned)s->hairline, (unsigned)s->tear);
-}
-
 static void put_head(hn_strbuf *b) {
     hn_strbuf_add(b, "<!doctype html><html lang=en><head><meta charset=utf-8>"
                      "<meta name=viewport content=\"width=device-width,initial-scale=1\">"
                      "<title>holonom: the extreme matrix</title><style>:root{color-scheme:light "
                      "dark;");
-    put_theme(b, HN_THEME_LIGHT);
+    hn_page_theme(b, HN_THEME_LIGHT);
     hn_strbuf_add(b, "}@media screen and (prefers-color-scheme:dark){:root{");
-    put_theme(b, HN_THEME_DARK);
+    hn_page_theme(b, HN_THEME_DARK);
     hn_strbuf_printf(b, "}}%s</style></head><body><main>", STYLE);
 }
 

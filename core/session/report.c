@@ -129,7 +129,8 @@ static void account(hn_report *r, hn_report_scene *s) {
 }
 
 /// Whether the motion passes near singular poses: a run that puts itself back after each step looks out for them.
-static void find_singular(hn_report_scene *s) {
+static void find_singular(hn_report *r, hn_report_scene *s) {
+    const double T = hn_study_wp(s->study)->ref->T;
     hn_method_spec spec;
     hn_diag diag = {0};
     hn_run *run = NULL;
@@ -140,7 +141,8 @@ static void find_singular(hn_report_scene *s) {
                       NULL, &run, &diag) != HN_OK) {
         return;
     }
-    hn_run_advance(run, hn_study_wp(s->study)->ref->T); // how it ends is told by its incidents
+    // how it ends is told by its incidents
+    while (hn_run_time(run) < T && !ask_end(r) && hn_run_step(run) == HN_OK) {}
     s->singular = hn_run_passed_singular(run, &s->singular_at);
     hn_run_free(run);
 }
@@ -200,9 +202,9 @@ static void make_scene(hn_report *r, double seconds) {
     }
     r->until = hn_wall_seconds() + ACCOUNT_SHARE * seconds;
     account(r, s);
-    find_singular(s);
+    r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
+    find_singular(r, s);
     if (s->singular) {
-        r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
         survive(r, s);
     }
 }

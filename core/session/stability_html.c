@@ -1,7 +1,7 @@
 // A map as SVG, on its own and inside one HTML file: no network, no script. A cell's outcome is its title, which a browser shows
 // when the cell is pointed at.
 #include "session/stability_frame.h"
-#include "session/study_plot.h"
+#include "session/study_page.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,10 +19,7 @@ static const char STYLE[] =
     "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{padding:0}}";
 
 static void put_theme(hn_strbuf *b, hn_theme theme) {
-    const hn_surface *s = hn_surface_get(theme);
-    hn_strbuf_printf(b, "--paper:#%06X;--ink:#%06X;--muted:#%06X;--hairline:#%06X;",
-                     (unsigned)s->paper, (unsigned)s->ink, (unsigned)s->muted,
-                     (unsigned)s->hairline);
+    hn_page_theme(b, theme);
     for (int k = 0; k < HN_STABILITY_CLASS_COUNT; k++) {
         hn_strbuf_printf(b, "--%s:#%06X;", hn_stability_class_name((hn_stability_class)k),
                          (unsigned)hn_map_class_colour((hn_stability_class)k, theme));
