@@ -21,42 +21,51 @@ static void put_quantity(hn_strbuf *b, double value, const char *unit) {
     hn_strbuf_printf(b, "<td class=\"n\">%s%s</td>", value < 0 ? "\xe2\x88\x92" : "", text);
 }
 
-/// Everything in two tables: error = parts (energy 0), change of energy = parts (1).
-static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
-    const int n = energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT;
-    hn_strbuf_add(b, "<div class=\"scroll\"><table><thead><tr><th>method</th><th>");
+static void put_head(hn_strbuf *b, int energy) {
+    hn_strbuf_add(b, "<thead><tr><th>method</th><th>");
     hn_strbuf_add(b, energy ? "to t</th><th class=\"n\">change"
                             : "error of</th><th class=\"n\">at the end");
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
         hn_strbuf_printf(b, "</th><th class=\"n\">%s",
                          energy ? hn_bill_name((hn_bill_item)k) : hn_cause_name((hn_cause)k));
     }
-    hn_strbuf_add(b, energy ? "</th></tr></thead><tbody>"
-                            : "</th><th class=\"n\">their sum</th></tr></thead><tbody>");
+    hn_strbuf_add(b, energy ? "</th></tr></thead>"
+                            : "</th><th class=\"n\">their sum</th></tr></thead>");
+}
+
+/// Nothing for a row without an account, or without an error at its end.
+static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row, int energy) {
+    const hn_coordinate *c = hn_account_coordinate(a->model, row);
+    const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
+    if (row->status != HN_OK || (!energy && !c)) {
+        return;
+    }
+    hn_strbuf_add(b, "<tr><td class=\"m\">");
+    hn_html_text(b, row->spelling);
+    hn_strbuf_add(b, "</td><td class=\"m\">");
+    if (energy) {
+        hn_strbuf_printf(b, "%.4g s", row->account.t);
+    } else {
+        hn_html_text(b, c->name);
+    }
+    hn_strbuf_add(b, "</td>");
+    put_quantity(b, energy ? row->account.energy : row->account.error, unit);
+    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
+        put_quantity(b, hn_account_part(row, energy, k), unit);
+    }
+    if (!energy) {
+        put_quantity(b, row->account.sum, unit);
+    }
+    hn_strbuf_add(b, "</tr>\n");
+}
+
+/// error = parts (energy = 0), change of energy = parts (1)
+static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
+    hn_strbuf_add(b, "<div class=\"scroll\"><table>");
+    put_head(b, energy);
+    hn_strbuf_add(b, "<tbody>");
     for (int i = 0; i < a->n; i++) {
-        const hn_account_row *row = &a->rows[i];
-        const hn_coordinate *c = hn_account_coordinate(a->model, row);
-        const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
-        if (row->status != HN_OK || (!energy && !c)) {
-            continue;
-        }
-        hn_strbuf_add(b, "<tr><td class=\"m\">");
-        hn_html_text(b, row->spelling);
-        if (energy) {
-            hn_strbuf_printf(b, "</td><td>%.4g s</td>", row->account.t);
-        } else {
-            hn_strbuf_add(b, "</td><td>");
-            hn_html_text(b, c->name);
-            hn_strbuf_add(b, "</td>");
-        }
-        put_quantity(b, energy ? row->account.energy : row->account.error, unit);
-        for (int k = 0; k < n; k++) {
-            put_quantity(b, hn_account_part(row, energy, k), unit);
-        }
-        if (!energy) {
-            put_quantity(b, row->account.sum, unit);
-        }
-        hn_strbuf_add(b, "</tr>\n");
+        put_row(b, a, &a->rows[i], energy);
     }
     hn_strbuf_add(b, "</tbody></table></div>");
 }
