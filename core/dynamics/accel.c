@@ -374,25 +374,25 @@ static double dense_ops(const hn_accel *s) {
 }
 
 /// A row that is short at a pose says little there, also where the loops are closed to rounding: stretched, rounding is all it says.
-static hn_kkt_opts dense_opts(const hn_accel *s, double gap, int want_cond) {
+/// Of one below HN_ROW_LOST speeds and pose leave rounding and the error of the step.
+static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
     opts.row_floor = HN_BLUR_ROW_FLOOR;
     opts.row_unit = s->row_unit;
     opts.rank_tol = fmax(opts.rank_tol, hn_blur_of(gap));
     opts.residual_tol = fmax(opts.residual_tol, hn_blur_of_sides(gap));
     opts.want_cond = want_cond;
+    if (row_ratio < HN_ROW_LOST) {
+        opts.row_floor = 1;
+        opts.rank_tol = fmax(opts.rank_tol, HN_ROW_RANK_TOL);
+        opts.residual_tol = fmax(opts.residual_tol, ROW_RESIDUAL);
+    }
     return opts;
 }
 
 static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *a, double *lambda,
                              hn_accel_info *info) {
-    hn_kkt_opts opts = dense_opts(s, gap, 0);
-    if (info->row_ratio < HN_ROW_LOST) {
-        // what speeds and pose leave of such a row is rounding and the error of the step
-        opts.row_floor = 1;
-        opts.rank_tol = fmax(opts.rank_tol, HN_ROW_RANK_TOL);
-        opts.residual_tol = fmax(opts.residual_tol, ROW_RESIDUAL);
-    }
+    const hn_kkt_opts opts = dense_opts(s, gap, info->row_ratio, 0);
     hn_kkt_info dense;
     const hn_status status =
         hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
@@ -415,6 +415,11 @@ static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *
     return HN_OK;
 }
 
+/// As in hn_accel_info, after a run of the tape.
+static double find_row_ratio(hn_accel *s) {
+    return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
+}
+
 /// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs correcting (*doubtful).
 static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
                                int *doubtful) {
@@ -424,7 +429,7 @@ static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_
     hn_tape_run(s->in.tape, s->in.x);
     s->ops += hn_tape_get_info(s->in.tape).ops;
     info->pivot_ratio = worst_pivot(s);
-    info->row_ratio = hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
+    info->row_ratio = find_row_ratio(s);
     info->solver = HN_SOLVER_LDL;
     if (info->row_ratio < HN_ROW_LOST) {
         return HN_ERR_SINGULAR;
@@ -470,17 +475,41 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
 hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
                              double *condition) {
     hn_kkt_info dense = {0};
+    double row_ratio = 1;
     hn_inputs_set(&s->in, t, q, v, 0, 0);
     if (!all_finite(s->in.x, s->in.n)) {
         return HN_ERR_DIVERGED;
     }
-    const hn_kkt_opts opts = dense_opts(s, eval_terms(s, t, q, v, 0, 0), 1);
+    if (s->available) { // a row that the accelerations leave out is left out here
+        hn_tape_run(s->in.tape, s->in.x);
+        row_ratio = find_row_ratio(s);
+    }
+    const hn_kkt_opts opts = dense_opts(s, eval_terms(s, t, q, v, 0, 0), row_ratio, 1);
     const hn_status status =
         hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
                      hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
                      s->dense_a, s->dense_lambda, &dense, &opts);
     *condition = status == HN_OK ? dense.cond : 0;
     return status;
+}
+
+const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS] = {"determined", "one of many",
+                                                                "no digit left", "no solution"};
+
+hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
+                                 const hn_accel_info *info) {
+    const int sure = s->available && !info->fallback && info->pivot_ratio >= HN_PIVOT_DOUBT &&
+                     info->row_ratio >= HN_PIVOT_GUARD;
+    double condition = 0;
+    if (s->nc == 0 || sure) {
+        return HN_MULTIPLIERS_DETERMINED;
+    }
+    if (hn_accel_condition(s, t, q, v, &condition) != HN_OK) {
+        return HN_MULTIPLIERS_NONE;
+    }
+    return condition > HN_CONDITION_LOST ? HN_MULTIPLIERS_LOST
+           : info->rank < s->nc          ? HN_MULTIPLIERS_ONE_OF_MANY
+                                         : HN_MULTIPLIERS_DETERMINED;
 }
 
 hn_tape_info hn_accel_tape_info(const hn_accel *s) {

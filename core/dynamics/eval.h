@@ -94,6 +94,21 @@ HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, co
 /// 15.6 - log10 of it. Fails as the least-norm solve does. Allocates nothing.
 HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
                                            double *condition);
+#define HN_CONDITION_LOST 1e13 ///< of the equilibrated K: no digit of the multipliers is left
+/// What the multipliers of a state are worth.
+typedef enum hn_multiplier_mark {
+    HN_MULTIPLIERS_DETERMINED,
+    HN_MULTIPLIERS_ONE_OF_MANY, ///< rows depend on each other: the least-norm choice of many
+    HN_MULTIPLIERS_LOST,        ///< condition above HN_CONDITION_LOST
+    HN_MULTIPLIERS_NONE,        ///< the system has no solution there
+    HN_N_MULTIPLIER_MARKS
+} hn_multiplier_mark;
+extern const char
+    *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS]; ///< "determined", "one of many", ...
+/// The mark of multipliers that hn_accel_eval() found at this state with `info`. Where the tape answered, no pivot in doubt and no row
+/// dying away, K is far from singular; else its condition is estimated, at the cost of a dense solve. Allocates nothing.
+hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
+                                 const hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
 long long hn_accel_count(const hn_accel *s);
 long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's

@@ -71,7 +71,9 @@ typedef struct hn_run_request {
     void *user;
 } hn_run_request;
 
-/// The object of `run --json`: scene, method, status, reason, t_reached, coordinates, samples as columns, incidents, cost. *status says how the run
+/// The object of `run --json`: scene, method, status, reason, t_reached, coordinates, samples as columns, incidents, cost. The column
+/// "lambda_mark" says what a sample's multipliers are worth, and the reactions that rest on them: an index into "lambda_marks"
+/// (hn_multiplier_mark); it is left out of a scene without closure rows. *status says how the run
 /// ended (HN_OK or why it ended early). Returns not HN_OK only when the request itself is at fault.
 HN_MUST_CHECK hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model,
                                           const hn_run_request *request, hn_status *ended,

@@ -57,6 +57,7 @@ HN_MUST_CHECK hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *mode
 /// assembly report as JSON, with user coordinates
 void hn_model_assembly_json(hn_strbuf *b, const hn_model *model);
 /// M, h, f, J, gamma, phi, K, acceleration, lambda, energies at one state, in user coordinates, with ranks and sigma; "rows" and "columns" named.
+/// "lambda_mark" says in words what the multipliers are worth, and the reactions that rest on them (hn_multiplier_mark).
 HN_MUST_CHECK hn_status hn_model_terms_json(hn_strbuf *b, const hn_model *model, double t,
                                             const hn_state_entry *entries, int n_entries,
                                             hn_diags *diags);

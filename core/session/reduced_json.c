@@ -1,6 +1,8 @@
 #include "session/reduced_json.h"
 
+#include "linalg/dense.h"
 #include "methods/reduced_terms.h"
+#include "session/columns_json.h"
 
 #define SPEED_TOL 1e-9 // of the largest speed: below, the speeds given fit the loops
 
@@ -25,23 +27,6 @@ static void put_names(hn_strbuf *b, const hn_model *model, const hn_reduced_term
     hn_json_put_string(b, "chosen_by", hn_reduced_choice_text(w->choice));
 }
 
-static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows, int cols) {
-    hn_json_key(b, key);
-    hn_json_array(b);
-    for (int i = 0; i < rows; i++) {
-        hn_json_numbers(b, A + i * cols, (size_t)cols);
-    }
-    hn_json_end_array(b);
-}
-
-static double largest(const double *x, int n) {
-    double most = 0;
-    for (int i = 0; i < n; i++) {
-        most = x[i] > most ? x[i] : (-x[i] > most ? -x[i] : most);
-    }
-    return most;
-}
-
 static void put_terms(hn_strbuf *b, const hn_model *model, const hn_reduced_terms *w) {
     const size_t r = (size_t)w->r;
     hn_json_put_bool(b, "exists", 1);
@@ -50,9 +35,9 @@ static void put_terms(hn_strbuf *b, const hn_model *model, const hn_reduced_term
                                    : "v = Phi v_r, M_r a_r + C_r v_r + g_r = tau_r");
     put_names(b, model, w);
     hn_json_put_numbers(b, "v_r", w->v_r, r);
-    put_matrix(b, "Phi", w->Phi, w->nv, w->r);
-    put_matrix(b, "M_r", w->M_r, w->r, w->r);
-    put_matrix(b, "C_r", w->C_r, w->r, w->r);
+    hn_columns_put_table(b, "Phi", w->Phi, w->nv, w->r);
+    hn_columns_put_table(b, "M_r", w->M_r, w->r, w->r);
+    hn_columns_put_table(b, "C_r", w->C_r, w->r, w->r);
     hn_json_put_numbers(b, "g_r", w->g_r, r);
     hn_json_put_numbers(b, "tau_r", w->tau_r, r);
     if (w->is_moved) {
@@ -60,7 +45,7 @@ static void put_terms(hn_strbuf *b, const hn_model *model, const hn_reduced_term
         hn_json_put_numbers(b, "d_r", w->d_r, r);
     }
     hn_json_put_numbers(b, "a_r", w->a_r, r);
-    if (w->speed_gap > SPEED_TOL * (1 + largest(w->v_r, w->r))) {
+    if (w->speed_gap > SPEED_TOL * (1 + hn_norm_max(w->r, w->v_r))) {
         hn_json_put_number(b, "speed_gap", w->speed_gap);
     }
 }

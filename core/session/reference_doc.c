@@ -1,4 +1,5 @@
 // A reference solution as JSON: what is stored, and the motion between.
+#include "session/columns_json.h"
 #include "session/references.h"
 
 #include "base/hash.h"
@@ -22,33 +23,6 @@ static void put_errors(hn_strbuf *b, const char *key, const double e[HN_ERROR_CO
         }
     }
     hn_json_end_object(b);
-}
-
-static void put_rows(hn_strbuf *b, const char *key, const double *values, int n_rows, int n) {
-    hn_json_key(b, key);
-    hn_json_array(b);
-    for (int k = 0; k < n_rows; k++) {
-        hn_json_numbers(b, values + (size_t)k * (size_t)n, (size_t)n);
-    }
-    hn_json_end_array(b);
-}
-
-static void put_names(hn_strbuf *b, const hn_model *model) {
-    const hn_system *sys = hn_model_system(model);
-    const hn_system_info info = hn_system_get_info(sys);
-    const hn_scene *scene = hn_model_scene(model);
-    hn_json_key(b, "coordinates");
-    hn_json_array(b);
-    for (int i = 0; i < info.n_user; i++) {
-        hn_json_string(b, scene->coordinates[hn_system_user_coordinate(sys, i)].name);
-    }
-    hn_json_end_array(b);
-    hn_json_key(b, "rows");
-    hn_json_array(b);
-    for (int i = 0; i < info.nc; i++) {
-        hn_json_string(b, hn_system_row_name(sys, i));
-    }
-    hn_json_end_array(b);
 }
 
 static void put_head(hn_strbuf *b, const hn_model *model, const hn_ref *ref, hn_ref_source source) {
@@ -91,11 +65,12 @@ static void put_stored(hn_strbuf *b, const hn_model *model, const hn_ref *ref,
                        hn_ref_source source) {
     hn_json_object(b);
     put_head(b, model, ref, source);
-    put_names(b, model);
+    hn_columns_put_coordinates(b, hn_model_system(model));
+    hn_columns_put_rows(b, hn_model_system(model));
     put_times(b, ref);
-    put_rows(b, "q", ref->q, ref->n + 1, ref->n_user);
-    put_rows(b, "v", ref->v, ref->n + 1, ref->n_user);
-    put_rows(b, "lambda", ref->lambda, ref->n + 1, ref->nc);
+    hn_columns_put_table(b, "q", ref->q, ref->n + 1, ref->n_user);
+    hn_columns_put_table(b, "v", ref->v, ref->n + 1, ref->n_user);
+    hn_columns_put_table(b, "lambda", ref->lambda, ref->n + 1, ref->nc);
     hn_json_put_numbers(b, "energy", ref->energy, (size_t)ref->n + 1);
     hn_json_key(b, "digits_at");
     hn_json_array(b);
@@ -224,8 +199,8 @@ static void put_motion(hn_strbuf *b, const motion *m) {
     hn_json_put_number(b, "every", m->every);
     hn_json_put_string(b, "method", MOTION_METHOD);
     hn_json_put_number(b, "between", fmax(m->between, m->ref->error[HN_ERROR_Q]));
-    put_rows(b, "q", m->q, m->n + 1, m->n_user);
-    put_rows(b, "points", m->points, m->n + 1, 3 * m->n_points);
+    hn_columns_put_table(b, "q", m->q, m->n + 1, m->n_user);
+    hn_columns_put_table(b, "points", m->points, m->n + 1, 3 * m->n_points);
     hn_json_put_numbers(b, "energy", m->energy, (size_t)m->n + 1);
     hn_json_end_object(b);
 }

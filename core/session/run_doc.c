@@ -1,4 +1,5 @@
 // One run with its output: the object of `holonom run --json`.
+#include "session/columns_json.h"
 #include "session/comparison.h"
 #include "session/reactions_json.h"
 
@@ -18,6 +19,7 @@ typedef struct table {
     int n_user, nc;
     long long n, cap;
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
+    double *mark;                  ///< hn_multiplier_mark of a sample
     double *raw_lambda;            ///< NULL: not asked for, or the method has none
     hn_reaction_writer *reactions; ///< NULL: not asked for
     double *force, *moment;        ///< 3 per carrier
@@ -30,7 +32,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, i
                               hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
-    double width = 4 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
+    double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
     if (width * (double)cap > LARGEST_TABLE) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
@@ -46,6 +48,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, i
     tab->q = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
     tab->v = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
     tab->lambda = hn_arena_doubles(tab->arena, n * (size_t)info.nc);
+    tab->mark = hn_arena_doubles(tab->arena, n);
     tab->raw_lambda = raw_lambda ? hn_arena_doubles(tab->arena, n * (size_t)info.nc) : NULL;
     tab->gap = hn_arena_doubles(tab->arena, n);
     tab->velocity_gap = hn_arena_doubles(tab->arena, n);
@@ -95,13 +98,14 @@ static void add_reactions(table *tab, const hn_sample *s, size_t k) {
     }
 }
 
-static void table_add(table *tab, const hn_sample *s) {
+static void table_add(table *tab, const hn_sample *s, hn_run *run) {
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
     memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
     memcpy(tab->v + k * nq, s->v, nq * sizeof(double));
     if (nc > 0) {
         memcpy(tab->lambda + k * nc, s->lambda, nc * sizeof(double));
+        tab->mark[k] = hn_run_sample_mark(run);
     }
     for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
         tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // told as null
@@ -206,7 +210,7 @@ static hn_status take_sample(hn_run *run, double h, double t, const hn_run_reque
         status = sample_at(run, t, &sample);
     }
     if (status == HN_OK) {
-        table_add(tab, &sample);
+        table_add(tab, &sample, run);
     }
     return status;
 }
@@ -226,35 +230,30 @@ static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double t = hn_run_time(run);
     if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
         hn_run_sample(run, t, &last) == HN_OK) {
-        table_add(tab, &last);
+        table_add(tab, &last, run);
     }
     return status;
-}
-
-static void put_rows(hn_strbuf *b, const char *key, const double *values, long long n, int width) {
-    hn_json_key(b, key);
-    hn_json_array(b);
-    for (long long k = 0; k < n; k++) {
-        hn_json_numbers(b, values + k * width, (size_t)width);
-    }
-    hn_json_end_array(b);
 }
 
 static void put_samples(hn_strbuf *b, const table *tab) {
     hn_json_key(b, "samples");
     hn_json_object(b);
     hn_json_put_numbers(b, "t", tab->t, (size_t)tab->n);
-    put_rows(b, "q", tab->q, tab->n, tab->n_user);
-    put_rows(b, "v", tab->v, tab->n, tab->n_user);
-    put_rows(b, "lambda", tab->lambda, tab->n, tab->nc);
+    hn_columns_put_table(b, "q", tab->q, tab->n, tab->n_user);
+    hn_columns_put_table(b, "v", tab->v, tab->n, tab->n_user);
+    hn_columns_put_table(b, "lambda", tab->lambda, tab->n, tab->nc);
+    if (tab->nc > 0) {
+        hn_json_put_numbers(b, "lambda_mark", tab->mark, (size_t)tab->n);
+    }
     if (tab->raw_lambda) {
-        put_rows(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
+        hn_columns_put_table(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
     }
     if (tab->reactions) {
         const int width = 3 * hn_reaction_writer_count(tab->reactions);
-        put_rows(b, "reaction_force", tab->force, tab->n, width);
-        put_rows(b, "reaction_moment", tab->moment, tab->n, width);
-        put_rows(b, "effort", tab->effort, tab->n, hn_reaction_writer_efforts(tab->reactions));
+        hn_columns_put_table(b, "reaction_force", tab->force, tab->n, width);
+        hn_columns_put_table(b, "reaction_moment", tab->moment, tab->n, width);
+        hn_columns_put_table(b, "effort", tab->effort, tab->n,
+                             hn_reaction_writer_efforts(tab->reactions));
     }
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
@@ -264,24 +263,11 @@ static void put_samples(hn_strbuf *b, const table *tab) {
 
 static void put_names(hn_strbuf *b, const hn_model *model) {
     const hn_system *sys = hn_model_system(model);
-    const hn_scene *scene = hn_model_scene(model);
-    hn_system_info info = hn_system_get_info(sys);
-    static const char *const keys[] = {"coordinates", "rates"};
-    for (int which = 0; which < 2; which++) {
-        hn_json_key(b, keys[which]);
-        hn_json_array(b);
-        for (int i = 0; i < info.n_user; i++) {
-            const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i)];
-            hn_json_string(b, which ? c->rate : c->name);
-        }
-        hn_json_end_array(b);
-    }
-    hn_json_key(b, "rows");
-    hn_json_array(b);
-    for (int i = 0; i < info.nc; i++) {
-        hn_json_string(b, hn_system_row_name(sys, i));
-    }
-    hn_json_end_array(b);
+    hn_columns_put_coordinates(b, sys);
+    hn_columns_put_rates(b, sys);
+    hn_columns_put_rows(b, sys);
+    hn_json_key(b, "lambda_marks");
+    hn_json_strings(b, hn_multiplier_marks, HN_N_MULTIPLIER_MARKS);
 }
 
 static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {

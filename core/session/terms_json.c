@@ -1,5 +1,7 @@
 // Every term at one state, in the coordinates of the scene.
 #include "dynamics/eval.h"
+#include "linalg/dense.h"
+#include "session/columns_json.h"
 #include "session/model.h"
 #include "session/reactions_json.h"
 #include "session/reduced_json.h"
@@ -24,11 +26,6 @@ typedef struct terms {
     hn_status accel_status;
     hn_reaction_writer *reactions; ///< NULL: not asked for
 } terms;
-
-static const hn_coordinate *user_coordinate(const hn_model *model, int i) {
-    return &hn_model_scene(model)
-                ->coordinates[hn_system_user_coordinate(hn_model_system(model), i)];
-}
 
 static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
     *w = (terms){.model = model, .info = hn_system_get_info(hn_model_system(model))};
@@ -115,15 +112,6 @@ static void calc_user_terms(terms *w) {
     }
 }
 
-static void put_matrix(hn_strbuf *b, const char *key, const double *A, int rows, int cols) {
-    hn_json_key(b, key);
-    hn_json_array(b);
-    for (int i = 0; i < rows; i++) {
-        hn_json_numbers(b, A + i * cols, (size_t)cols);
-    }
-    hn_json_end_array(b);
-}
-
 /// K = [M J'; J 0], the matrix of K [a; -lambda] = [f; -gamma].
 static void put_saddle(hn_strbuf *b, const terms *w) {
     int nu = w->info.n_user, m = w->info.nc, n = nu + m;
@@ -143,29 +131,6 @@ static void put_saddle(hn_strbuf *b, const terms *w) {
         hn_json_numbers(b, row, (size_t)n);
     }
     hn_json_end_array(b);
-}
-
-static void put_names(hn_strbuf *b, const terms *w) {
-    hn_json_key(b, "coordinates");
-    hn_json_array(b);
-    for (int i = 0; i < w->info.n_user; i++) {
-        hn_json_string(b, user_coordinate(w->model, i)->name);
-    }
-    hn_json_end_array(b);
-    hn_json_key(b, "rows");
-    hn_json_array(b);
-    for (int i = 0; i < w->info.nc; i++) {
-        hn_json_string(b, hn_system_row_name(hn_model_system(w->model), i));
-    }
-    hn_json_end_array(b);
-}
-
-static double norm(const double *x, int n) {
-    double scale = 0;
-    for (int i = 0; i < n; i++) {
-        scale = hypot(scale, x[i]);
-    }
-    return scale;
 }
 
 static double velocity_gap(const terms *w) {
@@ -190,11 +155,19 @@ static void put_condition(hn_strbuf *b, const terms *w) {
     }
 }
 
+static void put_mark(hn_strbuf *b, const terms *w) {
+    if (w->info.nc > 0) {
+        const hn_multiplier_mark mark = hn_accel_mark(w->accel, w->t, w->q, w->v, &w->accel_info);
+        hn_json_put_string(b, "lambda_mark", hn_multiplier_marks[mark]);
+    }
+}
+
 static void put_solution(hn_strbuf *b, const terms *w) {
     hn_json_put_string(b, "status", hn_status_name(w->accel_status));
     if (w->accel_status == HN_OK) {
         hn_json_put_numbers(b, "a", w->ua, (size_t)w->info.n_user);
         hn_json_put_numbers(b, "lambda", w->lambda, (size_t)w->info.nc);
+        put_mark(b, w);
         hn_json_put_int(b, "rank", w->accel_info.rank);
         hn_json_put_number(b, "pivot_ratio", w->accel_info.pivot_ratio);
         hn_json_put_number(b, "row_ratio", w->accel_info.row_ratio);
@@ -214,13 +187,14 @@ static hn_status put_terms(hn_strbuf *b, const terms *w) {
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(w->model)->id);
     hn_json_put_string(b, "equations", "M a = f + J' lambda, J a + gamma = 0, f = Q - h");
-    put_names(b, w);
+    hn_columns_put_coordinates(b, hn_model_system(w->model));
+    hn_columns_put_rows(b, hn_model_system(w->model));
     hn_json_put_number(b, "t", w->t);
     hn_json_put_numbers(b, "q", w->uq, (size_t)nu);
     hn_json_put_numbers(b, "v", w->uv, (size_t)nu);
-    put_matrix(b, "M", w->M, nu, nu);
+    hn_columns_put_table(b, "M", w->M, nu, nu);
     hn_json_put_numbers(b, "f", w->f, (size_t)nu);
-    put_matrix(b, "J", w->J, m, nu);
+    hn_columns_put_table(b, "J", w->J, m, nu);
     hn_json_put_numbers(b, "gamma", hn_eval_get(w->eval, HN_TERM_GAMMA), (size_t)m);
     hn_json_put_numbers(b, "phi", phi, (size_t)m);
     put_saddle(b, w);
@@ -229,7 +203,7 @@ static hn_status put_terms(hn_strbuf *b, const terms *w) {
         hn_reaction_writer_put(b, w->reactions);
     }
     const hn_status status = hn_reduced_put(b, w->model, w->arena, w->t, w->q, w->v);
-    hn_json_put_number(b, "gap", norm(phi, m));
+    hn_json_put_number(b, "gap", hn_norm2(m, phi));
     hn_json_put_number(b, "velocity_gap", velocity_gap(w));
     hn_json_put_number(b, "kinetic", energy[0]);
     hn_json_put_number(b, "potential", energy[1]);

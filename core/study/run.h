@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "dynamics/assemble.h"
+#include "dynamics/eval.h"
 #include "dynamics/system.h"
 #include "integrators/spec.h"
 
@@ -70,7 +71,6 @@ enum { HN_RUN_MAX_INCIDENTS = 64 };
     1e-2 ///< energy change since the start / (largest T + range of V), conservative scenes only
 #define HN_RUN_WARN_CONDITION \
     1e8 ///< of the equilibrated K: half the digits of the multipliers are gone
-#define HN_RUN_LOST_CONDITION 1e13  ///< no digit is left
 #define HN_RUN_WARN_MULTIPLIERS 1e3 ///< growth against the largest seen away from singular poses
 #define HN_RUN_WARN_TURN 0.5 ///< [rad] between the direction of motion and its smooth continuation
 #define HN_RUN_WARN_JUMP 0.5 ///< part of a step's motion that its speeds do not explain
@@ -141,6 +141,8 @@ double hn_run_time(const hn_run *run);
 /// side step of the same integrator from that step's start, which leaves the run as it was) or ahead of the present time by
 /// less than one step (fixed: a side step). With raw multipliers asked for it is always a side step.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
+/// What the multipliers of the last sample are worth; near a singular pose at the cost of a dense solve. Allocates nothing.
+hn_multiplier_mark hn_run_sample_mark(hn_run *run);
 /// Why the last sample that failed could not be taken, in words. Borrowed, until the run goes on.
 const char *hn_run_sample_why(const hn_run *run, hn_status status);
 /// 1 if the integrator finds multipliers of its own (hn_sample.raw_lambda).

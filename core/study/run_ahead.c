@@ -355,7 +355,7 @@ static void look_at_condition(hn_run *run) {
     }
     const double digits = fmax(0, -log10(DBL_EPSILON) - log10(kappa));
     hn_run_tell(run, HN_INCIDENT_ILL_CONDITIONED, "condition", kappa, HN_RUN_WARN_CONDITION,
-                kappa > HN_RUN_LOST_CONDITION
+                kappa > HN_CONDITION_LOST
                     ? "the condition number is %.2g: no digit of the multipliers is left (%.0f)"
                     : "the condition number is %.2g: about %.0f digits of the multipliers are left",
                 kappa, digits);

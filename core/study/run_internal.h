@@ -100,6 +100,9 @@ struct hn_run {
     // what a sample hands out
     double *sample_q, *sample_v, *sample_a, *sample_lambda, *sample_points, *sample_raw;
     double *at_q, *at_v, *at_a, *at_lambda, *work;
+    double at_t; ///< of the last sample, and what the solve there said
+    hn_accel_info at_info;
+    hn_status at_status;
     const double *at_raw; ///< raw multipliers of the state in at_q, at_v, or NULL
 };
 

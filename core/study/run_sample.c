@@ -106,9 +106,11 @@ static hn_status locate(hn_run *run, double t) {
 }
 
 static void fill_forces(hn_run *run, double t, hn_sample *out) {
-    hn_accel_info info = {0};
-    if (hn_run_accelerations(run, t, run->at_q, run->at_v, run->at_a, run->sample_lambda, &info) ==
-        HN_OK) {
+    run->at_t = t;
+    run->at_info = (hn_accel_info){0};
+    run->at_status = hn_run_accelerations(run, t, run->at_q, run->at_v, run->at_a,
+                                          run->sample_lambda, &run->at_info);
+    if (run->at_status == HN_OK) {
         hn_system_rates_to_user(run->sys, run->at_a, run->sample_a);
     } else {
         for (int i = 0; i < run->info.n_user; i++) {
@@ -118,8 +120,14 @@ static void fill_forces(hn_run *run, double t, hn_sample *out) {
             run->sample_lambda[i] = nan("");
         }
     }
-    out->pivot_ratio = info.pivot_ratio;
-    out->rank = info.rank;
+    out->pivot_ratio = run->at_info.pivot_ratio;
+    out->rank = run->at_info.rank;
+}
+
+hn_multiplier_mark hn_run_sample_mark(hn_run *run) {
+    return run->at_status == HN_OK
+               ? hn_accel_mark(run->watch.accel, run->at_t, run->at_q, run->at_v, &run->at_info)
+               : HN_MULTIPLIERS_NONE;
 }
 
 int hn_run_has_raw_lambda(const hn_run *run) {

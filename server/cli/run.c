@@ -66,7 +66,17 @@ static int add_efforts(column *columns, int n, const cJSON *run) {
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row, reactions, efforts, and the three measures.
+/// One number a sample, where the run has it.
+static int add_measure(column *columns, int n, const cJSON *samples, const char *key) {
+    const cJSON *list = hn_document_get(samples, key);
+    if (list && n < MAX_RUN_COLUMNS) {
+        columns[n] = (column){.list = list, .part = -1};
+        snprintf(columns[n++].name, sizeof columns[0].name, "%s", key);
+    }
+    return n;
+}
+
+/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, and the three measures.
 static int find_columns(column *columns, const cJSON *run) {
     static const char *const last[] = {"gap", "velocity_gap", "energy"};
     const cJSON *samples = hn_document_get(run, "samples");
@@ -78,12 +88,12 @@ static int find_columns(column *columns, const cJSON *run) {
         n = add_parts(columns, n, samples, "raw_lambda", "raw lambda ",
                       hn_document_get(run, "rows"));
     }
+    n = add_measure(columns, n, samples, "lambda_mark");
     n = add_wrenches(columns, n, run, "reaction_force", "force");
     n = add_wrenches(columns, n, run, "reaction_moment", "moment");
     n = add_efforts(columns, n, run);
-    for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
-        columns[n] = (column){.list = hn_document_get(samples, last[i]), .part = -1};
-        snprintf(columns[n++].name, sizeof columns[0].name, "%s", last[i]);
+    for (int i = 0; i < 3; i++) {
+        n = add_measure(columns, n, samples, last[i]);
     }
     return n;
 }
@@ -178,6 +188,25 @@ static void put_samples(hn_strbuf *b, cJSON *run, int ndjson) {
     free(cursors);
 }
 
+/// Says how many samples have multipliers that are not determined, by mark.
+static void tell_marks(const cJSON *run) {
+    const cJSON *marks = hn_document_get(hn_document_get(run, "samples"), "lambda_mark"), *entry;
+    const cJSON *word = hn_document_get(run, "lambda_marks");
+    word = word && word->child ? word->child->next : NULL; // the first is as it should be
+    for (int mark = 1; word; mark++, word = word->next) {
+        int n = 0;
+        cJSON_ArrayForEach(entry, marks) {
+            n += (int)cJSON_GetNumberValue(entry) == mark;
+        }
+        if (n > 0) {
+            fprintf(stderr,
+                    "holonom: multipliers, and reactions that rest on them: %s in %d of %d samples "
+                    "(lambda_mark %d)\n",
+                    word->valuestring, n, cJSON_GetArraySize(marks), mark);
+        }
+    }
+}
+
 static int tell_progress(void *user, double share) {
     hn_progress_tell(user, "running", share);
     return 1;
@@ -244,6 +273,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         run = hn_document_parse(&b);
         snprintf(reason, sizeof reason, "%s at t = %.6g s: %.200s", hn_document_text(run, "status"),
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
+        tell_marks(run);
         put_samples(&b, run, strcmp(format, "ndjson") == 0);
         if (hn_document_text(run, "warning")[0]) {
             fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));

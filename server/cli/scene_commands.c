@@ -196,6 +196,17 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
     }
 }
 
+/// What the multipliers are worth, where that is not all their digits.
+static void put_mark(hn_strbuf *b, const cJSON *d) {
+    const char *mark = hn_document_text(d, "lambda_mark");
+    if (mark[0] && strcmp(mark, "determined") != 0) {
+        hn_strbuf_printf(
+            b, "multipliers, and reactions that rest on them: %s (condition %.2g, rank %g of %d)\n",
+            mark, hn_document_number(d, "condition"), hn_document_number(d, "rank"),
+            cJSON_GetArraySize(hn_document_get(d, "rows")));
+    }
+}
+
 static void put_terms(hn_strbuf *b, const cJSON *d) {
     static const struct {
         const char *title, *key;
@@ -224,6 +235,7 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
     put_reduced(b, hn_document_get(d, "reduced"), names);
     put_reactions(b, hn_document_get(d, "reactions"));
     put_efforts(b, hn_document_get(d, "efforts"));
+    put_mark(b, d);
     hn_strbuf_printf(b, "rank %g, gap %.3g, velocity gap %.3g, energy %.9g J\n",
                      hn_document_number(d, "rank"), hn_document_number(d, "gap"),
                      hn_document_number(d, "velocity_gap"),

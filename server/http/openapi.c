@@ -157,13 +157,17 @@ static const struct {
      ",\"time\":{\"type\":\"number\"},\"digits\":{\"type\":\"number\"},\"error\":{\"type\":"
      "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS
      ",\"motion\":{\"type\":\"object\"}}}"},
-    {"Run", "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
-            "reached\",\"coordinates\",\"samples\","
-            "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
-            "\"method\":" TEXT ",\"status\":" TEXT ",\"reason\":" TEXT
-            ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ","
-            "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
-            "}},\"incidents\":" OBJECTS ",\"cost\":{\"type\":\"object\"}}}"},
+    {"Run",
+     "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
+     "reached\",\"coordinates\",\"samples\","
+     "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
+     "\"method\":" TEXT ",\"status\":" TEXT ",\"reason\":" TEXT
+     ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
+     "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
+     ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
+     "\"description\":\"what the multipliers of each sample, and reactions that rest on them, "
+     "are worth: an index into lambda_marks\"}"
+     "}},\"incidents\":" OBJECTS ",\"cost\":{\"type\":\"object\"}}}"},
     {"ComparisonList",
      "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS
      "}}"},

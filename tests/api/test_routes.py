@@ -172,6 +172,19 @@ class Stateless(driver.ServerCase):
         self.assertEqual(len(run["samples"]["q"]), 5)
         self.assertLess(max(run["samples"]["gap"]), 1e-10)
 
+    def test_multipliers_that_are_not_determined_are_marked(self):
+        # at 1e-8 from flat the rows of a parallelogram are one; a second later they are two
+        near = {"scene": "parallelogram", "settings": {"th_0": 1e-8, "w_0": 1, "g": 0}}
+        self.assertEqual(self.post("terms", {**near, "reactions": True}).json()["lambda_mark"], "one of many")
+        run = self.post("runs", {**near, "method": "projection@rk4:h=1e-3", "time": 1, "at": [0, 1]}).json()
+        self.assertEqual([run["lambda_marks"][m] for m in run["samples"]["lambda_mark"]], ["one of many", "determined"])
+        # Bennett's linkage has rows to spare
+        spare = self.post("runs", {"scene": "bennett", "method": METHODS[0], "time": 0.1, "at": [0, 0.1]}).json()
+        self.assertEqual([spare["lambda_marks"][m] for m in spare["samples"]["lambda_mark"]], ["one of many"] * 2)
+        self.assertEqual(self.post("terms", {"scene": "bennett"}).json()["lambda_mark"], "one of many")
+        free = self.post("runs", {"scene": "pendulum", "method": METHODS[0], "time": 0.1}).json()
+        self.assertNotIn("lambda_mark", free["samples"])
+
     def test_a_run_gives_raw_multipliers_when_asked_for(self):
         body = {"scene": "four-bar", "method": "index2@midpoint:h=0.01", "time": 0.1, "every": 0.05}
         self.assertNotIn("raw_lambda", self.post("runs", body).json()["samples"])

@@ -150,6 +150,26 @@ class CommandLine(unittest.TestCase):
         words = ("run", "four-bar", "--method", RK4, "--time", "0.1", "--raw-lambda", "--json")
         self.assertNotIn("raw_lambda", strict(self.assert_exit(call(*words), DONE))["samples"])
 
+    def test_multipliers_without_a_digit_are_told_beside_them(self):
+        # a bead where two rails cross at an angle e that grows with time: the condition number is 6 / e^2
+        rails = json.dumps({
+            "holonom": 1, "name": "rails", "title": "rails",
+            "lagrangian": {
+                "coordinates": [{"name": "x", "rate": "u", "unit": "m"}, {"name": "y", "rate": "v", "unit": "m"}],
+                "kinetic": "(u^2 + v^2)/2", "potential": "9.81*y",
+                "constraints": [{"name": "level", "formula": "y"}, {"name": "turning", "formula": "y*cos(1e-7 + t) - x*sin(1e-7 + t)"}],
+            },
+            "start": {"positions": {"x": 0, "y": 0}, "rates": {"u": 0, "v": 0}}, "duration": 1, "step": 0.01,
+        })
+        text = self.assert_exit(call("terms", "-", stdin=rails), DONE)
+        self.assertIn("multipliers, and reactions that rest on them: no digit left (condition 6e+14, rank 2 of 2)", text)
+        self.assertNotIn("no digit", self.assert_exit(call("terms", "-", "--t", "1", stdin=rails), DONE))
+        result = call("run", "-", "--method", RK4, "--time", "1", "--at", "0,1", stdin=rails)
+        rows = list(csv.DictReader(io.StringIO(self.assert_exit(result, DONE))))
+        self.assertEqual([row["lambda_mark"] for row in rows], ["2", "0"])
+        said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()
+        self.assertIn("no digit left in 1 of 2 samples (lambda_mark 2)", said)
+
     def test_a_pair_that_does_not_fit_is_refused_with_what_fits(self):
         result = call("run", "four-bar", "--method", "index3@rk4")
         said = result.stderr if isinstance(result.stderr, str) else result.stderr.decode()

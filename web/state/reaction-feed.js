@@ -41,12 +41,12 @@ export function createReactionFeed(store) {
         ...item,
         point: pointAt(points, item.place, scene.length),
       }));
-      return { method: m, t, list, efforts: answer.efforts, reason: answer.reason ?? "" };
+      return { method: m, t, list, efforts: answer.efforts, mark: answer.lambda_mark ?? "", reason: answer.reason ?? "" };
     } catch (error) {
       if (error instanceof Problem && error.status === 422) {
         refusedFor = data.generation;
       }
-      return { method: m, t, list: [], efforts: [], reason: sentenceOf(error) };
+      return { method: m, t, list: [], efforts: [], mark: "", reason: sentenceOf(error) };
     }
   }
 

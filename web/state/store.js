@@ -65,7 +65,7 @@ function initialData() {
     before: null,
     /** @type {Incident[]} */ incidents: [],
     /** Forces in the joints of a method at a time; `point`: the drawn point at the joint, or -1; null until they are asked for.
-     * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], reason: string} | null} */
+     * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], mark: string, reason: string} | null} */
     reactions: null,
     /** null until it is asked for @type {import("./reference.js").Reference | null} */ reference: null,
     /** by kind @type {Record<string, import("./studies.js").Study>} */

@@ -16,6 +16,8 @@ const AXES = [
 ];
 const NAMES = { world: ["x", "y", "z"], joint: ["1", "2", "3"] };
 const DIGITS = 3;
+const LOST =
+  " No digit of forces that close the loops is left: the rows of the loops all but depend on each other here.";
 
 /**
  * @param {HTMLElement} el
@@ -151,7 +153,7 @@ export function createReactions(el, store, actions) {
       showEfforts([]);
       return;
     }
-    const when = `${method.label} at ${seconds(answer.t, data.duration)}.`;
+    const when = `${method.label} at ${seconds(answer.t, data.duration)}.${answer.mark === "no digit left" ? LOST : ""}`;
     showEfforts(answer.efforts);
     if (answer.list.length === 0) {
       say(whose, `Formulas have no joints; what each constraint does along each coordinate: ${when}`);

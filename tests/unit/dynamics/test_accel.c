@@ -1,0 +1,116 @@
+// What the multipliers of a state are worth: told from the rank and the condition of K.
+
+#include "dynamics/eval.h"
+#include "support/alloc.h"
+#include "support/model.h"
+#include "support/near.h"
+
+#include <math.h>
+
+enum { MAX_NV = 8, MAX_NC = 8 };
+
+// A bead where two rails cross at the angle e: J J' has the eigenvalues 1 -+ cos e, so that the 1-norm condition of K is 6 / e^2
+// where e is small: 1e13 at 7.7e-7.
+static const char RAILS[] =
+    "{\"holonom\": 1, \"name\": \"rails\", \"title\": \"rails\","
+    " \"parameters\": {\"e\": {\"value\": 1, \"unit\": \"rad\", \"min\": 0, \"max\": 2}},"
+    " \"lagrangian\": {\"coordinates\": [{\"name\": \"x\", \"rate\": \"u\", \"unit\": \"m\"},"
+    " {\"name\": \"y\", \"rate\": \"v\", \"unit\": \"m\"}],"
+    " \"kinetic\": \"(u^2 + v^2)/2\", \"potential\": \"9.81*y\","
+    " \"constraints\": [{\"name\": \"level\", \"formula\": \"y\"},"
+    " {\"name\": \"inclined\", \"formula\": \"y*cos(e) - x*sin(e)\"}]},"
+    " \"start\": {\"positions\": {\"x\": 0, \"y\": 0}, \"rates\": {\"u\": 0, \"v\": 0}},"
+    " \"duration\": 1, \"step\": 0.01}";
+
+/// The mark at a state of a model, and the condition there.
+static hn_multiplier_mark mark_at(const hn_model *m, hn_accel *accel, const double *q,
+                                  double *condition) {
+    double a[MAX_NV], lambda[MAX_NC], v[MAX_NV] = {0};
+    hn_accel_info info;
+    assert_int_equal(hn_accel_eval(accel, 0, q, v, 0, 0, a, lambda, &info), HN_OK);
+    assert_int_equal(hn_accel_condition(accel, 0, q, v, condition), HN_OK);
+    const long before = hn_alloc_count();
+    const hn_multiplier_mark mark = hn_accel_mark(accel, 0, q, v, &info);
+    assert_int_equal(hn_alloc_count(), before);
+    assert_true(m->info.nv <= MAX_NV && m->info.nc <= MAX_NC);
+    return mark;
+}
+
+static hn_accel *create_accel(const hn_model *m) {
+    hn_accel *accel = NULL;
+    assert_int_equal(hn_accel_create(m->sys, &(hn_accel_opts){.want_lambda = 1}, m->arena, &accel),
+                     HN_OK);
+    return accel;
+}
+
+static void close_accel(hn_model *m, hn_accel *accel) {
+    hn_accel_free(accel);
+    hn_model_close(m);
+}
+
+static void rails_that_all_but_coincide_leave_no_digit(void **state) {
+    (void)state;
+    static const struct {
+        const char *setting;
+        double e;
+        hn_multiplier_mark mark;
+    } rails[] = {
+        {"e=1", 1, HN_MULTIPLIERS_DETERMINED},       {"e=1e-3", 1e-3, HN_MULTIPLIERS_DETERMINED},
+        {"e=1e-6", 1e-6, HN_MULTIPLIERS_DETERMINED}, {"e=6e-7", 6e-7, HN_MULTIPLIERS_LOST},
+        {"e=1e-8", 1e-8, HN_MULTIPLIERS_LOST},       {"e=0", 0, HN_MULTIPLIERS_ONE_OF_MANY}};
+    for (size_t k = 0; k < sizeof rails / sizeof *rails; k++) {
+        hn_model m;
+        double condition;
+        hn_model_open_text(&m, RAILS, rails[k].setting);
+        assert_int_equal(m.status, HN_OK);
+        hn_accel *accel = create_accel(&m);
+        assert_int_equal(mark_at(&m, accel, m.q, &condition), rails[k].mark);
+        if (rails[k].e > 0 && rails[k].e < 1) { // of an estimate, though here it is exact
+            assert_rel(condition * rails[k].e * rails[k].e, 6, 0.01);
+        }
+        close_accel(&m, accel);
+    }
+}
+
+static void a_parallelogram_that_lies_flat_leaves_one_choice_of_many(void **state) {
+    (void)state;
+    static const struct {
+        const char *setting;
+        hn_multiplier_mark mark;
+    } poses[] = {{"th_0=1e-3", HN_MULTIPLIERS_DETERMINED}, {"th_0=0", HN_MULTIPLIERS_ONE_OF_MANY}};
+    for (int k = 0; k < 2; k++) {
+        hn_model m;
+        double condition;
+        hn_model_open_closed(&m, "parallelogram", poses[k].setting);
+        hn_accel *accel = create_accel(&m);
+        assert_int_equal(mark_at(&m, accel, m.q, &condition), poses[k].mark);
+        close_accel(&m, accel);
+    }
+}
+
+static void rows_written_twice_leave_one_choice_of_many(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene;
+        hn_multiplier_mark mark;
+    } scenes[] = {{"fb0", HN_MULTIPLIERS_DETERMINED},
+                  {"fb0-redundant", HN_MULTIPLIERS_ONE_OF_MANY}};
+    for (int k = 0; k < 2; k++) {
+        hn_model m;
+        double condition;
+        hn_model_open_closed(&m, scenes[k].scene, NULL);
+        hn_accel *accel = create_accel(&m);
+        assert_int_equal(mark_at(&m, accel, m.q, &condition), scenes[k].mark);
+        assert_true(condition < 1e4);
+        close_accel(&m, accel);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rails_that_all_but_coincide_leave_no_digit),
+        cmocka_unit_test(a_parallelogram_that_lies_flat_leaves_one_choice_of_many),
+        cmocka_unit_test(rows_written_twice_leave_one_choice_of_many),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
