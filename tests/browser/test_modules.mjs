@@ -5,6 +5,7 @@ import { join } from "node:path";
 import { createHash } from "node:crypto";
 import { test } from "node:test";
 import {
+  bound,
   magnification,
   niceAbove,
   niceBelow,
@@ -13,6 +14,7 @@ import {
   powerOfTen,
   quantity,
   scientific,
+  withPowers,
 } from "../../web/state/format.js";
 import { createHistory, thin } from "../../web/state/history.js";
 import { KEYS, bindingOf, findKey, isCharacter } from "../../web/state/keys.js";
@@ -340,6 +342,19 @@ test("the page allows its own import map and no other inline script", () => {
   assert.doesNotMatch(html, /https?:\/\//);
 });
 
+test("typed powers are printed as such, and spellings stay as they are typed", () => {
+  assert.equal(withPowers("grows like h^p t, then h^p t^2"), "grows like hᵖ t, then hᵖ t²");
+  assert.equal(withPowers("M^-1; errors of 1e-01 to 1e-09"), "M⁻¹; errors of 10⁻¹ to 10⁻⁹");
+  assert.equal(withPowers("rk4:h=1e-10, 2.1e-10, a^b"), "rk4:h=1e-10, 2.1e-10, a^b");
+});
+
+test("a bound is told as the next power of ten, and never below what it bounds", () => {
+  assert.deepEqual(
+    [9.2e-14, 1e-12, 2e-12, 1e-11, 3.3e-3].map((value) => bound(value, "m")),
+    ["10⁻¹³ m", "1 pm", "10 pm", "10 pm", "10 mm"],
+  );
+});
+
 test("the lock files name no address to download from", () => {
   for (const folder of ["web", "tests/browser"]) {
     assert.doesNotMatch(
@@ -520,7 +535,7 @@ test("a link says the same after it was read and written again", () => {
       frame: Math.floor(random() * 5000),
       selected: Math.floor(random() * 8),
       hidden: pick([0, 1, 2, 3]),
-      show: pick(["labels", "traces", "arrows", "reactions"]),
+      show: pick(["labels", "traces", "reference", "arrows", "reactions"]),
       study: ["", "work-precision", "stability", "budget"][k % 4],
       build: "0.1.0 gcc 12.2.0",
     });

@@ -39,6 +39,7 @@ for (const width of [360, 320]) {
     const page = await open(t, { viewport: { width, height: 780 } });
     await playTo(page, 1.5);
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    await page.evaluate(() => scrollTo(0, document.body.scrollHeight)); // the status line is at its own place there
     const tops = await page.evaluate(() =>
       [
         "mechanism",
@@ -272,6 +273,33 @@ test("a click on a curve shows that time, and the table, the drawing and the clo
   assert.notEqual(await page.getAttribute(".ghost.selected .outline", "d"), before);
   const shown = await read(page, (data) => data.history.t[data.view.shown]);
   assert.equal(await page.textContent(".time"), `t ${shown.toFixed(2)} s`);
+});
+
+test("the axes of time are those of the scene shown, after another one as well", async (t) => {
+  const page = await open(t);
+  await page.selectOption("#scene", "seven-body-squeezer");
+  await until(page, (data) => data.scene.id === "seven-body-squeezer" && data.history.count > 0);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.01);
+  await page.keyboard.press("ArrowRight");
+  await stood(page);
+  const { x, y, width } = await page.locator(".u-over").first().boundingBox();
+  await page.mouse.click(x + 0.1 * width, y + 20);
+  await until(page, (data) => data.view.shown >= 0);
+  const shown = await read(page, (data) => data.history.t[data.view.shown] / data.duration);
+  assert.ok(shown > 0.05 && shown < 0.3, `a tenth of the axis is ${shown} of the run`);
+});
+
+test("a server that is lost is told in sight of the mechanism", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url, viewport: { width: 1280, height: 720 } });
+  assert.equal(await page.evaluate(() => scrollY), 0);
+  line.cut();
+  const told = page.locator(".stream");
+  await told.getByText("reconnecting").waitFor();
+  const { y, height } = await told.boundingBox();
+  assert.ok(y > 0 && y + height <= 720, `at ${y} px of 720`);
 });
 
 test("the drawing is described in one sentence on demand", async (t) => {

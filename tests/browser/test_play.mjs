@@ -540,10 +540,14 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   assert.equal(efforts.length, 6);
   assert.match(efforts[0], /th1[−\d.]+ [mk]?N m$/);
   assert.equal(await page.locator(".arrows path").count(), 0);
+  await page.selectOption("#scene", "four-bar"); // and asks again for one that has joints
+  await page.waitForFunction(() => document.querySelectorAll(".reaction-table tbody tr").length === 4);
 });
 
 test("a link opens the same comparison at the same frame with the same numbers", async (t) => {
   const page = await open(t);
+  await until(page, (data) => data.reference?.state === "ready");
+  await page.getByRole("button", { name: "reference", exact: true }).click();
   await page.click(".scene-parameters summary");
   await type(page, "#parameter-l2", "1.3");
   await until(page, (data) => data.settings.l2 === 1.3);
@@ -560,9 +564,10 @@ test("a link opens the same comparison at the same frame with the same numbers",
     gaps: data.latest.methods.map(({ gap }) => gap),
     methods: data.methods.map(({ spelling }) => spelling),
     settings: data.settings,
-    view: [data.view.selected, data.view.traces, data.view.reactions, data.view.arrows],
+    view: ["selected", "traces", "reference", "reactions", "arrows"].map((name) => data.view[name]),
   });
   const before = await read(page, what);
+  assert.deepEqual(before.view, [2, true, false, true, false]);
   const fragment = new URL(page.url()).hash;
   assert.match(fragment, /^#scene=four-bar&set\.l2=1\.3&method=/);
   const other = await open(t, { hash: fragment });

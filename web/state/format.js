@@ -30,6 +30,22 @@ export function powerOfTen(n) {
   return `10${n < 0 ? "⁻" : ""}${digits}`;
 }
 
+const RAISED = { ...SUPERSCRIPT, p: "ᵖ", k: "ᵏ", n: "ⁿ", "-": "⁻", "+": "" };
+
+/** Powers that were typed, as they are printed: h^p t^2 becomes hᵖ t², and 1e-04 becomes 10⁻⁴. @param {string} text */
+export function withPowers(text) {
+  return text
+    .replace(/\^(-?\d+|[pkn]\b)/g, (_, power) => [...power].map((c) => RAISED[c]).join(""))
+    .replace(/(?<![=\w.])1e([-+]\d\d)\b/g, (_, power) => powerOfTen(Number(power)));
+}
+
+/** A bound, as the next power of ten: 10 pm, 10⁻¹³ m. @param {number} value above 0 @param {string} unit */
+export function bound(value, unit) {
+  const power = Math.ceil(Math.log10(value) - 1e-9);
+  const least = 10 ** power;
+  return least < SMALLEST_PREFIXED ? `${powerOfTen(power)} ${unit}` : quantity(least, unit, 1);
+}
+
 /** Two digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value */
 export function scientific(value) {
   if (value === 0) {

@@ -3,7 +3,7 @@
 // A bare fragment is the id of a scene.
 import { KINDS } from "./studies.js";
 
-const SHOWN = ["labels", "traces", "arrows", "reactions"];
+const SHOWN = ["labels", "traces", "reference", "arrows", "reactions"];
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
 const LONGEST = 4000; // [characters] that every mail program and browser takes
 
@@ -41,7 +41,7 @@ const EMPTY = () => ({
   frame: 0,
   selected: 0,
   hidden: /** @type {number[]} */ ([]),
-  show: ["labels"],
+  show: ["labels", "reference"],
   study: "",
   build: "",
 });

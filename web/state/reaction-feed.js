@@ -11,21 +11,21 @@ export function createReactionFeed(store) {
   let asking = false;
   let timer = 0;
   let answered = "";
-  let refusedFor = -1; // generation: what the scene cannot tell at one time it cannot at another
+  let refusedFor = -1; // the run: what the scene cannot tell at one time it cannot at another
 
   function wanted() {
     const { history, view } = data;
     const last = (history?.count ?? 0) - 1;
     const index = view.shown < 0 ? last : Math.min(view.shown, last);
     const m = view.selected;
-    const key = `${data.generation} ${m} ${history?.lastFrame} ${index}`;
+    const key = `${data.run} ${m} ${history?.lastFrame} ${index}`;
     const asked = (view.reactions || view.arrows) && data.scene && index >= 0 && data.methods[m];
-    return asked && key !== answered && refusedFor !== data.generation ? { index, m, key } : null;
+    return asked && key !== answered && refusedFor !== data.run ? { index, m, key } : null;
   }
 
   /** @param {{index: number, m: number}} what */
   async function ask({ index, m }) {
-    const { history, scene, settings } = data;
+    const { history, scene, settings, run } = data;
     const { q, v } = history.stateAt(m, index);
     const points = history.pointsAt(m, index).slice();
     const t = history.t[index];
@@ -44,7 +44,7 @@ export function createReactionFeed(store) {
       return { method: m, t, list, efforts: answer.efforts, mark: answer.lambda_mark ?? "", reason: answer.reason ?? "" };
     } catch (error) {
       if (error instanceof Problem && error.status === 422) {
-        refusedFor = data.generation;
+        refusedFor = run;
       }
       return { method: m, t, list: [], efforts: [], mark: "", reason: sentenceOf(error) };
     }
@@ -57,10 +57,10 @@ export function createReactionFeed(store) {
       return;
     }
     asking = true;
-    const { generation } = data;
+    const { run } = data;
     const answer = await ask(what);
     asking = false;
-    if (generation === data.generation) {
+    if (run === data.run) {
       answered = what.key;
       data.reactions = answer;
       store.emit("reactions");

@@ -17,7 +17,7 @@ const SHORT = 2; // [s]: a run of less is shown slowly, so that there is somethi
 const SHOWN_FOR = 5; // [s]
 export const MOST_METHODS = 8;
 const MOST_STEPS = 600; // frames that the server takes in one request
-const PANELS = /** @type {const} */ (["labels", "traces", "arrows", "reactions"]);
+const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows", "reactions"]);
 
 const FIRST_SCENE = "four-bar";
 const FIRST_METHODS = [
@@ -97,6 +97,7 @@ export function createSession(store) {
     data.scene = description.scene;
     const { drawing, coordinates } = description.scene;
     data.history = createHistory(data.methods.length, drawing.points, coordinates.length);
+    data.run++;
     data.incidents = [];
     data.latest = null;
     data.view.shown = -1;

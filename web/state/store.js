@@ -50,6 +50,7 @@ function initialData() {
     /** @type {Lesson[]} */ lessons: [],
     id: "",
     generation: -1,
+    /** counts the starts: no two runs, of whatever comparison, have the same */ run: 0,
     /** null until the first comparison is there */
     scene: /** @type {Scene} */ (/** @type {any} */ (null)),
     /** @type {Method[]} */ methods: [],

@@ -2,6 +2,7 @@
 // Studies of what is on the page: what accuracy costs, where steps are stable, where the error comes from. A study is asked for,
 // looked at while it lasts, and read when it is done; its document is that of the command line.
 import { Problem, api, sentenceOf } from "../api/client.js";
+import { withPowers } from "./format.js";
 import { formatSpelling, parseSpelling } from "./spelling.js";
 
 const LOOK_EVERY = 400; // [ms]
@@ -253,7 +254,7 @@ export const floorOf = (study, error) => ABOVE_REFERENCE * (study.reference.erro
 /** Sentences on who reaches which accuracy for the least. @returns {string[]} */
 export function sentencesOf(study, error, cost) {
   const found = study.pareto.find((one) => one.error === error && one.cost === cost);
-  return found ? found.sentences.split("\n").filter(Boolean) : [];
+  return found ? withPowers(found.sentences).split("\n").filter(Boolean) : [];
 }
 
 /** Whole decades that hold all finite errors and the floor, at least two. @param {Dot[][]} dots @param {number} floor */

@@ -1,6 +1,6 @@
 // @ts-check
 // What is happening, in words: the state of a method, sentences, and the card that says why.
-import { ROUNDING, quantity, seconds } from "./format.js";
+import { ROUNDING, quantity, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 
 /** A gap that more than doubles from the first half of the motion to the second grows: t to t^2 do, an oscillation does not. */
@@ -228,8 +228,8 @@ export function cardOfMethod(data, m, shown) {
   return {
     title: `${method.title}`,
     happened,
-    rule: method.rule,
-    drift: method.drift,
+    rule: withPowers(method.rule),
+    drift: withPowers(method.drift ?? ""),
     tries: triesOf(data, m),
   };
 }

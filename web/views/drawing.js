@@ -56,7 +56,7 @@ export function createDrawing(el, store, actions) {
 
   /** @type {ReturnType<typeof makeGhost>[]} */
   let ghosts = [];
-  /** @type {ReturnType<typeof piecesOf>} */
+  /** @type {(ReturnType<typeof piecesOf>[number] & {path: SVGElement})[]} */
   let truth = [];
   let drawnFor = ""; // which methods are drawn, and which of them opaque
   const viewKey = () => JSON.stringify([data.view.selected, ...data.view.hidden]);
@@ -173,7 +173,11 @@ export function createDrawing(el, store, actions) {
   function makeReference() {
     const { reference: known, scene } = data;
     const ready = known?.state === "ready";
-    truth = ready && scene ? piecesOf(scene, "together") : [];
+    truth = (ready && scene ? piecesOf(scene, "together") : []).map((piece) => ({
+      ...piece,
+      path: s("path", { class: piece.layer }),
+    }));
+    layers.truth.replaceChildren();
     const digits = ready ? `${known.digits.toFixed(1)} digits to ${known.time} s` : "";
     reference.title = ready
       ? `the reference solution, grey: ${known.means.join(" and ")} agree to ${digits}`
@@ -207,13 +211,12 @@ export function createDrawing(el, store, actions) {
     const points = data.view.reference
       ? referenceAt(data.reference, data.history.frameAt(now))
       : null;
-    layers.truth.replaceChildren(
-      ...(points ? truth : []).map(({ shapes: drawn, layer }) =>
-        s("path", {
-          d: drawn.map((shape) => pen.outline(shape, points)).join(""),
-          class: layer,
-        }),
-      ),
+    const pieces = points ? truth : [];
+    if (layers.truth.childElementCount !== pieces.length) {
+      layers.truth.replaceChildren(...pieces.map(({ path }) => path));
+    }
+    pieces.forEach(({ shapes: drawn, path }) =>
+      set(path, { d: drawn.map((shape) => pen.outline(shape, points)).join("") }),
     );
   }
 

@@ -1,7 +1,7 @@
 // @ts-check
 // Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the server checks.
 import { sentenceOf } from "../api/client.js";
-import { parseQuantity, plain, prettyUnit } from "../state/format.js";
+import { parseQuantity, plain, prettyUnit, withPowers } from "../state/format.js";
 import { choosePartner, faultOf, handsOver, misfit, misfitsOf, partnersOf } from "../state/pairs.js";
 import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
@@ -159,13 +159,13 @@ export function createMethodDialog(el, store, actions) {
     const parsed = parseSpelling(spelling.value);
     const card = cardOf(data.catalogue, "formulation", formulation.value);
     const stepper = cardOf(data.catalogue, "integrator", integrator.value);
-    say(about, card ? card.rule : "");
+    say(about, withPowers(card?.rule ?? ""));
     const notes = [
       card?.when_not && `Not for ${card.when_not}.`,
       card?.limits && `${capital(card.limits)}.`,
       card?.order_note && `Order: ${card.order_note}.`,
     ];
-    say(limits, notes.filter(Boolean).join(" "));
+    say(limits, withPowers(notes.filter(Boolean).join(" ")));
     say(steps, stepper ? stepper.about : "");
     settings.replaceChildren(
       ...["formulation", "integrator"].flatMap((kind) => settingFields(kind, parsed[kind])),

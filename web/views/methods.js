@@ -1,6 +1,6 @@
 // @ts-check
 // The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state in words.
-import { quantity } from "../state/format.js";
+import { bound, quantity, withPowers } from "../state/format.js";
 import { offReference } from "../state/reference.js";
 import { MOST_METHODS } from "../state/session.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
@@ -108,7 +108,7 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
           type: "button",
           class: "select",
           onclick: () => actions.select(m),
-          title: `${method.title}: ${method.rule}`,
+          title: withPowers(`${method.title}: ${method.rule}`),
         },
         swatch(method),
         h("span", { class: "name" }, method.label),
@@ -239,7 +239,7 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     const off = offReference(reference, history.frameAt(i), history.pointsAt(m, i));
     return Number.isNaN(off) || !reference
       ? ""
-      : `off ${off <= reference.own ? "< " : ""}${quantity(off, "m", 2)}`;
+      : `off ${off <= reference.own ? `< ${bound(off, "m")}` : quantity(off, "m", 2)}`;
   }
 
   function paint() {

@@ -64,16 +64,12 @@ export function createPlots(el, store, actions) {
   el.replaceChildren(...figures.map(({ figure }) => figure));
   let painted = 0;
   let timer = 0;
-  let generation = -1;
+  let run = -1;
 
   function makeFigure(spec) {
     const kind = { ...spec };
     const canvas = h("div", { class: "curve" });
-    const empty = h(
-      "p",
-      { class: "no-curve", hidden: true },
-      "",
-    );
+    const empty = h("p", { class: "no-curve", hidden: true });
     canvas.append(empty);
     const table = h("div", { class: "twin", tabindex: "0", hidden: true });
     const title = h("span", { class: "axis-title" }, kind.title);
@@ -239,6 +235,7 @@ export function createPlots(el, store, actions) {
     }
     const now = history.t[shown()];
     const last = history.t[history.count - 1];
+    const nothing = new Float64Array(history.count).fill(NaN);
     for (const { kind, plot, table, canvas } of figures) {
       if (canvas.hidden) {
         fillTable(table, kind);
@@ -247,9 +244,8 @@ export function createPlots(el, store, actions) {
       const map = kind.log
         ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
         : (v) => (Number.isNaN(v) ? null : v);
-      const empty = new Float64Array(history.count).fill(NaN);
       const columns = columnsOf(kind.column).map((column, m) =>
-        data.view.hidden.has(m) ? empty : column,
+        data.view.hidden.has(m) ? nothing : column,
       );
       const grey = hasGrey(kind);
       if (grey) {
@@ -333,8 +329,8 @@ export function createPlots(el, store, actions) {
 
   const stop = listen(store, {
     methods: () => {
-      setSeries(generation !== data.generation);
-      generation = data.generation;
+      setSeries(run !== data.run);
+      run = data.run;
     },
     view: () => setSeries(false),
     theme: () => setSeries(false),

@@ -110,7 +110,7 @@ export function createReduced(store, actions, set) {
     const last = (history?.count ?? 0) - 1;
     const index = view.shown < 0 ? last : Math.min(view.shown, last);
     const m = view.selected;
-    const key = `${data.generation} ${m} ${history?.lastFrame} ${index}`;
+    const key = `${data.run} ${m} ${history?.lastFrame} ${index}`;
     const visible = node.open && node.isConnected && scene && index >= 0 && data.methods[m];
     return visible && key !== answered ? { m, index, key } : null;
   }
@@ -144,12 +144,12 @@ export function createReduced(store, actions, set) {
       return;
     }
     asking = true;
-    const { generation, history, scene } = data;
+    const { run, history, scene } = data;
     const { q, v } = history.stateAt(what.m, what.index);
     const t = history.t[what.index];
     try {
       const { reduced } = await actions.terms({ t, state: namedState(scene.coordinates, q, v) });
-      if (generation === data.generation) {
+      if (run === data.run) {
         answered = what.key;
         show(reduced, what.m, t);
       }

@@ -14,13 +14,13 @@ const STREAM = {
 /** @param {HTMLElement} el @param {import("../state/store.js").Store} store */
 export function createStatus(el, store) {
   const data = store.data;
-  const run = h("span", {});
+  const run = h("span", { class: "run" });
   const scene = h("span", {});
   const stream = h("span", { class: "stream", role: "status" });
   const id = h("span", { class: "event-id number" }); // apart from the status, or it would be read out
   const notice = h("span", { class: "notice", role: "status" });
   const build = h("span", { class: "build" });
-  el.replaceChildren(run, scene, h("span", {}, stream, " ", id), notice, build);
+  el.replaceChildren(run, scene, h("span", {}, stream, id), notice, build);
 
   function showRun() {
     const n = data.methods.length;
