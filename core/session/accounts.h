@@ -26,10 +26,8 @@ typedef struct hn_accounts_request {
     const char *const *methods; ///< spellings; NULL: the scene's
     int n_methods;              ///< at most HN_ACCOUNTS_METHODS
     double time;                ///< [s]; NaN: the scene's duration
-    const char
-        *build; ///< of the program: accounts of another one are not gone on with; may be NULL
-    const char *folder;      ///< where unfinished accounts are kept; NULL: nowhere
-    int (*stop)(void *user); ///< asked now and then; NULL: never
+    const char *folder;         ///< where unfinished accounts are kept; NULL: nowhere
+    int (*stop)(void *user);    ///< asked now and then; NULL: never
     void (*progress)(void *user, double share);
     void *user;
 } hn_accounts_request;

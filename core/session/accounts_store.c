@@ -18,7 +18,7 @@ static uint64_t accounts_key(const hn_accounts *a) {
     for (int i = 0; i < a->n; i++) {
         hash = hn_hash_text(hash, a->rows[i].spelling);
     }
-    return hn_hash_mix(hn_hash_text(hash, a->request.build ? a->request.build : ""));
+    return hn_hash_mix(hash);
 }
 
 /// The numbers of an account, in the order they are written.

@@ -147,9 +147,8 @@ HN_MUST_CHECK hn_status hn_extreme_load_text(const hn_library *lib, const char *
                                              hn_extreme **out, hn_diags *diags);
 void hn_extreme_free(hn_extreme *x); ///< NULL is legal
 /// Takes the trials that the same cases have done before from the folder, and keeps those to come there until all are done. Before
-/// hn_extreme_run(). `build`: of the program. Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
-HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, const char *build,
-                                          hn_diags *diags);
+/// hn_extreme_run(). Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
+HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags);
 /// Runs all trials that are not done; those that were stopped, or stand behind the budget, say so.
 void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts);
 int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials

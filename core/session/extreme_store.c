@@ -23,9 +23,9 @@ static hn_status hash_file(const char *path, uint64_t *hash, hn_diags *diags) {
     return bad ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s'", path) : HN_OK;
 }
 
-/// All that decides what is seen: the files of the cases, the shipped scenes they name, the program.
-static hn_status find_key(const hn_extreme *x, const char *build, uint64_t *key, hn_diags *diags) {
-    uint64_t hash = hn_hash_text(hn_hash_double(x->hash, FORMAT), build ? build : "");
+/// All that decides what is seen: the files of the cases, the shipped scenes they name.
+static hn_status find_key(const hn_extreme *x, uint64_t *key, hn_diags *diags) {
+    uint64_t hash = hn_hash_double(x->hash, FORMAT);
     const char *last = "";
     hn_status status = HN_OK;
     for (int i = 0; i < x->n_cases; i++) {
@@ -77,9 +77,9 @@ static int take_line(void *user, const cJSON *o) {
     return 1;
 }
 
-hn_status hn_extreme_resume(hn_extreme *x, const char *folder, const char *build, hn_diags *diags) {
+hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags) {
     uint64_t key = 0;
-    const hn_status status = find_key(x, build, &key, diags);
+    const hn_status status = find_key(x, &key, diags);
     return status == HN_OK
                ? hn_journal_open(&x->journal, folder, "extreme", key, take_line, x, diags)
                : status;

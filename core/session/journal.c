@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /// Hands whole lines over; returns the bytes of those that were taken.
@@ -23,6 +24,17 @@ static size_t take_lines(char *text, hn_journal_take take, void *user) {
         used = (size_t)(end - text) + 1;
     }
     return used;
+}
+
+/// The key of this very program: its file is another one once it is built anew.
+static uint64_t add_program(uint64_t key) {
+    struct stat program;
+    if (stat("/proc/self/exe", &program) == 0) {
+        const long long marks[] = {(long long)program.st_size, (long long)program.st_mtim.tv_sec,
+                                   (long long)program.st_mtim.tv_nsec};
+        key = hn_hash_bytes(key, marks, sizeof marks);
+    }
+    return hn_hash_mix(key);
 }
 
 static hn_status open_file(hn_journal *j, hn_diags *diags) {
@@ -45,7 +57,7 @@ hn_status hn_journal_open(hn_journal *j, const char *folder, const char *kind, u
     char hex[17];
     size_t n = 0;
     *j = (hn_journal){0};
-    hn_hash_hex(key, hex);
+    hn_hash_hex(add_program(key), hex);
     if (snprintf(j->path, sizeof j->path, "%s/%s-%s.ndjson", folder, kind, hex) >=
         (int)sizeof j->path) {
         j->path[0] = 0;

@@ -19,8 +19,8 @@ typedef struct hn_journal {
 /// One line; 0 when it does not fit the work: it and all that follows is dropped, and done again.
 typedef int (*hn_journal_take)(void *user, const cJSON *line);
 
-/// Opens FOLDER/KIND-KEY.ndjson, made where it is missing, and hands its whole lines to `take` in order. `key`: hash of all that decides what
-/// the pieces are. Where the path would be too long nothing is kept. Fails: HN_ERR_IO, told in diags: it cannot be
+/// Opens FOLDER/KIND-HASH.ndjson, made where it is missing, and hands its whole lines to `take` in order. `key`: hash of all that decides what
+/// the pieces are, but for the program: what another build of it has done is not gone on with. Where the path would be too long nothing is kept. Fails: HN_ERR_IO, told in diags: it cannot be
 /// written, or another program has it; the journal is then closed.
 HN_MUST_CHECK hn_status hn_journal_open(hn_journal *journal, const char *folder, const char *kind,
                                         uint64_t key, hn_journal_take take, void *user,

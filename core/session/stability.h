@@ -31,7 +31,6 @@ typedef struct hn_map_request {
     int n_methods; ///< 0: index1 and projection with rk4, Dormand-Prince 8 and symplectic Euler as they fit
     double time;   ///< [s]; NaN: the scene's, shortened where the smallest step would take too many
     double budget; ///< wall time [s]; NaN: 60; 0: none
-    const char *build;  ///< of the program, as in a study; may be NULL
     const char *folder; ///< where unfinished maps are kept; NULL: nowhere
     hn_map_load load;
     void *load_user;

@@ -26,7 +26,6 @@ static uint64_t map_key(const hn_map *map) {
         hn_method_format(&map->specs[m], spelling);
         hash = hn_hash_text(hash, spelling);
     }
-    hash = hn_hash_text(hash, map->request.build ? map->request.build : "");
     return hn_hash_mix(hash);
 }
 

@@ -18,8 +18,7 @@ typedef struct hn_study_request {
     int levels;                 ///< sizes per method; 0: 7
     int samples;                ///< of time per point; 0: HN_WP_SAMPLES; -1: none
     int shard, n_shards;        ///< part 1..n_shards of the study (study/shards.h); 0, 0: the whole
-    const char *
-        build; ///< what the program calls itself: work of another build is not gone on with; NULL: not told
+    const char *build;  ///< what the program calls itself, for parts of a study; NULL: not told
     const char *folder; ///< where references and unfinished studies are kept; NULL: nowhere
     int keep; ///< 1: what is kept of it stays when it is finished too, until hn_study_forget()
     hn_wp_hooks

@@ -23,7 +23,6 @@ static uint64_t study_key(const hn_study *s) {
         hn_wp_spelling(s->wp, m, 0, spelling);
         hash = hn_hash_text(hash, spelling);
     }
-    hash = hn_hash_text(hash, s->request.build ? s->request.build : "");
     if (s->wp->opts.n_shards > 1) {
         hash = hn_hash_double(hash, s->wp->opts.shard + 1e-3 * s->wp->opts.n_shards);
     }

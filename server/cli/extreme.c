@@ -1,5 +1,4 @@
 // holonom extreme [ID...]: cases in which methods break, predicted and observed.
-#include "build.h"
 #include "cli/study.h"
 #include "session/extreme.h"
 
@@ -123,7 +122,7 @@ static hn_status load(const hn_library *lib, const hn_args *args, const char *fo
         status = hn_extreme_load(lib, args->words.word, args->words.n, out, diags);
     }
     if (status == HN_OK && folder) {
-        status = hn_extreme_resume(*out, folder, HN_BUILD, diags);
+        status = hn_extreme_resume(*out, folder, diags);
     }
     return status;
 }

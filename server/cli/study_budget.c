@@ -1,5 +1,4 @@
 // holonom study SCENE budget: where the error at the end comes from, and the energy.
-#include "build.h"
 #include "cli/study.h"
 #include "cli/table.h"
 #include "session/accounts.h"
@@ -122,7 +121,6 @@ static hn_exit account_for(const hn_library *lib, const hn_args *args, const hn_
         .methods = args->methods.word,
         .n_methods = args->methods.n,
         .time = args->time,
-        .build = HN_BUILD,
         .folder = hn_study_folder(args, folder),
         .stop = hn_is_interrupted,
         .progress = show_progress,

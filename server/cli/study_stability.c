@@ -1,5 +1,4 @@
 // holonom study SCENE stability: where steps are stable, predicted and tried.
-#include "build.h"
 #include "cli/study.h"
 #include "cli/study_stability.h"
 
@@ -102,7 +101,6 @@ static hn_map_request request_of(const hn_args *args, source *from, const char *
     r.n_methods = args->methods.n;
     r.time = args->time;
     r.budget = args->budget;
-    r.build = HN_BUILD;
     r.folder = folder;
     r.load = load;
     r.load_user = from;

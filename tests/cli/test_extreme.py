@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -122,6 +123,17 @@ class Extreme(unittest.TestCase):
             self.assertIn("the budget of 0.2 s left trials out; the same command goes on from here", poor.stderr)
             rich = studies.call(["extreme", *SECONDS, "--json"], folder, text=True)
         self.assertEqual(rich.stdout, call([*SECONDS, "--json"]).stdout)
+
+    def test_what_another_build_did_is_not_gone_on_with(self):
+        words = ["extreme", *SECONDS]
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as place:
+            studies.interrupt(words, folder, "extreme")
+            other = shutil.copy(driver.PROGRAM, place)  # the same bytes, made later
+            argv, env = studies.command(words, folder, HOLONOM_HOME=os.environ.get("HOLONOM_HOME", os.getcwd()))
+            done = subprocess.run([other, *argv[1:]], capture_output=True, text=True, env=env, check=False, timeout=200 * driver.SLOW)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertNotIn("going on", done.stderr)
+            self.assertEqual(len(studies.journals(folder, "extreme")), 1, "that of the first waits for it")
 
     def test_a_journal_that_was_cut_or_damaged_is_used_as_far_as_it_is_whole(self):
         words = ["extreme", *SECONDS, "--json"]

@@ -31,7 +31,6 @@ static void begin(work *w) {
     memset(w, 0, sizeof *w);
     strcpy(w->folder, "/tmp/hn-journal-XXXXXX");
     assert_non_null(mkdtemp(w->folder));
-    snprintf(w->path, sizeof w->path, "%s/kind-000000000000002a.ndjson", w->folder);
 }
 
 static void end(work *w) {
@@ -44,6 +43,8 @@ static void open_again(work *w) {
     hn_diags diags = {0};
     w->n = 0;
     assert_int_equal(hn_journal_open(&w->journal, w->folder, "kind", KEY, take, w, &diags), HN_OK);
+    assert_int_equal(strncmp(w->journal.path, w->folder, strlen(w->folder)), 0);
+    snprintf(w->path, sizeof w->path, "%.127s", w->journal.path);
 }
 
 static void put(work *w, int i) {
@@ -102,6 +103,8 @@ static void what_is_torn_or_does_not_fit_is_cut_off_with_all_behind_it(void **st
     };
     work w;
     begin(&w);
+    open_again(&w);
+    hn_journal_end(&w.journal, 0);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         write_file(&w, cases[k].text);
         open_again(&w);
