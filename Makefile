@@ -299,12 +299,13 @@ $(COMMA_LOCALE):
 	@mkdir -p $@
 	@localedef --no-archive -i de_DE -f UTF-8 ./$@
 
+# the longest first, so that no processor is left alone with one of them
 run-suite: $(PROGRAM) $(UNIT) $(SLOW) $(COMMA_LOCALE)
-	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(UNIT) $(SLOW) $(SCRIPTS) $(BROWSER)
+	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(BROWSER) $(SCRIPTS) $(SLOW) $(UNIT)
 
 run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
 	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
-	    tests/run-tests.sh $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW))
+	    tests/run-tests.sh $(if $(filter asan,$(VARIANT)),$(SLOW)) $(UNIT)
 
 run-server: $(PROGRAM)
 	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \

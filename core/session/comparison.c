@@ -1,12 +1,12 @@
 #include "session/comparison.h"
 
 #include "render/look.h"
+#include "study/pace.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { STEPS_BETWEEN_CLOCKS = 256 };
 static const double FRAME = 1.0 / 60; // [s]
 enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length would not show it
 
@@ -186,12 +186,12 @@ int hn_comparison_finished(const hn_comparison *c) {
 static void advance_entry(hn_comparison *c, entry *e, double t) {
     double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
     double cpu = hn_run_get_summary(e->run).cpu_seconds;
-    for (long long n = 1; hn_run_time(e->run) < target * (1 - 1e-14); n++) {
+    hn_pace pace = hn_pace_begin();
+    while (hn_run_time(e->run) < target * (1 - 1e-14)) {
         if (hn_run_step_towards(e->run, target) != HN_OK) {
             return;
         }
-        if (n % STEPS_BETWEEN_CLOCKS == 0 &&
-            hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
+        if (hn_pace_is_due(&pace) && hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
             e->over_budget = 1;
             return;
         }

@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { STEPS_BETWEEN_CLOCKS = 64 };
-
 static void fail_look(hn_extreme_look *look, hn_status status, const char *reason) {
     look->status = status;
     snprintf(look->reason, sizeof look->reason, "%.199s", reason);
@@ -58,7 +56,8 @@ static hn_walk_end walk_steps(hn_extreme_look *look, const hn_walk_limits *limit
     const double T = look->time;
     double before = 0;
     look->least_step = HUGE_VAL;
-    for (int n = 1; hn_run_time(look->run) < T * (1 - 1e-12); n++) {
+    hn_pace pace = hn_pace_begin();
+    while (hn_run_time(look->run) < T * (1 - 1e-12)) {
         if (hn_run_step_towards(look->run, T) != HN_OK) {
             return HN_WALK_FAILED;
         }
@@ -71,7 +70,7 @@ static hn_walk_end walk_steps(hn_extreme_look *look, const hn_walk_limits *limit
             double *window = t <= T / 10 ? &look->first : &look->last;
             *window = fmax(*window, largest_speed(look));
         }
-        if (n % STEPS_BETWEEN_CLOCKS == 0 && limits->stop(limits->user)) {
+        if (hn_pace_is_due(&pace) && limits->stop(limits->user)) {
             return HN_WALK_STOPPED;
         }
     }

@@ -9,7 +9,6 @@
 #include <string.h>
 
 static const char MOTION_METHOD[] = "projection@dop853:rtol=1e-13";
-enum { STEPS_BETWEEN_CLOCKS = 64 };
 static const double SAME_TIME = 1e-12; // relative
 
 // what is stored ---------------------------------------------------------------------------------------------------
@@ -97,6 +96,7 @@ typedef struct motion {
     double every, between;
     double *q, *points, *energy;
     double started;
+    hn_pace pace;
     const hn_walk_limits *limits;
 } motion;
 
@@ -117,14 +117,12 @@ static hn_status check_size(const motion *m, hn_diags *diags) {
 }
 
 static hn_status step_to(motion *m, double t) {
-    for (int n = 1; hn_run_time(m->run) < t * (1 - SAME_TIME); n++) {
+    while (hn_run_time(m->run) < t * (1 - SAME_TIME)) {
         const hn_status status = hn_run_step_towards(m->run, t);
         if (status != HN_OK) {
             return status;
         }
-        if (n % STEPS_BETWEEN_CLOCKS == 0 &&
-            ((m->limits->stop && m->limits->stop(m->limits->user)) ||
-             (m->limits->seconds > 0 && hn_thread_seconds() - m->started > m->limits->seconds))) {
+        if (hn_pace_is_due(&m->pace) && hn_walk_ask(m->limits, m->started) != HN_WALK_DONE) {
             return HN_ERR_BUDGET;
         }
     }
@@ -189,7 +187,8 @@ static hn_status prepare(motion *m, const hn_model *model, hn_arena *arena, hn_d
                             diag.message[0] ? diag.message : hn_status_text(status));
     }
     hn_run_watch(m->run, 0);
-    m->started = hn_thread_seconds();
+    m->pace = hn_pace_begin();
+    m->started = m->pace.last;
     return HN_OK;
 }
 

@@ -2,16 +2,13 @@
 #include "session/columns_json.h"
 #include "session/comparison.h"
 #include "session/reactions_json.h"
+#include "study/pace.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    DEFAULT_SAMPLES = 200,
-    STEPS_BETWEEN_QUESTIONS = 512,
-    LARGEST_TABLE = 1 << 25
-}; // doubles of one table: 256 MiB
+enum { DEFAULT_SAMPLES = 200, LARGEST_TABLE = 1 << 25 }; // doubles of one table: 256 MiB
 
 /// Samples gathered row by row before they are written as columns.
 typedef struct table {
@@ -174,17 +171,15 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
 }
 
 /// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
-static hn_status step_to(hn_run *run, double t, const hn_run_request *r) {
-    for (int n = 1; hn_run_time(run) < t * (1 - 1e-14); n++) {
+static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r) {
+    while (hn_run_time(run) < t * (1 - 1e-14)) {
         hn_status status = hn_run_step_towards(run, t);
         if (status != HN_OK) {
             return status;
         }
-        if (n % STEPS_BETWEEN_QUESTIONS == 0) {
-            n = 0;
-            if (r->progress && !r->progress(r->user, hn_run_time(run) / r->time)) {
-                return HN_ERR_BUDGET;
-            }
+        if (r->progress && hn_pace_is_due(pace) &&
+            !r->progress(r->user, hn_run_time(run) / r->time)) {
+            return HN_ERR_BUDGET;
         }
     }
     return HN_OK;
@@ -203,8 +198,9 @@ static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
 }
 
 /// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
-static hn_status take_sample(hn_run *run, double h, double t, const hn_run_request *r, table *tab) {
-    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, r);
+static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
+                             const hn_run_request *r, table *tab) {
+    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r);
     hn_sample sample;
     if (status == HN_OK) {
         status = sample_at(run, t, &sample);
@@ -222,9 +218,10 @@ static double fixed_step(const hn_method_spec *spec) {
 /// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
 static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double h = fixed_step(hn_run_spec(run));
+    hn_pace pace = hn_pace_begin();
     hn_status status = HN_OK;
     for (long long k = 0; k < s->n && status == HN_OK; k++) {
-        status = take_sample(run, h, schedule_time(s, k), s->request, tab);
+        status = take_sample(run, h, schedule_time(s, k), &pace, s->request, tab);
     }
     hn_sample last;
     double t = hn_run_time(run);

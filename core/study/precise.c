@@ -10,7 +10,6 @@
 /// the square of what is left of it; where no step gets past that, the whole is done again with the next.
 static const hn_real TOLERANCES[] = {1e-17L, 1e-15L, 1e-13L};
 enum { N_TOLERANCES = sizeof TOLERANCES / sizeof *TOLERANCES };
-enum { STEPS_BETWEEN_CLOCKS = 16 };
 #define LEAST_STEP 1e-15L // of T: below it nothing is gained
 #define FIRST_STEP 1e-3L  // of T
 #define ALMOST 1.0001L    // a step that comes this close to a time that is looked at goes there
@@ -26,7 +25,7 @@ typedef struct precise {
     hn_real rate;                    ///< largest speed so far, lengths over L [1/s]
     double *q, *v, *user_q, *user_v, *user_lambda;
     double started;
-    long long steps;
+    hn_pace pace;
     const hn_walk_limits *limits;
 } precise;
 
@@ -126,15 +125,7 @@ static void set_scale(precise *p) {
 // walking ----------------------------------------------------------------------------------------------------------
 
 static hn_walk_end asked_to_end(precise *p) {
-    if (p->steps++ % STEPS_BETWEEN_CLOCKS != 0) {
-        return HN_WALK_DONE;
-    }
-    if (p->limits->stop && p->limits->stop(p->limits->user)) {
-        return HN_WALK_STOPPED;
-    }
-    return p->limits->seconds > 0 && hn_thread_seconds() - p->started > p->limits->seconds
-               ? HN_WALK_OVER
-               : HN_WALK_DONE;
+    return hn_pace_is_due(&p->pace) ? hn_walk_ask(p->limits, p->started) : HN_WALK_DONE;
 }
 
 /// One step towards `t`, closed.
@@ -226,7 +217,8 @@ hn_status hn_precise_walk(hn_precise_kind kind, const hn_system *sys, const doub
                           const double *v, double T, int n, const hn_walk_limits *limits,
                           hn_walk_see see, void *user, hn_walk_end *end, hn_diag *diag) {
     static const hn_walk_limits none;
-    precise p = {.limits = limits ? limits : &none, .started = hn_thread_seconds()};
+    precise p = {
+        .limits = limits ? limits : &none, .started = hn_thread_seconds(), .pace = hn_pace_begin()};
     hn_arena *arena = hn_arena_create(0);
     hn_status status = arena ? create(&p, kind, sys, arena) : HN_ERR_MEMORY;
     const int made = status == HN_OK;

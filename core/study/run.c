@@ -2,12 +2,12 @@
 
 #include "linalg/dense.h"
 #include "methods/flops.h"
+#include "study/pace.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define DEFAULT_MAX_STEPS 50000000ll
 #define LANDING 1e-9    // of a step: a grid point this near to t_end counts as t_end
@@ -24,20 +24,14 @@ hn_run_opts hn_run_opts_default(void) {
     return (hn_run_opts){.max_steps = DEFAULT_MAX_STEPS, .warn_gap = HN_RUN_WARN_GAP};
 }
 
-static double thread_seconds(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 /// What one pair of readings adds to an interval: the median of some pairs with nothing between, taken off each interval. A
 /// reading is a call into the kernel and takes as long as a small mechanism's step.
 static double calc_clock_cost(void) {
     enum { PAIRS = 15 };
     double cost[PAIRS];
     for (int i = 0; i < PAIRS; i++) {
-        const double mark = thread_seconds();
-        const double d = thread_seconds() - mark;
+        const double mark = hn_thread_seconds();
+        const double d = hn_thread_seconds() - mark;
         int k = i;
         for (; k > 0 && cost[k - 1] > d; k--) {
             cost[k] = cost[k - 1];
@@ -50,11 +44,11 @@ static double calc_clock_cost(void) {
 // everything between start_clock and stop_clock is the method's own work
 static void start_clock(hn_run *run) {
     run->cost_mark = hn_engine_cost(run, &run->main);
-    run->cpu_mark = thread_seconds();
+    run->cpu_mark = hn_thread_seconds();
 }
 
 static void stop_clock(hn_run *run) {
-    run->summary.cpu_seconds += fmax(0, thread_seconds() - run->cpu_mark - run->clock_cost);
+    run->summary.cpu_seconds += fmax(0, hn_thread_seconds() - run->cpu_mark - run->clock_cost);
     const hn_cost now = hn_engine_cost(run, &run->main),
                   spent = hn_cost_between(&run->cost_mark, &now);
     hn_cost_add(&run->summary.cost, &spent);

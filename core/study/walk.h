@@ -2,6 +2,7 @@
 #define HN_STUDY_WALK_H
 // A run taken to its end with a look at equal intervals, within a limit of computing time, and stopped on request.
 
+#include "study/pace.h"
 #include "study/run.h"
 
 typedef struct hn_walk_limits {
@@ -24,6 +25,6 @@ typedef int (*hn_walk_see)(void *user, int k, const hn_sample *sample);
 /// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed steps stay on their own grid.
 hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
                     void *user);
-/// CPU time of this thread [s].
-double hn_thread_seconds(void);
+/// Whether what began at `started` (hn_thread_seconds()) is within its limits: done while it may go on.
+hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started);
 #endif

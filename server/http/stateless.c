@@ -4,9 +4,9 @@
 #include "problem_shelf.h"
 #include "session/comparison.h"
 #include "session/picture.h"
+#include "study/pace.h"
 
 #include <string.h>
-#include <time.h>
 
 /// Loads the scene that the body names; NULL with a problem as reply.
 static hn_model *load_model(hn_request *r, int allow_open) {
@@ -111,13 +111,6 @@ void hn_handle_equations(hn_request *r) {
     conclude(r, model, status, &b, &diags);
 }
 
-/// CPU time of this thread [s].
-static double thread_cpu(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 typedef struct allowance {
     hn_server *server;
     double cpu_end;
@@ -127,7 +120,7 @@ typedef struct allowance {
 static int may_go_on(void *user, double share) {
     const allowance *a = user;
     (void)share;
-    return thread_cpu() < a->cpu_end && !atomic_load(&a->server->stopping);
+    return hn_thread_seconds() < a->cpu_end && !atomic_load(&a->server->stopping);
 }
 
 void hn_handle_run(hn_request *r) {
@@ -135,7 +128,8 @@ void hn_handle_run(hn_request *r) {
     if (!model) {
         return;
     }
-    allowance a = {.server = r->server, .cpu_end = thread_cpu() + r->server->opts.max_run_cpu};
+    allowance a = {.server = r->server,
+                   .cpu_end = hn_thread_seconds() + r->server->opts.max_run_cpu};
     const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
     double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
     hn_run_request request = {

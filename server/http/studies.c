@@ -4,6 +4,7 @@
 #include "http/server_internal.h"
 #include "http/studies_internal.h"
 #include "integrators/spec.h"
+#include "study/pace.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,7 +77,7 @@ static void *work(void *arg) {
     hn_strbuf_init(&result.document);
     hn_strbuf_init(&result.report);
     s->work.wall_end = hn_now() + s->work.order.budget;
-    s->work.cpu_end = hn_thread_cpu() + all->opts->max_run_cpu;
+    s->work.cpu_end = hn_thread_seconds() + all->opts->max_run_cpu;
     s->work.kind->run(&s->work, &result);
     if (result.document.failed || result.report.failed) {
         result.state = HN_STUDY_FAILED;
@@ -436,12 +437,15 @@ static void reply_study(hn_request *r, unsigned status, study *s) {
 
 void hn_handle_studies_list(hn_request *r) {
     hn_studies *all = r->server->studies;
+    study *dead[KEPT];
+    int n_dead = 0;
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
     hn_json_key(&b, "studies");
     hn_json_array(&b);
     pthread_mutex_lock(&all->lock);
+    expire(all, dead, &n_dead);
     for (int i = 0; i < all->n; i++) {
         hn_json_object(&b);
         hn_json_put_string(&b, "id", all->list[i]->id);
@@ -450,6 +454,7 @@ void hn_handle_studies_list(hn_request *r) {
         hn_json_end_object(&b);
     }
     pthread_mutex_unlock(&all->lock);
+    free_all(dead, n_dead);
     hn_json_end_array(&b);
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);

@@ -62,5 +62,4 @@ typedef struct hn_study_kind_row {
 
 /// NULL when there is none of that name.
 const hn_study_kind_row *hn_study_kind_find(const char *name);
-double hn_thread_cpu(void); ///< of this thread [s]
 #endif

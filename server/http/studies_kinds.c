@@ -5,21 +5,15 @@
 #include "session/accounts.h"
 #include "session/stability.h"
 #include "session/study.h"
+#include "study/pace.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-
-double hn_thread_cpu(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
 
 static int must_stop(void *user) {
     hn_study_work *w = user;
-    w->cpu_used_up |= hn_thread_cpu() > w->cpu_end;
+    w->cpu_used_up |= hn_thread_seconds() > w->cpu_end;
     return w->cpu_used_up || atomic_load(&w->stop);
 }
 

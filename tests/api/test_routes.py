@@ -223,6 +223,25 @@ class Stateless(driver.ServerCase):
         self.assertLess(less["score"], best["score"])
 
 
+class Bounded(driver.ServerCase):
+    options = ("--run-cpu", "0.5")
+
+    def ask_cut(self, **fields):
+        """A run that is cut at the bound; its document. Computing time is counted, so a busy machine changes nothing."""
+        run = self.server.ask("POST", "/api/v1/runs", fields, timeout=300).json()
+        self.assertEqual(run["status"], "HN_ERR_BUDGET", f"at t = {run['t_reached']} s")
+        self.assertIn("computing time", run["reason"])
+        self.assertLess(run["cost"]["cpu_seconds"], 1, "half a second, and the look at the clock after it")
+        return run
+
+    def test_a_run_is_cut_however_often_its_samples_are_asked_for(self):
+        run = self.ask_cut(scene="four-bar", method="index1@rk4:h=1e-6", time=9, every=1e-4)
+        self.assertGreater(len(run["samples"]["t"]), 10)
+
+    def test_a_run_is_cut_however_long_one_step_takes(self):
+        self.ask_cut(scene="ring", settings={"n": 60}, method="nullspace@rk4:h=1e-3", time=100, every=10)
+
+
 class Document(driver.ServerCase):
     """The OpenAPI document, and answers against its schemas."""
 

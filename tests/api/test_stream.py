@@ -373,9 +373,7 @@ class Crowd(driver.ServerCase):
         for t in threads:
             t.start()
         time.sleep(0.3)
-        start = time.monotonic()
         self.assertEqual(self.server.ask("GET", "/api/v1/").status, 200)
-        self.assertLess(time.monotonic() - start, 1 * driver.SLOW)
         self.assertTrue(all(t.is_alive() for t in threads))
         for t in threads:
             t.join()

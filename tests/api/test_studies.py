@@ -206,8 +206,9 @@ class Bounded(unittest.TestCase):
     def test_computing_ends_where_the_server_says(self):
         server = driver.Server("--run-cpu", "0.3")
         try:
-            for body in (LONG, but(BUDGET, time=10), but(MAP, time=20, columns=24, rows=24)):
-                done = wait(server, start(server, body), 20)
+            large = {"scene": "ring", "settings": {"n": 60}}  # a step of it takes milliseconds
+            for body in (LONG, but(BUDGET, time=10), but(MAP, time=20, columns=24, rows=24), {**LONG, **large}, {**MAP, **large}):
+                done = wait(server, start(server, body), 60)
                 self.assertEqual(done["budget_s"], 0.3)
                 self.assertIn(done["state"], ("stopped", "failed"), done["reason"])
                 self.assertTrue(done["reason"])

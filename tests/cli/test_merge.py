@@ -225,9 +225,12 @@ class Merge(unittest.TestCase):
                 self.assertEqual(len(point["cpu"]["halves"]), 2)
         # again and again: the same clock's numbers too
         self.assertEqual(self.merged([files[1], *files, files[0]]), self.merged(files))
-        # a part whose clock ran half as fast is found out by the run that both timed
+        # a part whose clock ran half as fast as the other's is found out by the run that both timed
+        with open(files[0], encoding="utf-8") as f:
+            other = json.load(f)["yardstick"]["cpu"]
+
         def slow_down(part):
-            part["yardstick"]["cpu"] = [2 * s for s in part["yardstick"]["cpu"]]
+            part["yardstick"]["cpu"] = [2 * s for s in other]
 
         apart = json.loads(self.merged([files[0], self.edited(files[1], slow_down)]))
         for front in apart["pareto"]:

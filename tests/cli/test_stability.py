@@ -13,7 +13,8 @@ import studies  # noqa: E402
 from studies import DONE, ENDED, INPUT, call, driver, strict  # noqa: E402
 
 SCENE = "stiff-four-bar"
-STUDY = ["study", SCENE, "stability"]
+# no budget: a machine under load leaves no cell out
+STUDY = ["study", SCENE, "stability", "--budget", "0"]
 SMALL = [*STUDY, "--over", "h=1e-4..1e-1,k=1e5..1e8", "--grid", "4x5", "--time", "0.1", "--methods", "projection@rk4"]
 
 

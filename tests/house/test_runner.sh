@@ -68,6 +68,21 @@ kill -SEGV $$
 X
 expect 'the runner ends with the sum of all programs' '0 passed, 1 failed' \
     "$(sh tests/run-tests.sh "$work/crash.sh" | tail -n 1)"
+cat >"$work/meet.sh" <<'X'
+# ends when the other one has begun
+touch "$0.here"
+until [ -e "$1" ]; do sleep 0.05; done
+echo "ok 1 - met"
+X
+for one in a b; do
+    other=$([ $one = a ] && echo b || echo a)
+    printf 'set -- %s\n. %s\n' "$work/$other.sh.here" "$work/meet.sh" >"$work/$one.sh"
+done
+expect 'as many programs as asked for run at once' '2 passed, 0 failed' \
+    "$(TEST_JOBS=2 TEST_TIMEOUT=60 sh tests/run-tests.sh "$work/a.sh" "$work/b.sh" | tail -n 1)"
+printf 'echo "not ok 1 - why"\necho "ok 2 - that # SKIP no network"\n' >"$work/why.sh"
+expect 'a failure is told with its output, and again at the end; what was skipped is told' '4' \
+    "$(sh tests/run-tests.sh "$work/why.sh" | grep -c -e '^    not ok 1 - why' -e '^     ok 2' -e "^  $work/why.sh: not ok 1" -e '^FAIL ')"
 sh tests/run-tests.sh >/dev/null
 expect 'no programs at all is a failure' 1 $?
 

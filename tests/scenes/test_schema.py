@@ -1,6 +1,5 @@
 # Every shipped scene is what scene.schema.json says, and the schema says something: a scene with one field too
 # many, anywhere, or one that is needed taken away, is refused. Speaks TAP.
-import copy
 import glob
 import json
 
@@ -52,18 +51,17 @@ for name in shipped + sorted(glob.glob("tests/scenes/*.json") + glob.glob("tests
     report(not found, f"{name} is what the schema says", "; ".join(found))
 
     let_through = []
-    for path in objects(scene):
-        worse = copy.deepcopy(scene)
-        at(worse, path)["unheard_of"] = {"unheard_of": []}
-        if not faults(worse):
+    for path in list(objects(scene)):
+        place = at(scene, path)
+        place["unheard_of"] = {"unheard_of": []}
+        if VALIDATOR.is_valid(scene):
             let_through.append("/".join(map(str, path)))
+        del place["unheard_of"]
     report(not let_through, f"{name} with an unknown field in any object is refused", "; ".join(let_through))
 
     let_through = []
     for key in ("holonom", "name", "bodies" if "bodies" in scene else "lagrangian"):
-        worse = copy.deepcopy(scene)
-        del worse[key]
-        if not faults(worse):
+        if VALIDATOR.is_valid({k: v for k, v in scene.items() if k != key}):
             let_through.append(key)
     report(not let_through, f"{name} without a field it needs is refused", "; ".join(let_through))
 print(f"1..{len(results)}")

@@ -141,21 +141,8 @@ static void repeated_rows(hn_figures *f) {
 
 /// Largest difference of the accelerations by the method's right-hand side from those of the saddle system.
 static double by_udwadia_kalaba(const hn_model *m, const double *a) {
-    const hn_formulation *form = hn_formulation_find("udwadia-kalaba");
     const double settings[HN_MAX_SETTINGS] = {0};
-    double y[2 * NV], ydot[2 * NV], worst = 0;
-    void *self = NULL;
-    hn_ode ode;
-    hn_diag diag = {0};
-    assert_int_equal(form->create(m->sys, settings, m->arena, &self, &diag), HN_OK);
-    assert_int_equal(form->set_state(self, 0, m->q, m->v, y), HN_OK);
-    form->ode(self, &ode);
-    assert_int_equal(ode.rhs(self, 0, y, ydot), HN_OK);
-    for (int i = 0; i < NV; i++) {
-        worst = fmax(worst, fabs(ydot[NV + i] - a[i]));
-    }
-    form->destroy(self);
-    return worst;
+    return hn_motion_acceleration_error(m, "udwadia-kalaba", settings, a);
 }
 
 static void udwadia_kalaba(hn_figures *f) {

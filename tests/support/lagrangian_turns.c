@@ -2,7 +2,7 @@
 
 #include "dynamics/eval.h"
 #include "linalg/dense.h"
-#include "methods/method.h"
+#include "support/motion.h"
 #include "support/near.h"
 
 #include <math.h>
@@ -32,19 +32,6 @@ void hn_turns_eigenvalues(const hn_model *m, double s[2]) {
 }
 
 double hn_turns_error(const hn_model *m, double a, int turns) {
-    const hn_formulation *f = hn_formulation_find("augmented-lagrangian");
     const double settings[HN_MAX_SETTINGS] = {a, 10, 1, turns};
-    double y[2 * NV], ydot[2 * NV], worst = 0;
-    void *self = NULL;
-    hn_ode ode;
-    hn_diag diag = {0};
-    assert_int_equal(f->create(m->sys, settings, m->arena, &self, &diag), HN_OK);
-    assert_int_equal(f->set_state(self, 0, m->q, m->v, y), HN_OK);
-    f->ode(self, &ode);
-    assert_int_equal(ode.rhs(self, 0, y, ydot), HN_OK);
-    for (int i = 0; i < NV; i++) {
-        worst = fmax(worst, fabs(ydot[NV + i] - m->a[i]));
-    }
-    f->destroy(self);
-    return worst;
+    return hn_motion_acceleration_error(m, "augmented-lagrangian", settings, m->a);
 }

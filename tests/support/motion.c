@@ -2,6 +2,8 @@
 
 #include "support/near.h"
 
+#include <math.h>
+
 hn_run *hn_motion_start_at(const hn_model *m, const char *method, const double *q,
                            const double *v) {
     hn_method_spec spec;
@@ -40,4 +42,25 @@ hn_run_summary hn_motion_summary(const hn_model *m, const char *method, double t
     }
     hn_run_free(run);
     return summary;
+}
+
+double hn_motion_acceleration_error(const hn_model *m, const char *formulation,
+                                    const double *settings, const double *a) {
+    const hn_formulation *form = hn_formulation_find(formulation);
+    const int nq = m->info.nq, nv = m->info.nv;
+    double *y = hn_arena_doubles(m->arena, (size_t)(nq + nv)),
+           *ydot = hn_arena_doubles(m->arena, (size_t)(nq + nv)), worst = 0;
+    void *self = NULL;
+    hn_ode ode;
+    hn_diag diag = {0};
+    assert_false(hn_arena_failed(m->arena));
+    assert_int_equal(form->create(m->sys, settings, m->arena, &self, &diag), HN_OK);
+    assert_int_equal(form->set_state(self, 0, m->q, m->v, y), HN_OK);
+    form->ode(self, &ode);
+    assert_int_equal(ode.rhs(self, 0, y, ydot), HN_OK);
+    for (int i = 0; i < nv; i++) {
+        worst = fmax(worst, fabs(ydot[nq + i] - a[i]));
+    }
+    form->destroy(self);
+    return worst;
 }

@@ -13,5 +13,9 @@ hn_run *hn_motion_start_at(const hn_model *m, const char *method, const double *
 hn_sample hn_motion_at(hn_run *run, double t);
 /// Runs to t_end and gives the summary; the run is freed.
 hn_run_summary hn_motion_summary(const hn_model *m, const char *method, double t_end);
+/// Largest difference of the accelerations that a formulation finds at the assembled state from those in `a` (nv); `settings` are its
+/// own, in its order. Of formulations that make an ordinary differential equation of (q, v).
+double hn_motion_acceleration_error(const hn_model *m, const char *formulation,
+                                    const double *settings, const double *a);
 
 #endif

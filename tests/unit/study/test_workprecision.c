@@ -467,8 +467,14 @@ static void a_budget_that_is_too_small_leaves_points_out_and_says_so(void **stat
     hn_trial_close(&trial);
 }
 
-static int stop_after(void *user) {
-    return --*(int *)user < 0;
+static void count_point(void *user, int m, int k) {
+    (void)m;
+    (void)k;
+    ++*(int *)user;
+}
+
+static int stop_after_one(void *user) {
+    return *(int *)user > 0;
 }
 
 static void a_stopped_study_keeps_what_it_has_and_goes_on_from_there(void **state) {
@@ -481,8 +487,8 @@ static void a_stopped_study_keeps_what_it_has_and_goes_on_from_there(void **stat
     hn_wp *whole = study_of(&trial, ref, spellings, 2, &opts);
     hn_wp *broken = study_of(&trial, ref, spellings, 2, &opts);
     assert_true(hn_wp_run(whole, NULL));
-    int questions = 3, done = 0;
-    const hn_wp_hooks hooks = {.user = &questions, .stop = stop_after};
+    int points = 0, done = 0;
+    const hn_wp_hooks hooks = {.user = &points, .stop = stop_after_one, .point = count_point};
     assert_false(hn_wp_run(broken, &hooks));
     for (int i = 0; i < 6; i++) {
         done += broken->methods[i / 3].point[i % 3].state == HN_WP_DONE;
