@@ -303,12 +303,15 @@ $(COMMA_LOCALE):
 run-suite: $(PROGRAM) $(UNIT) $(SLOW) $(COMMA_LOCALE)
 	@HOLONOM=$(PROGRAM) tests/run-tests.sh $(BROWSER) $(SCRIPTS) $(SLOW) $(UNIT)
 
+# a sanitised program takes some ten times as long; the limit is there for what hangs
+SANITISED = $(if $(filter %san,$(VARIANT)),TEST_TIMEOUT=1800)
+
 run-unit: $(UNIT) $(if $(filter asan,$(VARIANT)),$(SLOW)) $(COMMA_LOCALE)
-	@LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
+	@$(SANITISED) LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(if $(filter asan,$(VARIANT)),$(SLOW)) $(UNIT)
 
 run-server: $(PROGRAM)
-	@HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
+	@$(SANITISED) HOLONOM=$(PROGRAM) TSAN_OPTIONS=halt_on_error=1:exitcode=66:suppressions=tests/support/tsan.supp \
 	    LSAN_OPTIONS=suppressions=tests/support/lsan.supp:print_suppressions=0 \
 	    tests/run-tests.sh $(filter tests/api/% tests/cli/%,$(SCRIPTS))
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/random.h>
 
-enum { KEPT = 16, RETRY_AFTER = 5 };
+enum { RETRY_AFTER = 5 };
 /// Below this share nothing is said of the time left: too little is known.
 static const double TELLING = 0.03;
 
@@ -31,7 +31,7 @@ struct hn_studies {
     pthread_cond_t changed; ///< a thread has ended
     const hn_http_opts *opts;
     const hn_library *lib;
-    study *list[KEPT];
+    study *list[HN_STUDIES_KEPT];
     int n, n_threads, stopping;
 };
 
@@ -206,7 +206,7 @@ static void make_room(hn_studies *all, study **dead, int *n_dead) {
             oldest = i;
         }
     }
-    if (all->n == KEPT && oldest >= 0) {
+    if (all->n == HN_STUDIES_KEPT && oldest >= 0) {
         drop(take_out(all, oldest), dead, n_dead);
     }
 }
@@ -221,7 +221,7 @@ void hn_studies_stop(hn_studies *all) {
     if (!all) {
         return;
     }
-    study *dead[KEPT];
+    study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
@@ -380,13 +380,13 @@ static void give_back(hn_studies *all) {
 
 /// Puts it among the others and starts its thread, which has a reference of its own; the caller keeps one too.
 static hn_status start(hn_studies *all, study *s) {
-    study *dead[KEPT];
+    study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     pthread_t thread;
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
     make_room(all, dead, &n_dead);
-    hn_status status = all->n < KEPT && !all->stopping ? HN_OK : HN_ERR_LIMIT;
+    hn_status status = all->n < HN_STUDIES_KEPT && !all->stopping ? HN_OK : HN_ERR_LIMIT;
     s->started = s->touched = hn_now();
     s->refs = 3;
     if (status == HN_OK && pthread_create(&thread, NULL, work, s) != 0) {
@@ -406,7 +406,7 @@ static hn_status start(hn_studies *all, study *s) {
 /// The study of the request's path, with a reference for the caller; NULL with a problem as reply.
 static study *find_study(hn_request *r) {
     hn_studies *all = r->server->studies;
-    study *found = NULL, *dead[KEPT];
+    study *found = NULL, *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
@@ -437,7 +437,7 @@ static void reply_study(hn_request *r, unsigned status, study *s) {
 
 void hn_handle_studies_list(hn_request *r) {
     hn_studies *all = r->server->studies;
-    study *dead[KEPT];
+    study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
     hn_strbuf b;
     hn_strbuf_init(&b);

@@ -10,7 +10,8 @@ enum {
     HN_STUDIES_LEVELS = 7,
     HN_STUDIES_SAMPLES = 10,
     HN_STUDIES_SIDE = 24,
-    HN_STUDIES_MAPS = 4
+    HN_STUDIES_MAPS = 4, ///< methods of one map
+    HN_STUDIES_KEPT = 16 ///< running and finished ones
 };
 
 typedef struct hn_studies hn_studies;

@@ -157,6 +157,21 @@ class Studies(driver.ServerCase):
                 self.assertIn(word, fault["detail"] + fault.get("hint", ""))
         self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "running"}), 422)
 
+    def test_the_index_tells_the_bounds_that_hold(self):
+        limits = self.server.ask("GET", "/api/v1/").json()["limits"]
+        for limit, body, over in (("study_methods", QUICK, lambda n: {"methods": METHODS[:1] * n}),
+                                  ("study_levels", QUICK, lambda n: {"levels": n}),
+                                  ("study_samples", QUICK, lambda n: {"samples": n}),
+                                  ("map_methods", MAP, lambda n: {"methods": MAP["methods"] * n}),
+                                  ("map_side", MAP, lambda n: {"columns": n}),
+                                  ("map_side", MAP, lambda n: {"rows": n}),
+                                  ("run_cpu_s", QUICK, lambda n: {"budget": n}),
+                                  ("comparison_duration_s", QUICK, lambda n: {"time": n})):
+            with self.subTest(limit=limit):
+                changes = over(limits[limit] + 1)
+                document = self.assert_problem(self.server.ask("POST", AT, but(body, **changes)), 422)
+                self.assertEqual(document["errors"][0]["pointer"], "/" + next(iter(changes)))
+
     def test_no_more_than_two_run_at_once_and_the_next_is_told_when_to_ask_again(self):
         running = [start(self.server, LONG) for _ in range(2)]
         answer = self.server.ask("POST", AT, LONG)
@@ -195,7 +210,8 @@ class Studies(driver.ServerCase):
         first = wait(self.server, start(self.server, QUICK))
         for _ in range(16):
             last = wait(self.server, start(self.server, but(QUICK, levels=2, time=0.01)))
-        self.assertLessEqual(len(self.server.ask("GET", AT).json()["studies"]), 16)
+        self.assertLessEqual(len(self.server.ask("GET", AT).json()["studies"]),
+                             self.server.ask("GET", "/api/v1/").json()["limits"]["studies_kept"])
         self.assert_problem(self.server.ask("GET", first["links"]["self"]), 404)
         self.assertEqual(look(self.server, last)["state"], "finished")
 

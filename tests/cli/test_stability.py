@@ -105,7 +105,7 @@ class Stability(unittest.TestCase):
 
     def test_an_interrupted_map_goes_on_to_the_cells_of_an_undisturbed_one(self):
         words = [*SMALL[:-1], "projection@rk4", "projection@dop853", "projection@symplectic-euler", "--csv"]
-        words[words.index("4x5")] = "24x24"
+        words[words.index("4x5")] = "12x12"
         with tempfile.TemporaryDirectory() as other:
             whole = call(words, other)
         status, _, told = studies.interrupt(words, self.folder, "stability")
