@@ -121,7 +121,8 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
     const int at = (map->y.is_param ? row : 0) * (map->x.is_param ? map->x.n : 1) +
                    (map->x.is_param ? column : 0);
     hn_map_scene *s = &map->scenes[at];
-    if (!s->tried && !s->path) {
+    // what was cut short is left as it is: no motion is begun for what nobody waits for
+    if (!s->tried && !s->path && !map->stopped && !map->out_of_time) {
         make_scene(map, s, column, row);
     }
     return s;
