@@ -15,7 +15,11 @@ static const double CLOSED = 1e-12; // of the view: a smaller tear is not magnif
 static const double TEAR_IN_INSET = 0.4;  // the tear's share of the inset
 static const double ROOM_AROUND = 0.10;   // of the view, on each side
 static const double SMALLEST_VIEW = 1e-6; // [m]
-enum { TEXT = 256 };
+static const double LEGEND_TEXT = 4.3;    // from the left of a legend's row to its words [letters]
+static const double NOTE_SIZE = 0.85;     // of the letters of a name
+static const double SMALLEST_LETTER = 2;  // [px]
+static const double NOTE_PITCH = 1.25;    // from line to line of a note [its letters]
+enum { TEXT = 256, NOTE_LINES = 4 };
 
 hn_snapshot_opts hn_snapshot_opts_default(void) {
     return (hn_snapshot_opts){.time = (double)NAN, .look = hn_view_front(), .labels = 1};
@@ -122,14 +126,13 @@ static void place_view(hn_sheet *s) {
     s->scale_bar = hn_round_125(0.25 * s->drawing.width / s->scale);
 }
 
-static double choose_magnification(const hn_sheet *s) {
+static void choose_magnification(hn_sheet *s) {
     const double gap = s->widest.gap * s->scale; // [px]
     const double size = fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
     const double side = fmin(s->inset.width, s->inset.height);
-    if (!(s->widest.gap > CLOSED * size) || gap >= TEAR_IN_INSET * side) {
-        return 1;
-    }
-    return hn_round_125(TEAR_IN_INSET * side / gap);
+    s->is_closed = !(s->widest.gap > CLOSED * size);
+    s->magnification =
+        s->is_closed || gap >= TEAR_IN_INSET * side ? 1 : hn_round_125(TEAR_IN_INSET * side / gap);
 }
 
 static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing *d,
@@ -155,7 +158,7 @@ static hn_status make_sheet(hn_sheet *s, int width, int height, const hn_drawing
     }
     place_boxes(s, n_poses, s->widest.pose >= 0);
     place_view(s);
-    s->magnification = choose_magnification(s);
+    choose_magnification(s);
     return HN_OK;
 }
 
@@ -228,32 +231,91 @@ static void draw_header(hn_canvas *c, const hn_sheet *s, const hn_snapshot_opts 
     }
 }
 
-static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
-                            int is_drawable, double y, double font) {
+/// The bytes of the text that a line of this width takes, up to a space where there is one.
+static size_t fit_line(double size, double width, const char *text) {
+    char line[TEXT];
+    size_t taken = 0;
+    for (size_t n = 0; text[n] && n + 1 < sizeof line;) {
+        n += 1 + strcspn(text + n + 1, " ");
+        snprintf(line, sizeof line, "%.*s", (int)n, text);
+        if (taken > 0 && hn_canvas_text_width(size, line) > width) {
+            break;
+        }
+        taken = n;
+    }
+    return taken;
+}
+
+/// In lines of that width, the last of NOTE_LINES cut with an ellipsis. Returns how many there are; c = NULL: counts only.
+static int put_note(hn_canvas *c, double x, double y, double size, double width, uint32_t colour,
+                    const char *text) {
+    int lines = 0;
+    while (*text && lines < NOTE_LINES) {
+        const int last = lines == NOTE_LINES - 1;
+        const size_t n = last ? strlen(text) : fit_line(size, width, text);
+        char line[TEXT];
+        snprintf(line, sizeof line, "%.*s", (int)n, text);
+        if (c) {
+            put_text(c, x, y + NOTE_PITCH * size * lines, size, width, colour, line);
+        }
+        lines++;
+        text += n;
+        text += strspn(text, " ");
+    }
+    return lines;
+}
+
+static const char *note_of(const hn_drawing *d, const hn_snapshot_pose *pose) {
+    return pose->note != NULL ? pose->note : hn_pose_is_drawable(d, pose) ? "" : "no pose to draw";
+}
+
+/// The room right of the sample of its line, for a size of letters.
+static double legend_room(const hn_sheet *s, double font) {
+    return s->legend.width - LEGEND_TEXT * font;
+}
+
+/// How far the next row is below this one: a name and a note of a line or more.
+static double legend_pitch(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *pose,
+                           double font) {
+    const double size = NOTE_SIZE * font;
+    const int lines = put_note(NULL, 0, 0, size, legend_room(s, font), 0, note_of(d, pose));
+    return 2.7 * font + NOTE_PITCH * size * (lines > 1 ? lines - 1 : 0);
+}
+
+static double legend_height(const hn_sheet *s, const hn_drawing *d, const hn_snapshot_pose *poses,
+                            int n_poses, double font) {
+    double height = 0.4 * font;
+    for (int i = 0; i < n_poses; i++) {
+        height += legend_pitch(s, d, &poses[i], font);
+    }
+    return height;
+}
+
+static void draw_legend_row(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                            const hn_snapshot_pose *pose, double y, double font) {
     const hn_theme theme = hn_canvas_theme(c);
     const hn_surface *surface = hn_surface_get(theme);
-    const double sample = 3.6 * font, x = s->legend.x, text = x + sample + 0.7 * font;
-    const double room = s->legend.width - sample - 0.7 * font, middle = y - 0.32 * font;
+    const double sample = 3.6 * font, x = s->legend.x, text = x + LEGEND_TEXT * font;
+    const double room = legend_room(s, font), middle = y - 0.32 * font;
     const hn_stroke stroke = hn_slot_stroke(theme, pose->slot, s->line);
     hn_canvas_segment(c, x, middle, x + sample, middle, &stroke);
     hn_canvas_disc(c, x + sample / 2, middle, 0.55 * font, hn_paint_solid(surface->paper));
     hn_canvas_marker(c, hn_look_get(pose->slot)->marker, x + sample / 2, middle, 0.75 * font,
                      stroke.paint);
     put_text(c, text, y, font, room, surface->ink, pose->name != NULL ? pose->name : "");
-    const char *note = pose->note != NULL ? pose->note : is_drawable ? NULL : "no pose to draw";
-    if (note != NULL) {
-        put_text(c, text, y + 1.15 * font, 0.85 * font, room, surface->muted, note);
-    }
+    put_note(c, text, y + 1.15 * font, NOTE_SIZE * font, room, surface->muted, note_of(d, pose));
 }
 
 static void draw_legend(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *poses, int n_poses) {
-    // two lines of text for each, smaller where they would not fit
-    const double pitch = fmin(2.7 * s->font, (s->height - s->legend.y) / (n_poses + 0.4));
-    const double font = fmin(s->font, pitch / 2.4);
+    double font = s->font, y = s->legend.y;
+    // smaller until they fit; narrower letters also need fewer lines
+    while (font > SMALLEST_LETTER && legend_height(s, d, poses, n_poses, font) > s->height - y) {
+        font *= 0.96;
+    }
     for (int i = 0; i < n_poses; i++) {
-        draw_legend_row(c, s, &poses[i], hn_pose_is_drawable(d, &poses[i]),
-                        s->legend.y + font + i * pitch, font);
+        draw_legend_row(c, s, d, &poses[i], y + font, font);
+        y += legend_pitch(s, d, &poses[i], font);
     }
 }
 

@@ -86,12 +86,27 @@ static void draw_half_joints(const glass *g, const int tear[2]) {
     hn_canvas_segment(g->c, eye[0], eye[1], pin[0], pin[1], &red);
 }
 
-static void magnification_text(double magnification, char out[TEXT]) {
-    if (magnification < 1e5) {
-        snprintf(out, TEXT, "\xc3\x97%.0f", magnification);
+/// "×200" or, raised, "×5·10^8", with its end at x; "closed" where there is nothing to magnify.
+static void draw_magnification(hn_canvas *c, const hn_sheet *s, double x, double y, double size) {
+    const hn_paint ink = hn_paint_solid(hn_surface_get(hn_canvas_theme(c))->ink);
+    const double power = floor(log10(s->magnification) + 1e-9);
+    char text[TEXT];
+    if (s->is_closed) {
+        snprintf(text, sizeof text, "closed");
+    } else if (power < 5) {
+        snprintf(text, sizeof text, "\xc3\x97%.0f", s->magnification);
     } else {
-        snprintf(out, TEXT, "\xc3\x97%.0e", magnification);
+        const double first = round(s->magnification / pow(10, power));
+        char factor[16] = "";
+        snprintf(text, sizeof text, "%.0f", power);
+        hn_canvas_text(c, x, y - 0.4 * size, 0.7 * size, HN_ALIGN_RIGHT, ink, text);
+        x -= hn_canvas_text_width(0.7 * size, text) + 0.12 * size;
+        if (first > 1) {
+            snprintf(factor, sizeof factor, "%.0f\xc2\xb7", first);
+        }
+        snprintf(text, sizeof text, "\xc3\x97%s10", factor);
     }
+    hn_canvas_text(c, x, y, size, HN_ALIGN_RIGHT, ink, text);
 }
 
 static void draw_words(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
@@ -99,7 +114,7 @@ static void draw_words(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
     const hn_box *box = &s->inset;
     const double size = 0.9 * s->font, x = box->x + 0.6 * s->font;
-    char gap[HN_SI_TEXT], text[TEXT], times[TEXT];
+    char gap[HN_SI_TEXT], text[TEXT];
     snprintf(text, sizeof text, "%s, %s", d->tear_names[s->widest.index],
              pose->name != NULL ? pose->name : "");
     hn_canvas_text(c, x, box->y + 1.3 * s->font, size, HN_ALIGN_LEFT, hn_paint_solid(surface->ink),
@@ -108,9 +123,7 @@ static void draw_words(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     snprintf(text, sizeof text, "gap %s", gap);
     const double bottom = box->y + box->height - 0.7 * s->font;
     hn_canvas_text(c, x, bottom, size, HN_ALIGN_LEFT, hn_paint_solid(surface->ink), text);
-    magnification_text(s->magnification, times);
-    hn_canvas_text(c, box->x + box->width - 0.6 * s->font, bottom, size, HN_ALIGN_RIGHT,
-                   hn_paint_solid(surface->ink), times);
+    draw_magnification(c, s, box->x + box->width - 0.6 * s->font, bottom, size);
 }
 
 static void draw_inset(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,

@@ -40,9 +40,9 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
     if (row->status != HN_OK || (!energy && !c)) {
         return;
     }
-    hn_strbuf_add(b, "<tr><td class=\"m\">");
+    hn_strbuf_add(b, "<tr><th scope=\"row\" class=\"m\">");
     hn_html_text(b, row->spelling);
-    hn_strbuf_add(b, "</td><td class=\"m\">");
+    hn_strbuf_add(b, "</th><td class=\"m\">");
     if (energy) {
         hn_strbuf_printf(b, "%.4g s", row->account.t);
     } else {
@@ -61,7 +61,7 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
 
 /// error = parts (energy = 0), change of energy = parts (1)
 static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
-    hn_strbuf_add(b, "<div class=\"scroll\"><table>");
+    hn_page_table(b, energy ? "account of energy" : "account of the error");
     put_head(b, energy);
     hn_strbuf_add(b, "<tbody>");
     for (int i = 0; i < a->n; i++) {
@@ -117,7 +117,8 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
         if (!hn_accounts_can_plot(a->rows, a->n, energy)) {
             continue;
         }
-        hn_strbuf_printf(b, "<h2>%s</h2><div class=\"scroll\">", heads[energy]);
+        hn_strbuf_printf(b, "<h2>%s</h2>", heads[energy]);
+        hn_page_scroll(b, energy ? "picture of energy" : "picture of the error");
         hn_accounts_plot(b, a->model, a->rows, a->n, energy);
         hn_strbuf_add(b, "</div>");
         put_table(b, a, energy);

@@ -1,38 +1,16 @@
 // The extreme matrix as one HTML file: no network, no script; for the screen, light and dark, and for paper.
 #include "session/extreme_internal.h"
 
-#include "render/look.h"
 #include "session/study_page.h"
 
 #include <stdio.h>
 
 static const char STYLE[] =
-    "*{box-sizing:border-box}"
-    "body{margin:0;background:var(--paper);color:var(--ink);font:15px/1.5 system-ui,sans-serif}"
-    "main{max-width:1080px;margin:0 auto;padding:32px 24px 64px}"
-    "h1{font-size:24px;font-weight:600;margin:0 0 4px}"
-    "h2{font-size:17px;font-weight:600;margin:40px 0 4px}"
-    "p{margin:4px 0 8px;max-width:76ch}.quiet{color:var(--muted);font-size:13px}"
-    "a{color:inherit}"
-    "table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;width:100%}"
-    "th{font-weight:500;color:var(--muted);text-align:left}"
-    "th,td{padding:4px 12px 4px 0;border-bottom:1px solid var(--hairline);vertical-align:top}"
-    "td.v{white-space:nowrap}td .why{display:block;color:var(--muted);font-size:12px}"
-    ".pass{color:var(--ink)}.warn{font-weight:600}.fail{font-weight:600;color:var(--tear)}"
-    ".none{color:var(--muted)}.scroll{overflow-x:auto}"
-    "@media print{@page{size:A4;margin:14mm}body{font-size:10pt}main{max-width:none;padding:0}"
-    "table{font-size:8pt}h2{break-after:avoid;margin-top:18px}tr{break-inside:avoid}}";
-
-static void put_head(hn_strbuf *b) {
-    hn_strbuf_add(b, "<!doctype html><html lang=en><head><meta charset=utf-8>"
-                     "<meta name=viewport content=\"width=device-width,initial-scale=1\">"
-                     "<title>holonom: the extreme matrix</title><style>:root{color-scheme:light "
-                     "dark;");
-    hn_page_theme(b, HN_THEME_LIGHT);
-    hn_strbuf_add(b, "}@media screen and (prefers-color-scheme:dark){:root{");
-    hn_page_theme(b, HN_THEME_DARK);
-    hn_strbuf_printf(b, "}}%s</style></head><body><main>", STYLE);
-}
+    "main{max-width:1080px}h2{margin-bottom:4px}p{margin:4px 0 8px}a{color:inherit}"
+    "table{font-size:14px}th,td{vertical-align:top}tbody th{vertical-align:top}"
+    "td.v{white-space:nowrap;min-width:0}td .why{display:block;color:var(--muted);font-size:12px}"
+    ".warn{font-weight:600}.fail{font-weight:600;color:var(--tear)}.none{color:var(--muted)}"
+    "@media print{table{font-size:8pt}}";
 
 static const char *css_class(hn_extreme_verdict verdict) {
     return verdict <= HN_EXTREME_FAIL ? hn_extreme_verdict_name(verdict) : "none";
@@ -46,7 +24,7 @@ static void put_text(hn_strbuf *b, const char *tag, const char *text) {
 
 static void put_why(hn_strbuf *b, const char *label, const char *text) {
     if (text) {
-        hn_strbuf_printf(b, "<span class=why>%s", label);
+        hn_strbuf_printf(b, "<span class=\"why\">%s", label);
         hn_html_text(b, text);
         hn_strbuf_add(b, "</span>");
     }
@@ -75,38 +53,40 @@ static void put_case(hn_strbuf *b, const hn_extreme_case *c) {
     hn_strbuf_add(b, "</h2>");
     put_text(b, "p", c->why);
     if (c->about) {
-        hn_strbuf_add(b, "<p class=quiet>");
+        hn_strbuf_add(b, "<p class=\"quiet\">");
         hn_html_text(b, c->about);
         hn_strbuf_add(b, "</p>");
     }
-    hn_strbuf_add(b, "<div class=scroll><table><tr><th>what</th><th>predicted</th>"
-                     "<th>observed</th><th>verdict</th></tr>");
+    hn_page_table(b, c->id);
+    hn_strbuf_add(b, "<thead><tr><th>what</th><th>predicted</th><th>observed</th><th>verdict</th>"
+                     "</tr></thead><tbody>");
     for (int i = 0; i < c->n_trials; i++) {
         put_trial(b, &c->trials[i]);
     }
-    hn_strbuf_add(b, "</table></div>");
+    hn_strbuf_add(b, "</tbody></table></div>");
 }
 
 static void put_summary(hn_strbuf *b, const hn_extreme *x) {
-    hn_strbuf_add(b, "<div class=scroll><table><tr><th>case</th><th></th><th>trials</th>"
-                     "<th>verdict</th></tr>");
+    hn_page_table(b, "All cases");
+    hn_strbuf_add(b, "<thead><tr><th>case</th><th>what</th><th>trials</th><th>verdict</th></tr>"
+                     "</thead><tbody>");
     for (int i = 0; i < x->n_cases; i++) {
         const hn_extreme_case *c = &x->cases[i];
-        hn_strbuf_printf(b, "<tr><td><a href=\"#%s\">%s</a></td>", c->id, c->id);
+        hn_strbuf_printf(b, "<tr><th scope=\"row\"><a href=\"#%s\">%s</a></th>", c->id, c->id);
         put_text(b, "td", c->title);
         hn_strbuf_printf(b, "<td>%d</td><td class=\"v %s\">%s</td></tr>", c->n_trials,
                          css_class(c->verdict), hn_extreme_verdict_name(c->verdict));
     }
-    hn_strbuf_add(b, "</table></div>");
+    hn_strbuf_add(b, "</tbody></table></div>");
 }
 
 void hn_extreme_html(hn_strbuf *b, const hn_extreme *x) {
-    put_head(b);
+    hn_page_head(b, "holonom: the extreme matrix", STYLE);
     hn_strbuf_add(b, "<h1>The extreme matrix</h1><p>Where methods break, and whether theory said "
                      "so. Each line states what was expected, with its reason, before it was run. "
                      "Pass: inside the band. Warn: outside, by no more than three times the "
                      "tolerance or a factor of ten behind a bound, or for some methods "
-                     "only.</p><p class=quiet>");
+                     "only.</p><p class=\"quiet\">");
     for (int v = 0; v < HN_EXTREME_VERDICTS; v++) {
         const hn_extreme_verdict verdict = (hn_extreme_verdict)v;
         if (hn_extreme_count(x, verdict) > 0) {

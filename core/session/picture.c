@@ -21,6 +21,7 @@ typedef struct scene_picture {
     hn_comparison *comparison;
     int n_poses;
     hn_snapshot_pose poses[HN_COMPARISON_MAX_METHODS];
+    char names[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     char notes[HN_COMPARISON_MAX_METHODS][MAX_NOTE];
     double *points; ///< 3 n_points per pose
     hn_snapshot_opts opts;
@@ -78,6 +79,25 @@ static void note_method(scene_picture *p, int i, const hn_sample *sample, int go
     }
 }
 
+/// As short as tells the methods apart: "index-1", "index-1, rk4", or the whole spelling.
+static void name_method(scene_picture *p, int i) {
+    const hn_method_spec *spec = hn_run_spec(hn_comparison_run(p->comparison, i));
+    int alike = 0, twins = 0; // others of the same formulation, of the same integrator too
+    for (int k = 0; k < hn_comparison_n_methods(p->comparison); k++) {
+        const hn_method_spec *other = hn_run_spec(hn_comparison_run(p->comparison, k));
+        if (k != i && other->formulation == spec->formulation) {
+            alike++;
+            twins += other->stepper == spec->stepper;
+        }
+    }
+    if (twins > 0) {
+        hn_method_format(spec, p->names[i]);
+    } else {
+        snprintf(p->names[i], HN_SPEC_MAX, "%s%s%s", spec->formulation->short_name,
+                 alike ? ", " : "", alike ? spec->stepper->name : "");
+    }
+}
+
 /// The pose each method reached; the first method is the selected one.
 static void gather_poses(scene_picture *p, hn_status *ended) {
     const int n = hn_comparison_n_methods(p->comparison);
@@ -92,7 +112,8 @@ static void gather_poses(scene_picture *p, hn_status *ended) {
             pose->points = p->points + (size_t)i * width;
         }
         note_method(p, i, &sample, good);
-        pose->name = hn_run_spec(run)->formulation->short_name;
+        name_method(p, i);
+        pose->name = p->names[i];
         pose->note = p->notes[i];
         pose->slot = hn_comparison_slot(p->comparison, i);
         pose->selected = i == 0;

@@ -49,8 +49,7 @@ static void tell(hn_report *r, double part) {
     const double all = r->request.budget > 0 ? elapsed(r) / r->request.budget : 0;
     const double scenes = (r->at + part) / r->n;
     if (r->request.progress) {
-        const hn_scene *scene = hn_model_scene(r->scenes[r->at].model);
-        r->request.progress(r->request.user, scene->id ? scene->id : "scene",
+        r->request.progress(r->request.user, hn_report_scene_id(&r->scenes[r->at]),
                             fmin(1, fmax(all, scenes)));
     }
 }

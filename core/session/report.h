@@ -89,10 +89,17 @@ typedef struct hn_verdict {
     double
         best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
     int done, failed, skipped; ///< sizes
+    int untrusted;             ///< 1: nothing that came out is right to one digit
     char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "no digit", "elsewhere, by 0.3"
     const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
 } hn_verdict;
 hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
+/// The report in a few lines, one sentence each: who is cheapest how often, who may be relied on, what fails where, what is ranked by time.
+void hn_report_sentences(hn_strbuf *b, const hn_report *report);
+
+const char *hn_report_scene_id(const hn_report_scene *scene); ///< "scene" where it has none
+/// One of its studies: methods are the same in all. NULL: there is none.
+const hn_study *hn_report_any_study(const hn_report *report);
 
 // documents
 /// {"report","budget","elapsed","stopped","scenes":[{"scene","title","reason","study": as hn_study_json(),"accounts":[as in hn_accounts_json()],

@@ -11,7 +11,8 @@
 static const char STYLE[] =
     "h1{font-size:26px}h2{margin-top:56px;padding-top:8px;border-top:1px solid var(--hairline)}"
     ".top h2,details h2,h2:first-child{border:0;margin-top:24px;padding-top:0}"
-    ".top td,.top th{padding:3px 12px 3px 0}.top td{white-space:nowrap}"
+    ".top td,.top th{padding:3px 12px 3px 0}.top td,.top th,.top a{white-space:nowrap}.top "
+    "th[scope=row]{white-space:normal}"
     ".top small{color:var(--muted);font-size:12px}.top .wrong{color:var(--tear)}"
     ".top .none{color:var(--muted)}.top a{color:inherit}"
     ".lines>*{margin:16px 0}"
@@ -29,9 +30,17 @@ static const char STYLE[] =
     ".scroll>svg,.plot>svg{min-width:640px}section>details{margin:12px 0}"
     "@media (max-width:760px){main{padding:16px 12px 48px}"
     ".bars{position:static}.names{font-size:12px}}"
-    "@media print{.names{display:none}.bars{display:none}section>details{display:none}"
-    "section{break-before:page}h2{border:0}.scroll>svg,.plot>svg{min-width:0}"
-    ".top{break-inside:avoid}.top table{font-size:8pt}}";
+    // what is folded is printed: by the style sheet, and for browsers that cannot by the script
+    "@media print{.names{display:none}.bars{display:none}section>details>summary{display:none}"
+    "section>details{break-before:page}section>details::details-content{content-visibility:visible;"
+    "block-size:auto}"
+    "section{break-before:page}section:last-of-type{break-before:auto}h2{border:0}"
+    ".scroll>svg,.plot>svg{min-width:0;max-height:88mm}h3{break-after:avoid}"
+    ".top table{font-size:8pt}.top small{font-size:7pt}h1{font-size:16pt}p{max-width:none}"
+    "h2,.top h2{font-size:12pt;margin-top:12px}.quiet{font-size:8pt;margin:4px 0}"
+    ".answers{margin:4px 0}.answers li{font-size:9pt;margin:1px 0}h3{font-size:10pt;margin:10px 0 "
+    "2px}"
+    ".lines>*{margin:4px 0}}";
 
 static const char SCRIPT[] =
     "(function(){'use strict';var "
@@ -50,21 +59,15 @@ static const char SCRIPT[] =
     "var b=d.querySelector('.names button[data-m=\"'+m+'\"]');"
     "if(b)b.setAttribute('aria-pressed',String(!off))}"
     "d.addEventListener('click',function(e){var g=e.target.closest&&"
-    "e.target.closest('.entry,.names button');if(g)toggle(g.getAttribute('data-m'))})})();";
+    "e.target.closest('.entry,.names button');if(g)toggle(g.getAttribute('data-m'))});"
+    "var folded=[];addEventListener('beforeprint',function(){folded=[].slice.call("
+    "d.querySelectorAll('section>details:not([open])'));folded.forEach(function(f){f.open=true})});"
+    "addEventListener('afterprint',function(){folded.forEach(function(f){f.open=false});"
+    "folded=[]})})();";
 
 static const char *title_of(const hn_report_scene *s) {
     const hn_scene *scene = hn_model_scene(s->model);
     return scene->title ? scene->title : scene->id ? scene->id : "scene";
-}
-
-/// Any study of the report: methods are the same in all. NULL: there is none.
-static const hn_study *any_study(const hn_report *r) {
-    for (int i = 0; i < r->n; i++) {
-        if (r->scenes[i].study) {
-            return r->scenes[i].study;
-        }
-    }
-    return NULL;
 }
 
 /// What a method that is switched off looks like.
@@ -97,21 +100,24 @@ static void put_answer(hn_strbuf *b, const hn_report_scene *s, double accuracy) 
 }
 
 static void put_answers(hn_strbuf *b, const hn_report *r) {
-    hn_strbuf_add(b, "<h2>The cheapest method, for an error of the coordinates of</h2>"
-                     "<div class=\"scroll\"><table><thead><tr><th>scene</th>");
+    hn_strbuf_add(b, "<h2>The cheapest method, for an error of the coordinates of</h2>");
+    hn_page_table(b, "The cheapest method");
+    hn_strbuf_add(b, "<thead><tr><th>scene</th>");
     for (int i = 0; i < HN_REPORT_BANDS; i++) {
         hn_strbuf_printf(b, "<th>10<sup>%.0f</sup></th>", log10(hn_report_accuracy[i]));
     }
     hn_strbuf_add(b, "</tr></thead><tbody>");
     for (int i = 0; i < r->n; i++) {
         const hn_report_scene *s = &r->scenes[i];
-        hn_strbuf_printf(b, "<tr><td><a href=\"#scene-%d\">", i + 1);
+        hn_strbuf_printf(b, "<tr><th scope=\"row\"><a href=\"#scene-%d\">", i + 1);
         hn_html_text(b, title_of(s));
-        hn_strbuf_add(b, "</a>");
+        hn_strbuf_add(b, "</a> <small>");
+        hn_html_text(b, hn_report_scene_id(s));
+        hn_strbuf_add(b, "</small>");
         if (s->study && hn_wp_is_beyond_horizon(hn_study_wp(s->study))) {
             hn_strbuf_add(b, " <small>chaotic: by energy</small>");
         }
-        hn_strbuf_add(b, "</td>");
+        hn_strbuf_add(b, "</th>");
         for (int k = 0; k < HN_REPORT_BANDS && s->study; k++) {
             put_answer(b, s, hn_report_accuracy[k]);
         }
@@ -122,10 +128,11 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(b,
-                  "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
-                  "only where two measurements agree and the next method is clearly slower. "
-                  "Operations (op): time does not decide there, arithmetic does.</p>");
+    hn_strbuf_add(
+        b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
+           "only where two measurements agree and the next method is clearly slower. "
+           "Operations (op): time does not decide there, arithmetic does; “2 alike”: so many "
+           "others need as few.</p>");
 }
 
 static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
@@ -134,35 +141,37 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
         return;
     }
     const hn_verdict v = hn_report_find_verdict(s, m);
-    const int bad = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE ||
-                    (v.done > 0 && !(v.best < 0.1));
     const int none = v.kind == HN_VERDICT_REFUSED || v.kind == HN_VERDICT_NOT_RUN;
-    hn_strbuf_printf(b, "<td%s title=\"", bad ? " class=\"wrong\"" : none ? " class=\"none\"" : "");
+    hn_strbuf_printf(b, "<td%s title=\"",
+                     v.untrusted ? " class=\"wrong\""
+                     : none      ? " class=\"none\""
+                                 : "");
     hn_html_text(b, v.why);
     hn_strbuf_printf(b, "\">%s", v.text);
     if (v.skipped > 0 && v.done > 0) {
-        hn_strbuf_printf(b, " <small>%d left</small>", v.skipped);
+        hn_strbuf_printf(b, "<small>, %d left out</small>", v.skipped);
     }
     if (s->strips && s->strips[m].n > 0) {
-        hn_strbuf_printf(b, " <small>survives %d/%d</small>", hn_strip_survived(&s->strips[m]),
+        hn_strbuf_printf(b, "<small>, survives %d/%d</small>", hn_strip_survived(&s->strips[m]),
                          s->strips[m].n);
     }
     hn_strbuf_add(b, "</td>");
 }
 
 static void put_verdicts(hn_strbuf *b, const hn_report *r) {
-    const hn_study *any = any_study(r);
+    const hn_study *any = hn_report_any_study(r);
     if (!any) {
         return;
     }
     hn_strbuf_add(b,
                   "<h2>What each method reaches: smallest error of the coordinates, and where it "
-                  "fails</h2><div class=\"scroll\"><table><thead><tr><th>method</th>");
+                  "fails</h2>");
+    hn_page_table(b, "What each method reaches");
+    hn_strbuf_add(b, "<thead><tr><th>method</th>");
     for (int i = 0; i < r->n; i++) {
-        const hn_scene *scene = hn_model_scene(r->scenes[i].model);
-        hn_strbuf_add(b, "<th>");
-        hn_html_text(b, scene->id ? scene->id : "");
-        hn_strbuf_add(b, "</th>");
+        hn_strbuf_printf(b, "<th><a href=\"#scene-%d\">", i + 1);
+        hn_html_text(b, hn_report_scene_id(&r->scenes[i]));
+        hn_strbuf_add(b, "</a></th>");
     }
     hn_strbuf_add(b, "</tr></thead><tbody>");
     for (int m = 0; m < hn_study_wp(any)->n_methods; m++) {
@@ -173,16 +182,30 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
-    hn_strbuf_add(b,
-                  "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
-                  "or tolerance did not come to the end. “3 left”: the budget left so many finer "
-                  "ones out, the method may reach more. “elsewhere”: it converges, but not to "
-                  "the motion of the scene. “survives n/m”: so many other step sizes came "
-                  "through the singular poses within 1e-2.</p>\n");
+    hn_strbuf_add(
+        b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
+           "or tolerance did not come to the end. “3 left out”: so many finer ones, to keep the "
+           "budget; the method may reach more. “no digit”: no error is below 0.1. “elsewhere”: it "
+           "converges, but not to "
+           "the motion of the scene. “survives n/m”: so many other step sizes came "
+           "through the singular poses within 1e-2.</p>\n");
+}
+
+static void put_sentences(hn_strbuf *b, const hn_report *r) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_report_sentences(&text, r);
+    if (text.n > 0) {
+        hn_strbuf_add(b, "<ul class=\"answers\">");
+        hn_page_lines(b, hn_strbuf_text(&text));
+        hn_strbuf_add(b, "</ul>");
+    }
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
 }
 
 static void put_top(hn_strbuf *b, const hn_report *r) {
-    const hn_study *any = any_study(r);
+    const hn_study *any = hn_report_any_study(r);
     hn_strbuf_printf(b,
                      "<h1>Which method should I use, and what does accuracy cost?</h1>"
                      "<p class=\"quiet\">%d scenes, %d methods, %d sizes each; made in %.0f s",
@@ -196,6 +219,7 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
         hn_strbuf_add(b, "<p class=\"wrong\">Stopped on request before its end; the same command "
                          "goes on from there.</p>");
     }
+    put_sentences(b, r);
     hn_strbuf_add(b, "<div class=\"top\">");
     put_answers(b, r);
     put_verdicts(b, r);
@@ -219,7 +243,8 @@ static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
     }
     for (int k = 0; k < 2; k++) {
         if (k ? energy : error) {
-            hn_strbuf_add(b, "<div class=\"lines\"><div class=\"scroll\">");
+            hn_strbuf_add(b, "<div class=\"lines\">");
+            hn_page_scroll(b, k ? "account of energy" : "account of the error");
             hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, k);
             hn_strbuf_add(b, "</div></div>\n");
         }
@@ -233,8 +258,9 @@ static void put_survival(hn_strbuf *b, const hn_report_scene *s) {
     hn_strbuf_printf(b,
                      "<h3>Through singular poses</h3><p class=\"quiet\">The first of them at t = "
                      "%.3g s. A mark a run: across its step or tolerance, up the time it came to; "
-                     "what survives stands on the upper line.</p><div class=\"scroll\">",
+                     "what survives stands on the upper line.</p>",
                      s->singular_at);
+    hn_page_scroll(b, "sizes that survive");
     hn_report_survival_plot(b, s);
     hn_strbuf_add(b, "</div>\n");
 }
@@ -254,7 +280,9 @@ static void put_wrong_models(hn_strbuf *b, const hn_report_scene *s) {
 }
 
 static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
-    hn_strbuf_printf(b, "<section id=\"scene-%d\"><h2>", i + 1);
+    hn_strbuf_printf(b,
+                     "<section id=\"scene-%d\" aria-labelledby=\"title-%d\"><h2 id=\"title-%d\">",
+                     i + 1, i + 1, i + 1);
     hn_html_text(b, title_of(s));
     hn_strbuf_add(b, "</h2>");
     if (!s->study) {
@@ -270,7 +298,7 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
                       "are listed below.</p>");
     }
     put_wrong_models(b, s);
-    hn_strbuf_add(b, "<div class=\"scroll\">");
+    hn_page_scroll(b, "error against cost");
     hn_study_put_plots(b, s->study);
     hn_strbuf_add(b, "</div>");
     hn_study_put_answers(b, s->study);
@@ -279,10 +307,10 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     put_survival(b, s);
     hn_strbuf_add(b, "<details><summary>Methods, equal cost, failures, how it was measured, every "
                      "point</summary>");
-    hn_study_put_methods(b, s->study);
-    hn_study_put_race(b, s->study);
-    hn_study_put_failures(b, s->study);
-    hn_study_put_measures(b, s->study);
+    hn_study_put_methods(b, s->study, 3);
+    hn_study_put_race(b, s->study, 3);
+    hn_study_put_failures(b, s->study, 3);
+    hn_study_put_measures(b, s->study, 3);
     hn_study_put_points(b, s->study);
     hn_strbuf_add(b, "</details></section>\n");
 }
@@ -299,7 +327,7 @@ static hn_cost_kind first_cost(const hn_report *r) {
             }
         }
     }
-    return any_study(r) ? HN_COST_TIME : HN_COST_OPS;
+    return hn_report_any_study(r) ? HN_COST_TIME : HN_COST_OPS;
 }
 
 static void put_names(hn_strbuf *b, const hn_study *any) {
@@ -315,7 +343,7 @@ static void put_names(hn_strbuf *b, const hn_study *any) {
 }
 
 void hn_report_html(hn_strbuf *b, const hn_report *r) {
-    const hn_study *any = any_study(r);
+    const hn_study *any = hn_report_any_study(r);
     hn_strbuf style;
     hn_strbuf_init(&style);
     hn_strbuf_add(&style, STYLE);
@@ -335,7 +363,10 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     for (int i = 0; i < r->n; i++) {
         put_scene(b, &r->scenes[i], i);
     }
-    hn_strbuf_add(b, "</div></main><script>");
+    hn_strbuf_add(b,
+                  "<section aria-labelledby=\"timing\"><h2 id=\"timing\">How time was taken</h2>");
+    hn_page_timing(b);
+    hn_strbuf_add(b, "</section></div></main><script>");
     hn_strbuf_add(b, SCRIPT);
     hn_strbuf_add(b, "</script></body></html>\n");
 }

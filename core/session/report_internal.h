@@ -1,6 +1,7 @@
 #ifndef HN_SESSION_REPORT_INTERNAL_H
 #define HN_SESSION_REPORT_INTERNAL_H
-// The inside of a report: report.c (making), report_plot.c (pictures), report_html.c and report_doc.c (documents).
+// The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c (pictures), report_html.c and
+// report_doc.c (documents).
 
 #include "session/report.h"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { WIDTH = 900, LABELS = 196, RIGHT = 744 };
-enum { STRIP_TOP = 66, STRIP_ROW = 46, STRIP = 32, STRIP_BOTTOM = 40 };
+enum { STRIP_TOP = 62, STRIP_ROW = 38, STRIP = 26, STRIP_BOTTOM = 36 };
 static const double LETTER = 6.6; // about the width of one in a label [px]
 
 // survival -----------------------------------------------------------------------------------------------------------
@@ -128,8 +128,7 @@ int hn_report_n_plots(const hn_report *r) {
 
 hn_report_plot hn_report_plot_at(const hn_report *r, int i) {
     hn_report_plot p = {.of = r, .scene = i / PER_SCENE};
-    const hn_scene *scene = hn_model_scene(r->scenes[p.scene].model);
-    const char *id = scene->id && scene->id[0] ? scene->id : "scene";
+    const char *id = hn_report_scene_id(&r->scenes[p.scene]);
     const int k = i % PER_SCENE;
     static const char *const names[] = {"", "where-errors-come-from", "energy-bill", "survival"};
     p.kind = k < PER_STUDY ? KIND_STUDY : KIND_ERRORS + k - PER_STUDY;

@@ -6,30 +6,22 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char STYLE[] =
-    "*{box-sizing:border-box}body{margin:0;background:var(--paper);color:var(--ink);"
-    "font:15px/1.5 system-ui,sans-serif}main{max-width:980px;margin:0 auto;padding:32px 24px 64px}"
-    "h1{font-size:24px;font-weight:600;margin:0 0 "
-    "4px}h2{font-size:17px;font-weight:600;margin:32px 0 8px}"
-    "p{margin:8px 0;max-width:76ch}.quiet{color:var(--muted);font-size:13px}"
-    "svg{display:block;width:100%;height:auto}ul{padding-left:20px}"
-    "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}"
-    "th{font-weight:500;color:var(--muted);text-align:left}th,td{padding:4px 14px 4px 0;"
-    "border-bottom:1px solid var(--hairline)}td.n,th.n{text-align:right}.scroll{overflow-x:auto}"
-    "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{padding:0}}";
-
-static void put_theme(hn_strbuf *b, hn_theme theme) {
-    hn_page_theme(b, theme);
+static void put_class_colours(hn_strbuf *b, hn_theme theme) {
     for (int k = 0; k < HN_STABILITY_CLASS_COUNT; k++) {
         hn_strbuf_printf(b, "--%s:#%06X;", hn_stability_class_name((hn_stability_class)k),
                          (unsigned)hn_map_class_colour((hn_stability_class)k, theme));
     }
 }
 
+enum {
+    ABOVE = 8,
+    BELOW = 46
+}; // a field on a page: room for the frame, and for what stands at the axis
+
 // rules of the picture itself: it needs them on its own too
 static void put_rules(hn_strbuf *b) {
     hn_strbuf_add(b, "text{fill:var(--ink);font:12px system-ui,sans-serif}.quiet-text{fill:var(--"
-                     "muted)}.end{text-anchor:end}.middle{text-anchor:middle}.sign{font-size:9px}"
+                     "muted)}.end{text-anchor:end}.middle{text-anchor:middle}.glyph{font-size:9px}"
                      ".head{font-size:14px;font-weight:600}.said{font-size:12px}"
                      ".predicted{fill:none;stroke:var(--ink);stroke-width:2.5}"
                      ".observed{fill:none;stroke:var(--ink);stroke-width:1.5;stroke-dasharray:2 3}"
@@ -56,7 +48,7 @@ static void put_cell(hn_strbuf *b, const hn_map *map, int m, int i, int j) {
                      x, y, w, h, hn_stability_class_name(kind));
     const char *glyph = hn_map_class_look_get(kind)->glyph;
     if (glyph[0] && w >= 8 && h >= 8) {
-        hn_strbuf_printf(b, "<text x=\"%.2f\" y=\"%.2f\" class=\"sign middle\">%s</text>",
+        hn_strbuf_printf(b, "<text x=\"%.2f\" y=\"%.2f\" class=\"glyph middle\">%s</text>",
                          x + w / 2, y + h / 2 + 3, glyph);
     }
     hn_strbuf_add(b, "</g>\n");
@@ -157,7 +149,7 @@ static void put_legend(hn_strbuf *b, int m) {
         hn_strbuf_printf(
             b,
             "<rect x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"14\" class=\"c-%s\"/><text "
-            "x=\"%.1f\" y=\"%.1f\" class=\"sign middle\">%s</text><text x=\"%.1f\" y=\"%.1f\">%s"
+            "x=\"%.1f\" y=\"%.1f\" class=\"glyph middle\">%s</text><text x=\"%.1f\" y=\"%.1f\">%s"
             "</text>\n",
             x, y, hn_stability_class_name(look->kind), x + 7, y + 10, look->glyph, x + 22, y + 11,
             look->words);
@@ -170,50 +162,77 @@ static void put_legend(hn_strbuf *b, int m) {
                      x, y + 8, x + 22, y + 12, x, y + 30, x + 22, y + 34);
 }
 
-static void put_picture(hn_strbuf *b, const hn_map *map, int alone) {
-    hn_strbuf_printf(
-        b, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\">",
-        HN_MAP_WIDTH, hn_map_height(map));
-    if (alone) {
-        hn_strbuf_add(b, "<style>svg{");
-        put_theme(b, HN_THEME_LIGHT);
-        hn_strbuf_add(b, "background:var(--paper)}");
-        put_rules(b);
-        hn_strbuf_add(b, "</style>");
+static void put_agreement(hn_strbuf *b, const hn_map *map, int m) {
+    hn_strbuf said;
+    hn_strbuf_init(&said);
+    hn_map_agreement_text(&said, map, m);
+    hn_html_text(b, hn_strbuf_text(&said));
+    b->failed |= said.failed;
+    hn_strbuf_reset(&said);
+}
+
+/// One method's field with its axes and legend.
+static void put_map(hn_strbuf *b, const hn_map *map, int m) {
+    for (int j = 0; j < hn_map_y(map)->n; j++) {
+        for (int i = 0; i < hn_map_x(map)->n; i++) {
+            put_cell(b, map, m, i, j);
+        }
     }
+    put_predicted(b, map, m);
+    put_steep(b, map, m);
+    put_observed(b, map, m);
+    put_axes(b, map, m);
+    put_legend(b, m);
+}
+
+void hn_map_svg(hn_strbuf *b, const hn_map *map) {
+    hn_strbuf_printf(b,
+                     "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
+                     "aria-label=\"where steps are stable, a map a method\"><style>svg{",
+                     HN_MAP_WIDTH, hn_map_height(map));
+    hn_page_theme(b, HN_THEME_LIGHT);
+    put_class_colours(b, HN_THEME_LIGHT);
+    hn_strbuf_add(b, "background:var(--paper)}");
+    put_rules(b);
+    hn_strbuf_add(b, "</style>");
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         hn_strbuf_printf(b, "\n<text x=\"%d\" y=\"%.1f\" class=\"head\">", HN_MAP_LEFT,
                          hn_map_field_top(m) - 30);
         hn_html_text(b, hn_map_method(map, m));
         hn_strbuf_printf(b, "</text><text x=\"%d\" y=\"%.1f\" class=\"said quiet-text\">",
                          HN_MAP_LEFT, hn_map_field_top(m) - 12);
-        hn_strbuf said;
-        hn_strbuf_init(&said);
-        hn_map_agreement_text(&said, map, m);
-        hn_html_text(b, hn_strbuf_text(&said));
-        b->failed |= said.failed;
-        hn_strbuf_reset(&said);
+        put_agreement(b, map, m);
         hn_strbuf_add(b, "</text>\n");
-        for (int j = 0; j < hn_map_y(map)->n; j++) {
-            for (int i = 0; i < hn_map_x(map)->n; i++) {
-                put_cell(b, map, m, i, j);
-            }
-        }
-        put_predicted(b, map, m);
-        put_steep(b, map, m);
-        put_observed(b, map, m);
-        put_axes(b, map, m);
-        put_legend(b, m);
+        put_map(b, map, m);
     }
     hn_strbuf_add(b, "</svg>\n");
 }
 
-void hn_map_svg(hn_strbuf *b, const hn_map *map) {
-    put_picture(b, map, 1);
+/// A section a method: on a page words wrap, and paper is cut between maps.
+static void put_sections(hn_strbuf *b, const hn_map *map) {
+    for (int m = 0; m < hn_map_n_methods(map); m++) {
+        hn_strbuf_add(b, "<section><h2>");
+        hn_html_text(b, hn_map_method(map, m));
+        hn_strbuf_add(b, "</h2><p class=\"quiet\">");
+        put_agreement(b, map, m);
+        hn_strbuf_add(b, "</p>");
+        hn_page_scroll(b, "map");
+        hn_strbuf_printf(b,
+                         "<svg viewBox=\"0 %.1f %d %d\" role=\"img\" aria-label=\"where steps are "
+                         "stable: ",
+                         hn_map_field_top(m) - ABOVE, HN_MAP_WIDTH,
+                         ABOVE + HN_MAP_FIELD_HEIGHT + BELOW);
+        hn_html_text(b, hn_map_method(map, m));
+        hn_strbuf_add(b, "\">");
+        put_map(b, map, m);
+        hn_strbuf_add(b, "</svg></div></section>\n");
+    }
 }
 
 static void put_limits(hn_strbuf *b, const hn_map *map) {
-    hn_strbuf_add(b, "<h2>Boundaries</h2><div class=\"scroll\"><table><thead><tr><th>method</th>");
+    hn_strbuf_add(b, "<h2>Boundaries</h2>");
+    hn_page_table(b, "Boundaries");
+    hn_strbuf_add(b, "<thead><tr><th>method</th>");
     hn_strbuf_printf(b, "<th class=\"n\">%s</th>", hn_map_x(map)->name);
     hn_strbuf_add(
         b, "<th class=\"n\">predicted [s]</th><th class=\"n\">last stable [s]</th>"
@@ -221,11 +240,11 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         for (int i = 0; i < hn_map_x(map)->n; i++) {
             const hn_map_column *c = hn_map_get_column(map, m, i);
-            hn_strbuf_add(b, "<tr><td>");
+            hn_strbuf_add(b, "<tr><th scope=\"row\" class=\"m\">");
             hn_html_text(b, hn_map_method(map, m));
             hn_strbuf_printf(b,
-                             hn_map_x(map)->name[0] ? "</td><td class=\"n\">%.4g</td>"
-                                                    : "</td><td class=\"n\">–</td>",
+                             hn_map_x(map)->name[0] ? "</th><td class=\"n\">%.4g</td>"
+                                                    : "</th><td class=\"n\">–</td>",
                              hn_map_x(map)->value[i]);
             const double list[] = {c->n_predicted ? c->predicted[0] : (double)NAN, c->stable,
                                    c->unstable};
@@ -242,21 +261,29 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_add(b, "</tbody></table></div>");
 }
 
+static void put_head(hn_strbuf *b, const char *of) {
+    char title[200];
+    hn_strbuf style;
+    hn_strbuf_init(&style);
+    snprintf(title, sizeof title, "%.160s: where steps are stable", of);
+    hn_strbuf_add(&style,
+                  "main{max-width:980px}section{break-inside:avoid}.scroll>svg{min-width:640px}"
+                  "@media print{.scroll>svg{min-width:0;max-height:96mm}}:root{");
+    put_class_colours(&style, HN_THEME_LIGHT);
+    hn_strbuf_add(&style, "}@media screen and (prefers-color-scheme:dark){:root{");
+    put_class_colours(&style, HN_THEME_DARK);
+    hn_strbuf_add(&style, "}}");
+    put_rules(&style);
+    hn_page_head(b, title, hn_strbuf_text(&style));
+    b->failed |= style.failed;
+    hn_strbuf_reset(&style);
+}
+
 void hn_map_html(hn_strbuf *b, const hn_map *map) {
     const hn_scene *scene = hn_model_scene(hn_map_model(map));
     const char *title = scene->title ? scene->title : scene->id;
-    hn_strbuf_add(b, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
-                     "name=\"viewport\" content=\"width=device-width,initial-scale=1\"><meta "
-                     "name=\"color-scheme\" content=\"light dark\"><title>");
-    hn_html_text(b, title);
-    hn_strbuf_add(b, ": where steps are stable</title><style>:root{");
-    put_theme(b, HN_THEME_LIGHT);
-    hn_strbuf_add(b, "}@media screen and (prefers-color-scheme:dark){:root{");
-    put_theme(b, HN_THEME_DARK);
-    hn_strbuf_add(b, "}}");
-    hn_strbuf_add(b, STYLE);
-    put_rules(b);
-    hn_strbuf_add(b, "</style></head><body><main><h1>");
+    put_head(b, title);
+    hn_strbuf_add(b, "<h1>");
     hn_html_text(b, title);
     hn_strbuf_printf(
         b,
@@ -266,7 +293,7 @@ void hn_map_html(hn_strbuf *b, const hn_map *map) {
         "the loops, the strictest along the motion; the dotted one is where runs began to grow or "
         "ended. Point at a cell to read its outcome.</p>",
         hn_map_time(map), HN_STABILITY_LEAST_STEPS);
-    put_picture(b, map, 0);
+    put_sections(b, map);
     if (hn_map_y(map)->is_step) {
         put_limits(b, map);
     }

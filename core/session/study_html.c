@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char STYLE[] =
     "*{box-sizing:border-box}"
@@ -21,8 +22,11 @@ static const char STYLE[] =
     "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;width:100%}"
     "th{font-weight:500;color:var(--muted);text-align:left;vertical-align:bottom}"
     "th,td{padding:4px 10px 4px 0;border-bottom:1px solid var(--hairline)}"
-    "td.n,th.n{text-align:right;white-space:nowrap}td.m{white-space:nowrap}td.v{min-width:190px}"
-    ".scroll{overflow-x:auto}.wrong{color:var(--tear)}"
+    "td.n,th.n{text-align:right;white-space:nowrap}tbody "
+    "th{font-weight:400;color:var(--ink);vertical-align:middle}.m{white-space:nowrap}td.v{min-"
+    "width:190px}"
+    ".scroll{overflow-x:auto}.scroll:focus-visible{outline:2px solid "
+    "var(--ink)}.wrong{color:var(--tear)}"
     ".choice{position:absolute;opacity:0;pointer-events:none}"
     ".bar{display:flex;flex-wrap:wrap;gap:4px 16px;font-size:13px;color:var(--muted);margin:8px 0}"
     ".bar span{margin-right:4px}.bar label{cursor:pointer;padding:2px "
@@ -30,8 +34,8 @@ static const char STYLE[] =
     ".plot{display:none}details{margin:8px 0}summary{cursor:pointer}"
     "@media print{@page{size:A4;margin:14mm}body{font-size:10.5pt}main{max-width:none;padding:0}"
     "table{font-size:7pt}th,td{padding:2px 5px 2px "
-    "0}td.v{min-width:60px}td.m{white-space:normal}"
-    ".scroll{overflow:visible}svg.key{width:18px}.bar{display:none}h2{break-after:avoid;margin-top:"
+    "0}td.v{min-width:60px}"
+    ".scroll{overflow:visible}svg.key{width:15px}.bar{display:none}h2{break-after:avoid;margin-top:"
     "20px}"
     "tr,svg,li{break-inside:avoid}"
     ".all{display:none}}";
@@ -89,12 +93,37 @@ void hn_page_head(hn_strbuf *b, const char *title, const char *style) {
     hn_strbuf_add(b, "</style></head><body><main>\n");
 }
 
+void hn_page_lines(hn_strbuf *b, const char *text) {
+    while (*text) {
+        const size_t n = strcspn(text, "\n");
+        hn_strbuf_add(b, "<li>");
+        hn_html_text_n(b, text, n);
+        hn_strbuf_add(b, "</li>");
+        text += n + (text[n] == '\n');
+    }
+}
+
+void hn_page_scroll(hn_strbuf *b, const char *name) {
+    hn_strbuf_add(b, "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"");
+    hn_html_text(b, name);
+    hn_strbuf_add(b, "\">");
+}
+
+void hn_page_table(hn_strbuf *b, const char *name) {
+    hn_page_scroll(b, name);
+    hn_strbuf_add(b, "<table>");
+}
+
+static void put_head(hn_strbuf *b, int level, const char *text) {
+    hn_strbuf_printf(b, "<h%d>%s</h%d>", level, text, level);
+}
+
 void hn_study_put_method(hn_strbuf *b, const hn_study *s, int m) {
-    hn_strbuf_add(b, "<td class=\"m\">");
+    hn_strbuf_add(b, "<th scope=\"row\" class=\"m\">");
     hn_study_key(b, m);
     hn_strbuf_add(b, " ");
     hn_html_text(b, hn_study_wp(s)->methods[m].spelling);
-    hn_strbuf_add(b, "</td>");
+    hn_strbuf_add(b, "</th>");
 }
 
 // answers --------------------------------------------------------------------------------------------------------
@@ -120,14 +149,7 @@ static void put_answer(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_
     hn_strbuf_printf(
         b, "<p class=\"quiet\">Cheapest by %s, for the error of the %s</p><ul class=\"answers\">",
         cost == HN_COST_TIME ? "CPU time" : hn_cost_name(cost), hn_error_title(error));
-    for (const char *line = hn_strbuf_text(&text); *line;) {
-        const char *end = line;
-        while (*end && *end != '\n') {
-            end++;
-        }
-        hn_strbuf_printf(b, "<li>%.*s</li>", (int)(end - line), line);
-        line = *end ? end + 1 : end;
-    }
+    hn_page_lines(b, hn_strbuf_text(&text));
     hn_strbuf_add(b, p.n_bands || p.beyond_horizon
                          ? "</ul>"
                          : "<li>Nothing reaches an error of 0.1.</li></ul>");
@@ -181,13 +203,14 @@ static void put_quantity(hn_strbuf *b, double value, const char *unit) {
     hn_strbuf_printf(b, "<td class=\"n\">%s</td>", isfinite(value) ? text : "–");
 }
 
-void hn_study_put_methods(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
     const hn_wp *wp = hn_study_wp(s);
-    hn_strbuf_add(
-        b, "<h2>Methods</h2><p class=\"quiet\">What the ladder of sizes says of each, and its "
-           "most accurate point. Closed is not correct: a gap of 1e-16 promises nothing "
-           "about the other columns.</p><div class=\"scroll\"><table><thead><tr><th>method</th>"
-           "<th>verdict</th><th class=\"n\">done</th>");
+    put_head(b, level, "Methods");
+    hn_strbuf_add(b, "<p class=\"quiet\">What the ladder of sizes says of each, and its most "
+                     "accurate point. Closed is not correct: a gap of 1e-16 promises nothing about "
+                     "the other columns.</p>");
+    hn_page_table(b, "Methods");
+    hn_strbuf_add(b, "<thead><tr><th>method</th><th>verdict</th><th class=\"n\">done</th>");
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         hn_strbuf_printf(b, "<th class=\"n\">%s</th>",
                          i == HN_ERROR_VELOCITY_GAP ? "speed gap"
@@ -216,7 +239,7 @@ void hn_study_put_methods(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "</tbody></table></div>\n");
 }
 
-void hn_study_put_race(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level) {
     const hn_wp *wp = hn_study_wp(s);
     hn_race race;
     const hn_error_kind error = hn_wp_ranked_error(wp);
@@ -224,12 +247,13 @@ void hn_study_put_race(hn_strbuf *b, const hn_study *s) {
     if (race.n == 0) {
         return;
     }
-    hn_strbuf_printf(
-        b,
-        "<h2>What equal cost buys</h2><p class=\"quiet\">Error of the %s for the "
-        "same number of operations, between measured points; ≤: with fewer already; –: no "
-        "point is as cheap.</p><div class=\"scroll\"><table><thead><tr><th>method</th>",
-        hn_error_title(error));
+    put_head(b, level, "What equal cost buys");
+    hn_strbuf_printf(b,
+                     "<p class=\"quiet\">Error of the %s for the same number of operations, "
+                     "between measured points; ≤: with fewer already; –: no point is as cheap.</p>",
+                     hn_error_title(error));
+    hn_page_table(b, "What equal cost buys");
+    hn_strbuf_add(b, "<thead><tr><th>method</th>");
     for (int i = 0; i < race.n; i++) {
         char text[HN_SI_TEXT];
         hn_si_format(race.cost[i], "op", 2, text);
@@ -281,10 +305,10 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
 
 void hn_study_put_points(hn_strbuf *b, const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
-    hn_strbuf_add(
-        b,
-        "<details class=\"all\"><summary>Every point</summary><div class=\"scroll\"><table><thead>"
-        "<tr><th>method</th><th class=\"n\">h or rtol</th><th class=\"n\">steps</th>");
+    hn_strbuf_add(b, "<details class=\"all\"><summary>Every point</summary>");
+    hn_page_table(b, "Every point");
+    hn_strbuf_add(b, "<thead><tr><th>method</th><th class=\"n\">h or rtol</th>"
+                     "<th class=\"n\">steps</th>");
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         hn_strbuf_printf(b, "<th class=\"n\">%s</th>", hn_error_title((hn_error_kind)i));
     }
@@ -300,7 +324,7 @@ void hn_study_put_points(hn_strbuf *b, const hn_study *s) {
 }
 
 /// A list of what did not come to the end, with why: on paper too.
-void hn_study_put_failures(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_failures(hn_strbuf *b, const hn_study *s, int level) {
     const hn_wp *wp = hn_study_wp(s);
     int any = 0;
     for (int m = 0; m < wp->n_methods; m++) {
@@ -311,8 +335,10 @@ void hn_study_put_failures(hn_strbuf *b, const hn_study *s) {
                 continue;
             }
             hn_wp_spelling(wp, m, k, spelling);
-            hn_strbuf_add(b, any++ ? ""
-                                   : "<h2>What did not come to the end</h2><ul class=\"answers\">");
+            if (!any++) {
+                put_head(b, level, "What did not come to the end");
+                hn_strbuf_add(b, "<ul class=\"answers\">");
+            }
             hn_strbuf_add(b, "<li>");
             hn_html_text(b, spelling);
             if (p->t_reached > 0) {
@@ -346,12 +372,16 @@ static const char *cost_title(int i) {
 
 void hn_page_choices(hn_strbuf *b, hn_cost_kind first) {
     for (int e = 0; e < HN_ERROR_COUNT; e++) {
-        hn_strbuf_printf(b, "<input class=\"choice\" type=\"radio\" name=\"e\" id=\"e%d\"%s>", e,
-                         e == HN_ERROR_Q ? " checked" : "");
+        hn_strbuf_printf(b,
+                         "<input class=\"choice\" type=\"radio\" name=\"e\" id=\"e%d\" "
+                         "aria-label=\"error of the %s\"%s>",
+                         e, hn_error_title((hn_error_kind)e), e == HN_ERROR_Q ? " checked" : "");
     }
     for (int c = 0; c < HN_COST_COUNT; c++) {
-        hn_strbuf_printf(b, "<input class=\"choice\" type=\"radio\" name=\"c\" id=\"c%d\"%s>", c,
-                         c == (int)first ? " checked" : "");
+        hn_strbuf_printf(b,
+                         "<input class=\"choice\" type=\"radio\" name=\"c\" id=\"c%d\" "
+                         "aria-label=\"against %s\"%s>",
+                         c, cost_title(c), c == (int)first ? " checked" : "");
     }
     hn_strbuf_add(b, "<div class=\"bars\">");
     put_bar(b, "error of", 'e', HN_ERROR_COUNT, error_title);
@@ -413,15 +443,16 @@ static void put_intro(hn_strbuf *b, const hn_study *s) {
     }
 }
 
-void hn_study_put_measures(hn_strbuf *b, const hn_study *s) {
+void hn_study_put_measures(hn_strbuf *b, const hn_study *s, int level) {
     const hn_ref *ref = hn_study_wp(s)->ref;
-    hn_strbuf_printf(
-        b,
-        "<h2>How it was measured</h2><p>The reference solution is %s; %s, which shares "
-        "nothing with it but the scene's equations, agrees to %.1f digits of the "
-        "coordinates, %.1e of the reactions. Errors below ten times their difference "
-        "are given as bounds.</p>",
-        ref->means[0], ref->means[1], hn_ref_digits(ref), ref->error[HN_ERROR_REACTION]);
+    put_head(b, level, "How it was measured");
+    hn_strbuf_printf(b,
+                     "<p>The reference solution is %s; %s, which shares "
+                     "nothing with it but the scene's equations, agrees to %.1f digits of the "
+                     "coordinates, %.1e of the reactions. Errors below ten times their difference "
+                     "are given as bounds.</p>",
+                     ref->means[0], ref->means[1], hn_ref_digits(ref),
+                     ref->error[HN_ERROR_REACTION]);
     hn_strbuf_printf(
         b,
         "<p>Errors are the largest over %d times. Coordinates: lengths over %.3g m, angles in rad, "
@@ -429,6 +460,9 @@ void hn_study_put_measures(hn_strbuf *b, const hn_study *s) {
         "J'(λ − λ_ref) over the largest J'λ_ref. Gaps: over the same length and rate. Energy: over "
         "the largest kinetic energy plus the range of the potential, %.3g J.</p>",
         ref->n, ref->scales.length, ref->scales.rate, ref->scales.energy);
+}
+
+void hn_page_timing(hn_strbuf *b) {
     hn_strbuf_printf(
         b,
         "<p>CPU time is the median of up to %d samples of one run without output, each a batch of "
@@ -457,10 +491,11 @@ void hn_study_html(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "<h2>Which method for which accuracy</h2>");
     hn_study_put_answers(b, s);
     put_plots(b, s);
-    hn_study_put_methods(b, s);
-    hn_study_put_race(b, s);
-    hn_study_put_failures(b, s);
-    hn_study_put_measures(b, s);
+    hn_study_put_methods(b, s, 2);
+    hn_study_put_race(b, s, 2);
+    hn_study_put_failures(b, s, 2);
+    hn_study_put_measures(b, s, 2);
+    hn_page_timing(b);
     hn_study_put_points(b, s);
     hn_strbuf_add(b, "</main></body></html>\n");
 }

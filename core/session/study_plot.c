@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { WIDTH = 900, HEIGHT = 532, LEFT = 66, RIGHT = 190, TOP = 42, BOTTOM = 50, LABEL_STEP = 16 };
 static const double MARKER = 4.2; // half its size
@@ -40,7 +41,11 @@ typedef struct frame {
 } frame;
 
 void hn_html_text(hn_strbuf *b, const char *text) {
-    for (; *text; text++) {
+    hn_html_text_n(b, text, strlen(text));
+}
+
+void hn_html_text_n(hn_strbuf *b, const char *text, size_t n) {
+    for (const char *end = text + n; text < end; text++) {
         switch (*text) {
         case '&':
             hn_strbuf_add(b, "&amp;");

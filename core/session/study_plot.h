@@ -18,4 +18,5 @@ void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about);
 void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text);
 /// Text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);
+void hn_html_text_n(hn_strbuf *b, const char *text, size_t n); ///< its first n bytes
 #endif

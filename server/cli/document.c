@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const char MORE[] = ", \xe2\x80\xa6";
+
 cJSON *hn_document_parse(hn_strbuf *text) {
     cJSON *document = text->failed ? NULL : cJSON_Parse(hn_strbuf_text(text));
     hn_strbuf_reset(text);
@@ -49,7 +51,18 @@ static void format_scalar(const cJSON *item, char out[HN_TABLE_CELL]) {
     }
 }
 
-/// A scalar, or the scalars of an array with commas between.
+/// The same, whole however long it is.
+static void put_scalar(hn_strbuf *b, const cJSON *item) {
+    char text[HN_TABLE_CELL];
+    if (cJSON_IsString(item)) {
+        hn_strbuf_add(b, item->valuestring);
+        return;
+    }
+    format_scalar(item, text);
+    hn_strbuf_add(b, text);
+}
+
+/// A scalar, or the scalars of an array with commas between; what has no room is marked by an ellipsis.
 static void format_cell(const cJSON *item, char out[HN_TABLE_CELL]) {
     if (!cJSON_IsArray(item)) {
         format_scalar(item, out);
@@ -61,10 +74,11 @@ static void format_cell(const cJSON *item, char out[HN_TABLE_CELL]) {
     cJSON_ArrayForEach(part, item) {
         char text[HN_TABLE_CELL];
         format_scalar(part, text);
-        if (used + strlen(text) + 3 < HN_TABLE_CELL) {
-            used +=
-                (size_t)snprintf(out + used, HN_TABLE_CELL - used, "%s%s", used ? ", " : "", text);
+        if (used + strlen(text) + sizeof MORE + 3 > HN_TABLE_CELL) {
+            snprintf(out + used, HN_TABLE_CELL - used, "%s", MORE);
+            return;
         }
+        used += (size_t)snprintf(out + used, HN_TABLE_CELL - used, "%s%s", used ? ", " : "", text);
     }
 }
 
@@ -144,7 +158,6 @@ static void put_lines(hn_strbuf *b, const cJSON *array, int indent) {
 }
 
 static void put_line(hn_strbuf *b, const cJSON *array) {
-    char text[HN_TABLE_CELL];
     const cJSON *item;
     hn_strbuf_add(b, array->child ? "" : "none");
     cJSON_ArrayForEach(item, array) {
@@ -153,15 +166,13 @@ static void put_line(hn_strbuf *b, const cJSON *array) {
             put_line(b, item);
             hn_strbuf_add(b, "]");
         } else {
-            format_scalar(item, text);
-            hn_strbuf_add(b, text);
+            put_scalar(b, item);
         }
         hn_strbuf_add(b, item->next ? ", " : "");
     }
 }
 
 void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
-    char text[HN_TABLE_CELL];
     int width = 0;
     const cJSON *item;
     cJSON_ArrayForEach(item, object) {
@@ -170,8 +181,9 @@ void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
     }
     cJSON_ArrayForEach(item, object) {
         if (is_scalar(item)) {
-            format_scalar(item, text);
-            hn_strbuf_printf(b, "%*s%-*s  %s\n", indent, "", width, item->string, text);
+            hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
+            put_scalar(b, item);
+            hn_strbuf_add(b, "\n");
         } else if (cJSON_IsObject(item)) {
             hn_strbuf_printf(b, "%*s%s\n", indent, "", item->string);
             hn_document_outline(b, item, indent + 2);

@@ -23,6 +23,16 @@ void hn_table_column(hn_table *t, const char *head, int to_right) {
     t->n_columns++;
 }
 
+/// An ellipsis at the end of what did not fit, between two characters.
+static void mark_cut(char cell[HN_TABLE_CELL]) {
+    static const char ELLIPSIS[] = "\xe2\x80\xa6";
+    size_t n = HN_TABLE_CELL - sizeof ELLIPSIS;
+    while (n > 0 && ((unsigned char)cell[n] & 0xc0) == 0x80) {
+        n--;
+    }
+    memcpy(cell + n, ELLIPSIS, sizeof ELLIPSIS);
+}
+
 void hn_table_cell(hn_table *t, const char *format, ...) {
     if (t->n_cells == t->cap) {
         int cap = t->cap ? 2 * t->cap : 64;
@@ -36,8 +46,11 @@ void hn_table_cell(hn_table *t, const char *format, ...) {
     }
     va_list args;
     va_start(args, format);
-    vsnprintf(t->cells[t->n_cells++], HN_TABLE_CELL, format, args);
+    if (vsnprintf(t->cells[t->n_cells], HN_TABLE_CELL, format, args) >= HN_TABLE_CELL) {
+        mark_cut(t->cells[t->n_cells]);
+    }
     va_end(args);
+    t->n_cells++;
 }
 
 void hn_table_quantity(hn_table *t, double value, const char *unit) {

@@ -236,6 +236,49 @@ static void the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_per
     free(second);
 }
 
+static void a_long_note_is_told_in_lines_and_not_cut_to_one(void **state) {
+    (void)state;
+    double points[15];
+    set_points(points, 0);
+    hn_snapshot_pose pose = {.points = points, .name = "raw"};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    unsigned char *rgb[3];
+    const char *const notes[3] = {"", "a note of one line",
+                                  "a note of one line and then a second "
+                                  "one, and what is left in a third"};
+    for (int i = 0; i < 3; i++) {
+        pose.note = notes[i];
+        rgb[i] = draw(&four_bar, &pose, 1, &opts);
+    }
+    // the letters are alike, so that ink counts them: 17 against 65, of which an ellipsis in one line would leave some 30
+    assert_true(differing_pixels(rgb[0], rgb[2]) > 3 * differing_pixels(rgb[0], rgb[1]));
+    for (int i = 0; i < 3; i++) {
+        free(rgb[i]);
+    }
+}
+
+static void many_poses_with_long_notes_all_fit(void **state) {
+    (void)state;
+    enum { POSES = 7 };
+    double points[15];
+    set_points(points, 0);
+    hn_snapshot_pose poses[POSES];
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    for (int i = 0; i < POSES; i++) {
+        poses[i] = (hn_snapshot_pose){.points = points,
+                                      .slot = i,
+                                      .name = "a method",
+                                      .note = "stopped at 340 ms: the chosen coordinates stopped "
+                                              "being valid here, and nothing else was left to do"};
+    }
+    unsigned char *with = draw(&four_bar, poses, POSES, &opts);
+    poses[POSES - 1].note = "";
+    unsigned char *without = draw(&four_bar, poses, POSES, &opts);
+    assert_true(differing_pixels(with, without) > 200); // the last one's stands in the picture
+    free(with);
+    free(without);
+}
+
 static void every_kind_of_shape_but_arrow_and_trace_leaves_ink(void **state) {
     (void)state;
     const double points[12] = {0, 0, 0, 1, 0.5, 0, 2, 0, 0, 1, -1, 0};
@@ -339,6 +382,8 @@ static void every_failing_allocation_is_told_and_nothing_leaks(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tear_of_any_size_fills_a_good_part_of_the_inset),
+        cmocka_unit_test(a_long_note_is_told_in_lines_and_not_cut_to_one),
+        cmocka_unit_test(many_poses_with_long_notes_all_fit),
         cmocka_unit_test(a_closed_joint_is_not_magnified_into_its_rounding),
         cmocka_unit_test(the_widest_tear_of_all_poses_is_the_one_shown),
         cmocka_unit_test(with_a_fixed_view_the_scale_does_not_depend_on_the_pose),
