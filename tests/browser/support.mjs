@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
 export const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../..");
-const PROGRAM = process.env.HOLONOM ? join(ROOT, process.env.HOLONOM) : join(ROOT, "build/holonom");
+export const PROGRAM = join(ROOT, process.env.HOLONOM || "build/holonom");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const START_LIMIT = 10000; // [ms]
 const FLAGS = [
@@ -73,7 +73,7 @@ async function startServer() {
   return { url, port: Number(new URL(url).port), stop };
 }
 
-async function startBrowser() {
+export async function startBrowser() {
   assert.ok(existsSync(CHROMIUM), `${CHROMIUM} is installed`);
   return chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
 }

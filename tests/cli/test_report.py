@@ -89,6 +89,34 @@ class Report(unittest.TestCase):
         for anchor in re.findall(r'href="#([^"]*)"', text):
             self.assertIn(anchor, ids)
 
+    def test_it_begins_with_what_the_answers_come_to(self):
+        with open(self.page, encoding="utf-8") as f:
+            text = f.read()
+        said = re.findall("<li>(.*?)</li>", re.search('<ul class="answers">(.*?)</ul>', text).group(1))
+        answers = [a["method"] for s in self.report["scenes"] for a in s["answers"] if a["method"]]
+        best = max(METHODS, key=answers.count)
+        self.assertTrue(said[0].startswith(f"Cheapest: {best} in {answers.count(best)} of {len(answers)}"), said)
+        # projection alone closes the loops and passes the flat poses with every size
+        self.assertRegex(said[1], "^To the end at every size in every scene, .*: projection@rk4.$")
+        self.assertIn("Break at some sizes or all in fb0: nullspace-as-printed@rk4.", said)
+        self.assertIn("Ranked by operations: no time was taken.", said)
+
+    def test_tables_have_heads_and_headings_go_down_one_level_at_a_time(self):
+        with open(self.page, encoding="utf-8") as f:
+            text = f.read()
+        rows = re.findall("<tr>(.*?)</tr>", text, re.S)
+        self.assertGreater(len(rows), 20)
+        for row in rows:
+            self.assertRegex(row, "^<th", "each row begins with what it is of")
+        levels = [int(n) for n in re.findall(r"<h(\d)", text)]
+        self.assertEqual(levels[0], 1)
+        for above, below in zip(levels, levels[1:]):
+            self.assertLessEqual(below, above + 1)
+        for svg in re.findall("<svg [^>]*>", text):
+            self.assertRegex(svg, 'role="img" aria-label="[^"]{10}|aria-hidden="true"')
+        for box in re.findall("<input [^>]*>", text):
+            self.assertRegex(box, 'aria-label="(error of|against) ')
+
     def test_every_plot_is_a_file_of_its_own(self):
         names = sorted(os.listdir(self.plots))
         svgs = [n for n in names if n.endswith(".svg")]
