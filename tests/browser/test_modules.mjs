@@ -348,10 +348,10 @@ test("typed powers are printed as such, and spellings stay as they are typed", (
   assert.equal(withPowers("rk4:h=1e-10, 2.1e-10, a^b"), "rk4:h=1e-10, 2.1e-10, a^b");
 });
 
-test("a bound is told as the next power of ten, and never below what it bounds", () => {
+test("a bound is told by one digit, and never below what it bounds", () => {
   assert.deepEqual(
-    [9.2e-14, 1e-12, 2e-12, 1e-11, 3.3e-3].map((value) => bound(value, "m")),
-    ["10⁻¹³ m", "1 pm", "10 pm", "10 pm", "10 mm"],
+    [9.2e-14, 1.3e-13, 0.7e-12, 1e-12, 1.07e-11, 2e-11, 3.3e-3].map((value) => bound(value, "m")),
+    ["10⁻¹³ m", "2×10⁻¹³ m", "1 pm", "1 pm", "20 pm", "20 pm", "5 mm"],
   );
 });
 

@@ -39,11 +39,12 @@ export function withPowers(text) {
     .replace(/(?<![=\w.])1e([-+]\d\d)\b/g, (_, power) => powerOfTen(Number(power)));
 }
 
-/** A bound, as the next power of ten: 10 pm, 10⁻¹³ m. @param {number} value above 0 @param {string} unit */
+/** A bound, as the next 1, 2 or 5 times a power of ten: 20 pm, 10⁻¹³ m. @param {number} value above 0 @param {string} unit */
 export function bound(value, unit) {
-  const power = Math.ceil(Math.log10(value) - 1e-9);
-  const least = 10 ** power;
-  return least < SMALLEST_PREFIXED ? `${powerOfTen(power)} ${unit}` : quantity(least, unit, 1);
+  const [digit, power] = niceAbove(value).toExponential(0).split("e").map(Number);
+  const prefixed = value > SMALLEST_PREFIXED / 2;
+  const factor = digit === 1 ? "" : `${digit}×`;
+  return prefixed ? quantity(digit * 10 ** power, unit, 1) : `${factor}${powerOfTen(power)} ${unit}`;
 }
 
 /** Two digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value */
