@@ -353,6 +353,31 @@ static const char *name_of_speed(const hn_accel *s, int i) {
     return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, i)].name;
 }
 
+/// The first speed that moves no mass by itself, -1: each moves some.
+static int find_massless(const hn_accel *s) {
+    const double nothing = 1e-14; // of the largest mass, as in the dense solves
+    const double *M = hn_eval_get(s->terms, HN_TERM_M);
+    double heaviest = 0;
+    for (int i = 0; i < s->nv; i++) {
+        heaviest = fmax(heaviest, M[(size_t)i * s->nv + i]);
+    }
+    for (int i = 0; i < s->nv; i++) {
+        if (M[(size_t)i * s->nv + i] <= nothing * heaviest) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void refuse_massless(hn_accel *s) {
+    const int massless = find_massless(s);
+    snprintf(s->refusal, sizeof s->refusal,
+             "the loops leave a motion free that moves no mass%s%.60s: no acceleration of it "
+             "follows from forces",
+             massless >= 0 ? ", such as that of " : "",
+             massless >= 0 ? name_of_speed(s, massless) : "");
+}
+
 static void refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
     const char *name = hn_solver_names[solver];
     if (massless >= 0) {
@@ -365,6 +390,8 @@ static void refuse(hn_accel *s, hn_solver solver, hn_status status, int massless
                  "solver=%s needs closure rows that do not depend on each other; solver=auto, "
                  "proximal or least-norm serve this",
                  name);
+    } else if (status == HN_ERR_SINGULAR) {
+        refuse_massless(s);
     }
 }
 

@@ -25,6 +25,7 @@ typedef struct implicit_dae {
     hn_implicit_dae_opts opts;
     int nq, nv, nc;
     double weight; // of the error estimate
+    int is_driven; // a loop depends on time
     hn_stages st;
     hn_implicit_linear lin;
     hn_linear *at_stage; // R, phi, J v + phi_t
@@ -144,6 +145,17 @@ static void solve(void *self, hn_parts r) {
     hn_implicit_linear_solve(&s->lin, r);
 }
 
+static int has_driven_loop(const hn_system *sys) {
+    const hn_system_exprs exprs = hn_system_get_exprs(sys);
+    const int nc = hn_system_get_info(sys).nc;
+    for (int i = 0; i < nc; i++) {
+        if (!hn_is_zero(exprs.phi_t[i])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 // --- life -------------------------------------------------------------------------------------------------
 
 static hn_status allocate(implicit_dae *s, const hn_collocation *col, hn_arena *arena) {
@@ -201,8 +213,13 @@ hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form, const h
     hn_status status = HN_ERR_MEMORY;
     HN_ASSERT(!opts->at_end || col->stages == 1);
     if (s) {
-        *s = (implicit_dae){
-            .sys = sys, .form = form, .opts = *opts, .nq = info.nq, .nv = info.nv, .nc = info.nc};
+        *s = (implicit_dae){.sys = sys,
+                            .form = form,
+                            .opts = *opts,
+                            .nq = info.nq,
+                            .nv = info.nv,
+                            .nc = info.nc,
+                            .is_driven = has_driven_loop(sys)};
         const hn_stage_equations eq = {.self = s,
                                        .n_diff = 2 * info.nv,
                                        .n_alg = (form == HN_FORM_GGL ? 2 : 1) * info.nc,
@@ -246,8 +263,9 @@ hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
         hn_accel_eval(s->accel, t, y, y + s->nq, 0, 0, s->a_start, s->lambda_start, NULL);
     s->accelerations++;
     if (status != HN_OK) {
+        const char *refusal = hn_accel_refusal(s->accel);
         snprintf(s->why, sizeof s->why, "accelerations to begin from at t = %.6g s: %s", t,
-                 hn_status_text(status));
+                 refusal ? refusal : hn_status_text(status));
         return status;
     }
     memcpy(s->raw, s->lambda_start, (size_t)s->nc * sizeof *s->raw);
@@ -333,9 +351,14 @@ static void filter_error(implicit_dae *s, const double *v, const double *force, 
     hn_implicit_linear_solve(&s->lin, (hn_parts){1, {r, NULL}});
 }
 
-// in terms of y; speeds of index 3 are what positions of index 2 are: their error enters the next step times h
+// speeds of index 3 are what positions of index 2 are: their error enters the next step times h
+static double speed_factor(const implicit_dae *s, double h) {
+    return s->form == HN_FORM_INDEX3 ? fmin(h, 1) : 1;
+}
+
+// in terms of y
 static void put_error(implicit_dae *s, double h, double *err) {
-    const double *r = s->st.parts, factor_v = s->form == HN_FORM_INDEX3 ? fmin(h, 1) : 1;
+    const double *r = s->st.parts, factor_v = speed_factor(s, h);
     hn_system_kinematics(s->sys, s->q0, r, err);
     for (int i = 0; i < s->nq; i++) {
         err[i] *= s->weight;
@@ -364,6 +387,29 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     }
     filter_error(s, s->v, s->x, ex, ew);
     put_error(s, h, err);
+}
+
+// The estimate is a motion that the loops allow. Where they are moved from outside it sees nothing of how fast: what shows that
+// is how far the polynomial through the stages leaves them between the stages: what it takes to close them there counts as well.
+static void add_gap_between(implicit_dae *s, double t, double h, double *err) {
+    const double between = 0.85; // where that polynomial's error of interpolation is about largest
+    const int nv = s->nv;
+    double *r = s->st.parts, *rates = s->st.r, *dq = s->st.r + nv;
+    hn_stages_dense(&s->st, between, r);
+    place(s, r, 1);
+    hn_linear_run(s->at_stage, t + between * h, s->q, s->v, NULL, NULL);
+    memset(r, 0, (size_t)s->st.n * sizeof *r);
+    put_constraints(s, 1, r + 2 * nv);
+    hn_implicit_linear_solve(&s->lin, (hn_parts){1, {r, NULL}});
+    memcpy(rates, r, (size_t)nv * sizeof *r);
+    hn_system_kinematics(s->sys, s->q0, rates, dq);
+    for (int i = 0; i < s->nq; i++) {
+        err[i] = fmax(fabs(err[i]), s->weight * fabs(dq[i]));
+    }
+    for (int i = 0; i < nv; i++) {
+        const double speed = s->weight * speed_factor(s, h) * fabs(r[nv + i]);
+        err[s->nq + i] = fmax(fabs(err[s->nq + i]), speed);
+    }
 }
 
 // what Newton's tolerance leaves, what rows that were left out need, and what index 2 leaves open on request
@@ -447,6 +493,9 @@ hn_status hn_implicit_dae_step(void *self, double t, double h, const double *y, 
     status = close_end(s, t + h, y_new, y_new + s->nq);
     if (status == HN_OK && err && s->opts.rtol > 0) {
         estimate_error(s, t, h, y, y_new, err);
+        if (s->is_driven) {
+            add_gap_between(s, t, h, err);
+        }
     }
     return status;
 }

@@ -5,9 +5,11 @@
 #include "session/model.h"
 #include "session/position_json.h"
 
-static void put_start(hn_strbuf *b, const hn_assembly *a) {
+static void put_start(hn_strbuf *b, const hn_model *model) {
+    const hn_assembly *a = hn_model_assembly(model);
     hn_json_key(b, "start");
     hn_json_object(b);
+    hn_model_closed_put(b, model);
     hn_json_put_int(b, "rank", a->rank);
     hn_json_put_int(b, "redundant", a->redundant);
     hn_json_put_int(b, "freedoms", a->freedoms);
@@ -29,7 +31,7 @@ hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *d
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "title", hn_model_scene(model)->title);
     hn_json_put_string(b, "caption", caption);
-    put_start(b, hn_model_assembly(model));
+    put_start(b, model);
     hn_status status = hn_system_redundancy_put(b, hn_model_system(model), 0, hn_model_q(model));
     hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
     if (status == HN_OK) {

@@ -9,6 +9,7 @@ struct hn_model {
     hn_arena *arena;
     double *q, *v;
     hn_assembly assembly;
+    hn_diag open;          ///< why its loops did not close; no message: they did
     const char *reference; ///< where its shipped reference stands, NULL: it is no shipped scene
 };
 
@@ -64,10 +65,19 @@ static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags) {
     if (hn_arena_failed(model->arena)) {
         return HN_ERR_MEMORY;
     }
+    hn_diags why = {0};
     hn_status status =
-        hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, diags);
+        hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, &why);
     int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
-    return open && allow_open ? HN_OK : status;
+    if (open && allow_open) {
+        model->open = why.item[0];
+        return HN_OK;
+    }
+    for (int i = 0; i < why.n; i++) {
+        hn_diags_add(diags, why.item[i].status, why.item[i].pointer, why.item[i].hint, "%s",
+                     why.item[i].message);
+    }
+    return status;
 }
 
 hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out,
@@ -121,6 +131,10 @@ const hn_system *hn_model_system(const hn_model *model) {
 
 const hn_assembly *hn_model_assembly(const hn_model *model) {
     return &model->assembly;
+}
+
+const hn_diag *hn_model_open(const hn_model *model) {
+    return model->open.message[0] ? &model->open : NULL;
 }
 
 const double *hn_model_q(const hn_model *model) {

@@ -32,6 +32,8 @@ const hn_scene *hn_model_scene(const hn_model *model);
 const char *hn_model_reference_path(const hn_model *model);
 const hn_system *hn_model_system(const hn_model *model);
 const hn_assembly *hn_model_assembly(const hn_model *model);
+/// What keeps the loops of the start from closing, told as assembly tells it; NULL: they are closed (always unless allow_open).
+const hn_diag *hn_model_open(const hn_model *model);
 const double *hn_model_q(const hn_model *model); ///< assembled start, system coordinates
 const double *hn_model_v(const hn_model *model);
 
@@ -54,6 +56,8 @@ void hn_scenes_json(hn_strbuf *b, const hn_library *lib);
 void hn_model_json(hn_strbuf *b, const hn_model *model);
 /// sizes, tree, loops, rank, operations kept and left out
 HN_MUST_CHECK hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *diags);
+/// "ok": whether the loops of the start are closed; if not, "reason" and "hint". Into the object that stands open.
+void hn_model_closed_put(hn_strbuf *b, const hn_model *model);
 /// assembly report as JSON, with user coordinates
 void hn_model_assembly_json(hn_strbuf *b, const hn_model *model);
 /// M, h, f, J, gamma, phi, K, acceleration, lambda, energies at one state, in user coordinates, with ranks and sigma; "rows" and "columns" named.

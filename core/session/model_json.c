@@ -134,8 +134,18 @@ static void put_sizes(hn_strbuf *b, const hn_model *model) {
     hn_json_put_number(b, "length", hn_system_length(hn_model_system(model)));
 }
 
-static void put_assembly_fields(hn_strbuf *b, const hn_assembly *a) {
-    hn_json_put_bool(b, "ok", a->ok);
+void hn_model_closed_put(hn_strbuf *b, const hn_model *model) {
+    const hn_diag *open = hn_model_open(model);
+    hn_json_put_bool(b, "ok", hn_model_assembly(model)->ok);
+    if (open) {
+        hn_json_put_string(b, "reason", open->message);
+        hn_json_put_string(b, "hint", open->hint);
+    }
+}
+
+static void put_assembly_fields(hn_strbuf *b, const hn_model *model) {
+    const hn_assembly *a = hn_model_assembly(model);
+    hn_model_closed_put(b, model);
     hn_json_put_string(b, "route", a->route);
     hn_json_put_int(b, "iterations", a->iterations);
     hn_json_put_number(b, "gap_before", a->gap_before);
@@ -228,7 +238,7 @@ void hn_model_json(hn_strbuf *b, const hn_model *model) {
     put_rows(b, hn_model_system(model));
     hn_json_key(b, "assembly");
     hn_json_object(b);
-    put_assembly_fields(b, hn_model_assembly(model));
+    put_assembly_fields(b, model);
     hn_json_end_object(b);
     hn_json_key(b, "drawing");
     hn_drawing_json(b, hn_model_system(model));
@@ -251,7 +261,7 @@ void hn_model_assembly_json(hn_strbuf *b, const hn_model *model) {
     }
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
-    put_assembly_fields(b, hn_model_assembly(model));
+    put_assembly_fields(b, model);
     put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
     hn_json_end_object(b);
     hn_arena_free(arena);

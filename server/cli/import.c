@@ -121,7 +121,7 @@ static void put_assembly(hn_strbuf *b, const hn_model *model, const hn_diags *wh
         return;
     }
     const hn_assembly *a = hn_model_assembly(model);
-    hn_json_put_bool(b, "ok", a->ok);
+    hn_model_closed_put(b, model);
     hn_json_put_number(b, "gap", a->gap);
     hn_json_put_number(b, "moved", a->moved);
     hn_json_put_int(b, "rank", a->rank);
@@ -199,11 +199,11 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
         return;
     }
     const hn_assembly *a = hn_model_assembly(model);
-    if (!a->ok) {
+    const hn_diag *open = hn_model_open(model);
+    if (open) {
         fprintf(stderr,
-                "holonom: the scene was written, but cannot be assembled: a gap of %.3g stays "
-                "('holonom inspect' says more)\n",
-                a->gap);
+                "holonom: the scene was written, but cannot be assembled: %s\n         %s\n",
+                open->message, open->hint);
         return;
     }
     fprintf(

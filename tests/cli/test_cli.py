@@ -101,6 +101,33 @@ class CommandLine(unittest.TestCase):
         unfit = self.assert_exit(call("terms", "five-bar", "--v", "w1=1"), DONE)
         self.assertIn("the speeds given do not fit the loops", unfit)
 
+    def test_inspect_says_why_a_loop_stays_open(self):
+        # crank 3 at 1 rad and ground 1 are sqrt(3^2 + 1^2 - 2*3*cos(1)) = 2.59965 apart, coupler and rocker reach 1.2 + 0.8
+        text = self.assert_exit(call("inspect", "four-bar", "--set", "l1=3"), DONE)
+        self.assertIn("0.599651 m are missing", text)
+        self.assertIn("make rocker 1.39965 m", text)
+        start = strict(self.assert_exit(call("inspect", "four-bar", "--set", "l1=3", "--json"), DONE))["start"]
+        self.assertFalse(start["ok"])
+        self.assertIn("loop B cannot be closed", start["reason"])
+        closed = strict(self.assert_exit(call("inspect", "four-bar", "--json"), DONE))["start"]
+        self.assertTrue(closed["ok"])
+        self.assertNotIn("reason", closed)
+
+    def test_long_lists_in_tables_say_how_many_they_hold(self):
+        text = self.assert_exit(call("inspect", "n-four-bar", "--set", "N=60"), DONE)
+        self.assertIn("... (122 in all)", text)  # bodies of the ground's group: 61 verticals, 60 couplers, ground
+        self.assertIn("B60: tilt 2\n", text)  # rows that vanish: not in a table, none left out
+
+    def test_a_mechanism_without_mass_is_refused_with_the_freedom(self):
+        with open("lessons/01-closed-loops/scenes/four-bar.json") as f:
+            scene = json.load(f)
+        for body in scene["bodies"]:
+            body.update(mass=0, inertia={"zz": 0})
+        for method in ("projection@rk4", "index1@dopri5", "ggl@radau5"):
+            done = call("run", "-", "--method", method, stdin=json.dumps(scene))
+            self.assertEqual(done.returncode, ENDED, done.stderr)
+            self.assertIn("moves no mass, such as that of th1", done.stderr.decode())
+
     def test_inspect_tells_how_positions_are_found(self):
         def answers(scene):
             return strict(self.assert_exit(call("inspect", scene, "--json"), DONE))["position_analysis"]

@@ -55,6 +55,20 @@ class Import(unittest.TestCase):
         self.assertEqual([(n["outcome"], n["line"]) for n in answer["notes"]], [("ignored", 11), ("ignored", 12), ("ignored", 16)])
         self.assertEqual(answer["scene"]["holonom"], 1)
 
+    def test_a_loop_that_cannot_close_is_told_with_its_reason(self):
+        with open(HERE + "four-bar.loops.json") as f:
+            loops = json.load(f)
+        loops["joints"][0]["child"]["at"] = [9, 0, 0]  # on the rocker: out of reach of crank and coupler
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "loops.json")
+            with open(path, "w") as f:
+                json.dump(loops, f)
+            words = ("import", HERE + "four-bar.urdf", "--loops", path)
+            assembly = json.loads(self.done(*words, "--json").stdout)["assembly"]
+            self.assertFalse(assembly["ok"])
+            self.assertIn("cannot be closed", assembly["reason"])
+            self.assertIn("cannot be assembled: loop", self.done(*words).stderr.decode())
+
     def test_people_read_the_notes_on_standard_error(self):
         text = self.done("import", HERE + "leg.xml").stderr.decode()
         self.assertIn("line 21: refused: the inertia of a rotor", text)
