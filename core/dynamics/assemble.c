@@ -22,7 +22,7 @@ static const hn_coordinate *user_coordinate(const hn_assembler *s, int i) {
 
 // --- setting up ----------------------------------------------------------------------------------------------
 
-/// A pin on a joint that closes a loop has no coordinate to hold: it is refused, not overlooked.
+/// A pin or a guess on a joint that closes a loop has no coordinate to hold or to begin from: it is refused, not overlooked.
 static hn_status check_pins(const hn_assembler *s) {
     hn_status status = HN_OK;
     for (int i = 0; i < s->scene->n_coordinates; i++) {
@@ -30,12 +30,14 @@ static hn_status check_pins(const hn_assembler *s) {
         if (c->joint < 0 || !hn_system_joint_is_cut(s->sys, c->joint)) {
             continue;
         }
-        if (c->q0_pinned || c->v0_pinned) {
+        if (c->q0_given || c->v0_given) {
+            const int pinned = c->q0_pinned || c->v0_pinned;
             status = hn_diags_add(
-                s->diags, HN_ERR_UNSUPPORTED, c->q0_pinned ? c->q0_pointer : c->v0_pointer,
-                "pin another coordinate, or say \"cut\": true at another joint of the loop",
-                "%s cannot be pinned: its joint closes a loop and follows from the others",
-                c->name);
+                s->diags, HN_ERR_UNSUPPORTED, c->q0_given ? c->q0_pointer : c->v0_pointer,
+                pinned ? "pin another coordinate, or say \"cut\": true at another joint of the loop"
+                       : "guess another one, or say \"cut\": true at another joint of the loop",
+                "%s cannot be %s: its joint closes a loop and follows from the others", c->name,
+                pinned ? "pinned" : "guessed");
         }
     }
     return status;

@@ -261,6 +261,11 @@ static void a_pin_on_the_joint_that_closes_the_loop_is_refused(void **state) {
     diag_must_hold(&m, "b3 cannot be pinned");
     assert_string_equal(m.diags.item[0].pointer, "/start/positions/b3");
     hn_model_close(&m);
+    open_bar(&m, "\"th1\": 1, \"a2\": {\"guess\": -0.5}, \"b3\": {\"guess\": 0.5}", "\"th1\": 2",
+             NULL);
+    assert_int_equal(m.status, HN_ERR_UNSUPPORTED);
+    diag_must_hold(&m, "b3 cannot be guessed");
+    hn_model_close(&m);
 }
 
 static void free_rates_change_least_by_mass(void **state) {
