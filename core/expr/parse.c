@@ -120,9 +120,9 @@ static hn_ex parse_number(parser *p) {
     const char next = peek(p);
     if (is_name_start(next) || next == '(' || isdigit((unsigned char)next)) {
         char buffer[32];
-        return fail(p, p->at, "write the product: 3*x",
-                    "a number is followed by %s; '*' or another operator is missing",
-                    found(p, buffer));
+        return fail(
+            p, p->at, "write the product: 3*x; a unit is not written, numbers are in SI units",
+            "a number is followed by %s; '*' or another operator is missing", found(p, buffer));
     }
     return hn_num(value);
 }
