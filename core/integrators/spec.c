@@ -64,6 +64,12 @@ static hn_status unknown_name(hn_diag *diag, piece p, const char *what, const ch
     return at_column(diag, p, HN_ERR_INPUT);
 }
 
+static hn_status wrong_side(hn_diag *diag, piece p, const char *word, const char *is) {
+    hn_diag_set(diag, HN_ERR_INPUT, NULL, "FORMULATION@INTEGRATOR, as in projection@rk4:h=1e-3",
+                "'%s' is %s and stands on the wrong side of the '@'", word, is);
+    return at_column(diag, p, HN_ERR_INPUT);
+}
+
 static hn_status find_formulation(piece p, const hn_formulation **out, hn_diag *diag) {
     const char *names[MAX_NAMES];
     char word[MAX_WORD];
@@ -72,6 +78,9 @@ static hn_status find_formulation(piece p, const hn_formulation **out, hn_diag *
     *out = hn_formulation_find(word);
     for (int i = 0; i < n; i++) {
         names[i] = hn_formulation_at(i)->name;
+    }
+    if (!*out && hn_stepper_find(word)) {
+        return wrong_side(diag, p, word, "an integrator");
     }
     return *out ? HN_OK : unknown_name(diag, p, "formulation", word, names, n);
 }
@@ -84,6 +93,9 @@ static hn_status find_stepper(piece p, const hn_stepper **out, hn_diag *diag) {
     *out = hn_stepper_find(word);
     for (int i = 0; i < n; i++) {
         names[i] = hn_stepper_at(i)->name;
+    }
+    if (!*out && hn_formulation_find(word)) {
+        return wrong_side(diag, p, word, "a formulation");
     }
     return *out ? HN_OK : unknown_name(diag, p, "integrator", word, names, n);
 }

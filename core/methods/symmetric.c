@@ -90,13 +90,45 @@ static void destroy(void *self) {
     hn_accel_ode_destroy(self);
 }
 
+/// The first speed that moves no mass, -1: none.
+static int find_massless(const symmetric *s) {
+    const double massless = 1e-14; // of the largest mass, as in the dense solves
+    const int nv = s->ode.base.nv;
+    double heaviest = 0;
+    for (int i = 0; i < nv; i++) {
+        heaviest = fmax(heaviest, s->M[(size_t)i * (size_t)nv + (size_t)i]);
+    }
+    for (int i = 0; i < nv; i++) {
+        if (!(s->M[(size_t)i * (size_t)nv + (size_t)i] > massless * heaviest)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
 static hn_status tell(symmetric *s, hn_status status, double t) {
+    const hn_system *sys = s->ode.base.sys;
+    const int no_mass = status == HN_ERR_NO_CONVERGENCE ? -1 : find_massless(s);
+    const char *reason = hn_status_text(status);
+    if (no_mass >= 0) {
+        const char *name =
+            no_mass < hn_system_get_info(sys).n_user
+                ? hn_system_scene(sys)->coordinates[hn_system_user_coordinate(sys, no_mass)].name
+                : "a speed";
+        snprintf(s->ode.base.why, sizeof s->ode.base.why,
+                 "the symmetric projection at t = %.6g s needs M^-1, and %s moves no mass; "
+                 "projection and index3 serve this",
+                 t, name);
+        return status;
+    }
+    if (status == HN_ERR_NO_CONVERGENCE) {
+        reason = "it does not converge: the step is too long for it, or the pose is close to one "
+                 "where the loops lose rank";
+    } else if (status == HN_ERR_SINGULAR || status == HN_ERR_NOT_SPD) {
+        reason = "the equations have no unique answer here: closure rows depend on each other";
+    }
     snprintf(s->ode.base.why, sizeof s->ode.base.why, "the symmetric projection at t = %.6g s: %s",
-             t,
-             status == HN_ERR_NO_CONVERGENCE
-                 ? "it does not converge: the step is too long for it, or the pose is close to one "
-                   "where the loops lose rank"
-                 : hn_status_text(status));
+             t, reason);
     return status;
 }
 

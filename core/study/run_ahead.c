@@ -269,8 +269,10 @@ static void look_at_stay(hn_run *run) {
 /// Whether the heading may be compared with its continuation: past a singular pose, or when the step itself looks like a jump.
 static int is_suspect(const hn_run *run) {
     const hn_run_ahead *a = &run->watch.ahead;
+    // where a motion turns back it hardly moves, and half of that is no jump: one goes as far as a step does elsewhere
+    const double way = run->watch.swiftest * (run->now.t - run->before.t);
     return a->passing || a->info.sigma_min < RANGE * a->largest ||
-           hn_run_unexplained_motion(run) > HN_RUN_WARN_JUMP;
+           hn_run_unexplained_motion(run, way) > HN_RUN_WARN_JUMP;
 }
 
 static void look_at_heading(hn_run *run) {

@@ -57,6 +57,7 @@ typedef struct hn_run_watch_state {
     hn_run_ahead ahead;
     double *row_size; ///< nc: largest length of each row of J so far
     double start_energy, last_energy, v_min, v_max, t_max; ///< t_max: largest kinetic energy so far
+    double swiftest;                                       ///< largest of the speeds so far
     double *modes, *last_modes;                            ///< per loop
     int start_rank;
     int conservative;
@@ -146,8 +147,9 @@ void hn_run_watch_start(hn_run *run);
 /// Looks at the state the run has reached. Fails with HN_ERR_DIVERGED, the reason in the summary, when what has been reached is no state
 /// of the mechanism any more (HN_RUN_LOST_GAP).
 HN_MUST_CHECK hn_status hn_run_watch_look(hn_run *run);
-/// How much of the last step's motion its speeds do not explain: 0 for smooth motion, about 1 or more for a jump.
-double hn_run_unexplained_motion(const hn_run *run);
+/// How much of the last step's motion its speeds do not explain, over that motion, or `least` where it was less: 0 for smooth
+/// motion, about 1 or more for a jump.
+double hn_run_unexplained_motion(const hn_run *run, double least);
 /// Shortest row of J against the largest that row has been, at the state last measured.
 double hn_run_shortest_row(const hn_run *run);
 /// Tells when a condition begins to hold, not at every step while it does; `hn_run_over` when it ceases. NULL: known already, or

@@ -299,9 +299,9 @@ static void look_at_rank(hn_run *run, int at_start) {
     }
 }
 
-double hn_run_unexplained_motion(const hn_run *run) {
+double hn_run_unexplained_motion(const hn_run *run, double least) {
     const double half = 0.5 * (run->now.t - run->before.t);
-    double moved = 0, rest = 0, *step = run->watch.a;
+    double moved = least, rest = 0, *step = run->watch.a;
     hn_system_difference(run->sys, run->before.q, run->now.q, step);
     for (int i = 0; i < run->info.nv; i++) {
         moved = fmax(moved, fabs(step[i]));
@@ -330,7 +330,7 @@ static void look_at_mode(hn_run *run) {
     hn_mode_watch_values(w->mode, run->now.t, run->now.q, w->modes);
     const int loop = find_flipped_loop(w);
     const int named = !hn_system_scene(run->sys)->is_lagrangian; // formulas share their loops
-    if (loop >= 0 && hn_run_unexplained_motion(run) > HN_RUN_WARN_JUMP) {
+    if (loop >= 0 && hn_run_unexplained_motion(run, 0) > HN_RUN_WARN_JUMP) {
         hn_incident *i = hn_run_tell(
             run, HN_INCIDENT_BRANCH_FLIP, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
             "the loop%s%s went from one assembly mode to the other in one step (%.2g to %.2g)",
@@ -374,6 +374,7 @@ void hn_run_watch_start(hn_run *run) {
     w->start_energy = w->last_energy = kinetic + potential;
     w->v_min = w->v_max = potential;
     w->t_max = kinetic;
+    w->swiftest = hn_norm_max(run->info.nv, run->now.v);
     hn_mode_watch_values(w->mode, run->now.t, run->now.q, w->last_modes);
     run->summary.worst_gap = gap;
     run->summary.worst_velocity_gap = speed_gap;
@@ -396,6 +397,7 @@ hn_status hn_run_watch_look(hn_run *run) {
     look_at_mode(run);
     look_at_rank(run, 0);
     hn_run_look_at_limits(run);
+    run->watch.swiftest = fmax(run->watch.swiftest, hn_norm_max(run->info.nv, run->now.v));
     return judge_gap(run, gap);
 }
 

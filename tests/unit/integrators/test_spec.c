@@ -78,6 +78,8 @@ static void each_fault_has_its_column_and_its_hint(void **state) {
         {"nullspace-as-printed:basis=unit@rk4", 28, "'unit'", ""},
         {"projection:what=positon@rk4", 17, "'positon'", "'position'"},
         {"index1@rk4@rk4", 8, "'rk4@rk4'", ""},
+        {"rattle@index3", 1, "'rattle' is an integrator", "FORMULATION@INTEGRATOR"},
+        {"index1@ggl:h=1", 8, "'ggl' is a formulation", "FORMULATION@INTEGRATOR"},
     };
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         hn_method_spec s;

@@ -94,6 +94,18 @@ static void the_range_space_refuses_a_massless_rocker_and_names_it(void **state)
     hn_model_close(&m);
 }
 
+static void symmetric_projection_refuses_a_massless_rocker_and_names_it(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_text(&m, massless_rocker, NULL);
+    hn_run *run = hn_motion_start(&m, "symmetric-projection@midpoint:h=1e-3");
+    assert_int_not_equal(hn_run_advance(run, 0.1), HN_OK);
+    const hn_run_summary s = hn_run_get_summary(run);
+    assert_non_null(strstr(s.reason, "needs M^-1, and th3 moves no mass"));
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 static void answers_from_small_pivots_are_refined_and_counted(void **state) {
     (void)state;
     // a coupler a hundred thousand times lighter than its neighbours: pivots of 1e-5
@@ -205,6 +217,7 @@ int main(void) {
         cmocka_unit_test(every_solver_gives_the_same_motion),
         cmocka_unit_test(redundant_rows_are_refused_by_name_where_they_are_not_served),
         cmocka_unit_test(the_range_space_refuses_a_massless_rocker_and_names_it),
+        cmocka_unit_test(symmetric_projection_refuses_a_massless_rocker_and_names_it),
         cmocka_unit_test(answers_from_small_pivots_are_refined_and_counted),
         cmocka_unit_test(what_waits_at_the_flat_pose_is_told),
         cmocka_unit_test(the_remedy_for_a_chart_that_ends_at_a_flat_pose_goes_through_it),
