@@ -105,11 +105,14 @@ static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag 
                            "%d sizes were asked for; a study takes 2 to %d", o->n_levels,
                            HN_WP_LEVELS);
     }
-    if (o->n_samples > HN_WP_SAMPLES || !(o->step > 0) || !(o->budget >= 0)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
-                           "a study takes at most %d samples of time, a step above 0 and a budget "
-                           "that is not negative",
+    if (o->n_samples > HN_WP_SAMPLES) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/samples", NULL,
+                           "more samples of time were asked for than the %d that a study takes",
                            HN_WP_SAMPLES);
+    }
+    if (!(o->step > 0) || !(o->budget >= 0)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "a study takes a step above 0 and a budget that is not negative");
     }
     if (o->n_shards < 0 || o->n_shards > HN_WP_SHARDS || o->shard > o->n_shards ||
         o->shard < (o->n_shards > 0)) {

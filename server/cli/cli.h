@@ -77,6 +77,9 @@ hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag);
 hn_exit hn_cli_print(hn_strbuf *text);
 /// The same into a file; "-" or NULL is standard output.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
+/// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its folder is not there or
+/// takes no files.
+HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);
 
 /// A line on standard error for what takes longer than a second, only if that is a terminal. Zeroed to begin with.
 typedef struct hn_progress {

@@ -45,7 +45,7 @@ hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *d
         return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
                             "standard output cannot be JSON and CSV at once");
     }
-    return HN_OK;
+    return hn_cli_check_folder(args->out, diags);
 }
 
 hn_exit hn_forms_write(const hn_forms *forms, const hn_args *args, const void *work) {

@@ -101,6 +101,20 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
     return HN_EXIT_DONE;
 }
 
+hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    char folder[4096] = "";
+    if (!slash || slash == path) {
+        return HN_OK;
+    }
+    const int n = snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+    if (n < (int)sizeof folder && access(folder, W_OK) == 0) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_IO, "/out", NULL, "cannot write '%.200s': %s", path,
+                        n < (int)sizeof folder ? strerror(errno) : "its name is too long");
+}
+
 /// As a person would say it.
 static void put_left(double seconds) {
     if (seconds < 90) {

@@ -28,10 +28,11 @@ static void put_error(hn_table *t, const hn_wp *wp, hn_error_kind kind, double e
 }
 
 static double claimed(const hn_wp *wp, const hn_wp_point *p) {
-    return fmax(p->worst[HN_ERROR_Q], HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q]);
+    const hn_error_kind kind = hn_wp_ranked_error(wp);
+    return fmax(p->worst[kind], HN_WP_ABOVE_REFERENCE * wp->ref->error[kind]);
 }
 
-/// The coarsest point with the smallest error of the coordinates that can be claimed, or -1.
+/// The coarsest point with the smallest ranked error that can be claimed, or -1.
 static int best_point(const hn_wp *wp, int m) {
     int best = -1;
     for (int k = 0; k < wp->n_levels; k++) {
@@ -228,9 +229,10 @@ static void put_front(hn_strbuf *b, const hn_study *study) {
 static void put_race(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     static const char *const heads[HN_RACE_COSTS] = {"error", "error", "error"};
+    const hn_error_kind kind = hn_wp_ranked_error(wp);
     hn_race race;
     hn_table t;
-    hn_wp_race(wp, hn_study_classes(study), hn_wp_ranked_error(wp), &race);
+    hn_wp_race(wp, hn_study_classes(study), kind, &race);
     if (race.n == 0) {
         return;
     }
@@ -252,17 +254,42 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
             if (race.is_bound[i][m]) {
                 hn_table_cell(&t, "\xe2\x89\xa4 %.1e", race.error[i][m]);
             } else {
-                put_error(&t, wp, HN_ERROR_Q, race.error[i][m]);
+                put_error(&t, wp, kind, race.error[i][m]);
             }
         }
     }
-    hn_strbuf_add(b, "\nWhat equal cost buys (between measured points; \xe2\x89\xa4: with fewer "
-                     "already; -: no point is as cheap)\n");
+    hn_strbuf_printf(b,
+                     "\nWhat equal cost buys: the error of the %s (between measured points; "
+                     "\xe2\x89\xa4: with fewer already; -: no point is as cheap)\n",
+                     hn_error_title(kind));
     hn_table_write(b, &t);
     hn_table_reset(&t);
 }
 
-/// Everything that did not come to the end, with why; the same reason once per method.
+static int is_alike(const hn_wp_point *a, const hn_wp_point *b) {
+    return a->state == b->state && a->t_reached == b->t_reached &&
+           strcmp(a->reason, b->reason) == 0;
+}
+
+static int count_alike(const hn_wp *wp, int m, int k) {
+    const hn_wp_point *point = wp->methods[m].point;
+    int n = 0;
+    for (int i = 0; i < wp->n_levels; i++) {
+        n += is_alike(&point[i], &point[k]);
+    }
+    return n;
+}
+
+static int told_before(const hn_wp *wp, int m, int k) {
+    const hn_wp_point *point = wp->methods[m].point;
+    int told = 0;
+    for (int i = 0; i < k; i++) {
+        told |= is_alike(&point[i], &point[k]);
+    }
+    return told;
+}
+
+/// Everything that did not come to the end, with why; what never began for the same reason once per method.
 static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     int any = 0;
     for (int m = 0; m < wp->n_methods; m++) {
@@ -271,12 +298,19 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             if (p->state != HN_WP_FAILED && p->state != HN_WP_SKIPPED) {
                 continue;
             }
+            if (p->t_reached == 0 && told_before(wp, m, k)) {
+                continue;
+            }
             char spelling[HN_SPEC_MAX];
             hn_wp_spelling(wp, m, k, spelling);
             hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", glyph_of(m),
                              spelling);
             if (p->t_reached > 0) {
                 hn_strbuf_printf(b, " ended at t = %.4g s", p->t_reached);
+            }
+            const int others = p->t_reached == 0 ? count_alike(wp, m, k) - 1 : 0;
+            if (others > 0) {
+                hn_strbuf_printf(b, " and %d other size%s", others, others == 1 ? "" : "s");
             }
             hn_strbuf_printf(b, ": %s\n", p->reason);
         }
