@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const hn_map_class_look LOOKS[HN_STABILITY_CLASS_COUNT] = {
     {HN_STABILITY_PENDING, "not tried", "", -3, 0},
@@ -37,6 +38,36 @@ int hn_map_height(const hn_map *map) {
 
 double hn_map_field_top(int m) {
     return HN_MAP_TOP + (double)HN_MAP_PANEL * m;
+}
+
+// bytes of text that fit into a line: up to a blank, where there is one
+static size_t fit(const char *text) {
+    const size_t n = strlen(text);
+    if (n <= HN_MAP_SAID_COLUMNS) {
+        return n;
+    }
+    for (size_t k = HN_MAP_SAID_COLUMNS; k > 0; k--) {
+        if (text[k] == ' ') {
+            return k;
+        }
+    }
+    return HN_MAP_SAID_COLUMNS;
+}
+
+int hn_map_said(const hn_map *map, int m, hn_map_said_line lines[HN_MAP_SAID_LINES]) {
+    hn_strbuf said;
+    int n = 0;
+    hn_strbuf_init(&said);
+    hn_map_agreement_text(&said, map, m);
+    const char *rest = hn_strbuf_text(&said);
+    while (*rest && n < HN_MAP_SAID_LINES) {
+        const size_t k = fit(rest);
+        const int cut = n == HN_MAP_SAID_LINES - 1 && rest[k];
+        snprintf(lines[n++], sizeof(hn_map_said_line), "%.*s%s", (int)k, rest, cut ? "..." : "");
+        rest += k + (rest[k] == ' ');
+    }
+    hn_strbuf_reset(&said);
+    return n;
 }
 
 double hn_map_column_edge(const hn_map *map, int i) {

@@ -8,8 +8,8 @@
 enum {
     HN_MAP_WIDTH = 900,
     HN_MAP_LEFT = 86,
-    HN_MAP_TOP = 74,    ///< above the first panel
-    HN_MAP_PANEL = 400, ///< from the top of one panel to that of the next
+    HN_MAP_TOP = 106,   ///< above the first panel
+    HN_MAP_PANEL = 432, ///< from the top of one panel to that of the next
     HN_MAP_FIELD_WIDTH = 560,
     HN_MAP_FIELD_HEIGHT = 300
 };
@@ -27,6 +27,11 @@ uint32_t hn_map_class_colour(hn_stability_class kind, hn_theme theme);
 int hn_map_height(const hn_map *map);
 /// Top of method m's field.
 double hn_map_field_top(int m);
+enum { HN_MAP_SAID_LINES = 3, HN_MAP_SAID_COLUMNS = 124, HN_MAP_SAID_HEIGHT = 16 };
+typedef char hn_map_said_line[HN_MAP_SAID_COLUMNS + 4];
+/// What is said of a method (hn_map_agreement_text), broken into lines as wide as the picture; returns how many. What needs more
+/// ends in "...". The last line stands right above the field, the method's name above the first.
+int hn_map_said(const hn_map *map, int m, hn_map_said_line lines[HN_MAP_SAID_LINES]);
 /// Left edge of column i (0 .. n), top edge of row j counted from below (0 .. n).
 double hn_map_column_edge(const hn_map *map, int i);
 double hn_map_row_edge(const hn_map *map, int m, int j);

@@ -185,6 +185,21 @@ static void put_map(hn_strbuf *b, const hn_map *map, int m) {
     put_legend(b, m);
 }
 
+static void put_heading(hn_strbuf *b, const hn_map *map, int m) {
+    hn_map_said_line said[HN_MAP_SAID_LINES];
+    const int n = hn_map_said(map, m, said);
+    double y = hn_map_field_top(m) - 12 - HN_MAP_SAID_HEIGHT * (n - 1);
+    hn_strbuf_printf(b, "\n<text x=\"%d\" y=\"%.1f\" class=\"head\">", HN_MAP_LEFT, y - 18);
+    hn_html_text(b, hn_map_method(map, m));
+    hn_strbuf_add(b, "</text>");
+    for (int i = 0; i < n; i++, y += HN_MAP_SAID_HEIGHT) {
+        hn_strbuf_printf(b, "<text x=\"%d\" y=\"%.1f\" class=\"said quiet-text\">", HN_MAP_LEFT, y);
+        hn_html_text(b, said[i]);
+        hn_strbuf_add(b, "</text>");
+    }
+    hn_strbuf_add(b, "\n");
+}
+
 void hn_map_svg(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_printf(b,
                      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
@@ -196,13 +211,7 @@ void hn_map_svg(hn_strbuf *b, const hn_map *map) {
     put_rules(b);
     hn_strbuf_add(b, "</style>");
     for (int m = 0; m < hn_map_n_methods(map); m++) {
-        hn_strbuf_printf(b, "\n<text x=\"%d\" y=\"%.1f\" class=\"head\">", HN_MAP_LEFT,
-                         hn_map_field_top(m) - 30);
-        hn_html_text(b, hn_map_method(map, m));
-        hn_strbuf_printf(b, "</text><text x=\"%d\" y=\"%.1f\" class=\"said quiet-text\">",
-                         HN_MAP_LEFT, hn_map_field_top(m) - 12);
-        put_agreement(b, map, m);
-        hn_strbuf_add(b, "</text>\n");
+        put_heading(b, map, m);
         put_map(b, map, m);
     }
     hn_strbuf_add(b, "</svg>\n");

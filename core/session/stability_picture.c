@@ -124,14 +124,13 @@ static void draw_legend(drawing *d, int m) {
 }
 
 static void draw_method(drawing *d, int m) {
-    hn_strbuf said;
-    hn_strbuf_init(&said);
-    hn_map_agreement_text(&said, d->map, m);
-    hn_canvas_text(d->c, HN_MAP_LEFT, hn_map_field_top(m) - 32, 15, HN_ALIGN_LEFT, d->ink,
-                   hn_map_method(d->map, m));
-    hn_canvas_text(d->c, HN_MAP_LEFT, hn_map_field_top(m) - 12, TEXT_SIZE, HN_ALIGN_LEFT, d->muted,
-                   hn_strbuf_text(&said));
-    hn_strbuf_reset(&said);
+    hn_map_said_line said[HN_MAP_SAID_LINES];
+    const int n = hn_map_said(d->map, m, said);
+    double y = hn_map_field_top(m) - 12 - HN_MAP_SAID_HEIGHT * (n - 1);
+    hn_canvas_text(d->c, HN_MAP_LEFT, y - 20, 15, HN_ALIGN_LEFT, d->ink, hn_map_method(d->map, m));
+    for (int i = 0; i < n; i++, y += HN_MAP_SAID_HEIGHT) {
+        hn_canvas_text(d->c, HN_MAP_LEFT, y, TEXT_SIZE, HN_ALIGN_LEFT, d->muted, said[i]);
+    }
     draw_cells(d, m);
     draw_boundaries(d, m);
     draw_steep(d, m);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { PLOT_COLUMNS = 68, PLOT_ROWS = 20, AXIS_WIDTH = 7 };
 static const char FAILED_MARK[] = "\xe2\x95\xb3"; // a large cross

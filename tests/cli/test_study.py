@@ -99,6 +99,14 @@ class Study(unittest.TestCase):
         for method in METHODS:
             self.assertIn(method, text)
 
+    def test_a_refusal_is_told_once_for_all_sizes(self):
+        # the motor's torque depends on the speed
+        words = ["study", "quick-return", "--methods", "projection@rk4", "index3@rattle", "--time", "0.1", "--levels", "4", "--samples", "0"]
+        done = call(words, self.folder)
+        told = [line for line in done.stdout.decode().split("Not at the end")[1].splitlines() if "rattle" in line]
+        self.assertEqual(len(told), 1, told)
+        self.assertIn("and 3 other sizes: a force depends on speed", told[0])
+
     def test_what_is_at_fault_is_told(self):
         for words, said in (
             (["study", "fb0", "work-precison"], b"no study called 'work-precison'"),
@@ -106,6 +114,9 @@ class Study(unittest.TestCase):
             (["study", "fb0", "--levels", "99"], b"2 to 10"),
             (["study", "fb0", "--time", "-1"], b"above 0"),
             (["study", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
+            (["study", "fb0", "--samples", "1000"], b"samples of time"),
+            (["study", "fb0", "--budget", "0", "--out", "/no/such/folder/x.html"], b"cannot write"),
+            (["extreme", "--out", "/no/such/folder/x.html"], b"cannot write"),
             (["study", "fb0", "--json", "--csv"], b"JSON and CSV at once"),
         ):
             done = call(words, self.folder)
