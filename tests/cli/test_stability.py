@@ -1,6 +1,7 @@
 """Maps of stability from the command line: limits that agree with their prediction, documents, faults, an interrupt."""
 
 import csv
+import html
 import io
 import os
 import re
@@ -80,6 +81,18 @@ class Stability(unittest.TestCase):
             self.assertNotRegex(text, r"\bnan\b|\binf\b")
             self.assertEqual(len(re.findall("<title>k = ", text)), 20)
             self.assertIn("prediction within 5 %", text)
+
+    def test_what_is_said_of_a_method_is_in_the_picture_to_its_end(self):
+        # why there is nothing to compare takes more than a line to say
+        words = [*STUDY, "--over", "h=1e-3..1e-1,k=1e5..1e6", "--grid", "2x2", "--time", "0.1", "--methods", "ggl@radau5"]
+        done = self.call(*words, "--json", "--out", self.path("m.svg"))
+        said = strict(done.stdout)["methods"][0]["agreement"]["text"]
+        with open(self.path("m.svg"), encoding="utf-8") as f:
+            lines = [html.unescape(line) for line in re.findall(r'class="said quiet-text">([^<]*)<', f.read())]
+        self.assertGreater(len(lines), 1)
+        self.assertEqual(" ".join(lines), said)
+        for line in lines:
+            self.assertLessEqual(len(line), 124, "wider than the picture")
 
     def test_a_map_draws_the_predicted_limit_among_its_cells(self):
         text = self.call(*SMALL).stdout.decode()
