@@ -25,7 +25,7 @@ static const double NEAR = 0.35;
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
 static const double CUSP = 1e-6; // discriminant against the squares of the form's entries
-enum { ANCHORS = 3, SWEEPS = 2, FIRST_SWEEPS = 30 };
+enum { ANCHORS = 3, SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8 };
 
 struct hn_radar {
     const hn_system *sys;
@@ -202,8 +202,8 @@ static void look_densely(hn_radar *r, hn_radar_info *info) {
     }
 }
 
-static void look_sparsely(hn_radar *r, hn_radar_info *info) {
-    for (int i = 0; i < (r->first ? FIRST_SWEEPS : SWEEPS); i++) {
+static void look_sparsely(hn_radar *r, int sweeps, hn_radar_info *info) {
+    for (int i = 0; i < sweeps; i++) {
         info->sigma_max = sweep_top(r);
         info->sigma_min = sweep_bottom(r);
     }
@@ -291,7 +291,7 @@ void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) 
     scale(r);
     const int sparse = hn_factor_update(r->factor, t, q, NULL) == HN_OK;
     if (sparse) {
-        look_sparsely(r, info);
+        look_sparsely(r, r->first ? FIRST_SWEEPS : SWEEPS, info);
     } else {
         look_densely(r, info);
         // a loop that is redundant everywhere is looked at less often when it is large
@@ -308,6 +308,21 @@ void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) 
     r->first = 0;
     r->last = *info;
     r->last.ahead = HUGE_VAL; // said once
+}
+
+double hn_radar_probe(hn_radar *r, double t, const double *q) {
+    hn_radar_info info = {0};
+    if (r->nc == 0 || r->wait > 0 || r->first) {
+        return HUGE_VAL;
+    }
+    hn_eval_run(r->rows, t, q, r->no_speed);
+    scale(r);
+    if (hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
+        look_sparsely(r, PROBE_SWEEPS, &info);
+    } else {
+        look_densely(r, &info);
+    }
+    return info.sigma_min;
 }
 
 const double *hn_radar_scale(const hn_radar *r) {
@@ -383,8 +398,9 @@ static void vanishing_combination(hn_radar *r) {
     (void)normalise(r->nc, r->y);
 }
 
-void hn_radar_pose_at(hn_radar *r, double t, const double *q, hn_radar_pose *pose) {
-    const double lost = TOGETHER * fmax(r->last.sigma_min, RANK_TOL);
+void hn_radar_pose_at(hn_radar *r, double t, const double *q, double sigma_min,
+                      hn_radar_pose *pose) {
+    const double lost = TOGETHER * fmax(sigma_min, RANK_TOL);
     *pose = (hn_radar_pose){.mobility_before = r->nv - r->start_rank,
                             .mobility = r->nv - r->start_rank};
     if (r->nc == 0 || lost > 0.5 * r->last.sigma_max) {

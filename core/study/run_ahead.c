@@ -110,10 +110,11 @@ static void add_rows(const hn_run *run, hn_incident *i, const hn_radar_pose *pos
     }
 }
 
-void hn_run_describe_pose(hn_run *run, hn_incident *i) {
+void hn_run_describe_pose(hn_run *run, hn_incident *i, double t, const double *q,
+                          double sigma_min) {
     hn_run_ahead *a = ahead_of(run);
     hn_radar_pose pose;
-    hn_radar_pose_at(a->radar, run->now.t, run->now.q, &pose);
+    hn_radar_pose_at(a->radar, t, q, sigma_min, &pose);
     add_rows(run, i, &pose);
     if (pose.mobility > pose.mobility_before) {
         add(i, "; %d freedoms there instead of %d", pose.mobility, pose.mobility_before);
@@ -192,11 +193,14 @@ static double continue_heading(const hn_run_ahead *a, int n, double *out) {
     return change;
 }
 
+/// `angle` HUGE_VAL: the headings are too far apart to be compared.
 static void finish_passing(hn_run *run, double angle) {
     hn_run_ahead *a = ahead_of(run);
     if (a->passing > 0 && a->passing <= run->n_incidents) {
         hn_incident *i = &run->incidents[a->passing - 1];
-        if (angle > HN_RUN_WARN_TURN) {
+        if (angle == HUGE_VAL) {
+            add(i, "; the steps are too long to say which way the run went on");
+        } else if (angle > HN_RUN_WARN_TURN) {
             add(i, "; the run turned off there by %.2g rad", angle);
         } else {
             add(i, "; the run went straight on");
@@ -222,11 +226,10 @@ static void tell_branch(hn_run *run, double angle) {
     }
 }
 
-/// How far the motion since `entered` would have opened a loop with one of its coordinates alone, over the length.
-static double wandered(hn_run *run) {
+double hn_run_way(hn_run *run, const double *from, double *step) {
     const double *J = hn_eval_get(run->watch.eval, HN_TERM_J);
-    double *step = run->watch.a, most = 0;
-    hn_system_difference(run->sys, ahead_of(run)->entered, run->now.q, step);
+    double most = 0;
+    hn_system_difference(run->sys, from, run->now.q, step);
     for (int i = 0; i < run->info.nc; i++) {
         const double unit = hn_system_row_is_length(run->sys, i) ? run->length : 1;
         for (int j = 0; j < run->info.nv; j++) {
@@ -250,7 +253,7 @@ static void look_at_stay(hn_run *run) {
         memcpy(a->entered, run->now.q, (size_t)run->info.nq * sizeof *a->entered);
         return;
     }
-    const double way = a->inside == 1 ? wandered(run) : 0;
+    const double way = a->inside == 1 ? hn_run_way(run, a->entered, run->watch.a) : 0;
     if (!(way > WANDER)) {
         return;
     }
@@ -290,8 +293,8 @@ static void look_at_heading(hn_run *run) {
         if (freedoms(run) == 1) {
             align(n, a->now.e, a->smooth);
         }
-        const double angle = change < CHANGE ? angle_between(run, a->smooth, a->now.e) : 0;
-        if (angle > HN_RUN_WARN_TURN) {
+        const double angle = change < CHANGE ? angle_between(run, a->smooth, a->now.e) : HUGE_VAL;
+        if (angle < HUGE_VAL && angle > HN_RUN_WARN_TURN) {
             tell_branch(run, angle);
         } else {
             hn_run_over(run, HN_INCIDENT_BRANCH_FLIP);

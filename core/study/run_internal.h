@@ -46,6 +46,12 @@ typedef struct hn_run_ahead {
     int passing;         ///< 1 + number of the incident that told the pose being passed, 0: none
 } hn_run_ahead;
 
+/// A state inside the last step.
+typedef struct hn_run_between {
+    double *q;           ///< nq
+    double *step, *part; ///< nv: from the start of the step to its end, and to the state
+} hn_run_between;
+
 /// What the watch knows of the last state it saw.
 typedef struct hn_run_watch_state {
     int every;
@@ -55,6 +61,7 @@ typedef struct hn_run_watch_state {
     hn_mode_watch *mode;
     double *a, *lambda, *speed_gap;
     hn_run_ahead ahead;
+    hn_run_between between;
     double *row_size; ///< nc: largest length of each row of J so far
     double start_energy, last_energy, v_min, v_max, t_max; ///< t_max: largest kinetic energy so far
     double swiftest;                                       ///< largest of the speeds so far
@@ -174,8 +181,17 @@ void hn_run_ahead_look(hn_run *run, const double *lambda);
 int hn_run_is_near_singular(const hn_run *run);
 /// Adds to the reason of a failure that the pose is singular, where it is.
 void hn_run_explain_pose(hn_run *run);
-/// Adds to the message of incident i what waits at the pose: rows, bodies, freedoms, branches.
-void hn_run_describe_pose(hn_run *run, hn_incident *i);
+/// Adds to the message of incident i what waits at a pose: rows, bodies, freedoms, branches.
+void hn_run_describe_pose(hn_run *run, hn_incident *i, double t, const double *q, double sigma_min);
+/// How far the motion from `from` (nq) to now would have opened a loop with one of its coordinates alone, over the length: with J of
+/// the state last measured. `step` (nv) gets the motion.
+double hn_run_way(hn_run *run, const double *from, double *step);
+
+// run_between.c
+HN_MUST_CHECK hn_status hn_run_between_create(hn_run *run);
+/// Tells a singular pose that the last step went across; comes before the look at its end.
+void hn_run_look_between(hn_run *run);
+
 /// Tells a failure as an incident.
 void hn_run_tell_failure(hn_run *run, hn_status status);
 void hn_run_tell_charts(hn_run *run, long long changes);

@@ -137,6 +137,9 @@ hn_status hn_run_watch_create(hn_run *run) {
         w->last_modes = hn_arena_doubles(run->arena, loops);
         status = hn_arena_failed(run->arena) ? HN_ERR_MEMORY : HN_OK;
     }
+    if (status == HN_OK) {
+        status = hn_run_between_create(run);
+    }
     return status == HN_OK ? hn_run_ahead_create(run) : status;
 }
 
@@ -273,7 +276,7 @@ static void look_at_rank(hn_run *run, int at_start) {
                         run->info.nc - info.rank, run->info.nc);
         if (i && !at_start) {
             hn_run_remedy_robust(run, i->remedy[0]);
-            hn_run_describe_pose(run, i);
+            hn_run_describe_pose(run, i, run->now.t, run->now.q, w->ahead.info.sigma_min);
         }
     } else if (!at_start && status == HN_OK) {
         hn_run_over(run, HN_INCIDENT_RANK_LOSS);
@@ -295,7 +298,7 @@ static void look_at_rank(hn_run *run, int at_start) {
     if (i) {
         hn_run_remedy_robust(run, i->remedy[0]);
         hn_run_remedy_finer(run, 0.25, i->remedy[1]);
-        hn_run_describe_pose(run, i);
+        hn_run_describe_pose(run, i, run->now.t, run->now.q, w->ahead.info.sigma_min);
     }
 }
 
@@ -392,6 +395,7 @@ hn_status hn_run_watch_look(hn_run *run) {
     s->worst_gap = fmax(s->worst_gap, gap);
     s->worst_velocity_gap = fmax(s->worst_velocity_gap, speed_gap);
     s->worst_energy_change = fmax(s->worst_energy_change, change);
+    hn_run_look_between(run);
     look_at_gap(run, gap);
     look_at_energy(run, kinetic, potential);
     look_at_mode(run);
