@@ -26,7 +26,8 @@ hn_status hn_run_between_create(hn_run *run) {
 static double sigma_at(hn_run *run, double s) {
     hn_run_between *b = &run->watch.between;
     const double h = run->now.t - run->before.t;
-    const double end = s * s * (3 - 2 * s), v0 = h * s * (1 - s) * (1 - s), v1 = h * s * s * (s - 1);
+    const double end = s * s * (3 - 2 * s), v0 = h * s * (1 - s) * (1 - s),
+                 v1 = h * s * s * (s - 1);
     for (int i = 0; i < run->info.nv; i++) {
         b->part[i] = end * b->step[i] + v0 * run->before.v[i] + v1 * run->now.v[i];
     }

@@ -36,18 +36,71 @@ static void the_flat_poses_of_a_parallelogram_are_told_twice_a_turn(void **state
     hn_model_close(&m);
 }
 
+static void a_pose_in_the_middle_of_a_long_step_is_told_at_its_time(void **state) {
+    (void)state;
+    static const struct {
+        const char *method;
+        double longest; // [s] of its steps at least: 0.5 rad and more at 4.95 rad/s
+    } runs[] = {{"projection@dopri5:rtol=1e-6", 0.05},
+                {"projection@dop853:rtol=1e-8", 0.1},
+                {"ggl@radau5:rtol=1e-6", 0.04},
+                {"baumgarte@dop853:rtol=1e-6", 0.05}};
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", "N=1");
+    for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
+        double t[HN_RUN_MAX_INCIDENTS];
+        hn_run *run = hn_motion_start(&m, runs[k].method);
+        (void)hn_motion_at(run, 1.92);
+        const hn_run_summary s = hn_run_get_summary(run);
+        assert_true(1.92 / (double)s.steps > 0.5 * runs[k].longest);
+        assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 2);
+        // the cubic through both ends of half a radian is off by 1e-4 of it, the motion itself by less
+        assert_near(t[0], 0.70845, 5e-4);
+        assert_near(t[1], 1.21526, 5e-4);
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
+static void with_several_loops_long_steps_tell_the_poses_that_short_ones_tell(void **state) {
+    (void)state;
+    static const char *const sizes[] = {"N=2", "N=3", "N=10"};
+    for (int k = 0; k < 3; k++) {
+        double fine[HN_RUN_MAX_INCIDENTS], coarse[HN_RUN_MAX_INCIDENTS];
+        hn_model m;
+        hn_model_open_closed(&m, "n-four-bar", sizes[k]);
+        hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+        (void)hn_motion_at(run, 3);
+        const int n = told(run, HN_INCIDENT_NEAR_SINGULAR, fine);
+        hn_run_free(run);
+        assert_true(n >= 2);
+        run = hn_motion_start(&m, "projection@dop853:rtol=1e-8");
+        (void)hn_motion_at(run, 3);
+        assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, coarse), n);
+        for (int i = 0; i < n; i++) {
+            assert_near(coarse[i], fine[i], 0.0045); // short steps tell from 0.015 rad on
+        }
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+}
+
 static void mechanisms_that_keep_clear_are_told_nothing(void **state) {
     (void)state;
+    static const char *const methods[] = {"projection@rk4:h=1e-3", "projection@dop853:rtol=1e-5",
+                                          "ggl@radau5:rtol=1e-4"};
     static const char *const scenes[] = {"fb0", "fb0-lagrangian", "fb0-tilted", "slider-crank",
                                          "five-bar"};
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         double t[HN_RUN_MAX_INCIDENTS];
         hn_model m;
         hn_model_open_closed(&m, scenes[k], NULL);
-        hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
-        (void)hn_motion_at(run, 3);
-        assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 0);
-        hn_run_free(run);
+        for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+            hn_run *run = hn_motion_start(&m, methods[i]);
+            (void)hn_motion_at(run, 3);
+            assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 0);
+            hn_run_free(run);
+        }
         hn_model_close(&m);
     }
 }
@@ -72,6 +125,8 @@ static void a_second_run_tells_the_same_as_the_first(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_flat_poses_of_a_parallelogram_are_told_twice_a_turn),
+        cmocka_unit_test(a_pose_in_the_middle_of_a_long_step_is_told_at_its_time),
+        cmocka_unit_test(with_several_loops_long_steps_tell_the_poses_that_short_ones_tell),
         cmocka_unit_test(mechanisms_that_keep_clear_are_told_nothing),
         cmocka_unit_test(a_second_run_tells_the_same_as_the_first),
     };
