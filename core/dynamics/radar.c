@@ -38,6 +38,7 @@ struct hn_radar {
     double *w, *top;   // nc: left vectors of the smallest and the largest singular value
     double *x, *y;     // nv, nc scratch
     double *v, *basis; // nv, 2 nv
+    double *kept[3];   // nc: r, w and top of the last look, while a probe uses them
     hn_qr qr;          // nv x nc: (R J D)'
     double *no_speed;
     int first, start_rank, wait;
@@ -59,9 +60,11 @@ hn_status hn_radar_create(const hn_system *sys, hn_arena *arena, hn_radar **out)
     *r = (hn_radar){.sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc};
     const size_t nv = (size_t)info.nv, nc = (size_t)info.nc;
     double **of_nv[] = {&r->d, &r->x, &r->v, &r->no_speed},
-           **of_nc[] = {&r->r, &r->w, &r->top, &r->y};
-    for (int i = 0; i < 4; i++) {
+           **of_nc[] = {&r->r, &r->w, &r->top, &r->y, &r->kept[0], &r->kept[1], &r->kept[2]};
+    for (size_t i = 0; i < sizeof of_nv / sizeof *of_nv; i++) {
         *of_nv[i] = hn_arena_doubles(arena, nv);
+    }
+    for (size_t i = 0; i < sizeof of_nc / sizeof *of_nc; i++) {
         *of_nc[i] = hn_arena_doubles(arena, nc);
     }
     r->basis = hn_arena_doubles(arena, 2 * nv);
@@ -310,11 +313,22 @@ void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) 
     r->last.ahead = HUGE_VAL; // said once
 }
 
+/// What the looks know of the rows: kept, or given back.
+static void keep(hn_radar *r, int back) {
+    double *const known[] = {r->r, r->w, r->top};
+    for (int i = 0; i < 3; i++) {
+        memcpy(back ? known[i] : r->kept[i], back ? r->kept[i] : known[i],
+               (size_t)r->nc * sizeof **known);
+    }
+}
+
 double hn_radar_probe(hn_radar *r, double t, const double *q) {
     hn_radar_info info = {0};
     if (r->nc == 0 || r->wait > 0 || r->first) {
         return HUGE_VAL;
     }
+    const int rank = r->start_rank;
+    keep(r, 0);
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
     if (hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
@@ -322,6 +336,8 @@ double hn_radar_probe(hn_radar *r, double t, const double *q) {
     } else {
         look_densely(r, &info);
     }
+    keep(r, 1);
+    r->start_rank = rank;
     return info.sigma_min;
 }
 

@@ -48,8 +48,8 @@ void hn_radar_free(hn_radar *r); ///< NULL is legal
 void hn_radar_reset(hn_radar *r);
 /// Looks at a state; times should rise. Allocates nothing.
 void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info);
-/// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL where a look costs so much that not every state gets
-/// one. Allocates nothing.
+/// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look, and where one costs so much that
+/// not every state gets it. Allocates nothing.
 double hn_radar_probe(hn_radar *r, double t, const double *q);
 /// D of the last look (nv): speeds divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_radar_scale(const hn_radar *r);

@@ -65,6 +65,30 @@ static void a_loop_of_the_ladder_loses_a_rank_like_its_angle(void **state) {
     close_radar(&m, r);
 }
 
+static void a_probe_sees_what_a_look_sees_and_says_nothing_of_it(void **state) {
+    (void)state;
+    hn_model m;
+    hn_radar *r = open_radar(&m, NULL, "N=1"), *other = NULL;
+    double q[MAX_NV];
+    hn_radar_info info, alone;
+    assert_int_equal(hn_radar_create(m.sys, m.arena, &other), HN_OK);
+    assert_true(hn_radar_probe(r, 0, m.q) ==
+                HUGE_VAL); // what rows count is known from the first look on
+    for (int k = 0; k <= 120; k++) {
+        const double t = 0.01 * k, inside = 1.5 - t - 0.3;
+        lean(&m, 1, 1.5 - t, q);
+        hn_radar_look(r, t, q, &info);
+        hn_radar_look(other, t, q, &alone);
+        assert_near(info.sigma_min, alone.sigma_min, 0);
+        assert_true(info.ahead == alone.ahead); // HUGE_VAL mostly
+        lean(&m, 1, inside, q);
+        const double sigma = hn_radar_probe(r, t, q);
+        assert_true(fabs(inside) > 0.05 ? sigma > 0.03 : sigma < 0.05); // like the angle itself
+    }
+    hn_radar_free(other);
+    close_radar(&m, r);
+}
+
 static void a_ladder_lying_flat_has_a_freedom_for_each_loop_more(void **state) {
     (void)state;
     static const int loops[] = {1, 2, 5, 10};
@@ -80,7 +104,7 @@ static void a_ladder_lying_flat_has_a_freedom_for_each_loop_more(void **state) {
         lean(&m, loops[k], 1e-4, q);
         hn_radar_look(r, 1, q, &info);
         hn_radar_look(r, 1, q, &info);
-        hn_radar_pose_at(r, 1, q, &pose);
+        hn_radar_pose_at(r, 1, q, info.sigma_min, &pose);
         assert_int_equal(pose.mobility_before, 1);
         assert_int_equal(pose.mobility, loops[k] + 1);
         assert_true(pose.n_rows > 0);
@@ -146,7 +170,7 @@ static hn_branches branches_of(const char *formula) {
     const double away[2] = {1, 1}, there[2] = {0, 1e-12};
     hn_radar_look(r, 0, away, &info);
     hn_radar_look(r, 1, there, &info);
-    hn_radar_pose_at(r, 1, there, &pose);
+    hn_radar_pose_at(r, 1, there, info.sigma_min, &pose);
     assert_int_equal(pose.mobility, 2);
     close_radar(&m, r);
     return pose.branches;
@@ -169,7 +193,8 @@ static void a_look_costs_no_memory(void **state) {
     hn_radar_pose pose;
     const long before = hn_alloc_count();
     hn_radar_look(r, 0, m.q, &info);
-    hn_radar_pose_at(r, 0, m.q, &pose);
+    hn_radar_pose_at(r, 0, m.q, info.sigma_min, &pose);
+    (void)hn_radar_probe(r, 0, m.q);
     assert_int_equal(hn_alloc_count(), before);
     close_radar(&m, r);
 }
@@ -177,6 +202,7 @@ static void a_look_costs_no_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_loop_of_the_ladder_loses_a_rank_like_its_angle),
+        cmocka_unit_test(a_probe_sees_what_a_look_sees_and_says_nothing_of_it),
         cmocka_unit_test(a_ladder_lying_flat_has_a_freedom_for_each_loop_more),
         cmocka_unit_test(the_time_of_the_flat_pose_is_said_before_it_comes),
         cmocka_unit_test(a_pose_that_is_only_passed_near_is_not_announced),
