@@ -244,8 +244,8 @@ static void a_long_note_is_told_in_lines_and_not_cut_to_one(void **state) {
     const hn_snapshot_opts opts = hn_snapshot_opts_default();
     unsigned char *rgb[3];
     const char *const notes[3] = {"", "a note of one line",
-                                  "a note of one line and then a second "
-                                  "one, and what is left in a third"};
+                                  ("a note of one line and then a second "
+                                   "one, and what is left in a third")};
     for (int i = 0; i < 3; i++) {
         pose.note = notes[i];
         rgb[i] = draw(&four_bar, &pose, 1, &opts);
