@@ -8,7 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-static const char MOTION_METHOD[] = "projection@dop853:rtol=1e-13";
+// The second goes through poses where J loses rank: steps that are chosen by so small a tolerance end up inside them.
+static const char *const MOTION_METHODS[] = {"projection@dop853:rtol=1e-13",
+                                             "projection@rk4:h=2e-4"};
+enum { N_MOTION_METHODS = sizeof MOTION_METHODS / sizeof *MOTION_METHODS };
 static const double SAME_TIME = 1e-12; // relative
 
 // what is stored ---------------------------------------------------------------------------------------------------
@@ -92,6 +95,7 @@ typedef struct motion {
     const hn_ref *ref;
     hn_errors *errors;
     hn_run *run;
+    const char *method;
     int n, n_user, n_points; ///< n + 1 samples
     double every, between;
     double *q, *points, *energy;
@@ -162,41 +166,66 @@ static hn_status follow(motion *m) {
     return isfinite(m->between) ? HN_OK : HN_ERR_DIVERGED;
 }
 
-static hn_status prepare(motion *m, const hn_model *model, hn_arena *arena, hn_diags *diags) {
-    hn_method_spec spec;
-    hn_diag diag = {0};
-    const hn_system *sys = hn_model_system(model);
+static hn_status prepare(motion *m, const hn_model *model, hn_arena *arena) {
     m->n = (int)floor(m->ref->T / m->every * (1 + SAME_TIME));
     const size_t rows = (size_t)m->n + 1;
     m->q = hn_arena_doubles(arena, rows * (size_t)m->n_user);
     m->points = hn_arena_doubles(arena, rows * 3 * (size_t)m->n_points);
     m->energy = hn_arena_doubles(arena, rows);
-    hn_status status = hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
+    return hn_arena_failed(arena) ? HN_ERR_MEMORY
+                                  : hn_errors_create(hn_model_system(model), arena, &m->errors);
+}
+
+static hn_status start(motion *m, const hn_model *model, const char *method, hn_diags *diags) {
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    hn_run_free(m->run);
+    m->run = NULL;
+    m->method = method;
+    m->between = 0;
+    hn_status status = hn_method_parse(method, &spec, &diag);
     if (status == HN_OK) {
-        status = hn_errors_create(sys, arena, &m->errors);
-    }
-    if (status == HN_OK) {
-        status = hn_method_parse(MOTION_METHOD, &spec, &diag);
-    }
-    if (status == HN_OK) {
-        status =
-            hn_run_create(sys, &spec, hn_model_q(model), hn_model_v(model), NULL, &m->run, &diag);
+        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
+                               NULL, &m->run, &diag);
     }
     if (status != HN_OK) {
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s",
                             diag.message[0] ? diag.message : hn_status_text(status));
     }
     hn_run_watch(m->run, 0);
+    return HN_OK;
+}
+
+static hn_status add_failure(const motion *m, hn_status status, hn_diags *diags) {
+    const hn_run_summary s = hn_run_get_summary(m->run);
+    return hn_diags_add(diags, status, NULL, NULL,
+                        "between the stored times, by %s at t = %.6g s: %s", m->method, s.t,
+                        s.reason[0] ? s.reason : hn_status_text(status));
+}
+
+/// By the first method that comes to the end; the failure of the last is told.
+static hn_status move(motion *m, const hn_model *model, hn_diags *diags) {
+    hn_status status = HN_ERR_INPUT;
     m->pace = hn_pace_begin();
     m->started = m->pace.last;
-    return HN_OK;
+    for (int k = 0; k < N_MOTION_METHODS; k++) {
+        const hn_status ready = start(m, model, MOTION_METHODS[k], diags);
+        if (ready != HN_OK) {
+            return ready;
+        }
+        status = follow(m);
+        if (status == HN_OK || status == HN_ERR_BUDGET) {
+            break;
+        }
+    }
+    return status == HN_OK ? HN_OK : add_failure(m, status, diags);
 }
 
 static void put_motion(hn_strbuf *b, const motion *m) {
     hn_json_key(b, "motion");
     hn_json_object(b);
     hn_json_put_number(b, "every", m->every);
-    hn_json_put_string(b, "method", MOTION_METHOD);
+    hn_json_put_string(b, "method", m->method);
     hn_json_put_number(b, "between", fmax(m->between, m->ref->error[HN_ERROR_Q]));
     hn_columns_put_table(b, "q", m->q, m->n + 1, m->n_user);
     hn_columns_put_table(b, "points", m->points, m->n + 1, 3 * m->n_points);
@@ -217,15 +246,13 @@ hn_status hn_reference_motion_json(hn_strbuf *b, const hn_model *model, const hn
     hn_status status = check_size(&m, diags);
     hn_arena *arena = status == HN_OK ? hn_arena_create(0) : NULL;
     if (status == HN_OK) {
-        status = arena ? prepare(&m, model, arena, diags) : HN_ERR_MEMORY;
+        status = arena ? prepare(&m, model, arena) : HN_ERR_MEMORY;
+        if (status != HN_OK) {
+            hn_diags_add(diags, status, NULL, NULL, "%s", hn_status_text(status));
+        }
     }
     if (status == HN_OK) {
-        status = follow(&m);
-        if (status != HN_OK) {
-            const hn_run_summary s = hn_run_get_summary(m.run);
-            hn_diags_add(diags, status, NULL, NULL, "between the stored times, at t = %.6g s: %s",
-                         s.t, s.reason[0] ? s.reason : hn_status_text(status));
-        }
+        status = move(&m, model, diags);
     }
     if (status == HN_OK) {
         put_stored(b, model, ref, source);

@@ -49,6 +49,12 @@ class Reference(driver.ServerCase):
         self.assertLess(motion["between"], 1e-9)
         self.assertGreaterEqual(motion["between"], reference["error"]["q"])
 
+    def test_the_motion_goes_through_poses_where_rows_are_lost(self):
+        for scene in "n-four-bar", "parallelogram":
+            motion = self.get("?every=0.1", f"/api/v1/scenes/{scene}/reference")["motion"]
+            self.assertLess(motion["between"], 1e-9)
+            self.assertIn("@rk4", motion["method"])  # steps of a tolerance end at such a pose
+
     def test_the_points_are_those_of_a_run(self):
         motion = self.get("?every=1")["motion"]
         comparison = self.server.compare(scene="fb0-lagrangian", methods=["projection@dop853:rtol=1e-12"], frame_dt=1)
