@@ -188,6 +188,32 @@ static void subtract_by_speed(const hn_accel_jacobian *j, const double *x, doubl
     }
 }
 
+// out (nv) += k X' x for a term X
+static void add_transposed(const hn_accel_jacobian *j, hn_linear_term term, double k,
+                           const double *x, double *out) {
+    const double *values = hn_linear_get(j->terms, term);
+    const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
+    for (int e = 0; e < n; e++) {
+        out[cols[e]] += k * values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]] * x[rows[e]];
+    }
+}
+
+// by_position (nv) -= B_q' x, by_speed (nv) -= B_v' x
+static void subtract_transposed(const hn_accel_jacobian *j, const double *x, double *by_position,
+                                double *by_speed) {
+    const int *rows, *cols, n = hn_linear_pattern(j->twist, HN_LINEAR_V, &rows, &cols);
+    for (int e = 0; e < n; e++) {
+        by_position[cols[e]] -= j->twisted[e] * x[rows[e]];
+    }
+    add_transposed(j, HN_LINEAR_GAMMA_Q, -1, x, by_position);
+    add_transposed(j, HN_LINEAR_GAMMA_V, -1, x, by_speed);
+    if (j->stabilised) {
+        add_transposed(j, HN_LINEAR_V, -2 * j->law.alpha, x, by_position);
+        add_transposed(j, HN_LINEAR_J, -j->law.beta * j->law.beta, x, by_position);
+        add_transposed(j, HN_LINEAR_J, -2 * j->law.alpha, x, by_speed);
+    }
+}
+
 // --- at a state -----------------------------------------------------------------------------------------------
 
 hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j) {
@@ -413,6 +439,43 @@ void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const doubl
     hn_slopes_pack(j, 1, 0, top, rows);
     hn_newton_matrix_solve(j->matrix[HN_SLOPES_RESTING], j->packed);
     memcpy(da, j->packed, (size_t)j->nv * sizeof *da);
+}
+
+// multipliers of the rows in use, as packed, spread over all rows: the transposed of packing
+static void unpack_rows(const hn_accel_jacobian *j, const double *packed, double *rows) {
+    memset(rows, 0, (size_t)j->nc * sizeof *rows);
+    for (int i = 0; i < j->nc && j->combined; i++) {
+        rows[i] = hn_dot(j->n_kept, j->W + (size_t)i * (size_t)j->n_kept, packed);
+    }
+    for (int k = 0; k < j->n_kept && !j->combined; k++) {
+        rows[j->kept[k]] = packed[k];
+    }
+}
+
+void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out) {
+    const int nv = j->nv;
+    double *top = j->work[0][0], *rows = j->work[0][1];
+    memcpy(top, w + nv, (size_t)nv * sizeof *top);
+    memset(rows, 0, (size_t)j->nc * sizeof *rows);
+    hn_slopes_pack(j, 1, 0, top, rows);
+    hn_newton_matrix_solve(j->matrix[HN_SLOPES_RESTING], j->packed);
+    for (int k = 0; k < j->n_kept; k++) {
+        j->packed[nv + k] = -j->packed[nv + k];
+    }
+    unpack_rows(j, j->packed + nv, rows);
+    memset(out, 0, (size_t)nv * sizeof *out);
+    memcpy(out + nv, w, (size_t)nv * sizeof *out);
+    add_transposed(j, HN_LINEAR_K, -1, j->packed, out);
+    add_transposed(j, HN_LINEAR_C, -1, j->packed, out + nv);
+    subtract_transposed(j, rows, out, out + nv);
+    // a displacement along a ball's own axes: dx' = dv - v x dx
+    for (int k = 0; k < j->n_balls; k++) {
+        const int at = j->balls[k].speed;
+        const double *o = j->v + at, *x = w + at;
+        out[at] += o[1] * x[2] - o[2] * x[1];
+        out[at + 1] += o[2] * x[0] - o[0] * x[2];
+        out[at + 2] += o[0] * x[1] - o[1] * x[0];
+    }
 }
 
 void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows) {

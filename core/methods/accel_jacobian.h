@@ -45,6 +45,9 @@ HN_MUST_CHECK hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, con
 HN_MUST_CHECK hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j);
 /// da (nv) of (2) along dx and dv (nv each, NULL: zero).
 void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const double *dv, double *da);
+/// out (2 nv) = A' w with A = d(x', v')/d(x, v) along displacements: w (2 nv) weighs x' and v'; x' of a ball also turns with it. From the
+/// same factor, as (2) transposed is (2) with the multipliers' sign changed.
+void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out);
 /// rows (nc) = (J v + phi_t)_q dx; made with alpha or beta not zero only.
 void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows);
 /// d(q', v')/d(q, v), (nq + nv) square, row-major. Fails as hn_accel_jacobian_prepare().

@@ -241,7 +241,7 @@ static hn_status create_memory(hn_books *b) {
     for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         *states[i] = hn_arena_doubles(arena, ny + nv); // room for user coordinates too
     }
-    double **displacements[] = {&b->w, &b->column, &b->split, &b->step_size};
+    double **displacements[] = {&b->w, &b->column, &b->split};
     for (size_t i = 0; i < sizeof displacements / sizeof *displacements; i++) {
         *displacements[i] = hn_arena_doubles(arena, nd);
     }
@@ -275,6 +275,12 @@ static hn_status create_parts(hn_books *b) {
     }
     if (status == HN_OK) {
         status = hn_flow_create(b->info.nq, b->info.nv, b->arena, &b->flow);
+    }
+    if (status == HN_OK) {
+        status = hn_accel_jacobian_create(b->sys, &(hn_accel_law){0}, b->arena, &b->slopes);
+    }
+    if (status == HN_OK) {
+        status = hn_flow_carrier_create(b->info.nq, b->info.nv, b->nd, b->arena, &b->carrier);
     }
     b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
     b->plain = (hn_ode){.n_pos = b->info.nq, .n_vel = b->info.nv, .self = b, .rhs = plain_rhs};
@@ -351,6 +357,7 @@ hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, cons
     hn_accel_free(b.accel);
     hn_eval_free(b.eval);
     hn_linear_free(b.linear);
+    hn_accel_jacobian_free(b.slopes);
     free(b.record);
     hn_run_free(b.run);
     hn_arena_free(b.arena);

@@ -9,7 +9,7 @@
 //                        truncation                formulation          projection
 //     y_N - exact(T) = sum over k of  DI_(T - t_k+1) (1),   to first order                                            (2)
 //
-// with DI the derivative of I by its start, carried backwards from T. Each part is split at y_k+1 into what lies along the loops' motion and what leads off
+// with DI the derivative of I by its start, carried backwards from T: one row of it, transposed step by step from exact derivatives (flow.h). Each part is split at y_k+1 into what lies along the loops' motion and what leads off
 // the loops; what leads off them is summed as drift, where projection takes back what truncation did. Rounding and the linear solve are
 // measured by a second run with compensated sums, and one with another solver, and are then taken off truncation.
 //
@@ -78,7 +78,7 @@ typedef struct hn_account_opts {
     void *user;
 } hn_account_opts;
 
-/// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some 20 (1 + nv) times the run. Fails: HN_ERR_LIMIT (more steps than
+/// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some 100 times the run, whatever the number of its freedoms. Fails: HN_ERR_LIMIT (more steps than
 /// can be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run, or
 /// the exact motion, could not be followed: where J loses rank on the way, neighbours off the loops cannot be), HN_ERR_MEMORY; and as hn_run_create().
 HN_MUST_CHECK hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec,

@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#define TRANSPORT_TOL 1e-11 // of flows whose difference is a derivative
-#define NUDGE 1e-6          // of a length or a radian, for that difference
+#define TRANSPORT_TOL 1e-9 // of flows whose derivative carries parts to the end
 #define REFERENCE "projection@dop853:rtol=1e-13"
 
 /// Splits a displacement at the state of `linear` and `saddle`: what leads off the loops replaces `d`'s copy in b->split, the rest stays in d.
@@ -62,38 +61,24 @@ static hn_status settle(hn_books *b, size_t k, const double *y_end) {
     return status;
 }
 
-static void nudge(const hn_books *b, const double *y, int i, double size, double *out) {
-    memcpy(out, y, (size_t)b->ny * sizeof *y);
-    if (i >= b->info.nv) {
-        out[b->info.nq + i - b->info.nv] += size;
-        return;
+static hn_status slopes_back(void *self, double t, const double *y, const double *w, double *out) {
+    const hn_books *b = self;
+    hn_status status = hn_accel_jacobian_at(b->slopes, t, y, y + b->info.nq, &(hn_accel_law){0});
+    if (status == HN_OK) {
+        status = hn_accel_jacobian_prepare(b->slopes);
     }
-    memset(b->a, 0, (size_t)b->info.nv * sizeof *b->a);
-    b->a[i] = size;
-    hn_system_move(b->sys, out, b->a);
+    if (status == HN_OK) {
+        hn_accel_jacobian_back(b->slopes, w, out);
+    }
+    return status;
 }
 
-/// w <- A' w with A the derivative of the flow I over step k by its start, column by column.
+/// w <- A' w with A the derivative of the flow I over step k by its start.
 static hn_status carry_back(hn_books *b, size_t k) {
-    const double *r = hn_books_record(b, k), *y = r + 2;
-    double *w_new = b->column;
-    for (int i = 0; i < b->nd; i++) {
-        const double size = b->step_size[i];
-        nudge(b, y, i, size, b->up);
-        nudge(b, y, i, -size, b->down);
-        hn_status status = hn_flow_run(b->flow, &b->plain, TRANSPORT_TOL, r[0], r[1], b->up, b->up);
-        if (status == HN_OK) {
-            status = hn_flow_run(b->flow, &b->plain, TRANSPORT_TOL, r[0], r[1], b->down, b->down);
-        }
-        if (status != HN_OK) {
-            return status;
-        }
-        hn_books_difference(b, b->down, b->up, b->split);
-        w_new[i] = hn_dot(b->nd, b->w, b->split) / (2 * size);
-    }
-    b->column = b->w;
-    b->w = w_new;
-    return HN_OK;
+    const double *r = hn_books_record(b, k);
+    const hn_flow_slopes slopes = {b->nd, b, slopes_back};
+    return hn_flow_carry_back(b->carrier, &b->plain, &slopes, TRANSPORT_TOL, r[0], r[1], r + 2,
+                              b->w);
 }
 
 static hn_status settle_all(hn_books *b, hn_diag *diag) {
@@ -115,31 +100,6 @@ static hn_status settle_all(hn_books *b, hn_diag *diag) {
                            : hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
                                          "its parts could not be carried on from t = %.4g s: %s",
                                          at, hn_status_text(status));
-}
-
-/// How large a nudge of each unknown is: by its unit, and rates by the fastest rate of the run.
-static void choose_nudges(hn_books *b) {
-    const int nv = b->info.nv;
-    const hn_scene *scene = hn_system_scene(b->sys);
-    double fastest = 1 / b->run->now.t;
-    for (int i = 0; i < nv; i++) {
-        int is_length = 0;
-        memset(b->a, 0, (size_t)nv * sizeof *b->a);
-        b->a[i] = 1;
-        hn_system_rates_to_user(b->sys, b->a, b->column);
-        for (int k = 0; k < b->info.n_user; k++) {
-            is_length |= b->column[k] != 0 &&
-                         scene->coordinates[hn_system_user_coordinate(b->sys, k)].kind == HN_LENGTH;
-        }
-        b->step_size[i] = NUDGE * (is_length ? hn_system_length(b->sys) : 1);
-        for (size_t k = 0; k < b->kept; k++) {
-            const double v = hn_books_record(b, k)[2 + b->info.nq + i];
-            fastest = fmax(fastest, fabs(v) * NUDGE / b->step_size[i]);
-        }
-    }
-    for (int i = 0; i < nv; i++) {
-        b->step_size[nv + i] = b->step_size[i] * fastest;
-    }
 }
 
 /// The end of another run to the same time, user coordinates into `out`; 0 when it did not get there, and then *t is where it got [s].
@@ -241,7 +201,6 @@ hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag) {
     }
     status = choose_coordinate(b, reference, diag);
     if (status == HN_OK) {
-        choose_nudges(b);
         status = settle_all(b, diag);
     }
     if (status == HN_OK) {

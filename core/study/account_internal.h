@@ -4,6 +4,7 @@
 
 #include "dynamics/linearise.h"
 #include "linalg/saddle.h"
+#include "methods/accel_jacobian.h"
 #include "study/account.h"
 #include "study/flow.h"
 #include "study/run_internal.h"
@@ -27,13 +28,14 @@ typedef struct hn_books {
     hn_saddle_ws *saddle;
     hn_ode plain; ///< the equations of motion as index 1
     hn_flow *flow, *own_flow;
+    hn_accel_jacobian *slopes; ///< of `plain`
+    hn_flow_carrier *carrier;
     int own_size;
     hn_run_state_at unmended;
     double *record; ///< per step: t, h, y (ny), the parts (HN_PARTS x nd)
     size_t kept, room, width;
     double *y, *y_own, *flowed, *owned, *was_y; ///< ny each
     double *w, *column, *up, *down, *split;     ///< nd, nd, ny, ny, nd
-    double *step_size;                          ///< nd: of a nudge
     double *zero, *gap, *a, *lambda;
     double v_min, v_max, t_max;
 } hn_books;

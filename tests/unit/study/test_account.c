@@ -51,6 +51,29 @@ static void parts_add_up_to_the_error_and_the_energy_of_every_kind_of_method(voi
     hn_model_close(&m);
 }
 
+static void parts_add_up_through_many_loops_and_in_space(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene, *method;
+        double T;
+    } cases[] = {{"seven-body-squeezer", "index1@rk4:h=1e-4", 0.01},
+                 {"stewart-6-6", "baumgarte@rk4:h=4e-3", 0.1},
+                 {"stewart-6-6", "projection@dopri5:rtol=1e-6", 0.3},
+                 {"delta-robot", "projection@rk4:h=4e-3", 0.2},
+                 {"bennett", "index1@rk4:h=4e-3", 0.2}, // rows that depend on others
+                 {"heavy-top", "index1@rk4:h=1e-3", 0.5}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        hn_model m;
+        hn_model_open_closed(&m, cases[i].scene, NULL);
+        const hn_account a = account_of(&m, cases[i].method, cases[i].T);
+        hn_model_close(&m);
+        // as above
+        assert_near(a.sum, a.error, 1e-3 * fabs(a.error) + 2e-12);
+        assert_true(fabs(a.error) > 1e-11);
+        assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
+    }
+}
+
 static void what_is_left_out_is_of_second_order(void **state) {
     (void)state;
     double rest[2];
@@ -171,6 +194,7 @@ static void past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_add_up_to_the_error_and_the_energy_of_every_kind_of_method),
+        cmocka_unit_test(parts_add_up_through_many_loops_and_in_space),
         cmocka_unit_test(what_is_left_out_is_of_second_order),
         cmocka_unit_test(the_printed_form_is_wrong_by_its_equations_and_not_by_its_steps),
         cmocka_unit_test(drift_is_what_a_projection_would_have_spared),
