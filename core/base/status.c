@@ -5,7 +5,7 @@
 static const struct {
     const char *name, *text;
 } statuses[HN_STATUS_COUNT] = {
-#define HN_STATUS_ROW(name, text) {#name, text},
+#define HN_STATUS_ROW(value, name, text) {name, text},
     HN_STATUS_LIST(HN_STATUS_ROW)
 #undef HN_STATUS_ROW
 };
@@ -22,7 +22,7 @@ static int is_known(hn_status status) {
 }
 
 const char *hn_status_name(hn_status status) {
-    return is_known(status) ? statuses[status].name : "HN_ERR_UNKNOWN";
+    return is_known(status) ? statuses[status].name : "unknown";
 }
 
 const char *hn_status_text(hn_status status) {

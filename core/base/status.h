@@ -4,27 +4,28 @@
 
 #include <stdlib.h>
 
-/// name, sentence for a person
-#define HN_STATUS_LIST(X)                                                             \
-    X(HN_OK, "done")                                                                  \
-    X(HN_ERR_MEMORY, "out of memory")                                                 \
-    X(HN_ERR_INPUT, "the input is at fault")                                          \
-    X(HN_ERR_LIMIT, "a stated limit is exceeded")                                     \
-    X(HN_ERR_IO, "a file could not be read or written")                               \
-    X(HN_ERR_SINGULAR, "a matrix is singular beyond repair")                          \
-    X(HN_ERR_NOT_SPD, "a matrix that must be positive definite is not")               \
-    X(HN_ERR_INCONSISTENT, "the constraints contradict each other")                   \
-    X(HN_ERR_NO_CONVERGENCE, "an iteration did not converge")                         \
-    X(HN_ERR_UNREACHABLE, "the loops cannot be closed")                               \
-    X(HN_ERR_CHART, "the chosen coordinates stopped being valid here")                \
-    X(HN_ERR_DIVERGED, "the state left every sensible bound or stopped being finite") \
-    X(HN_ERR_STEP_UNDERFLOW, "the step became too small to make progress")            \
-    X(HN_ERR_BUDGET, "the budget of steps or time is used up")                        \
-    X(HN_ERR_UNSUPPORTED, "this combination is not served")                           \
-    X(HN_ERR_INTERNAL, "the program is at fault")
+/// value, its name in every document, sentence for a person
+#define HN_STATUS_FAILURES(X)                                                                     \
+    X(HN_ERR_MEMORY, "out-of-memory", "out of memory")                                            \
+    X(HN_ERR_INPUT, "input", "the input is at fault")                                             \
+    X(HN_ERR_LIMIT, "limit", "a stated limit is exceeded")                                        \
+    X(HN_ERR_IO, "file", "a file could not be read or written")                                   \
+    X(HN_ERR_SINGULAR, "singular", "a matrix is singular beyond repair")                          \
+    X(HN_ERR_NOT_SPD, "not-positive-definite", "a matrix that must be positive definite is not")  \
+    X(HN_ERR_INCONSISTENT, "inconsistent", "the constraints contradict each other")               \
+    X(HN_ERR_NO_CONVERGENCE, "no-convergence", "an iteration did not converge")                   \
+    X(HN_ERR_UNREACHABLE, "unreachable", "the loops cannot be closed")                            \
+    X(HN_ERR_CHART, "chart-lost", "the chosen coordinates stopped being valid here")              \
+    X(HN_ERR_DIVERGED, "diverged", "the state left every sensible bound or stopped being finite") \
+    X(HN_ERR_STEP_UNDERFLOW, "step-underflow", "the step became too small to make progress")      \
+    X(HN_ERR_BUDGET, "budget", "the budget of steps or time is used up")                          \
+    X(HN_ERR_UNSUPPORTED, "unsupported", "this combination is not served")                        \
+    X(HN_ERR_INTERNAL, "internal", "the program is at fault")                                     \
+    X(HN_ERR_MASS, "mass-singular", "the mass matrix has no inverse")
+#define HN_STATUS_LIST(X) X(HN_OK, "ok", "done") HN_STATUS_FAILURES(X)
 
 typedef enum hn_status {
-#define HN_STATUS_ENUM(name, text) name,
+#define HN_STATUS_ENUM(value, name, text) value,
     HN_STATUS_LIST(HN_STATUS_ENUM)
 #undef HN_STATUS_ENUM
         HN_STATUS_COUNT
@@ -38,7 +39,7 @@ typedef enum hn_status {
 
 _Noreturn void hn_assert_failed(const char *cond, const char *file, int line);
 
-/// "HN_ERR_INPUT" and "the input is at fault"; static text, never NULL.
+/// "input" and "the input is at fault"; static text, never NULL.
 const char *hn_status_name(hn_status status);
 const char *hn_status_text(hn_status status);
 

@@ -378,21 +378,25 @@ static void refuse_massless(hn_accel *s) {
              massless >= 0 ? name_of_speed(s, massless) : "");
 }
 
-static void refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
+/// Says why; HN_ERR_MASS where it is a mass that is missing, else `status`.
+static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
     const char *name = hn_solver_names[solver];
     if (massless >= 0) {
         snprintf(s->refusal, sizeof s->refusal,
                  "solver=%s needs M^-1, and %s moves no mass; solver=auto serves this", name,
                  name_of_speed(s, massless));
-    } else if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO &&
-               solver != HN_SOLVER_LEAST_NORM) {
+        return HN_ERR_MASS;
+    }
+    if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO && solver != HN_SOLVER_LEAST_NORM) {
         snprintf(s->refusal, sizeof s->refusal,
                  "solver=%s needs closure rows that do not depend on each other; solver=auto, "
                  "proximal or least-norm serve this",
                  name);
     } else if (status == HN_ERR_SINGULAR) {
         refuse_massless(s);
+        return HN_ERR_MASS;
     }
+    return status;
 }
 
 static double dense_ops(const hn_accel *s) {
@@ -428,8 +432,7 @@ static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *
     s->ops += dense_ops(s);
     info->massless = dense.massless;
     if (status != HN_OK) {
-        refuse(s, solver, status, dense.massless);
-        return status;
+        return refuse(s, solver, status, dense.massless);
     }
     info->solver = solver;
     info->rank = dense.rank;
@@ -490,8 +493,7 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
         return HN_OK;
     }
     if (solver == HN_SOLVER_LDL) {
-        refuse(s, solver, HN_ERR_SINGULAR, -1);
-        return HN_ERR_SINGULAR;
+        return refuse(s, solver, HN_ERR_SINGULAR, -1);
     }
     info->fallback = solver == HN_SOLVER_AUTO;
     s->fallbacks += info->fallback;

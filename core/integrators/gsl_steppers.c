@@ -248,45 +248,46 @@ static void *create_bsimp(int n_pos, int n_vel, hn_arena *arena) {
 }
 
 #define GSL_SOURCE "GNU Scientific Library, gsl_odeiv2; "
-#define GSL_STEPPER(NAME, TITLE, ABOUT, SOURCE, ORDER, STAGES, REAL, IMAG)        \
-    const hn_stepper hn_stepper_gsl_##NAME = {.name = "gsl-" #NAME,               \
-                                              .title = TITLE,                     \
-                                              .about = ABOUT,                     \
-                                              .source = GSL_SOURCE SOURCE,        \
-                                              .order = ORDER,                     \
-                                              .stages = STAGES,                   \
-                                              .adaptive = 1,                      \
-                                              .real_limit = REAL,                 \
-                                              .imag_limit = IMAG,                 \
-                                              .n_settings = 4,                    \
-                                              .settings = {HN_SETTINGS_ADAPTIVE}, \
-                                              .create = create_##NAME,            \
-                                              .destroy = destroy,                 \
-                                              .configure = configure,             \
-                                              .prepare = prepare,                 \
-                                              .advance = advance,                 \
-                                              .accepted = accepted,               \
-                                              .add_cost = add_cost,               \
+#define GSL_STEPPER(NAME, TITLE, ABOUT, SOURCE, ORDER, MULTISTEP, STAGES, REAL, IMAG) \
+    const hn_stepper hn_stepper_gsl_##NAME = {.name = "gsl-" #NAME,                   \
+                                              .title = TITLE,                         \
+                                              .about = ABOUT,                         \
+                                              .source = GSL_SOURCE SOURCE,            \
+                                              .order = ORDER,                         \
+                                              .multistep = MULTISTEP,                 \
+                                              .stages = STAGES,                       \
+                                              .adaptive = 1,                          \
+                                              .real_limit = REAL,                     \
+                                              .imag_limit = IMAG,                     \
+                                              .n_settings = 4,                        \
+                                              .settings = {HN_SETTINGS_ADAPTIVE},     \
+                                              .create = create_##NAME,                \
+                                              .destroy = destroy,                     \
+                                              .configure = configure,                 \
+                                              .prepare = prepare,                     \
+                                              .advance = advance,                     \
+                                              .accepted = accepted,                   \
+                                              .add_cost = add_cost,                   \
                                               .why = why}
 
 GSL_STEPPER(rk8pd, "GSL Prince-Dormand 8(9)",
             "A library's explicit Runge-Kutta pair under the library's own step control, to "
             "compare dop853 with. No dense output: a look between steps is a step of its own.",
-            "Prince & Dormand 1981", 8, 13, HUGE_VAL, HUGE_VAL);
+            "Prince & Dormand 1981", 8, 0, 13, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(msadams, "GSL Adams 1-12",
             "A library's multistep method for smooth motion, order 1 to 12, two right-hand sides a "
             "step. A state changed after the step (projection, a new chart) makes it start again "
             "at order 1: pair it with formulations that leave the state alone.",
-            "Byrne & Hindmarsh 1975", 12, 2, HUGE_VAL, HUGE_VAL);
+            "Byrne & Hindmarsh 1975", 12, 1, 2, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(msbdf, "GSL BDF 1-5",
             "A library's stiff multistep method, order 1 to 5, with a Jacobian. A state changed "
             "after the step (projection, a new chart) makes it start again at order 1: pair it "
             "with formulations that leave the state alone.",
-            "Byrne & Hindmarsh 1975", 5, 2, HUGE_VAL, HUGE_VAL);
+            "Byrne & Hindmarsh 1975", 5, 1, 2, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(bsimp, "GSL Bader-Deuflhard",
             "A library's linearly implicit extrapolation for stiff motion: many right-hand sides "
             "and a Jacobian in a long step of high order.",
-            "Bader & Deuflhard 1983", 12, 30, HUGE_VAL, HUGE_VAL);
+            "Bader & Deuflhard 1983", 12, 0, 30, HUGE_VAL, HUGE_VAL);

@@ -457,10 +457,10 @@ static hn_status begin(implicit_dae *s, double t, const double *y) {
         if (s->form == HN_FORM_GGL && status != HN_ERR_DIVERGED) {
             hn_dae_tell_massless(s->sys, hn_linear_get(s->lin.terms, HN_LINEAR_M), t, s->why,
                                  sizeof s->why);
-        } else {
-            snprintf(s->why, sizeof s->why, "the equations at t = %.6g s: %s", t,
-                     hn_status_text(status));
+            return HN_ERR_MASS;
         }
+        snprintf(s->why, sizeof s->why, "the equations at t = %.6g s: %s", t,
+                 hn_status_text(status));
         return status;
     }
     const double *R = hn_linear_get(s->lin.terms, HN_LINEAR_RESIDUAL);

@@ -280,7 +280,7 @@ hn_status hn_newmark_step(hn_newmark *s, double t, double h, const double *y, do
     memset(s->pushed, 0, (size_t)b->nv * sizeof *s->pushed);
     if (s->stabilised && !is_extended(s) && prepare_stabiliser(s) != HN_OK) {
         hn_dae_tell_massless(b->sys, b->M, t, b->why, sizeof b->why);
-        return HN_ERR_NOT_SPD;
+        return HN_ERR_MASS;
     }
     for (int i = 0; i < b->nv; i++) {
         s->D[i] = h * v0[i] + h * h / 2 * s->a0[i];

@@ -14,6 +14,7 @@ typedef struct hn_stepper {
     int control_order; ///< order of the embedded solution + 1, which the step is chosen with; 0: `order`
     int stages;        ///< right-hand sides per step
     int adaptive; ///< chooses its own step from rtol, atol; where there is a setting h too, h > 0 fixes the step
+    int multistep; ///< its order rests on the steps before: a state changed after a step makes it start again at order 1
     int partitioned; ///< treats positions and speeds differently (symplectic Euler)
     double real_limit,
         imag_limit; ///< |h s| limits of the stability region on the axes; HUGE_VAL: none

@@ -117,7 +117,8 @@ static const char SINGULAR[] = "a singular pose: closure rows depend on each oth
 /// J_d was singular at (t, q): of this chart, or of all of them.
 static hn_status fail_singular(hn_chart *chart, double t, const double *q) {
     const int fold = hn_chart_has_full_rank(chart, t, q);
-    return hn_chart_fail(chart, HN_ERR_CHART, t, q, fold ? FOLD : SINGULAR);
+    return fold ? hn_chart_fail_end(chart, t, q, FOLD)
+                : hn_chart_fail(chart, HN_ERR_CHART, t, q, SINGULAR);
 }
 
 hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *p, double t, const double *q) {
@@ -143,8 +144,8 @@ int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *p, double t, con
 hn_status hn_chart_check_mode(hn_chart *chart) {
     if (chart->base.valid && chart->base.sign * chart->here.sign < 0) {
         chart->here.valid = 0;
-        return hn_chart_fail(
-            chart, HN_ERR_CHART, chart->here.t, chart->here.q,
+        return hn_chart_fail_end(
+            chart, chart->here.t, chart->here.q,
             "the loop went over to its other assembly mode: a dead point was passed, or "
             "the step is too long");
     }
@@ -201,7 +202,7 @@ static hn_status fail_torn(hn_chart *chart, double t, const double *q, int step)
     name_dyad(chart, step, name);
     snprintf(text, sizeof text,
              "%.120s cannot be closed with this value: the end of its range was passed", name);
-    return hn_chart_fail(chart, HN_ERR_CHART, t, q, text);
+    return hn_chart_fail_end(chart, t, q, text);
 }
 
 hn_status hn_chart_fail_dyad(hn_chart *chart, int step) {
@@ -212,7 +213,7 @@ hn_status hn_chart_fail_dyad(hn_chart *chart, int step) {
              "is too long",
              name);
     chart->here.valid = 0;
-    return hn_chart_fail(chart, HN_ERR_CHART, chart->here.t, chart->here.q, text);
+    return hn_chart_fail_end(chart, chart->here.t, chart->here.q, text);
 }
 
 // the factor is wanted for the basis alone, and for telling how near the end of the chart is
@@ -266,9 +267,8 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
         last = p->gap;
         newton_step(chart, p);
     }
-    return hn_chart_fail(
-        chart, HN_ERR_CHART, t, q,
-        "no pose closes the loops with this value: the end of its range was passed");
+    return hn_chart_fail_end(
+        chart, t, q, "no pose closes the loops with this value: the end of its range was passed");
 }
 
 void hn_chart_predict(hn_chart *chart, double t, const double *q_ind, double *q) {

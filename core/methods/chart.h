@@ -94,9 +94,13 @@ enum {
     HN_CHART_BEST =
         -2 ///< when an earlier choice has become poor: columns change places while |det J_d| grows
 };
-/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first` cannot be independent, when
-/// the rank differs from the one of an earlier choice, or when the speed of a ball would have to be independent (plain_only).
+/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first` cannot be independent or
+/// the rank differs from the one of an earlier choice, HN_ERR_UNSUPPORTED when the turning of a ball would have to be independent
+/// (plain_only).
 HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
+/// The end of the chart was passed: HN_ERR_CHART with `what`; where nothing but the turning of a ball could have taken over since
+/// `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name, because a shorter step changes nothing about that.
+hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what);
 /// 1 when changing one dependent column for an independent one would make |det J_d| at `here` larger by more than 1 / tau, and
 /// at least double it. With one freedom this compares with the best choice there is.
 int hn_chart_is_poor(hn_chart *chart, double tau);

@@ -161,19 +161,22 @@ static int serves(const hn_chart *chart) {
     return 1;
 }
 
-static hn_status fail_ball(hn_chart *chart, double t) {
+static hn_status fail_ball(hn_chart *chart, double t, int column) {
     const hn_scene *scene = hn_system_scene(chart->sys);
-    int j = 0;
-    while (j < chart->r && chart->at[chart->ind[j]] >= 0) {
-        j++;
-    }
-    const hn_coordinate *c =
-        &scene->coordinates[hn_system_user_coordinate(chart->sys, chart->ind[j])];
+    const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(chart->sys, column)];
     snprintf(chart->why, sizeof chart->why,
              "no chart at t = %.6g s: the turning of %s would have to be an independent "
              "coordinate, and a ball has none of its own; nullspace and projection serve this",
              t, c->joint >= 0 ? scene->joints[c->joint].name : c->name);
     return HN_ERR_UNSUPPORTED;
+}
+
+static hn_status refuse_ball(hn_chart *chart, double t) {
+    int j = 0;
+    while (j < chart->r && chart->at[chart->ind[j]] >= 0) {
+        j++;
+    }
+    return fail_ball(chart, t, chart->ind[j]);
 }
 
 static void eval_here(hn_chart *chart, double t, const double *q) {
@@ -290,7 +293,7 @@ static hn_status choose_first(hn_chart *chart, double t, const double *q, int fi
     }
     begin(chart);
     chart->pivot_start = 0;
-    return serves(chart) ? HN_OK : fail_ball(chart, t);
+    return serves(chart) ? HN_OK : refuse_ball(chart, t);
 }
 
 hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first) {
@@ -304,6 +307,29 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
         return status;
     }
     return first == HN_CHART_BEST ? improve(chart, t, q) : choose_again(chart, t, q, first);
+}
+
+// the column of a ball that would have been a much better independent coordinate at `base` than those that are, -1: none, or a
+// plain coordinate would have been too
+static int find_holding_ball(const hn_chart *chart) {
+    int held_by = -1;
+    double best = 1 / HN_CHART_TAU;
+    for (int k = 0; k < chart->rank && chart->plain_only && chart->base.valid; k++) {
+        for (int j = 0; j < chart->r; j++) {
+            const double gain = hn_chart_exchange(chart, &chart->base, k, j);
+            if (gain > 1 / HN_CHART_TAU && chart->at[chart->dep[k]] >= 0) {
+                return -1;
+            }
+            held_by = gain > best ? chart->dep[k] : held_by;
+            best = fmax(best, gain);
+        }
+    }
+    return held_by;
+}
+
+hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what) {
+    const int ball = find_holding_ball(chart);
+    return ball >= 0 ? fail_ball(chart, t, ball) : hn_chart_fail(chart, HN_ERR_CHART, t, q, what);
 }
 
 int hn_chart_is_poor(hn_chart *chart, double tau) {

@@ -119,7 +119,7 @@ static hn_status tell(symmetric *s, hn_status status, double t) {
                  "the symmetric projection at t = %.6g s needs M^-1, and %s moves no mass; "
                  "projection and index3 serve this",
                  t, name);
-        return status;
+        return HN_ERR_MASS;
     }
     if (status == HN_ERR_NO_CONVERGENCE) {
         reason = "it does not converge: the step is too long for it, or the pose is close to one "

@@ -21,6 +21,7 @@ static const struct {
     {HN_ERR_INCONSISTENT, "inconsistent"},
     {HN_ERR_SINGULAR, "singular"},
     {HN_ERR_NOT_SPD, "singular"},
+    {HN_ERR_MASS, "singular"},
     {HN_ERR_NO_CONVERGENCE, "no-convergence"},
     {HN_ERR_CHART, "chart-lost"},
     {HN_ERR_DIVERGED, "diverged"},

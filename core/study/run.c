@@ -114,6 +114,9 @@ static hn_status accept(hn_run *run, double h, double t_new, int changed) {
     run->summary.h_last = h;
     run->summary.t = t_new;
     run->summary.steps++;
+    if (changed) {
+        hn_run_tell_restart(run);
+    }
     return hn_engine_read(run, e, t_new, e->y, run->now.q, run->now.v);
 }
 

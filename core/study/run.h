@@ -38,7 +38,9 @@ typedef enum hn_run_state {
     X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")             \
     X(HN_INCIDENT_NEWTON_FAILED, "newton-failed")         \
     X(HN_INCIDENT_ENERGY_DRIFT, "energy-drift")           \
-    X(HN_INCIDENT_STIFF, "stiff")
+    X(HN_INCIDENT_STIFF, "stiff")                         \
+    X(HN_INCIDENT_MASS, "mass-singular")                  \
+    X(HN_INCIDENT_RESTARTS, "order-lost")
 
 typedef enum hn_incident_code {
 #define HN_INCIDENT_ENUM(code, name) code,

@@ -67,6 +67,7 @@ typedef struct hn_run_watch_state {
     double swiftest;                                       ///< largest of the speeds so far
     double *modes, *last_modes;                            ///< per loop
     int start_rank;
+    long long restarts; ///< steps after which a multistep integrator had to start again
     int conservative;
     hn_limits *limits;           ///< coordinates with limits
     char *beyond;                ///< per limit: it is passed at present
@@ -167,6 +168,8 @@ void hn_run_over(hn_run *run, hn_incident_code code);
 typedef char hn_remedy[96];
 /// Another formulation with its defaults, the integrator as it is; a smaller step or tolerance of the same method.
 void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy out);
+/// A step whose state was changed has been accepted: told where most are such, and the integrator starts again at order 1 each time.
+void hn_run_tell_restart(hn_run *run);
 void hn_run_remedy_finer(const hn_run *run, double factor, hn_remedy out);
 /// What goes through singular poses: projection with a fixed step like the present one.
 void hn_run_remedy_robust(const hn_run *run, hn_remedy out);

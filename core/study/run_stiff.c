@@ -45,3 +45,29 @@ void hn_run_look_at_stiffness(hn_run *run, double h) {
         hn_run_over(run, HN_INCIDENT_STIFF);
     }
 }
+
+// A multistep integrator whose state is changed after each step (a projection, a ball's unit quaternion) never leaves order 1.
+enum { RESTARTS_TOLD = 20 };
+
+void hn_run_tell_restart(hn_run *run) {
+    const long long restarts = ++run->watch.restarts;
+    if (!run->spec.stepper->multistep || restarts < RESTARTS_TOLD ||
+        2 * restarts < run->summary.steps) {
+        return;
+    }
+    const char *stepper = run->spec.stepper->name;
+    hn_incident *i =
+        hn_run_tell(run, HN_INCIDENT_RESTARTS, "restarts", (double)restarts, RESTARTS_TOLD,
+                    "the state was corrected after %lld of %lld steps, and each time %s starts "
+                    "again at order 1: its steps stay near %.2g s",
+                    restarts, run->summary.steps, stepper, run->h);
+    if (!i) {
+        return;
+    }
+    const double rtol = hn_method_setting(&run->spec, "rtol", 1e-6);
+    snprintf(i->remedy[0], sizeof i->remedy[0], "%s@dop853:rtol=%.3g", run->spec.formulation->name,
+             rtol);
+    if (run->info.nq == run->info.nv) { // no quaternion that is brought back to length 1
+        snprintf(i->remedy[1], sizeof i->remedy[1], "baumgarte@%s:rtol=%.3g", stepper, rtol);
+    }
+}

@@ -30,7 +30,8 @@ void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy ou
     spec.formulation = hn_formulation_find(name);
     HN_ASSERT(spec.formulation);
     if (!hn_method_fits(spec.formulation, spec.stepper)) {
-        snprintf(out, sizeof(hn_remedy), "%s@dopri5:rtol=1e-8", name);
+        snprintf(out, sizeof(hn_remedy), "%s@%s:rtol=1e-8", name,
+                 spec.formulation->form == HN_FORM_ODE ? "dopri5" : "radau5");
         return;
     }
     for (int i = 0; i < spec.formulation->n_settings; i++) {
@@ -470,6 +471,7 @@ static hn_incident_code code_of_iteration(const hn_run *run) {
 static hn_incident_code code_of(const hn_run *run, hn_status status) {
     switch (status) {
     case HN_ERR_CHART:
+    case HN_ERR_UNSUPPORTED: // no choice of coordinates serves: at the start, or where another was to take over
         return HN_INCIDENT_CHART_LOST;
     case HN_ERR_NO_CONVERGENCE:
         return code_of_iteration(run);
@@ -477,6 +479,8 @@ static hn_incident_code code_of(const hn_run *run, hn_status status) {
         return HN_INCIDENT_STEP_UNDERFLOW;
     case HN_ERR_BUDGET:
         return HN_INCIDENT_BUDGET;
+    case HN_ERR_MASS:
+        return HN_INCIDENT_MASS;
     case HN_ERR_SINGULAR:
     case HN_ERR_NOT_SPD:
     case HN_ERR_INCONSISTENT:
@@ -486,9 +490,25 @@ static hn_incident_code code_of(const hn_run *run, hn_status status) {
     }
 }
 
-static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident *i) {
-    switch (code) {
+// M has no inverse: the formulation next to this one that needs none, or its own with the solver that needs none
+static void remedy_of_mass(hn_run *run, hn_remedy out) {
+    if (is_formulation(run, "ggl")) {
+        hn_run_remedy_formulation(run, "index2", out);
+    } else if (is_formulation(run, "symmetric-projection")) {
+        hn_run_remedy_formulation(run, "projection", out);
+    } else if (hn_method_setting(&run->spec, "solver", HN_SOLVER_AUTO) != HN_SOLVER_AUTO) {
+        hn_run_remedy_formulation(run, run->spec.formulation->name, out);
+    }
+}
+
+static void remedies_of_failure(hn_run *run, hn_status status, hn_incident *i) {
+    switch (i->code) {
     case HN_INCIDENT_CHART_LOST:
+        if (status == HN_ERR_UNSUPPORTED) { // no step, however short, brings such coordinates
+            hn_run_remedy_formulation(run, "projection", i->remedy[0]);
+            hn_run_remedy_formulation(run, "nullspace", i->remedy[1]);
+            break;
+        }
         if (hn_run_is_near_singular(run)) {
             hn_run_remedy_robust(run, i->remedy[0]);
             break;
@@ -499,6 +519,9 @@ static void remedies_of_failure(hn_run *run, hn_incident_code code, hn_incident 
         break;
     case HN_INCIDENT_BUDGET:
         hn_run_remedy_finer(run, 10, i->remedy[0]);
+        break;
+    case HN_INCIDENT_MASS:
+        remedy_of_mass(run, i->remedy[0]);
         break;
     case HN_INCIDENT_RANK_LOSS:
         hn_run_remedy_formulation(run, is_formulation(run, "projection") ? "index1" : "projection",
@@ -536,6 +559,6 @@ void hn_run_tell_failure(hn_run *run, hn_status status) {
     run->watch.told[code] = 0;
     hn_incident *i = hn_run_tell(run, code, "t", run->now.t, 0, "%s", run->summary.reason);
     if (i) {
-        remedies_of_failure(run, code, i);
+        remedies_of_failure(run, status, i);
     }
 }

@@ -271,7 +271,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     char reason[300] = "";
     if (strcmp(format, "json") != 0) {
         run = hn_document_parse(&b);
-        snprintf(reason, sizeof reason, "%s at t = %.6g s: %.200s", hn_document_text(run, "status"),
+        snprintf(reason, sizeof reason, "at t = %.6g s: %.200s",
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         tell_marks(run);
         put_samples(&b, run, strcmp(format, "ndjson") == 0);
@@ -282,7 +282,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
     }
     hn_exit result = hn_cli_print(&b);
     if (ended != HN_OK && reason[0]) {
-        fprintf(stderr, "holonom: the run ended early, %s\n", reason);
+        fprintf(stderr, "holonom: the run ended early %s\n", reason);
     }
     return result == HN_EXIT_DONE && ended != HN_OK ? HN_EXIT_ENDED : result;
 }

@@ -118,6 +118,8 @@ void hn_fields_schema_json(hn_strbuf *b, const hn_field *fields) {
 #define MAYBE_NUMBER "{\"type\":[\"number\",\"null\"]}"
 #define TEXTS "{\"type\":\"array\",\"items\":{\"type\":\"string\"}}"
 #define TEXT "{\"type\":\"string\"}"
+#define STATUS_NAME(value, name, text) ",\"" name "\""
+#define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
 #define OBJECTS "{\"type\":\"array\",\"items\":{\"type\":\"object\"}}"
 
 static const struct {
@@ -161,7 +163,7 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
      "reached\",\"coordinates\",\"samples\","
      "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
-     "\"method\":" TEXT ",\"status\":" TEXT ",\"reason\":" TEXT
+     "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
      ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
      "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
      ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
@@ -178,7 +180,8 @@ static const struct {
      "{\"type\":\"number\"},"
      "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\","
      "\"status\"],\"properties\":{"
-     "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"t\":{\"type\":\"number\"},"
+     "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"status\":" STATUS
+     ",\"t\":{\"type\":\"number\"},"
      "\"q\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
      "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER

@@ -214,7 +214,7 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
         lines = [strict(line) for line in self.assert_exit(call(*words, "--format", "ndjson"), DONE).splitlines()]
         self.assertEqual(lines[0]["columns"], rows[0])
-        self.assertEqual(lines[-1]["status"], "HN_OK")
+        self.assertEqual(lines[-1]["status"], "ok")
         self.assertEqual(lines[1:-1], [[float(x) for x in row] for row in rows[1:]])
         run = strict(self.assert_exit(call(*words, "--json"), DONE))
         self.assertEqual(run["samples"]["t"], [row[0] for row in lines[1:-1]])
@@ -357,7 +357,7 @@ class CommandLine(unittest.TestCase):
     def test_faults_come_as_json_where_json_was_asked(self):
         done = call("run", "for-bar", "--json")
         document = strict(self.assert_exit(done, INPUT))
-        self.assertEqual(document["status"], "HN_ERR_INPUT")
+        self.assertEqual(document["status"], "input")
         self.assertIn("four-bar", document["errors"][0]["hint"])
         self.assertEqual(done.stderr, b"")
 

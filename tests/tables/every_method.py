@@ -86,7 +86,7 @@ def reference(program, scene, kinds, length, duration):
     good = []
     for method in REFERENCES:
         found, _ = run(program, scene, method, duration)
-        if found and found["status"] == "HN_OK" and found["t_reached"] >= duration:
+        if found and found["status"] == "ok" and found["t_reached"] >= duration:
             good.append(found)
         if len(good) == 2:
             return good[0], difference(good[0], good[1], kinds, length)
@@ -101,7 +101,7 @@ def row(program, scene, method, ref, ref_error, kinds, length, duration):
     found, why = run(program, scene, method, duration)
     if not found:
         return [scene, method, "refused", *["-"] * 9, why]
-    done = found["status"] == "HN_OK"
+    done = found["status"] == "ok"
     error = difference(found, ref, kinds, length) if done and ref else None
     if error is not None and error < ref_error:
         error = ref_error

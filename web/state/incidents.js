@@ -79,6 +79,14 @@ export const INCIDENTS = {
     name: "another solver took over",
     rule: "The sparse solve keeps one order of its pivots. Where one of them vanishes a dense least-norm solve answers instead: slower, and as right.",
   },
+  "order-lost": {
+    name: "starts again after every step",
+    rule: "A multistep method earns its order from the steps before. Where the state is corrected after each step they count no more: it stays at order 1 and its steps stay short.",
+  },
+  "mass-singular": {
+    name: "a mass that is divided by is zero",
+    rule: "A link without mass leaves M without an inverse. The loops may still settle the motion, but only for methods that never form that inverse.",
+  },
   "joint-limit": {
     name: "went beyond a limit",
     rule: "A limit in a scene is a mark that is watched, not a stop: no force holds the coordinate there.",

@@ -184,8 +184,8 @@ static void a_fault_is_told_with_pointer_detail_and_hint(void **state) {
     hn_json_diags(&b, &d);
     assert_string_equal(
         hn_strbuf_text(&b),
-        "[{\"status\":\"HN_ERR_INPUT\",\"pointer\":\"/kinetic\",\"detail\":\"unknown name "
-        "'th9'\",\"hint\":\"\",\"column\":4},{\"status\":\"HN_ERR_LIMIT\",\"pointer\":\"/x\","
+        "[{\"status\":\"input\",\"pointer\":\"/kinetic\",\"detail\":\"unknown name "
+        "'th9'\",\"hint\":\"\",\"column\":4},{\"status\":\"limit\",\"pointer\":\"/x\","
         "\"detail\":\"too many\",\"hint\":\"fewer\"}]");
     hn_strbuf_reset(&b);
 }

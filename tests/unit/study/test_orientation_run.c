@@ -255,6 +255,80 @@ static void a_body_on_a_cylindrical_joint_falls_and_turns_as_a_screw(void **stat
     hn_model_close(&m);
 }
 
+// a four-bar in which the link that turns all the way hangs on a ball and is kept in its plane: th only rocks
+static const char FOUR_BAR_WITH_A_BALL[] =
+    "{\"holonom\":1,\"name\":\"ball four-bar\",\"gravity\":[0,0,0],"
+    "\"bodies\":[{\"name\":\"rocker\",\"mass\":1,\"com\":[0.5,0,0],\"inertia\":{\"xx\":0.01,"
+    "\"yy\":0.1,\"zz\":0.1}},{\"name\":\"arm\",\"mass\":1,\"com\":[0.1,0,0],"
+    "\"inertia\":{\"xx\":0.02,\"yy\":0.03,\"zz\":0.04}}],\"joints\":[{\"name\":\"O\","
+    "\"type\":\"revolute\",\"axis\":[0,0,1],\"coordinate\":\"th\","
+    "\"parent\":{\"body\":\"ground\",\"at\":[0,0,0]},\"child\":{\"body\":\"rocker\",\"at\":[0,"
+    "0,0]}},{\"name\":\"S\",\"type\":\"spherical\",\"parent\":{\"body\":\"ground\",\"at\":[1,0,"
+    "0]},\"child\":{\"body\":\"arm\",\"at\":[0,0,0]}}],\"constraints\":[{\"name\":\"rod\","
+    "\"distance\":{\"from\":{\"body\":\"rocker\",\"at\":[1,0,0]},\"to\":{\"body\":\"arm\","
+    "\"at\":[0.3,0,0]},\"length\":0.9}},{\"name\":\"flat 1\","
+    "\"plane\":{\"point\":{\"body\":\"arm\",\"at\":[1,0,0]},\"through\":{\"body\":\"ground\","
+    "\"at\":[0,0,0]},\"direction\":[0,0,1]}},{\"name\":\"flat 2\","
+    "\"plane\":{\"point\":{\"body\":\"arm\",\"at\":[0,1,0]},\"through\":{\"body\":\"ground\","
+    "\"at\":[0,0,0]},\"direction\":[0,0,1]}}],\"start\":{\"positions\":{\"th\":1.2},"
+    "\"rates\":{\"d_th\":3}}}";
+
+static void coordinates_that_end_where_only_a_ball_could_follow_say_so(void **state) {
+    static const char *const methods[] = {"partitioning@rk4:h=2e-3", "partitioning@rk4:h=2e-4",
+                                          "partitioning@dopri5", "reduced@rk4:h=1e-3"};
+    (void)state;
+    hn_model m;
+    hn_model_open_text(&m, FOUR_BAR_WITH_A_BALL, NULL);
+    assert_int_equal(m.status, HN_OK);
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        const hn_incident *incidents;
+        hn_run *run = hn_motion_start(&m, methods[i]);
+        assert_int_equal(hn_run_advance(run, 1), HN_ERR_UNSUPPORTED);
+        const int n = hn_run_incidents(run, &incidents);
+        assert_true(n > 0);
+        const hn_incident *last = &incidents[n - 1];
+        assert_int_equal(last->code, HN_INCIDENT_CHART_LOST);
+        assert_non_null(strstr(last->message, "the turning of S would have to be an independent"));
+        // no shorter step brings such a coordinate: other methods are what helps, and they do
+        for (int k = 0; k < 3 && last->remedy[k][0]; k++) {
+            assert_non_null(strchr(last->remedy[k], '@'));
+            hn_run *other = hn_motion_start(&m, last->remedy[k]);
+            assert_int_equal(hn_run_advance(other, 1), HN_OK);
+            hn_run_free(other);
+        }
+        assert_true(last->remedy[0][0] != 0);
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
+static void a_multistep_method_that_starts_again_after_every_step_says_so(void **state) {
+    // projection changes the state of a loop, a ball's quaternion is brought back to length 1; baumgarte leaves the state alone
+    static const struct {
+        const char *scene, *method;
+        int told;
+    } rows[] = {{"fb0", "projection@gsl-msadams", 1},      {"fb0", "projection@gsl-msbdf", 1},
+                {"fb0", "baumgarte@gsl-msadams", 0},       {"fb0", "projection@gsl-rk8pd", 0},
+                {"heavy-top", "index1@gsl-msadams", 1},    {"heavy-top", "index1@dopri5", 0},
+                {"double-pendulum", "index1@gsl-msbdf", 0}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        hn_model m;
+        const hn_incident *incidents;
+        hn_model_open_closed(&m, rows[i].scene, NULL);
+        hn_run *run = hn_motion_start(&m, rows[i].method);
+        assert_int_equal(hn_run_advance(run, 0.1), HN_OK);
+        int told = 0;
+        const int n = hn_run_incidents(run, &incidents);
+        for (int k = 0; k < n; k++) {
+            told += incidents[k].code == HN_INCIDENT_RESTARTS;
+        }
+        assert_int_equal(told, rows[i].told);
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_without_forces_obeys_eulers_equations),
@@ -264,6 +338,8 @@ int main(void) {
         cmocka_unit_test(a_body_on_a_fixed_joint_moves_as_part_of_what_carries_it),
         cmocka_unit_test(a_universal_joint_is_two_revolutes_about_a_cross_without_mass),
         cmocka_unit_test(a_body_on_a_cylindrical_joint_falls_and_turns_as_a_screw),
+        cmocka_unit_test(coordinates_that_end_where_only_a_ball_could_follow_say_so),
+        cmocka_unit_test(a_multistep_method_that_starts_again_after_every_step_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

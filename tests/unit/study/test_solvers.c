@@ -85,7 +85,7 @@ static void the_range_space_refuses_a_massless_rocker_and_names_it(void **state)
     for (int i = 0; i < HN_SOLVER_COUNT; i++) {
         const hn_run_summary s = try(&m, hn_solver_names[i]);
         if (i == HN_SOLVER_RANGE_SPACE) {
-            assert_int_equal(s.status, HN_ERR_SINGULAR);
+            assert_int_equal(s.status, HN_ERR_MASS);
             assert_non_null(strstr(s.reason, "th3 moves no mass"));
         } else {
             assert_int_equal(s.status, HN_OK);
@@ -103,6 +103,28 @@ static void symmetric_projection_refuses_a_massless_rocker_and_names_it(void **s
     const hn_run_summary s = hn_run_get_summary(run);
     assert_non_null(strstr(s.reason, "needs M^-1, and th3 moves no mass"));
     hn_run_free(run);
+    hn_model_close(&m);
+}
+
+static void
+a_method_that_divides_by_a_missing_mass_is_told_as_such_with_one_that_does_not(void **state) {
+    static const char *const methods[] = {"ggl@radau5", "ggl@genalpha:h=1e-3",
+                                          "symmetric-projection@rk4:h=1e-3",
+                                          "index1:solver=range-space@rk4:h=1e-3"};
+    (void)state;
+    hn_model m;
+    hn_model_open_text(&m, massless_rocker, NULL);
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        const hn_incident *incidents;
+        hn_run *run = hn_motion_start(&m, methods[i]);
+        assert_int_equal(hn_run_advance(run, 0.1), HN_ERR_MASS);
+        assert_int_equal(hn_run_incidents(run, &incidents), 1);
+        assert_int_equal(incidents[0].code, HN_INCIDENT_MASS);
+        hn_run *other = hn_motion_start(&m, incidents[0].remedy[0]);
+        assert_int_equal(hn_run_advance(other, 0.1), HN_OK);
+        hn_run_free(other);
+        hn_run_free(run);
+    }
     hn_model_close(&m);
 }
 
@@ -218,6 +240,8 @@ int main(void) {
         cmocka_unit_test(redundant_rows_are_refused_by_name_where_they_are_not_served),
         cmocka_unit_test(the_range_space_refuses_a_massless_rocker_and_names_it),
         cmocka_unit_test(symmetric_projection_refuses_a_massless_rocker_and_names_it),
+        cmocka_unit_test(
+            a_method_that_divides_by_a_missing_mass_is_told_as_such_with_one_that_does_not),
         cmocka_unit_test(answers_from_small_pivots_are_refined_and_counted),
         cmocka_unit_test(what_waits_at_the_flat_pose_is_told),
         cmocka_unit_test(the_remedy_for_a_chart_that_ends_at_a_flat_pose_goes_through_it),
