@@ -10,7 +10,15 @@
 static const double GHOST_OPACITY = 0.6;
 static const double SELECTED_TINT = 0.30;
 static const double LONGEST_LOAD = 0.20; // of the view
+static const double SAME_PLACE = 2;      // [px]
 enum { COILS = 7, MAX_POLYGON = 1000 };  // the scene format allows no larger one
+enum { LABEL_TEXT = 96, MAX_PLACED = 64 };
+
+/// Labels that have been placed: each a line of text, its middle and half its width.
+typedef struct label_places {
+    int n;
+    double at[MAX_PLACED][2], half[MAX_PLACED];
+} label_places;
 
 /// How one pose is drawn: colours of outline and fill, and whether it is a mere line.
 typedef struct pen {
@@ -391,17 +399,31 @@ static double room_at(const hn_sheet *s, const hn_drawing *d, const double *poin
     return room;
 }
 
-/// Of sixteen places around a point, the one with the most room.
+/// From a text of this half width around `xy` to the nearest of those placed before; none is in the way from a line's height on.
+static double room_beside(const hn_sheet *s, const label_places *placed, const double xy[2],
+                          double half) {
+    double room = HUGE_VAL;
+    for (int i = 0; i < placed->n; i++) {
+        const double across = fabs(placed->at[i][0] - xy[0]) - placed->half[i] - half;
+        const double down = fabs(placed->at[i][1] - xy[1]) - s->font;
+        const double clear = fmax(across, down);
+        room = clear < 0 ? fmin(room, clear) : room;
+    }
+    return room;
+}
+
+/// Of sixteen places around a point, the one with the most room; a place on another label only where all are.
 static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
-                        double out[2]) {
+                        const label_places *placed, double half, double out[2]) {
     enum { PLACES = 16 };
     const double off = 0.75 * s->bar + 0.85 * s->font;
-    double xy[2], most = -1;
+    const double wider = fmax(0, half - 0.5 * s->font); // a long text begins where a short one does
+    double xy[2], most = -HUGE_VAL;
     hn_sheet_pixel(s, points + 3 * point, xy);
     for (int k = 0; k < PLACES; k++) {
         const double angle = 2 * 3.14159265358979324 * k / PLACES;
-        const double place[2] = {xy[0] + off * cos(angle), xy[1] - off * sin(angle)};
-        const double room = room_at(s, d, points, place);
+        const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
+        const double room = fmin(room_at(s, d, points, place), room_beside(s, placed, place, half));
         if (room > most + 0.5) {
             most = room;
             memcpy(out, place, sizeof place);
@@ -409,15 +431,43 @@ static void place_label(const hn_sheet *s, const hn_drawing *d, const double *po
     }
 }
 
+/// The names of all points that are seen where point `first` is, "B1 A2"; 0: an earlier one has told them.
+static int names_at(const hn_sheet *s, const hn_drawing *d, const double *points, int first,
+                    char text[LABEL_TEXT]) {
+    double here[2], there[2];
+    size_t used = 0;
+    hn_sheet_pixel(s, points + 3 * first, here);
+    for (int i = 0; i < d->n_points; i++) {
+        hn_sheet_pixel(s, points + 3 * i, there);
+        if (d->labels[i] == NULL || hypot(there[0] - here[0], there[1] - here[1]) > SAME_PLACE) {
+            continue;
+        }
+        if (i < first) {
+            return 0;
+        }
+        const int n = snprintf(text + used, LABEL_TEXT - used, used ? " %s" : "%s", d->labels[i]);
+        used = n > 0 && used + (size_t)n < LABEL_TEXT ? used + (size_t)n : LABEL_TEXT - 1;
+    }
+    return 1;
+}
+
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
+    label_places placed = {0};
     for (int i = 0; i < d->n_points; i++) {
-        if (d->labels[i] != NULL) {
-            double xy[2];
-            place_label(s, d, pose->points, i, xy);
-            hn_canvas_text(c, xy[0], xy[1] + 0.35 * s->font, s->font, HN_ALIGN_CENTRE,
-                           hn_paint_solid(surface->ink), d->labels[i]);
+        char text[LABEL_TEXT];
+        double xy[2];
+        if (d->labels[i] == NULL || !names_at(s, d, pose->points, i, text)) {
+            continue;
+        }
+        const double half = 0.5 * hn_canvas_text_width(s->font, text);
+        place_label(s, d, pose->points, i, &placed, half, xy);
+        hn_canvas_text(c, xy[0], xy[1] + 0.35 * s->font, s->font, HN_ALIGN_CENTRE,
+                       hn_paint_solid(surface->ink), text);
+        if (placed.n < MAX_PLACED) {
+            memcpy(placed.at[placed.n], xy, sizeof xy);
+            placed.half[placed.n++] = half;
         }
     }
 }

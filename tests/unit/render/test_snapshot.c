@@ -297,6 +297,44 @@ static void every_kind_of_shape_but_arrow_and_trace_leaves_ink(void **state) {
     free(blank);
 }
 
+static void
+names_of_points_at_one_place_are_joined_and_no_name_is_written_over_another(void **state) {
+    (void)state;
+    const char *const both[5] = {"O", "A", "B", "D", "E"}, *const joined[5] = {"O", "A", "B E",
+                                                                               "D"};
+    const char *const first[5] = {"O", "A", "B", "D"}, *const none[5] = {NULL};
+    double points[15];
+    const hn_snapshot_pose pose = {.points = points};
+    const hn_snapshot_opts opts = hn_snapshot_opts_default();
+    hn_drawing d = four_bar;
+    unsigned char *picture[4];
+    set_points(points, 0);
+    const char *const *const labelled[4] = {both, joined, first, none};
+    for (int i = 0; i < 4; i++) {
+        d.labels = labelled[i];
+        picture[i] = draw(&d, &pose, 1, &opts);
+    }
+    assert_int_equal(differing_pixels(picture[0], picture[1]), 0);
+    assert_true(differing_pixels(picture[1], picture[2]) > 20);
+    for (int i = 0; i < 4; i++) {
+        free(picture[i]);
+    }
+    // a few pixels apart: each name has ink of its own, none is shared
+    set_points(points, 0.03);
+    const char *const second[5] = {"O", "A", NULL, "D", "E"}, *const others[5] = {"O", "A", NULL,
+                                                                                  "D"};
+    const char *const *const apart[4] = {both, first, second, others};
+    for (int i = 0; i < 4; i++) {
+        d.labels = apart[i];
+        picture[i] = draw(&d, &pose, 1, &opts);
+    }
+    assert_int_equal(differing_pixels(picture[0], picture[1]),
+                     differing_pixels(picture[2], picture[3]));
+    for (int i = 0; i < 4; i++) {
+        free(picture[i]);
+    }
+}
+
 static void a_trace_and_a_load_are_drawn(void **state) {
     (void)state;
     double points[15];
@@ -391,6 +429,8 @@ int main(void) {
         cmocka_unit_test(a_pose_that_is_not_finite_is_listed_but_not_drawn),
         cmocka_unit_test(the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_percent),
         cmocka_unit_test(every_kind_of_shape_but_arrow_and_trace_leaves_ink),
+        cmocka_unit_test(
+            names_of_points_at_one_place_are_joined_and_no_name_is_written_over_another),
         cmocka_unit_test(a_trace_and_a_load_are_drawn),
         cmocka_unit_test(the_reference_lies_beneath_and_is_thin),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
