@@ -104,8 +104,11 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
 }
 
 static void account(hn_report *r, hn_report_scene *s) {
-    const double T = hn_study_wp(s->study)->ref->T;
-    const hn_account_opts opts = {.stop = ask_end, .progress = tell_account, .user = r};
+    const hn_ref *ref = hn_study_wp(s->study)->ref;
+    const hn_account_opts opts = {.exact = ref->q + (size_t)ref->n * (size_t)ref->n_user,
+                                  .stop = ask_end,
+                                  .progress = tell_account,
+                                  .user = r};
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
         hn_account_row *a = &s->accounts[s->n_accounts];
         hn_diag diag = {0};
@@ -117,7 +120,7 @@ static void account(hn_report *r, hn_report_scene *s) {
             a->status = HN_ERR_BUDGET;
         } else if (a->status == HN_OK) {
             a->status = hn_account_make(hn_model_system(s->model), &spec, hn_model_q(s->model),
-                                        hn_model_v(s->model), T, &opts, &a->account, &diag);
+                                        hn_model_v(s->model), ref->T, &opts, &a->account, &diag);
         }
         if (a->status == HN_ERR_BUDGET) {
             hn_diag_set(&diag, HN_ERR_BUDGET, NULL, NULL, "left out to keep the budget");
@@ -199,11 +202,14 @@ static void make_scene(hn_report *r, double seconds) {
     if (study_scene(r, s, seconds) != HN_OK || r->stopped) {
         return;
     }
-    r->until = hn_wall_seconds() + ACCOUNT_SHARE * seconds;
-    account(r, s);
     r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
     find_singular(r, s);
+    // where there is nothing to survive its time goes to the accounts, which take long in space
+    const double share = s->singular ? ACCOUNT_SHARE : ACCOUNT_SHARE + SURVIVAL_SHARE;
+    r->until = hn_wall_seconds() + share * seconds;
+    account(r, s);
     if (s->singular) {
+        r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
         survive(r, s);
     }
 }

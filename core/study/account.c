@@ -215,7 +215,7 @@ int hn_books_asked_to_stop(const hn_books *b, double share) {
 static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
     const long long most = b->opts->max_steps > 0 ? b->opts->max_steps : MOST_STEPS;
     hn_status status = HN_OK;
-    while (status == HN_OK && b->run->now.t < T * (1 - 1e-12)) {
+    while (status == HN_OK && b->run->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
         if ((long long)b->kept >= most) {
             return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
                                "the account is for %lld steps at most", most);
@@ -335,6 +335,7 @@ hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, cons
                   .info = hn_system_get_info(sys),
                   .opts = opts ? opts : &none,
                   .out = out,
+                  .asked = T,
                   .v_min = HUGE_VAL,
                   .v_max = -HUGE_VAL};
     *out = (hn_account){.coordinate = -1};

@@ -72,7 +72,9 @@ typedef struct hn_account {
 } hn_account;
 
 typedef struct hn_account_opts {
-    long long max_steps;     ///< 0: 200,000
+    long long max_steps; ///< 0: 200,000
+    const double *
+        exact; ///< n_user: the exact motion at T, in user coordinates; NULL: found here, by a run at tight tolerance
     int (*stop)(void *user); ///< asked now and then; NULL: never
     void (*progress)(void *user, double share);
     void *user;

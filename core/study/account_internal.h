@@ -11,6 +11,8 @@
 
 enum { HN_BOOKS_BETWEEN_QUESTIONS = 16 }; ///< steps
 
+#define HN_BOOKS_ARRIVED 1e-12 // of the time asked for
+
 /// The three parts of (1), each a displacement in q along the speeds (nv) and one in v (nv).
 enum { HN_PART_TRUNCATION, HN_PART_FORMULATION, HN_PART_PROJECTION, HN_PARTS };
 
@@ -22,6 +24,7 @@ typedef struct hn_books {
     hn_run *run;
     const hn_account_opts *opts;
     hn_account *out;
+    double asked; ///< end [s]
     hn_accel *accel;
     hn_eval *eval;     ///< energy, J, phi_t
     hn_linear *linear; ///< M, J, V

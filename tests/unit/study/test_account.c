@@ -141,6 +141,39 @@ static void drives_and_dampers_stand_as_outside(void **state) {
     assert_near(a.bill[HN_BILL_LOOPS], 0, 1e-10 * a.swing);
 }
 
+static void the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_only(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "fb0", NULL);
+    hn_diag diag = {0};
+    // one digit of it is wrong on purpose: the error is off by just that
+    const hn_account own = account_of(&m, "projection@rk4:h=1e-2", 1);
+    hn_run *run;
+    hn_sample sample;
+    const hn_method_spec tight = hn_trial_spec("projection@dop853:rtol=1e-13");
+    double exact[8];
+    assert_in_range(m.info.n_user, 1, 8);
+    assert_int_equal(hn_run_create(m.sys, &tight, m.q, m.v, NULL, &run, &diag), HN_OK);
+    assert_int_equal(hn_run_advance(run, 1), HN_OK);
+    assert_int_equal(hn_run_sample(run, 1, &sample), HN_OK);
+    memcpy(exact, sample.q, (size_t)m.info.n_user * sizeof *exact);
+    hn_run_free(run);
+    exact[own.coordinate] -= copysign(1e-3, own.error);
+    const hn_account_opts opts = {.exact = exact};
+    hn_account given, past;
+    hn_method_spec spec = hn_trial_spec("projection@rk4:h=1e-2");
+    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &given, &diag), HN_OK);
+    assert_int_equal(given.coordinate, own.coordinate);
+    assert_near(given.error - own.error, copysign(1e-3, own.error), 1e-11);
+    assert_near(given.sum, own.sum, 1e-15); // the parts are of the run alone
+    // 0.03 does not divide 1: the run ends at 1.02, where what was given is not the motion
+    spec = hn_trial_spec("projection@rk4:h=3e-2");
+    assert_int_equal(hn_account_make(m.sys, &spec, m.q, m.v, 1, &opts, &past, &diag), HN_OK);
+    assert_near(past.t, 1.02, 1e-9);
+    assert_near(past.sum, past.error, 1e-3 * fabs(past.error) + 2e-12);
+    hn_model_close(&m);
+}
+
 static int stop_at_once(void *user) {
     (void)user;
     return 1;
@@ -200,6 +233,7 @@ int main(void) {
         cmocka_unit_test(drift_is_what_a_projection_would_have_spared),
         cmocka_unit_test(what_explicit_euler_puts_in_is_of_first_order),
         cmocka_unit_test(drives_and_dampers_stand_as_outside),
+        cmocka_unit_test(the_exact_motion_may_be_given_and_is_taken_for_the_end_asked_for_only),
         cmocka_unit_test(what_cannot_be_accounted_for_is_told),
         cmocka_unit_test(past_a_pose_that_loses_rank_there_is_no_account_and_the_pose_is_told),
         cmocka_unit_test(a_run_that_fails_keeps_its_bill_and_has_no_error_at_the_end),
