@@ -105,10 +105,10 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
 
 static void account(hn_report *r, hn_report_scene *s) {
     const hn_ref *ref = hn_study_wp(s->study)->ref;
-    const hn_account_opts opts = {.exact = ref->q + (size_t)ref->n * (size_t)ref->n_user,
-                                  .stop = ask_end,
-                                  .progress = tell_account,
-                                  .user = r};
+    // past a singular pose there is no account, which looking for the exact motion finds
+    const double *end = ref->q + (size_t)ref->n * (size_t)ref->n_user;
+    const hn_account_opts opts = {
+        .exact = s->singular ? NULL : end, .stop = ask_end, .progress = tell_account, .user = r};
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
         hn_account_row *a = &s->accounts[s->n_accounts];
         hn_diag diag = {0};
