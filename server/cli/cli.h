@@ -75,6 +75,8 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
 hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag);
 /// Prints and frees the buffer's text with a newline at its end; HN_EXIT_PROGRAM when memory or the output failed.
 hn_exit hn_cli_print(hn_strbuf *text);
+/// The same for text that people read: in ASCII characters where the locale has no UTF-8.
+hn_exit hn_cli_print_text(hn_strbuf *text);
 /// The same into a file; "-" or NULL is standard output.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its folder is not there or

@@ -153,7 +153,7 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
         hn_strbuf_clear(&b);
         put_table(&b, model, summary);
     }
-    hn_exit result = hn_cli_print(&b);
+    hn_exit result = args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
     int failed = tell_failures(summary, !args->json);
     cJSON_Delete(summary);
     hn_comparison_free(c);

@@ -60,8 +60,8 @@ hn_exit hn_forms_write(const hn_forms *forms, const hn_args *args, const void *w
     }
     if (args->json || args->csv) {
         forms->form[find(forms, args->json ? "-.json" : "-.csv")].put(&b, work);
-    } else {
-        forms->text(&b, work);
+        return hn_cli_print(&b);
     }
-    return hn_cli_print(&b);
+    forms->text(&b, work);
+    return hn_cli_print_text(&b);
 }

@@ -147,5 +147,5 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     }
     text.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_cli_print(&text);
+    return hn_cli_print_text(&text);
 }

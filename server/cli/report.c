@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/plain.h"
 #include "study/timing.h"
 
 #include <errno.h>
@@ -75,6 +76,17 @@ hn_exit hn_cli_print(hn_strbuf *text) {
     }
     hn_strbuf_reset(text);
     return ok ? HN_EXIT_DONE : HN_EXIT_PROGRAM;
+}
+
+hn_exit hn_cli_print_text(hn_strbuf *text) {
+    if (!text->failed && hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"))) {
+        hn_strbuf plain;
+        hn_strbuf_init(&plain);
+        hn_plain_add(&plain, hn_strbuf_text(text));
+        hn_strbuf_reset(text);
+        *text = plain;
+    }
+    return hn_cli_print(text);
 }
 
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {

@@ -27,7 +27,7 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
     hn_document_outline(&b, document, 0);
     b.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_cli_print(&b);
+    return hn_cli_print_text(&b);
 }
 
 static hn_status choose_form(const hn_args *args, hn_equation_form *form, hn_diags *diags) {
@@ -275,5 +275,5 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
     put_terms(&b, document);
     b.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_cli_print(&b);
+    return hn_cli_print_text(&b);
 }

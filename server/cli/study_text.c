@@ -1,6 +1,7 @@
 #include "cli/study_text.h"
 
 #include "base/units.h"
+#include "cli/cli.h"
 #include "cli/braille.h"
 #include "cli/table.h"
 #include "render/look.h"
@@ -290,6 +291,16 @@ static int told_before(const hn_wp *wp, int m, int k) {
     return told;
 }
 
+/// "...h=0.003955696202531646": the size that ends a spelling, in as many digits as are read.
+static void shorten_size(char spelling[HN_SPEC_MAX]) {
+    char *size = strrchr(spelling, '=');
+    double value;
+    if (size && hn_number_parse(size + 1, &value)) {
+        const size_t room = HN_SPEC_MAX - (size_t)(size + 1 - spelling);
+        snprintf(size + 1, room, "%.4g", value);
+    }
+}
+
 /// Everything that did not come to the end, with why; what never began for the same reason once per method.
 static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     int any = 0;
@@ -304,6 +315,7 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             }
             char spelling[HN_SPEC_MAX];
             hn_wp_spelling(wp, m, k, spelling);
+            shorten_size(spelling);
             hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", glyph_of(m),
                              spelling);
             if (p->t_reached > 0) {

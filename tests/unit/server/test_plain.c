@@ -1,0 +1,83 @@
+#include "support/near.h"
+
+#include "cli/braille.h"
+#include "cli/plain.h"
+#include "render/look.h"
+
+#include <string.h>
+
+static void ascii_is_wanted_where_the_first_name_that_speaks_is_not_utf8(void **state) {
+    (void)state;
+    assert_int_equal(hn_plain_wanted(NULL, NULL, NULL), 0);
+    assert_int_equal(hn_plain_wanted("", "", ""), 0);
+    assert_int_equal(hn_plain_wanted("C", NULL, "de_DE.UTF-8"), 1);
+    assert_int_equal(hn_plain_wanted(NULL, "POSIX", "de_DE.UTF-8"), 1);
+    assert_int_equal(hn_plain_wanted("", "", "de_DE.ISO-8859-1"), 1);
+    assert_int_equal(hn_plain_wanted("", "", "de_DE.UTF-8"), 0);
+    assert_int_equal(hn_plain_wanted("C.utf8", "C", "C"), 0);
+}
+
+static void assert_plain(const char *utf8, const char *expected) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_plain_add(&b, utf8);
+    assert_string_equal(hn_strbuf_text(&b), expected);
+    hn_strbuf_reset(&b);
+}
+
+static void every_character_becomes_one_of_ascii(void **state) {
+    (void)state;
+    assert_plain("gap 4 nm, 1 of 3", "gap 4 nm, 1 of 3");
+    assert_plain("1 freedom (3 \xe2\x88\x92 2), 4 \xc2\xb5s", "1 freedom (3 - 2), 4 us");
+    assert_plain("\xe2\x94\xa4\xe2\x94\x82 \xe2\x89\xa4 2", "|| < 2");
+    assert_plain("\xe4\xb8\xad", "?"); // no likeness
+    // bytes that are no UTF-8 stand for themselves, and no text is read beyond its end
+    assert_plain("a\xff"
+                 "b\xe2",
+                 "a?b?");
+}
+
+static void marks_of_methods_stay_apart(void **state) {
+    (void)state;
+    char seen[HN_LOOK_SLOTS + 1] = "";
+    for (int i = 0; i < HN_LOOK_SLOTS; i++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_plain_add(&b, hn_look_get(i)->glyph);
+        assert_int_equal(b.n, 1);
+        assert_true(b.text[0] != '?' && !strchr(seen, b.text[0]));
+        seen[i] = b.text[0];
+        hn_strbuf_reset(&b);
+    }
+}
+
+static void lines_stay_where_they_are(void **state) {
+    (void)state;
+    hn_braille c;
+    hn_strbuf utf8, plain;
+    hn_braille_init(&c, 20, 4);
+    hn_braille_line(&c, 0, 0, 1, 0);
+    hn_braille_line(&c, 0, 1, 1, 1);
+    hn_braille_line(&c, 0, 0, 0, 1);
+    const char *const rows[4] = {"|'''''''''''''''''''", "|                   ",
+                                 "|                   ", "|..................."};
+    for (int row = 0; row < 4; row++) {
+        hn_strbuf_init(&utf8);
+        hn_strbuf_init(&plain);
+        hn_braille_row(&utf8, &c, row);
+        hn_plain_add(&plain, hn_strbuf_text(&utf8));
+        assert_string_equal(hn_strbuf_text(&plain), rows[row]);
+        hn_strbuf_reset(&utf8);
+        hn_strbuf_reset(&plain);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ascii_is_wanted_where_the_first_name_that_speaks_is_not_utf8),
+        cmocka_unit_test(every_character_becomes_one_of_ascii),
+        cmocka_unit_test(marks_of_methods_stay_apart),
+        cmocka_unit_test(lines_stay_where_they_are),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
