@@ -81,18 +81,38 @@ static const hn_command *find_command(const char *name) {
     return NULL;
 }
 
+enum { HELP_INDENT = 10, HELP_WIDTH = 80 };
+
+/// Words in lines of HELP_WIDTH columns, each but the first after HELP_INDENT blanks; `column`: where the first begins.
+static void add_folded(hn_strbuf *b, int column, const char *words) {
+    while (*words) {
+        const int n = (int)strcspn(words, " ");
+        if (column > HELP_INDENT && column + 1 + n > HELP_WIDTH) {
+            hn_strbuf_printf(b, "\n%*s", HELP_INDENT, "");
+            column = HELP_INDENT;
+        } else if (column > HELP_INDENT) {
+            hn_strbuf_add(b, " ");
+            column++;
+        }
+        hn_strbuf_add_n(b, words, (size_t)n);
+        column += n;
+        words += n + (words[n] == ' ');
+    }
+    hn_strbuf_add(b, "\n");
+}
+
 static void describe_all(hn_strbuf *b) {
     hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods on one clock\n\n");
     for (int i = 0; i < N_COMMANDS; i++) {
-        char head[80];
-        snprintf(head, sizeof head, "%s %s", COMMANDS[i].name, COMMANDS[i].words);
-        hn_strbuf_printf(b, "  holonom %-38s %s\n", head, COMMANDS[i].about);
+        hn_strbuf_printf(b, "  holonom %s%s%s\n%*s", COMMANDS[i].name,
+                         COMMANDS[i].words[0] ? " " : "", COMMANDS[i].words, HELP_INDENT, "");
+        add_folded(b, HELP_INDENT, COMMANDS[i].about);
     }
     hn_strbuf_add(b, "\nSCENE is a shipped scene's name, a file, or - for standard input.\n"
-                     "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
-                     "projection@rk4:h=1e-3.\n"
-                     "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault, 4 a "
-                     "run ended early and said why.\n");
+                     "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
+                     "as projection@rk4:h=1e-3.\n"
+                     "Exit status: 0 done, 2 the input is at fault, 3 the program is at fault,\n"
+                     "4 a run ended early and said why.\n");
 }
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {

@@ -211,6 +211,14 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp) {
 
 // answers --------------------------------------------------------------------------------------------------------
 
+static void put_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
+    const size_t before = b->n;
+    hn_pareto_sentences(b, wp, p);
+    if (b->n == before) {
+        hn_strbuf_add(b, "Nothing to rank: no run came to an error of 0.1 or less.\n");
+    }
+}
+
 static void put_front(hn_strbuf *b, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     hn_pareto p;
@@ -219,12 +227,12 @@ static void put_front(hn_strbuf *b, const hn_study *study) {
         hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
         hn_strbuf_printf(b, "\nCheapest by %s%s\n", hn_cost_name((hn_cost_kind)cost),
                          error == HN_ERROR_Q ? "" : ", for the error of the energy");
-        hn_pareto_sentences(b, wp, &p);
+        put_sentences(b, wp, &p);
     }
     if (error != HN_ERROR_Q) {
         hn_wp_pareto(wp, hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &p);
         hn_strbuf_add(b, "\nFor the error of the coordinates\n");
-        hn_pareto_sentences(b, wp, &p);
+        put_sentences(b, wp, &p);
     }
 }
 

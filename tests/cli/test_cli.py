@@ -39,6 +39,7 @@ class CommandLine(unittest.TestCase):
 
     def test_help_names_every_command_and_every_command_has_help(self):
         text = self.assert_exit(call("help"), DONE)
+        self.assertLessEqual(max(map(len, text.splitlines())), 80)
         commands = re.findall(r"^  holonom (\w+)", text, re.M)
         self.assertTrue({"serve", "list", "inspect", "terms", "equations", "run", "compare", "snapshot", "grade"} <= set(commands))
         for command in commands:
