@@ -18,8 +18,8 @@ VOID = {"meta", "input", "br", "circle", "path", "rect"}
 
 
 def command(words, folder, **more):
-    """What to run, and in which environment: unfinished work is kept in the folder."""
-    return [driver.PROGRAM, *words], dict(os.environ, HOLONOM_CACHE=folder, **more)
+    """What to run, and in which environment: unfinished work is kept in the folder, the terminal shows UTF-8."""
+    return [driver.PROGRAM, *words], {**os.environ, "LC_ALL": "C.UTF-8", "HOLONOM_CACHE": folder, **more}
 
 
 def call(words, folder, text=False, **more):

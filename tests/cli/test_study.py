@@ -88,6 +88,9 @@ class Study(unittest.TestCase):
         self.assertRegex(text, "[\u2801-\u28ff]", "braille")
         self.assertIn("Cheapest by operations", text)
         self.assertNotIn("nan", text)
+        for words in (SMALL, ["inspect", "fb0"], ["list", "scenes"]):
+            plain = call(words, self.folder, LC_ALL="C").stdout
+            self.assertTrue(plain.isascii() and b"?" not in plain, "a locale without UTF-8")
 
     def test_the_report_is_one_file_that_asks_no_network(self):
         done = call([*SMALL, "--out", self.path("report.html")], self.folder)
