@@ -76,6 +76,8 @@ enum { HN_RUN_MAX_INCIDENTS = 64 };
 #define HN_RUN_WARN_MULTIPLIERS 1e3 ///< growth against the largest seen away from singular poses
 #define HN_RUN_WARN_TURN 0.5 ///< [rad] between the direction of motion and its smooth continuation
 #define HN_RUN_WARN_JUMP 0.5 ///< part of a step's motion that its speeds do not explain
+/// Of the speeds: how closely they are reversed, and of the whole change how little the accelerations explain, in one step that is told.
+#define HN_RUN_WARN_BACK 0.3
 #define HN_RUN_WARN_MODE \
     0.1 ///< change of the assembly-mode value that a jump to the other branch makes at least
 

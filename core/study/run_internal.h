@@ -1,6 +1,7 @@
 #ifndef HN_STUDY_RUN_INTERNAL_H
 #define HN_STUDY_RUN_INTERNAL_H
-// The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time) and run_watch.c (incidents).
+// The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time), run_watch.c
+// (what is looked at after a step) and run_tell.c (incidents).
 
 #include "dynamics/eval.h"
 #include "dynamics/limits.h"
@@ -165,6 +166,7 @@ double hn_run_shortest_row(const hn_run *run);
 hn_incident *hn_run_tell(hn_run *run, hn_incident_code code, const char *quantity, double value,
                          double limit, const char *format, ...) HN_PRINTF(6, 7);
 void hn_run_over(hn_run *run, hn_incident_code code);
+int hn_run_has_formulation(const hn_run *run, const char *name);
 typedef char hn_remedy[96];
 /// Another formulation with its defaults, the integrator as it is; a smaller step or tolerance of the same method.
 void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy out);

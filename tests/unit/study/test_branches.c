@@ -167,6 +167,42 @@ static void a_platform_that_comes_back_from_its_singular_yaw_says_so(void **stat
     hn_model_close(&m);
 }
 
+static void speeds_that_turn_round_in_a_step_are_told(void **state) {
+    (void)state;
+    static const char *const sizes[] = {"N=2", "N=5"};
+    for (int k = 0; k < 2; k++) {
+        hn_model m;
+        hn_model_open_closed(&m, "n-four-bar", sizes[k]);
+        hn_run *run = hn_motion_start(&m, "nullspace-untracked@rk4:h=1e-3");
+        (void)hn_run_advance(run, 1);
+        const hn_incident *turned = find(run, HN_INCIDENT_BRANCH_FLIP, "turned round");
+        assert_non_null(turned);
+        assert_true(turned->value > 3 * turned->limit);
+        hn_run *tracked = hn_motion_start(&m, turned->remedy[0]);
+        (void)hn_motion_at(tracked, 1);
+        assert_null(find(tracked, HN_INCIDENT_BRANCH_FLIP, ""));
+        hn_run_free(tracked);
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+}
+
+static void a_swing_that_turns_back_is_no_jump_of_its_speeds(void **state) {
+    (void)state;
+    // released at rest, one step ends just past each end of the swing, with speeds reversed and small
+    static const char *const methods[] = {"projection@rk4:h=1e-2", "projection@rk4:h=1e-3",
+                                          "nullspace@rk4:h=5e-3", "projection@dop853:rtol=1e-6"};
+    hn_model m;
+    hn_model_open_closed(&m, "pendulum", NULL);
+    for (int k = 0; k < 4; k++) {
+        hn_run *run = hn_motion_start(&m, methods[k]);
+        (void)hn_motion_at(run, 5);
+        assert_null(find(run, HN_INCIDENT_BRANCH_FLIP, ""));
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
 static void loops_that_stand_open_by_half_the_mechanism_end_a_run(void **state) {
     (void)state;
     hn_model m;
@@ -356,6 +392,8 @@ int main(void) {
             six_legs_lose_their_hold_towards_a_yaw_of_ninety_degrees_as_computed_elsewhere),
         cmocka_unit_test(a_platform_carried_through_its_singular_yaw_is_warned_before),
         cmocka_unit_test(a_platform_that_comes_back_from_its_singular_yaw_says_so),
+        cmocka_unit_test(speeds_that_turn_round_in_a_step_are_told),
+        cmocka_unit_test(a_swing_that_turns_back_is_no_jump_of_its_speeds),
         cmocka_unit_test(loops_that_stand_open_by_half_the_mechanism_end_a_run),
         cmocka_unit_test(
             an_iteration_that_fails_at_a_flat_pose_is_told_with_the_pose_and_a_way_through),
