@@ -207,6 +207,22 @@ static void tell_marks(const cJSON *run) {
     }
 }
 
+/// Says what was noticed on the way; samples alone would hide it.
+static void tell_incidents(const cJSON *run) {
+    enum { MOST = 5 };
+    const cJSON *incidents = hn_document_get(run, "incidents"), *incident;
+    int n = 0;
+    cJSON_ArrayForEach(incident, incidents) {
+        if (n++ < MOST) {
+            fprintf(stderr, "holonom: t = %.4g s: %s\n", hn_document_number(incident, "t"),
+                    hn_document_text(incident, "message"));
+        }
+    }
+    if (n > MOST) {
+        fprintf(stderr, "holonom: %d incidents more (--json lists them all)\n", n - MOST);
+    }
+}
+
 static int tell_progress(void *user, double share) {
     hn_progress_tell(user, "running", share);
     return 1;
@@ -274,6 +290,7 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         snprintf(reason, sizeof reason, "at t = %.6g s: %.200s",
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         tell_marks(run);
+        tell_incidents(run);
         put_samples(&b, run, strcmp(format, "ndjson") == 0);
         if (hn_document_text(run, "warning")[0]) {
             fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));

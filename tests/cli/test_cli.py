@@ -362,6 +362,14 @@ class CommandLine(unittest.TestCase):
         self.assertIn("four-bar", document["errors"][0]["hint"])
         self.assertEqual(done.stderr, b"")
 
+    def test_what_was_noticed_is_said_beside_the_samples(self):
+        for form in "csv", "ndjson":
+            done = call("run", "parallelogram", "--method", "projection@dop853:rtol=1e-6", "--time", "0.6", "--at", "0.6", "--format", form)
+            self.assert_exit(done, DONE)
+            said = done.stderr.decode().splitlines()
+            self.assertEqual(len(said), 1, said)  # flat at 0.345 s and next at 0.679 s
+            self.assertRegex(said[0], r"^holonom: t = 0\.34\d* s: one step of .* 2 freedoms there instead of 1")
+
     def test_malformed_scenes_never_crash_it(self):
         for text in ("{", "[]", "null", '{"a": 1}', "\x00", "[" * 10000, '{"bodies": 1}', "é", '{"title": "\\ud800"}'):
             with self.subTest(text=text[:20]):
