@@ -1,4 +1,4 @@
-// The main journey on the real server: play, pause, step, change the step size, read the gap, lose the line and find it again.
+// The main journey on the real server: play, pause, step, change the step size, read the gap.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
@@ -13,27 +13,6 @@ const { open } = bench;
 async function type(page, field, text) {
   await page.fill(field, text);
   await page.press(field, "Enter");
-}
-
-/** Hides the page, or shows it again. */
-function show(page, visible) {
-  return page.evaluate((hidden) => {
-    Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
-    document.dispatchEvent(new Event("visibilitychange"));
-  }, !visible);
-}
-
-/** Waits until a comparison is in a state, asked of the server itself. */
-async function stateOnServer(id, state) {
-  const end = Date.now() + 20000;
-  for (;;) {
-    const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`);
-    if ((await answer.json()).state === state) {
-      return;
-    }
-    assert.ok(Date.now() < end, `${id} is not ${state}`);
-    await new Promise((resolve) => setTimeout(resolve, 25));
-  }
 }
 
 const time = (page) => read(page, (data) => data.latest.t);
@@ -250,146 +229,6 @@ test("the printed null-space form keeps the loop closed while its energy climbs,
   assert.ok(second.energy > 20 && second.energy < 100, `${second.energy} J`);
 });
 
-test("a line that drops is told, and mended it resumes without a missing or repeated frame", async (t) => {
-  const line = await bench.line(t);
-  const page = await open(t, { url: line.url });
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.5);
-  line.cut();
-  await page.waitForFunction(() =>
-    /reconnecting/.test(document.querySelector(".stream").textContent),
-  );
-  const seen = await read(page, (data) => data.latest.frame);
-  await page.waitForTimeout(1200);
-  line.mend();
-  await until(page, `(data) => data.stream.state === "live" && data.latest.frame > ${seen} + 30`);
-  const { stride, steps, dt } = await read(page, (data) => ({
-    stride: data.history.stride,
-    dt: data.frameDt,
-    steps: Array.from(
-      data.history.t.subarray(1, data.history.count),
-      (t, i) => t - data.history.t[i],
-    ),
-  }));
-  assert.equal(stride, 1);
-  assert.ok(
-    steps.every((step) => Math.abs(step - dt) < 1e-9),
-    "every frame follows the one before it",
-  );
-});
-
-test("a hidden page closes its stream and catches up when it is shown", async (t) => {
-  const page = await open(t);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.3);
-  await show(page, false);
-  assert.match(await page.textContent(".stream"), /paused while hidden/);
-  const seen = await read(page, (data) => data.latest.frame);
-  await page.waitForTimeout(800);
-  assert.equal(await read(page, (data) => data.latest.frame), seen);
-  await show(page, true);
-  await until(page, `(data) => data.latest.frame > ${seen} + 40`);
-  const whole = await read(page, (data) => data.history.count === data.latest.frame + 1);
-  assert.ok(whole, "no frame is missing");
-});
-
-test("a finished run stops the clock; another step runs it again, Backspace sets it back", async (t) => {
-  const page = await open(t, { hash: "#pendulum" });
-  for (let k = 0; k < 3; k++) {
-    await page.keyboard.press("=");
-  }
-  await until(page, (data) => data.speed === 10);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "finished", LONG);
-  assert.match(await page.textContent("#play"), /Again/);
-  const generation = await read(page, (data) => data.generation);
-  await type(page, "#set-h", "0.002");
-  await until(page, `(data) => data.generation > ${generation} && data.latest?.t > 0.2`); // runs on by itself
-  await page.focus("#play");
-  await page.keyboard.press("Backspace");
-  await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.3);
-});
-
-test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async (t) => {
-  const line = await bench.line(t);
-  const page = await open(t, { url: line.url });
-  await fastest(page);
-  line.hold();
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "running");
-  const { id, generation } = await read(page, ({ id, generation }) => ({ id, generation }));
-  await stateOnServer(id, "finished");
-  assert.equal(await read(page, (data) => data.state), "running", "the end has not been heard of");
-  await type(page, "#set-h", "0.002");
-  await until(page, `(data) => data.generation > ${generation}`);
-  line.letGo();
-  await until(page, (data) => data.latest?.t > 1);
-  await until(page, (data) => data.state === "finished" && data.stream.state === "ended");
-  const { times, dt } = await read(page, (data) => ({
-    times: Array.from(data.history.t.subarray(0, data.history.count)),
-    dt: data.frameDt,
-  }));
-  assert.ok(
-    times.every((at, k) => Math.abs(at - k * dt) < 1e-9),
-    "every frame of the new run is there",
-  );
-});
-
-test("answers that overtake the stream are not undone by what the stream tells later", async (t) => {
-  const line = await bench.line(t);
-  const page = await open(t, { url: line.url });
-  line.hold();
-  for (const speed of [2, 5, 10]) {
-    await page.keyboard.press("=");
-    await until(page, `(data) => data.speed === ${speed}`);
-  }
-  await page.focus("#play");
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "running");
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "paused");
-  await page.evaluate(() => {
-    globalThis.seen = [];
-    new MutationObserver(() =>
-      globalThis.seen.push([
-        document.querySelector("#play").textContent,
-        document.querySelector("#transport .speed").textContent,
-      ]),
-    ).observe(document.querySelector("#transport"), {
-      subtree: true,
-      childList: true,
-      characterData: true,
-    });
-  });
-  const last = await read(page, (data) => Number(data.stream.id));
-  line.letGo();
-  await until(page, `(data) => Number(data.stream.id) >= ${last} + 5`);
-  const seen = await page.evaluate(() => globalThis.seen);
-  assert.deepEqual(
-    seen.filter(([play, speed]) => !/Play/.test(play) || !/10/.test(speed)),
-    [],
-  );
-});
-
-test("a page that was hidden after the end of a run has nothing to reconnect to", async (t) => {
-  const page = await open(t);
-  await fastest(page);
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.stream.state === "ended");
-  const asked = [];
-  page.on("request", (request) => asked.push(request.url()));
-  await show(page, false);
-  await show(page, true);
-  await page.evaluate(() => dispatchEvent(new Event("online")));
-  await page.keyboard.press("-");
-  await until(page, (data) => data.speed === 5);
-  await page.waitForTimeout(100);
-  assert.deepEqual(asked.filter((url) => /events/.test(url)), []);
-  assert.equal(await read(page, (data) => data.stream.state), "ended");
-});
-
 test("a method that fails keeps its last pose, under a banner with its name, the time and the cause", async (t) => {
   const page = await open(t);
   await type(page, "#set-beta", "-120");
@@ -407,21 +246,6 @@ test("a method that fails keeps its last pose, under a banner with its name, the
   );
   assert.doesNotMatch(await page.getAttribute(".ghost.selected .outline", "d"), /NaN/);
   assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/);
-});
-
-test("a comparison that the server has forgotten is made again, and said so", async (t) => {
-  const page = await open(t);
-  const id = await read(page, (data) => data.id);
-  const answer = await fetch(`${bench.url}api/v1/comparisons/${id}`, { method: "DELETE" });
-  assert.equal(answer.status, 204);
-  await until(page, (data) => data.stream.state === "ended");
-  await page.keyboard.press("Space");
-  await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
-  assert.notEqual(await read(page, (data) => data.id), id);
-  assert.match(await page.textContent(".notice"), /started again/);
-  assert.deepEqual(bench.faultsOf(page).splice(0), [
-    `not found: ${bench.url}api/v1/comparisons/${id}`,
-  ]);
 });
 
 test("the scenes stand under their lessons, in the order of the lessons", async (t) => {
