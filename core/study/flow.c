@@ -55,7 +55,9 @@ static hn_status keep_step(path *p, double done, double part, const double *y) {
         if (!more) {
             return HN_ERR_MEMORY;
         }
-        memcpy(more, p->steps, p->n * p->width * sizeof *more);
+        if (p->n > 0) {
+            memcpy(more, p->steps, p->n * p->width * sizeof *more);
+        }
         p->steps = more;
         p->room = room;
     }
