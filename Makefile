@@ -17,19 +17,33 @@ PREFIX ?= /usr/local
 PORT   ?= 8080
 
 # ---- layers: each names what it may include, lowest last; tests link the same list ----------------------------
-LAYERS := base linalg expr scene import dynamics methods integrators study render session server
+LAYERS := base linalg expr scene import dynamics formulations integrators study render session server
 NEEDS_base        :=
 NEEDS_linalg      := base
 NEEDS_expr        := base
 NEEDS_scene       := expr base
 NEEDS_import      := scene expr base
 NEEDS_dynamics    := scene expr linalg base
-NEEDS_methods     := dynamics $(NEEDS_dynamics)
-NEEDS_integrators := methods $(NEEDS_methods)
+NEEDS_formulations := dynamics $(NEEDS_dynamics)
+NEEDS_integrators := formulations $(NEEDS_formulations)
 NEEDS_study       := integrators $(NEEDS_integrators)
 NEEDS_render      := dynamics $(NEEDS_dynamics)
 NEEDS_session     := import render study $(NEEDS_study)
 NEEDS_server      := session $(NEEDS_session)
+
+# ---- rooms of the larger layers, lowest first: room:rooms below it that it may include -------------------------
+ROOMS_dynamics     := compile: evaluate:compile assembly:compile,evaluate analyse:compile,evaluate \
+                      reactions:compile,evaluate
+ROOMS_formulations := ground: chart:ground rows:ground,chart
+ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
+                      method:step
+ROOMS_study        := run: truth:run account:run stability:run cost:run,truth
+ROOMS_session      := store: model:store compare:store,model references:store,model \
+                      precision:store,model,compare,references \
+                      accounts:store,model,references,precision \
+                      stability:store,model,references,precision \
+                      extreme:store,model,compare,references,precision \
+                      report:store,model,compare,references,precision,accounts,stability,extreme
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
 VARIANT ?= release
@@ -61,10 +75,10 @@ PROGRAM := $(if $(filter release,$(VARIANT)),build/holonom,$(OUT)/holonom)
 CORE_LAYERS    := $(filter-out server,$(LAYERS))
 SERVER_SOURCES := $(sort $(wildcard server/*.c server/*/*.c))
 MAIN_SOURCE    := server/main.c
-$(foreach l,$(CORE_LAYERS),$(eval SOURCES_$(l) := $(sort $(wildcard core/$(l)/*.c))))
+$(foreach l,$(CORE_LAYERS),$(eval SOURCES_$(l) := $(sort $(wildcard core/$(l)/*.c core/$(l)/*/*.c))))
 SOURCES_server := $(filter-out $(MAIN_SOURCE),$(SERVER_SOURCES))
 SUPPORT        := $(sort $(wildcard tests/support/*.c))
-HEADERS        := $(sort $(wildcard core/*/*.h server/*.h server/*/*.h tests/support/*.h))
+HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/*.h tests/support/*.h))
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
@@ -332,6 +346,7 @@ COMMA := ,
 SPACE := $(subst x,,x x)
 check-layers:
 	@awk -v layers='$(foreach l,$(LAYERS),$(l):$(subst $(SPACE),$(COMMA),$(strip $(NEEDS_$(l)))))' \
+	    -v rooms='$(foreach l,$(CORE_LAYERS),$(addprefix $(l).,$(ROOMS_$(l))))' \
 	    -f tests/check-layers.awk $(filter-out tests/%,$(ALL_C) $(HEADERS))
 
 check-headers:

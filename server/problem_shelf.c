@@ -1,6 +1,6 @@
 #include "problem_shelf.h"
 
-#include "session/picture.h"
+#include "session/compare/picture.h"
 
 #include <stdio.h>
 #include <string.h>

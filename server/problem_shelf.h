@@ -4,7 +4,7 @@
 
 #include "base/strbuf.h"
 #include "grade/grade.h"
-#include "session/library.h"
+#include "session/model/library.h"
 
 /// Returns owned in *out. An unknown id: HN_ERR_INPUT with a near miss (pointer "/problem").
 HN_MUST_CHECK hn_status hn_shelf_problem_load(const hn_library *lib, const char *id,

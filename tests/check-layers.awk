@@ -1,5 +1,6 @@
-# Reads #include lines and holds them against the layers: "include what is below you, nothing else".
-# usage: awk -v layers='base: linalg:base expr:base ...' -f check-layers.awk FILES
+# Compares the #include lines with the table of layers and rooms: "include what is below you, nothing else".
+# usage: awk -v layers='base: linalg:base expr:base ...' -v rooms='study.run: study.cost:run ...' \
+#            -f check-layers.awk FILES
 # Prints file:line for each fault; exit 1 if there is any.
 
 BEGIN {
@@ -10,6 +11,16 @@ BEGIN {
         allowed[pair[1], pair[1]] = 1
         m = split(pair[2], needs, ",")
         for (j = 1; j <= m; j++) allowed[pair[1], needs[j]] = 1
+    }
+    # a layer that has rooms has no files outside them
+    n = split(rooms, entries, " ")
+    for (i = 1; i <= n; i++) {
+        split(entries[i], pair, ":")
+        split(pair[1], name, ".")
+        has_rooms[name[1]] = 1
+        open_to[pair[1], name[2]] = 1
+        m = split(pair[2], needs, ",")
+        for (j = 1; j <= m; j++) open_to[pair[1], needs[j]] = 1
     }
     # a library is seen by these layers alone
     only["microhttpd"] = " server "
@@ -26,6 +37,18 @@ function fault(text) {
     faults++
 }
 
+# a file of a layer with rooms: which room, "" outside of all
+function room_of(parts, count, first) {
+    return count > first + 1 ? parts[first + 1] : ""
+}
+
+function check_room(header,   parts, count, target_room) {
+    count = split(header, parts, "/")
+    target_room = room_of(parts, count, 1)
+    if (!((layer "." room, target_room) in open_to))
+        fault("room " layer "/" room " must not include " layer "/" target_room ": " header)
+}
+
 function library_of(header) {
     if (header ~ /^microhttpd/) return "microhttpd"
     if (header ~ /^cjson\//) return "cjson"
@@ -39,7 +62,11 @@ function library_of(header) {
 
 FNR == 1 {
     split(FILENAME, part, "/")
-    layer = part[1] == "core" ? part[2] : part[1]
+    first = part[1] == "core" ? 2 : 1
+    layer = part[first]
+    room = room_of(part, split(FILENAME, part, "/"), first)
+    if ((layer in has_rooms) && !((layer "." room, room) in open_to))
+        fault("the room '" room "' of " layer " is not in the table of the Makefile")
     if (!(layer in known)) fault("the layer '" layer "' is not in the table of the Makefile")
 }
 
@@ -54,6 +81,7 @@ FNR == 1 {
     if (!(target in known) && layer == "server") next
     if (!(target in known)) fault("write \"layer/file.h\", not \"" header "\"")
     else if (!((layer, target) in allowed)) fault(layer " must not include " target ": " header)
+    else if (layer == target && (layer in has_rooms)) check_room(header)
 }
 
 /^[ \t]*#[ \t]*include[ \t]*</ {

@@ -14,7 +14,7 @@
 // Seen from opts.look (the front: world x to the right, y up; else a triad tells); fitted once to opts.view, so that a series
 // does not jump.
 
-#include "dynamics/drawing.h"
+#include "dynamics/compile/drawing.h"
 #include "render/canvas.h"
 #include "render/view.h"
 

@@ -1,7 +1,7 @@
 #include "cli/cli.h"
 
 #include "build.h"
-#include "session/report.h"
+#include "session/report/report.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -5,8 +5,8 @@
 #include "base/diag.h"
 #include "base/strbuf.h"
 #include "scene/scene.h"
-#include "session/library.h"
-#include "session/model.h"
+#include "session/model/library.h"
+#include "session/model/model.h"
 
 enum { HN_CLI_MAX_WORDS = 256 };
 

@@ -1,7 +1,7 @@
 // holonom compare: several methods on one clock, and a table of where they part.
 #include "cli/cli.h"
 #include "cli/document.h"
-#include "session/comparison.h"
+#include "session/compare/comparison.h"
 
 #include <math.h>
 #include <stdio.h>

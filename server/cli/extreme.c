@@ -1,6 +1,6 @@
 // holonom extreme [ID...]: cases in which methods break, predicted and observed.
 #include "cli/study.h"
-#include "session/extreme.h"
+#include "session/extreme/extreme.h"
 
 #include <math.h>
 #include <stdio.h>

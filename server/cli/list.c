@@ -2,9 +2,9 @@
 #include "cli/cli.h"
 #include "cli/document.h"
 
-#include "integrators/spec.h"
+#include "integrators/method/method_spec.h"
 #include "problem_shelf.h"
-#include "session/lists.h"
+#include "session/model/lists.h"
 
 #include <stdio.h>
 #include <string.h>

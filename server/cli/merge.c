@@ -1,6 +1,6 @@
 // holonom merge PART...: parts of a study to the whole.
 #include "cli/study.h"
-#include "session/study.h"
+#include "session/precision/study.h"
 
 #include <errno.h>
 #include <stdio.h>

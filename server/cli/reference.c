@@ -1,7 +1,7 @@
 // holonom reference SCENE: the reference solution, the two means it comes from, and the digits they share over time.
 #include "cli/study.h"
 #include "cli/table.h"
-#include "session/references.h"
+#include "session/references/references.h"
 
 #include <math.h>
 #include <stdio.h>

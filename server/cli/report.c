@@ -1,6 +1,6 @@
 #include "cli/cli.h"
 #include "cli/plain.h"
-#include "study/timing.h"
+#include "study/run/timing.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
 #include "cli/cli.h"
 #include "cli/document.h"
-#include "session/comparison.h"
+#include "session/compare/comparison.h"
 
 #include <math.h>
 #include <stdio.h>

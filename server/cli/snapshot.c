@@ -1,6 +1,6 @@
 // holonom snapshot: a picture of where several methods have taken a scene.
 #include "cli/cli.h"
-#include "session/picture.h"
+#include "session/compare/picture.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // holonom study SCENE budget: where the error at the end comes from, and the energy.
 #include "cli/study.h"
 #include "cli/table.h"
-#include "session/accounts.h"
+#include "session/accounts/accounts.h"
 
 static void show_progress(void *user, double share) {
     hn_progress_tell(user, "budget", share);

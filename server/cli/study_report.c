@@ -2,7 +2,7 @@
 #include "build.h"
 #include "cli/study.h"
 #include "cli/table.h"
-#include "session/report.h"
+#include "session/report/report.h"
 
 #include <errno.h>
 #include <math.h>

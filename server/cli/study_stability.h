@@ -2,7 +2,7 @@
 #define HN_CLI_STUDY_STABILITY_H
 // A map of stability for a terminal.
 
-#include "session/stability.h"
+#include "session/stability/stability.h"
 
 /// A map of characters a method, the predicted boundary in it and the agreement below; a map with one column is a table of limits.
 void hn_map_text(hn_strbuf *b, const hn_map *map);

@@ -1,6 +1,6 @@
 #include "cli/study_stability.h"
 #include "cli/table.h"
-#include "session/stability_frame.h"
+#include "session/stability/stability_frame.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #define HN_CLI_STUDY_TEXT_H
 // A study for people at a terminal: verdicts, a plot, who is cheapest for which accuracy, what equal cost buys.
 
-#include "session/study.h"
+#include "session/precision/study.h"
 
 void hn_study_text(hn_strbuf *b, const hn_study *study);
 #endif

@@ -2,7 +2,7 @@
 #include "cli/study.h"
 #include "cli/study_text.h"
 #include "build.h"
-#include "session/study.h"
+#include "session/precision/study.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,8 +6,8 @@
 #include "base/diag.h"
 #include "base/strbuf.h"
 #include "scene/scene.h"
-#include "session/library.h"
-#include "session/model.h"
+#include "session/model/library.h"
+#include "session/model/model.h"
 
 #include <cjson/cJSON.h>
 

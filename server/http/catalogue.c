@@ -2,13 +2,13 @@
 
 #include "build.h"
 #include "http/server_internal.h"
-#include "integrators/spec.h"
+#include "integrators/method/method_spec.h"
 #include "problem_shelf.h"
 #include "render/look.h"
-#include "session/comparison.h"
-#include "session/lists.h"
-#include "session/model.h"
-#include "session/references.h"
+#include "session/compare/comparison.h"
+#include "session/model/lists.h"
+#include "session/model/model.h"
+#include "session/references/references.h"
 
 #include <math.h>
 #include <stdio.h>

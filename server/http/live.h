@@ -7,7 +7,7 @@
 #include "http/body.h"
 #include "http/history.h"
 #include "http/server.h"
-#include "session/comparison.h"
+#include "session/compare/comparison.h"
 
 struct hn_request;
 struct hn_stream;

@@ -7,7 +7,7 @@
 #include "http/stateless.h"
 #include "http/studies.h"
 #include "render/canvas.h"
-#include "session/comparison.h"
+#include "session/compare/comparison.h"
 
 #include <stdio.h>
 #include <string.h>

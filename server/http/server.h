@@ -3,7 +3,7 @@
 // The HTTP server: one thread speaks with the clients, a pool does long work, each comparison has a thread of its own.
 
 #include "base/diag.h"
-#include "session/library.h"
+#include "session/model/library.h"
 
 enum { HN_MAX_HOSTS = 16 };
 

@@ -2,9 +2,9 @@
 
 #include "http/server_internal.h"
 #include "problem_shelf.h"
-#include "session/comparison.h"
-#include "session/picture.h"
-#include "study/pace.h"
+#include "session/compare/comparison.h"
+#include "session/compare/picture.h"
+#include "study/run/pace.h"
 
 #include <string.h>
 

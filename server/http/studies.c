@@ -3,8 +3,8 @@
 #include "http/live_internal.h"
 #include "http/server_internal.h"
 #include "http/studies_internal.h"
-#include "integrators/spec.h"
-#include "study/pace.h"
+#include "integrators/method/method_spec.h"
+#include "study/run/pace.h"
 
 #include <math.h>
 #include <stdio.h>

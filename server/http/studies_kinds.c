@@ -2,10 +2,10 @@
 #include "http/studies_internal.h"
 
 #include "http/live_internal.h"
-#include "session/accounts.h"
-#include "session/stability.h"
-#include "session/study.h"
-#include "study/pace.h"
+#include "session/accounts/accounts.h"
+#include "session/stability/stability.h"
+#include "session/precision/study.h"
+#include "study/run/pace.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -281,7 +281,7 @@ test("a remedy becomes a button only when it can be carried out", () => {
 });
 
 test("every incident of the engine has words on the page", () => {
-  const header = readFileSync(join(ROOT, "core/study/run.h"), "utf8");
+  const header = readFileSync(join(ROOT, "core/study/run/run.h"), "utf8");
   const codes = [...header.matchAll(/X\(HN_INCIDENT_\w+, "([\w-]+)"\)/g)].map(([, code]) => code);
   assert.ok(codes.length >= 10);
   assert.deepEqual(

@@ -3,7 +3,7 @@
 // Newton and Euler for every body of a scene with the wrenches of its joints, from poses alone: bodies are placed joint by joint
 // from the scene's own coordinates, and their accelerations are differences of those poses.
 
-#include "dynamics/reactions.h"
+#include "dynamics/reactions/reactions.h"
 
 typedef struct balance {
     double force, moment;                 ///< largest residual over all bodies [N], [N m]

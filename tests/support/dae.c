@@ -3,7 +3,7 @@
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "integrators/spec.h"
+#include "integrators/method/method_spec.h"
 #include "linalg/dense.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
 #define HN_SUPPORT_DAE_H
 // Steppers of the differential-algebraic system driven straight through their table, step by step, without a run around them.
 
-#include "dynamics/eval.h"
-#include "integrators/dae.h"
-#include "integrators/stepper.h"
+#include "dynamics/evaluate/eval.h"
+#include "integrators/step/dae.h"
+#include "integrators/step/stepper.h"
 #include "support/model.h"
 
 typedef struct hn_test_dae {

@@ -2,7 +2,7 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
 
 #include <math.h>

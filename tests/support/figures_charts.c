@@ -2,8 +2,8 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
-#include "methods/chart.h"
+#include "dynamics/evaluate/eval.h"
+#include "formulations/chart/chart.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,10 +2,10 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "linalg/saddle.h"
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "support/dae.h"
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "linalg/saddle.h"
 

@@ -3,8 +3,8 @@
 #include "support/dae.h"
 #include "support/near.h"
 
-#include "dynamics/project.h"
-#include "integrators/implicit_linear.h"
+#include "dynamics/assembly/project.h"
+#include "integrators/implicit/implicit_linear.h"
 #include "linalg/svd.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "support/lagrangian_turns.h"
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 
 #include <math.h>

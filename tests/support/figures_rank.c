@@ -2,8 +2,8 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
-#include "dynamics/ldl.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/ldl.h"
 #include "expr/tape.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"

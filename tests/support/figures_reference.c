@@ -3,7 +3,7 @@
 #include "support/near.h"
 #include "support/reference.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 
 #include <math.h>
 #include <stdio.h>

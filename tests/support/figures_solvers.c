@@ -2,7 +2,7 @@
 
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"
 #include "linalg/qr.h"

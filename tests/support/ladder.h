@@ -3,7 +3,7 @@
 // The ladder of N four-bars and its exact motion, for tests of what methods make of its flat poses. Twice a turn all bars
 // lie on one line and every loop could fold over; the exact motion goes straight through.
 
-#include "study/survival.h"
+#include "study/cost/survival.h"
 #include "support/model.h"
 
 enum { HN_LADDER_GRID = 10000 };

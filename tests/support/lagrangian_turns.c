@@ -1,6 +1,6 @@
 #include "support/lagrangian_turns.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "support/motion.h"
 #include "support/near.h"

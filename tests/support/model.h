@@ -2,8 +2,8 @@
 #define HN_SUPPORT_MODEL_H
 // A scene loaded, compiled and assembled, for tests of dynamics and above. Failures stop the test with their message.
 
-#include "dynamics/assemble.h"
-#include "dynamics/system.h"
+#include "dynamics/assembly/assemble.h"
+#include "dynamics/compile/system.h"
 #include "scene/scene.h"
 
 typedef struct hn_model {

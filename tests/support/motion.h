@@ -2,7 +2,7 @@
 #define HN_SUPPORT_MOTION_H
 // A method run on a model, for tests of whole runs. Failures stop the test with the method and its reason.
 
-#include "study/run.h"
+#include "study/run/run.h"
 #include "support/model.h"
 
 /// A run of `method` ("projection@rk4:h=1e-3") from the model's assembled state; free with hn_run_free().

@@ -2,7 +2,7 @@
 #define HN_SUPPORT_ODES_H
 // Motions known in closed form, as right-hand sides for steppers, and a plain fixed-step loop.
 
-#include "integrators/stepper.h"
+#include "integrators/step/stepper.h"
 
 /// x'' + 2 a x' + b^2 x = 0; y = (x, x'). evals counts right-hand sides.
 typedef struct hn_test_oscillator {

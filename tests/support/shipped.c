@@ -2,11 +2,11 @@
 #include "support/shipped.h"
 
 #include "base/arena.h"
-#include "dynamics/eval.h"
-#include "dynamics/project.h"
-#include "dynamics/reactions.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/assembly/project.h"
+#include "dynamics/reactions/reactions.h"
 #include "linalg/saddle.h"
-#include "study/run.h"
+#include "study/run/run.h"
 #include "support/balance.h"
 #include "support/near.h"
 

@@ -1,6 +1,6 @@
 // What the multipliers of a state are worth: told from the rank and the condition of K.
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/alloc.h"
 #include "support/model.h"
 #include "support/near.h"

@@ -1,6 +1,6 @@
 // Assembly: start values that close, pins that hold, modes that are kept, and closures that cannot be reached and say why.
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "support/alloc.h"
 #include "support/model.h"

@@ -1,7 +1,7 @@
 // Terms of random spatial mechanisms against plain body-by-body mechanics, and against differentiation.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/mechanism.h"
 
 #include <math.h>

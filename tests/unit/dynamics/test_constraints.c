@@ -1,8 +1,8 @@
 // Constraints beside the joints: derivatives of every kind, and motions and multipliers that are known without us.
 #include "support/near.h"
 
-#include "dynamics/drawing.h"
-#include "dynamics/eval.h"
+#include "dynamics/compile/drawing.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/mechanism.h"
 #include "support/model.h"
 

@@ -1,7 +1,7 @@
 // Position analysis in closed form: recognised where it exists, equal to what Newton's method finds, on the branch of the start.
-#include "dynamics/dyads.h"
+#include "dynamics/analyse/dyads.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/model.h"
 #include "support/near.h"
 

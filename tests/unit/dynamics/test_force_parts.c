@@ -1,7 +1,7 @@
 // The parts of the forces against the whole, which comes from the bodies one by one and not from the energies.
-#include "dynamics/force_parts.h"
+#include "dynamics/evaluate/force_parts.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/model.h"
 #include "support/near.h"
 

@@ -2,8 +2,8 @@
 // doubled closures against its formulas written out, and its accelerations and multipliers against known numbers.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
-#include "dynamics/factor.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/factor.h"
 #include "support/alloc.h"
 #include "support/mechanism.h"
 

@@ -3,7 +3,7 @@
 // Every body's frame is the world's at the pose, so that the ring of every leg is closed with all joints at zero.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/model.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // What is told of joints with several freedoms, of limits and of motors.
 #include "support/near.h"
 
-#include "dynamics/inspect.h"
+#include "dynamics/analyse/inspect.h"
 #include "support/model.h"
 
 #include <string.h>

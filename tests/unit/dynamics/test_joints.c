@@ -1,7 +1,7 @@
 // Joints of every type, in the tree and closing loops, against plain body-by-body mechanics and against differentiation.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "support/mechanism.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "support/near.h"
 
 #include "base/arena.h"
-#include "dynamics/ldl.h"
+#include "dynamics/evaluate/ldl.h"
 
 #include <math.h>
 #include <stdio.h>

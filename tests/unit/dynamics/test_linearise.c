@@ -1,6 +1,6 @@
 // Exact derivatives of the equations of motion against differences along the motions of the coordinates.
-#include "dynamics/eval.h"
-#include "dynamics/linearise.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/linearise.h"
 
 #include "linalg/dense.h"
 #include "support/alloc.h"

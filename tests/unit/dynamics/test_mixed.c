@@ -1,5 +1,5 @@
 // A Lagrangian's terms beside bodies: the same mechanism written in both ways, and closed forms.
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 
 #include "support/near.h"
 

@@ -1,8 +1,8 @@
 // Projection: the nearest closed state, what it costs in energy, redundancy, lost rank, and its cost on long ladders.
 
-#include "dynamics/project.h"
+#include "dynamics/assembly/project.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "support/alloc.h"
 #include "support/model.h"

@@ -1,6 +1,6 @@
 // The radar of singular poses: closed forms of sigma, the time of the next pose, the freedoms and branches there.
 
-#include "dynamics/radar.h"
+#include "dynamics/analyse/radar.h"
 #include "support/alloc.h"
 #include "support/model.h"
 #include "support/near.h"

@@ -1,9 +1,9 @@
 // What joints carry: balance of every body from poses alone, cases worked out by hand, and independence of the cut.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
-#include "dynamics/project.h"
-#include "dynamics/reactions.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/assembly/project.h"
+#include "dynamics/reactions/reactions.h"
 #include "support/balance.h"
 #include "support/mechanism.h"
 #include "support/model.h"

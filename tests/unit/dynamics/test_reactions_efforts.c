@@ -2,8 +2,8 @@
 // every body from differences of its poses.
 #include "support/near.h"
 
-#include "dynamics/eval.h"
-#include "dynamics/reactions.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/reactions/reactions.h"
 #include "support/balance.h"
 #include "support/model.h"
 

@@ -1,9 +1,9 @@
 // Whole scenes, compiled: what is refused and why, loads against their power, formulas, telling.
 #include "support/near.h"
 
-#include "dynamics/drawing.h"
-#include "dynamics/eval.h"
-#include "dynamics/inspect.h"
+#include "dynamics/compile/drawing.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/analyse/inspect.h"
 #include "support/mechanism.h"
 
 #include <cjson/cJSON.h>

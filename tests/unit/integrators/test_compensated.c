@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "integrators/compensated.h"
+#include "integrators/step/compensated.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "integrators/control.h"
+#include "integrators/step/control.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,9 +2,9 @@
 #include "support/model.h"
 #include "support/near.h"
 
-#include "integrators/ida_jacobian.h"
-#include "integrators/ida_words.h"
-#include "integrators/registry.h"
+#include "integrators/external/ida_jacobian.h"
+#include "integrators/external/ida_words.h"
+#include "integrators/step/registry.h"
 
 #include <math.h>
 #include <string.h>

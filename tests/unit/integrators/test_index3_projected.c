@@ -1,5 +1,5 @@
 // Index 3 with speeds projected at the end of each step: what collocation loses of them comes back.
-#include "integrators/spec.h"
+#include "integrators/method/method_spec.h"
 #include "support/dae.h"
 #include "support/near.h"
 #include "support/odes.h"

@@ -2,7 +2,7 @@
 #include "support/dae.h"
 #include "support/near.h"
 
-#include "dynamics/quaternion.h"
+#include "dynamics/compile/quaternion.h"
 #include "linalg/dense.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "support/near.h"
 
-#include "integrators/spec.h"
+#include "integrators/method/method_spec.h"
 
 #include <math.h>
 #include <stdio.h>

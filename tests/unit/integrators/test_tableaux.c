@@ -1,6 +1,6 @@
 #include "support/near.h"
 
-#include "integrators/tableau.h"
+#include "integrators/explicit/tableau.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 // The extreme matrix but for its longest cases: no prediction fails, and it is the same each time.
 
-#include "session/extreme.h"
+#include "session/extreme/extreme.h"
 #include "support/near.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 // Every scene of the library at many random states near its start; where nothing takes energy, none is lost but by the order.
 
-#include "session/model.h"
-#include "study/run.h"
+#include "session/model/model.h"
+#include "study/run/run.h"
 #include "support/near.h"
 #include "support/shipped.h"
 

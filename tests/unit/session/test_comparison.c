@@ -1,6 +1,6 @@
 #include "support/near.h"
 
-#include "session/comparison.h"
+#include "session/compare/comparison.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 // What the compiler kept and left out, told of scenes for which it can be counted by hand.
-#include "session/lists.h"
-#include "session/model.h"
+#include "session/model/lists.h"
+#include "session/model/model.h"
 
 #include "support/near.h"
 

@@ -1,8 +1,8 @@
 // A journal holds whole lines of whoever has it, and nothing of what was cut or does not fit.
 #include "support/near.h"
 
-#include "session/journal.h"
-#include "session/stored_json.h"
+#include "session/store/journal.h"
+#include "session/store/stored_json.h"
 
 #include <stdlib.h>
 #include <string.h>

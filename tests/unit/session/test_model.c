@@ -1,10 +1,10 @@
 #include "support/near.h"
 
-#include "dynamics/drawing.h"
-#include "session/caption.h"
-#include "session/envelope.h"
-#include "session/model.h"
-#include "session/picture.h"
+#include "dynamics/compile/drawing.h"
+#include "session/model/caption.h"
+#include "session/model/envelope.h"
+#include "session/model/model.h"
+#include "session/compare/picture.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 // The derivatives that formulations give to implicit integrators, on every scene of the library against differences of their own
 // right-hand sides, and the systems solved by structure against the full matrix.
 
-#include "dynamics/eval.h"
-#include "dynamics/project.h"
-#include "integrators/stepper.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/assembly/project.h"
+#include "integrators/step/stepper.h"
 #include "linalg/dense.h"
-#include "methods/method.h"
-#include "session/model.h"
+#include "formulations/ground/formulation.h"
+#include "session/model/model.h"
 #include "support/near.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // Every scene of the library, at random states near its start and in motion: facts that hold for any mechanism.
 
-#include "session/model.h"
-#include "study/run.h"
+#include "session/model/model.h"
+#include "study/run/run.h"
 #include "support/near.h"
 #include "support/shipped.h"
 

@@ -1,5 +1,5 @@
 // Maps of stability: the same cells whatever happens on the way, boundaries that agree, requests that are refused.
-#include "session/stability.h"
+#include "session/stability/stability.h"
 
 #include "support/near.h"
 

@@ -1,7 +1,7 @@
 // What is kept of studies: taken up where it was cut, never trusted halfway.
 #include "support/near.h"
 
-#include "session/study.h"
+#include "session/precision/study.h"
 
 #include <dirent.h>
 #include <stdio.h>

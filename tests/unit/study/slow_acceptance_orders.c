@@ -1,7 +1,7 @@
 // Every fixed-step formulation with every fixed-step integrator converges with the integrator's order: slopes fitted over
 // six steps against the reference four-bar at t = 1, known to 18 digits.
 
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 #include "support/model.h"
 #include "support/near.h"
 

@@ -1,10 +1,10 @@
 // What students are told about the methods, run and measured: gap and energy of the four-bar over 10 s, the null-space form as
 // printed, the sweet spot of Baumgarte's alpha, and the laws by which gaps drift. The figures come from an independent program.
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "linalg/saddle.h"
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 #include "support/motion.h"
 #include "support/near.h"
 

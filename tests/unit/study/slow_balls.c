@@ -2,8 +2,8 @@
 #include "support/model.h"
 #include "support/near.h"
 
-#include "integrators/spec.h"
-#include "study/run.h"
+#include "integrators/method/method_spec.h"
+#include "study/run/run.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "study/classing.h"
+#include "study/cost/classing.h"
 
 #include <stdio.h>
 

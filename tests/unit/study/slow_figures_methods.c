@@ -2,7 +2,7 @@
 // projection on the reference four-bar, where alpha tied to the step costs the order, the end of an unstabilised pendulum; and
 // the null-space forms with their bases. Errors are of all coordinates at the end, the largest, against projection@dop853.
 
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 #include "support/motion.h"
 #include "support/near.h"
 

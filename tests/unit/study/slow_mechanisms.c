@@ -1,8 +1,8 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "dynamics/drawing.h"
-#include "dynamics/eval.h"
+#include "dynamics/compile/drawing.h"
+#include "dynamics/evaluate/eval.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // The account of a run adds up, and puts errors and energy where they are known to come from.
 
-#include "study/account.h"
+#include "study/account/account.h"
 #include "support/model.h"
 #include "support/near.h"
 #include "support/trial.h"

@@ -4,7 +4,7 @@
 #include "support/motion.h"
 #include "support/near.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // Regular motions are told from chaotic ones, and by how much these part.
 
-#include "study/chaos.h"
+#include "study/truth/chaos.h"
 #include "support/model.h"
 #include "support/near.h"
 

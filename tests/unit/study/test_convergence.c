@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // Loads with corners: the run stops at them and starts anew; limits of coordinates are told.
 #include "support/near.h"
 
-#include "study/run.h"
+#include "study/run/run.h"
 #include "support/model.h"
 #include "support/motion.h"
 

@@ -1,12 +1,12 @@
 // Flows against motions in closed form, and derivatives that are carried back along them.
 
-#include "study/flow.h"
+#include "study/account/flow.h"
 #include "support/model.h"
 #include "support/near.h"
 #include "support/odes.h"
 
-#include "dynamics/eval.h"
-#include "methods/accel_jacobian.h"
+#include "dynamics/evaluate/eval.h"
+#include "formulations/ground/accel_jacobian.h"
 
 #include <math.h>
 #include <string.h>

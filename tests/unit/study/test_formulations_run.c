@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // Implicit methods in runs: orders of q, v and multipliers on every form they serve, what stays closed, redundant rows, stiffness.
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 
 #include "support/alloc.h"
 #include "support/near.h"

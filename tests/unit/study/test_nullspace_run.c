@@ -1,7 +1,7 @@
 // The null-space forms as whole runs: with the basis by partition, orthonormal and carried along, in tangent-space coordinates,
 // and with a basis that nobody tracks.
 
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 #include "support/motion.h"
 #include "support/near.h"
 

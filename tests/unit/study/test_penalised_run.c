@@ -1,8 +1,8 @@
 // Penalty, augmented Lagrangian and Udwadia-Kalaba against figures of an independent program and against exact statements.
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
-#include "study/convergence.h"
+#include "study/cost/convergence.h"
 #include "support/lagrangian_turns.h"
 #include "support/motion.h"
 #include "support/near.h"

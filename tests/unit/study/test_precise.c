@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "study/precise.h"
+#include "study/truth/precise.h"
 
 #include <math.h>
 #include <string.h>

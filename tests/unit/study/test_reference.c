@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "study/reference.h"
+#include "study/truth/reference.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "study/shards.h"
+#include "study/cost/shards.h"
 
 #include <math.h>
 #include <string.h>

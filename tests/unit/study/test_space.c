@@ -2,7 +2,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
-#include "dynamics/eval.h"
+#include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
 
 #include <gsl/gsl_sf_ellint.h>

@@ -1,5 +1,5 @@
 // The spectrum of the motion on the loops, and what integrators make of its eigenvalues.
-#include "study/spectrum.h"
+#include "study/stability/spectrum.h"
 
 #include "support/model.h"
 #include "support/near.h"

@@ -1,5 +1,5 @@
 // Stiff mechanisms at steps below and beyond the predicted limit, and what trials are classed as.
-#include "study/stability.h"
+#include "study/stability/stability.h"
 
 #include "support/model.h"
 #include "support/near.h"

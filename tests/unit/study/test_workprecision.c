@@ -2,7 +2,7 @@
 #include "support/trial.h"
 
 #include "base/strbuf.h"
-#include "study/pareto.h"
+#include "study/cost/pareto.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,168 @@
+#include "dynamics/analyse/redundancy.h"
+
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/compile/system_impl.h"
+#include "linalg/dense.h"
+
+#include <math.h>
+
+/// What is left of a row below this part of it is rounding: rows are known to about 1e-14, a combination of tens of them to 1e-12.
+static const double FOLLOWS = 1e-9;
+/// A row is part of a combination when it brings more than this of its length; also well above rounding.
+static const double TAKES_PART = 1e-7;
+
+typedef struct basis {
+    int n, nc;
+    int n_kept;
+    int *kept;        ///< rows that say something new
+    double *row;      ///< n: the row being looked at, then what is left of it
+    double *length;   ///< nc: of the rows
+    double *e;        ///< n_kept x n orthonormal
+    double *R;        ///< nc x nc: kept row k = sum R[k][j] e_j, j <= k
+    double *combined; ///< nc: the row in terms of e, then of the kept rows
+} basis;
+
+static hn_status basis_init(basis *s, const hn_system *sys, hn_arena *arena) {
+    const size_t n = (size_t)sys->nv, m = (size_t)sys->nc;
+    const size_t most = n < m ? n : m;
+    *s = (basis){.n = sys->nv, .nc = sys->nc};
+    s->kept = hn_arena_ints(arena, most);
+    s->row = hn_arena_doubles(arena, n);
+    s->length = hn_arena_doubles(arena, m);
+    s->e = hn_arena_doubles(arena, most * n);
+    s->R = hn_arena_doubles(arena, most * most);
+    s->combined = hn_arena_doubles(arena, most);
+    return hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+static int most_kept(const basis *s) {
+    return s->n < s->nc ? s->n : s->nc;
+}
+
+/// Splits s->row into its part along e (s->combined) and the rest, twice: once leaves the rounding of a long row behind.
+static void split(basis *s) {
+    for (int k = 0; k < s->n_kept; k++) {
+        s->combined[k] = 0;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < s->n_kept; k++) {
+            const double *e = s->e + (size_t)k * s->n;
+            const double part = hn_dot(s->n, e, s->row);
+            hn_axpy(s->n, -part, e, s->row);
+            s->combined[k] += part;
+        }
+    }
+}
+
+static void keep(basis *s, int row, double left) {
+    const int k = s->n_kept++;
+    double *e = s->e + (size_t)k * s->n, *R = s->R + (size_t)k * most_kept(s);
+    s->kept[k] = row;
+    for (int j = 0; j < s->n; j++) {
+        e[j] = s->row[j] / left;
+    }
+    for (int j = 0; j < k; j++) {
+        R[j] = s->combined[j];
+    }
+    R[k] = left;
+}
+
+/// s->combined from terms of e to terms of the kept rows.
+static void combine_rows(basis *s) {
+    for (int k = s->n_kept - 1; k >= 0; k--) {
+        const double *R = s->R + (size_t)k * most_kept(s);
+        s->combined[k] /= R[k];
+        for (int j = 0; j < k; j++) {
+            s->combined[j] -= s->combined[k] * R[j];
+        }
+    }
+}
+
+static void put_follower(hn_strbuf *b, const hn_system *sys, basis *s, int row) {
+    hn_json_object(b);
+    hn_json_put_string(b, "row", hn_system_row_name(sys, row));
+    hn_json_key(b, "from");
+    hn_json_array(b);
+    if (s->length[row] > 0) {
+        combine_rows(s);
+    }
+    for (int k = 0; k < s->n_kept; k++) {
+        const double brings = fabs(s->combined[k]) * s->length[s->kept[k]];
+        if (s->length[row] > 0 && brings > TAKES_PART * s->length[row]) {
+            hn_json_string(b, hn_system_row_name(sys, s->kept[k]));
+        }
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
+/// diag(M)^-1/2, speeds without mass as the heaviest, as in the rank that assembly reports.
+static void weigh(const double *M, int n, double *d) {
+    double heaviest = 0;
+    for (int k = 0; k < n; k++) {
+        heaviest = fmax(heaviest, M[(size_t)k * n + k]);
+    }
+    for (int k = 0; k < n; k++) {
+        const double m = M[(size_t)k * n + k];
+        d[k] = 1 / sqrt(m > 1e-14 * heaviest ? m : (heaviest > 0 ? heaviest : 1));
+    }
+}
+
+static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, const double *q,
+                               hn_arena *arena) {
+    basis s;
+    hn_eval *eval = NULL;
+    double *d = hn_arena_doubles(arena, (size_t)sys->nv);
+    hn_status status = basis_init(&s, sys, arena);
+    if (status == HN_OK) {
+        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_J, arena, &eval);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_eval_run(eval, t, q, NULL);
+    const double *J = hn_eval_get(eval, HN_TERM_J);
+    weigh(hn_eval_get(eval, HN_TERM_M), s.n, d);
+    double longest = 0;
+    for (int i = 0; i < s.nc; i++) {
+        for (int k = 0; k < s.n; k++) {
+            s.row[k] = J[(size_t)i * s.n + k] * d[k];
+        }
+        s.length[i] = hn_norm2(s.n, s.row);
+        longest = fmax(longest, s.length[i]);
+        split(&s);
+        const double left = hn_norm2(s.n, s.row);
+        if (s.length[i] <= FOLLOWS * longest) {
+            s.length[i] = 0;
+        }
+        if (s.n_kept < most_kept(&s) && left > FOLLOWS * s.length[i] && s.length[i] > 0) {
+            keep(&s, i, left);
+        } else {
+            put_follower(b, sys, &s, i);
+        }
+    }
+    hn_eval_free(eval);
+    return HN_OK;
+}
+
+hn_status hn_system_redundancy_put(hn_strbuf *b, const hn_system *sys, double t, const double *q) {
+    hn_arena *arena = hn_arena_create(0);
+    hn_json_key(b, "redundant_rows");
+    hn_json_object(b);
+    hn_json_key(b, "vanish");
+    hn_json_array(b);
+    for (int i = 0; i < sys->info.rows_dropped; i++) {
+        hn_json_string(b, sys->dropped[i]);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "follow");
+    hn_json_array(b);
+    hn_status status = arena ? HN_OK : HN_ERR_MEMORY;
+    if (status == HN_OK && sys->nc > 0) {
+        status = put_followers(b, sys, t, q, arena);
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+    hn_arena_free(arena);
+    return status == HN_OK && b->failed ? HN_ERR_MEMORY : status;
+}

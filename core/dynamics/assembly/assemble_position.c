@@ -1,0 +1,398 @@
+// The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then homotopy and random starts.
+// Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982; Allgower & Georg 1990.
+
+#include "dynamics/assembly/assemble_internal.h"
+#include "dynamics/compile/quaternion.h"
+#include "linalg/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static const double CLOSED = 1e-12;     // scaled |phi| that counts as closed
+static const double ROUNDING = 2e-15;   // per sqrt(nc): no more to gain
+static const double NEWTON_FROM = 1e-2; // scaled |phi| below which Newton takes over
+static const double STATIONARY = 1e-10; // |J' r| / (|J| |r|): a minimum that does not close
+static const double ANGLE_CAP = 0.5;    // largest step [rad]
+static const double LENGTH_CAP = 0.2;   // largest step of a length, in characteristic lengths
+static const double RANK_TOL = 1e-9;
+enum {
+    MAX_ITERATIONS = 100,
+    MAX_HOMOTOPY_STEPS = 60,
+    MAX_CORRECTIONS = 8,
+    RANDOM_STARTS = 8,
+    FLIPPED_STARTS = 40
+};
+
+/// Scratch of the search, all in scaled free coordinates z.
+struct hn_assemble_search {
+    hn_assembler *s;
+    int n, nc;
+    double *J;     // nc x n, scaled
+    double *goal;  // nc: the residual aimed at; 0 but during homotopy
+    double *A, *g; // J'J + mu I, J' r
+    double *step, *start, *r;
+    double *delta; // n of all user coordinates, unscaled
+    double *best_x, best_size;
+    int damped; // damped steps taken
+    hn_qr qr;
+};
+typedef struct hn_assemble_search search;
+
+int hn_assemble_evaluate(hn_assembler *s) {
+    hn_system_from_user(s->sys, s->x, s->q);
+    hn_eval_run(s->eval, s->t, s->q, s->rest);
+    const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
+    for (int i = 0; i < s->nc; i++) {
+        s->residual[i] = s->row_scale[i] * phi[i];
+    }
+    int finite = hn_all_finite(s->nc, s->residual);
+    s->size = finite ? hn_norm2(s->nc, s->residual) : HUGE_VAL;
+    return finite;
+}
+
+void hn_assemble_move(const hn_assembler *s, double *x, const double *delta) {
+    for (int i = 0; i < s->n; i++) {
+        if (s->turn[i] < 0) {
+            x[i] += delta[i];
+        } else if (s->turn[i] == 0) {
+            double turned[4];
+            hn_quat_exp(x + i, turned);
+            hn_quat_move(turned, delta + i);
+            hn_quat_log(turned, x + i);
+        }
+    }
+}
+
+double hn_assemble_moved(const hn_assembler *s, int i) {
+    if (s->turn[i] < 0) {
+        return fabs(s->x[i] - s->guess[i]);
+    }
+    double from[4], to[4], delta[3];
+    hn_quat_exp(s->guess + i - s->turn[i], from);
+    hn_quat_exp(s->x + i - s->turn[i], to);
+    hn_quat_difference(from, to, delta);
+    return hn_norm2(3, delta);
+}
+
+void hn_assemble_user_row(const hn_assembler *s, int row, double *out) {
+    const double *J = hn_eval_get(s->eval, HN_TERM_J) + (size_t)row * s->n;
+    for (int k = 0; k < s->n; k++) {
+        double sum = 0;
+        for (int e = s->map_start[k]; e < s->map_start[k + 1]; e++) {
+            sum += J[s->map_row[e]] * s->map_value[e];
+        }
+        out[k] = sum;
+    }
+}
+
+static hn_status search_init(search *w, hn_assembler *s) {
+    size_t n = (size_t)s->n_free, nc = (size_t)s->nc;
+    *w = (search){.s = s, .n = s->n_free, .nc = s->nc, .best_size = HUGE_VAL};
+    w->J = hn_arena_doubles(s->arena, nc * n);
+    w->A = hn_arena_doubles(s->arena, n * n);
+    w->g = hn_arena_doubles(s->arena, n);
+    w->step = hn_arena_doubles(s->arena, (size_t)s->n);
+    w->delta = hn_arena_doubles(s->arena, (size_t)s->n);
+    w->start = hn_arena_doubles(s->arena, (size_t)s->n);
+    w->best_x = hn_arena_doubles(s->arena, (size_t)s->n);
+    w->goal = hn_arena_doubles(s->arena, nc);
+    w->r = hn_arena_doubles(s->arena, nc);
+    int got = hn_qr_init(&w->qr, s->arena, s->n_free, s->nc);
+    return got && !hn_arena_failed(s->arena) ? HN_OK : HN_ERR_MEMORY;
+}
+
+/// Evaluates at s->x and sets w->r = residual - goal. Returns |r|, HUGE_VAL when not finite.
+static double evaluate(search *w) {
+    if (!hn_assemble_evaluate(w->s)) {
+        return HUGE_VAL;
+    }
+    for (int i = 0; i < w->nc; i++) {
+        w->r[i] = w->s->residual[i] - w->goal[i];
+    }
+    return hn_norm2(w->nc, w->r);
+}
+
+static void keep_best(search *w) {
+    if (w->s->size < w->best_size) {
+        w->best_size = w->s->size;
+        memcpy(w->best_x, w->s->x, (size_t)w->s->n * sizeof *w->best_x);
+    }
+}
+
+/// The scaled J of the free coordinates where s->eval was last run.
+static void fill_jacobian(search *w) {
+    hn_assembler *s = w->s;
+    for (int i = 0; i < w->nc; i++) {
+        hn_assemble_user_row(s, i, w->step);
+        for (int k = 0; k < w->n; k++) {
+            w->J[(size_t)i * w->n + k] =
+                s->row_scale[i] * w->step[s->free[k]] * s->reach[s->free[k]];
+        }
+    }
+}
+
+/// Shortens the step so that no coordinate moves further than it may.
+static void cap_step(search *w) {
+    double factor = 1;
+    for (int k = 0; k < w->n; k++) {
+        hn_unit_kind kind =
+            w->s->scene->coordinates[hn_system_user_coordinate(w->s->sys, w->s->free[k])].kind;
+        double cap = kind == HN_LENGTH ? LENGTH_CAP : ANGLE_CAP;
+        if (fabs(w->step[k]) * factor > cap) {
+            factor = cap / fabs(w->step[k]);
+        }
+    }
+    for (int k = 0; k < w->n; k++) {
+        w->step[k] *= factor;
+    }
+}
+
+static void save_start(search *w) {
+    memcpy(w->start, w->s->x, (size_t)w->s->n * sizeof *w->start);
+}
+
+static void move_from_start(search *w) {
+    hn_assembler *s = w->s;
+    for (int k = 0; k < w->n; k++) {
+        w->delta[s->free[k]] = s->reach[s->free[k]] * w->step[k];
+    }
+    memcpy(s->x, w->start, (size_t)s->n * sizeof *s->x);
+    hn_assemble_move(s, s->x, w->delta);
+}
+
+/// Back to w->start, with everything evaluated there.
+static double go_back(search *w) {
+    memcpy(w->s->x, w->start, (size_t)w->s->n * sizeof *w->start);
+    return evaluate(w);
+}
+
+/// One least-norm Newton step, dz = -J^+ r. Returns the new |r|, or a negative number when it did not pay (x is then as before).
+static double newton_step(search *w, double size) {
+    fill_jacobian(w);
+    memcpy(w->qr.a, w->J, (size_t)w->nc * w->n * sizeof *w->J);
+    hn_qr_factor(&w->qr, w->n, w->nc, RANK_TOL);
+    hn_qr_least_norm(&w->qr, w->r, w->step);
+    for (int k = 0; k < w->n; k++) {
+        w->step[k] = -w->step[k];
+    }
+    cap_step(w);
+    save_start(w);
+    move_from_start(w);
+    double reached = evaluate(w);
+    w->s->iterations++;
+    if (reached < 0.9 * size) {
+        return reached;
+    }
+    (void)go_back(w);
+    return -1;
+}
+
+/// A = J'J and g = J' r; returns the largest diagonal entry. Rows of J are mostly zero, so they are walked one by one.
+static double fill_normal_equations(search *w) {
+    int n = w->n;
+    memset(w->A, 0, (size_t)n * n * sizeof *w->A);
+    memset(w->g, 0, (size_t)n * sizeof *w->g);
+    for (int i = 0; i < w->nc; i++) {
+        const double *row = w->J + (size_t)i * n;
+        hn_axpy(n, w->r[i], row, w->g);
+        for (int k = 0; k < n; k++) {
+            if (row[k] != 0) {
+                hn_axpy(k + 1, row[k], row, w->A + (size_t)k * n);
+            }
+        }
+    }
+    double largest = 0;
+    for (int k = 0; k < n; k++) {
+        largest = fmax(largest, w->A[(size_t)k * n + k]);
+    }
+    return largest;
+}
+
+/// |r|^2 - |r + J dz|^2, what the linear model promises.
+static double predicted_gain(const search *w) {
+    double gain = 0;
+    for (int i = 0; i < w->nc; i++) {
+        double change = hn_dot(w->n, w->J + (size_t)i * w->n, w->step);
+        gain -= change * (2 * w->r[i] + change);
+    }
+    return gain;
+}
+
+/// One damped step (J'J + mu I) dz = -J' r with damping *mu (0: to be chosen), which follows the gain ratio.
+/// Returns the new |r|, or a negative number at a stationary point (x is then as before).
+static double damped_step(search *w, double size, double *mu) {
+    fill_jacobian(w);
+    double largest = fill_normal_equations(w);
+    double steepness = hn_norm2(w->n, w->g) / (hn_norm2(w->nc * w->n, w->J) * size);
+    if (!(steepness > STATIONARY) || largest == 0) {
+        return -1;
+    }
+    if (*mu == 0) {
+        *mu = 1e-3 * largest;
+    }
+    save_start(w);
+    for (int attempt = 0; attempt < 40; attempt++) {
+        for (int k = 0; k < w->n; k++) {
+            w->A[(size_t)k * w->n + k] += *mu;
+            w->step[k] = -w->g[k];
+        }
+        hn_status status = hn_cholesky(w->n, w->A, w->n, 0);
+        if (status == HN_OK) {
+            hn_cholesky_solve(w->n, w->A, w->n, w->step);
+            cap_step(w);
+            double predicted = predicted_gain(w);
+            move_from_start(w);
+            w->s->iterations++;
+            double reached = evaluate(w), gain = (size - reached) * (size + reached) / predicted;
+            if (reached < size && gain > 1e-4) {
+                w->damped++;
+                *mu *= gain > 0.75 ? 1.0 / 3 : (gain < 0.25 ? 2 : 1);
+                return reached;
+            }
+        }
+        // once more from the same place: the factor has overwritten A
+        *mu *= 4;
+        (void)go_back(w);
+        (void)fill_normal_equations(w);
+    }
+    return -1;
+}
+
+/// Minimises |r| from s->x. Returns 1 when it went below `tol`; then goes on as long as Newton gains.
+static int descend(search *w, double tol, int max_iterations) {
+    double size = evaluate(w), mu = 0, floor_size = ROUNDING * sqrt(w->nc);
+    if (!isfinite(size)) {
+        return 0;
+    }
+    for (int it = 0; it < max_iterations && size > floor_size; it++) {
+        double next = -1;
+        if (size < NEWTON_FROM) {
+            next = newton_step(w, size);
+        }
+        if (next < 0 && size <= tol) {
+            break;
+        }
+        if (next < 0) {
+            next = damped_step(w, size, &mu);
+        }
+        if (next < 0) {
+            break;
+        }
+        size = next;
+    }
+    return size <= tol;
+}
+
+/// Follows phi(z) = (1 - s) phi(z_guess) from s = 0, where the guess solves it, to s = 1. Returns 1 when it arrived.
+static int follow_homotopy(search *w) {
+    hn_assembler *s = w->s;
+    double at = 0, stride = 0.1;
+    memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
+    memset(w->goal, 0, (size_t)w->nc * sizeof *w->goal);
+    (void)evaluate(w);
+    double *from = hn_arena_doubles(s->arena, (size_t)w->nc),
+           *last = hn_arena_doubles(s->arena, (size_t)s->n);
+    if (!from || !last) {
+        return 0;
+    }
+    memcpy(from, s->residual, (size_t)w->nc * sizeof *from);
+
+    for (int step = 0; step < MAX_HOMOTOPY_STEPS && at < 1 && stride > 1e-4; step++) {
+        double to = fmin(1, at + stride);
+        for (int i = 0; i < w->nc; i++) {
+            w->goal[i] = (1 - to) * from[i];
+        }
+        memcpy(last, s->x, (size_t)s->n * sizeof *last);
+        double size = evaluate(w);
+        for (int k = 0; k < MAX_CORRECTIONS && size > 1e-9 && size >= 0; k++) {
+            size = newton_step(w, size);
+        }
+        if (size >= 0 && size <= 1e-9) {
+            at = to;
+            stride *= 1.5;
+        } else {
+            memcpy(s->x, last, (size_t)s->n * sizeof *last);
+            stride /= 2;
+        }
+    }
+    memset(w->goal, 0, (size_t)w->nc * sizeof *w->goal);
+    return at >= 1;
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014): the same starts on every machine.
+double hn_assemble_random(uint64_t *seed) {
+    uint64_t z = (*seed += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1; // [-1, 1)
+}
+
+/// Descends from random places around the guess, further and further away.
+static int try_random_starts(search *w) {
+    hn_assembler *s = w->s;
+    uint64_t seed = 20;
+    int starts = RANDOM_STARTS;
+    for (int k = 1; k <= starts; k++) {
+        // 2 rad, or two characteristic lengths, at most; half a turn where it closes, but the wrong way round
+        double spread = fmin(2.0 * k / RANDOM_STARTS, starts > RANDOM_STARTS ? M_PI : 2);
+        memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
+        for (int i = 0; i < w->n; i++) {
+            w->delta[s->free[i]] = spread * s->reach[s->free[i]] * hn_assemble_random(&seed);
+        }
+        hn_assemble_move(s, s->x, w->delta);
+        int closed = descend(w, CLOSED, MAX_ITERATIONS);
+        keep_best(w);
+        if (closed && hn_assemble_flipped(s) < 0) {
+            return 1;
+        }
+        starts = closed ? FLIPPED_STARTS : starts;
+    }
+    return 0;
+}
+
+hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out) {
+    *out = hn_arena_get(s->arena, sizeof **out);
+    return *out ? search_init(*out, s) : HN_ERR_MEMORY;
+}
+
+int hn_assemble_descend(hn_assemble_search *w) {
+    return descend(w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(w->s) < 0;
+}
+
+hn_status hn_assemble_position(hn_assembler *s) {
+    s->route = "already closed";
+    s->iterations = 0;
+    if (!hn_assemble_evaluate(s)) {
+        return HN_ERR_DIVERGED;
+    }
+    if (s->size <= ROUNDING * sqrt(s->nc) && hn_assemble_flipped(s) < 0) {
+        return HN_OK;
+    }
+    search w;
+    if (search_init(&w, s) != HN_OK) {
+        return HN_ERR_MEMORY;
+    }
+    int was_closed = s->size <= CLOSED;
+    if (descend(&w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(s) < 0) {
+        s->route = was_closed ? "already closed" : (w.damped ? "levenberg-marquardt" : "newton");
+        return HN_OK;
+    }
+    keep_best(&w);
+
+    s->route = "homotopy";
+    int closed =
+        follow_homotopy(&w) && descend(&w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(s) < 0;
+    keep_best(&w);
+    if (!closed) {
+        s->route = "multi-start";
+        closed = try_random_starts(&w);
+    }
+    if (closed) {
+        return HN_OK;
+    }
+    memcpy(s->x, w.best_x, (size_t)s->n * sizeof *s->x);
+    (void)hn_assemble_evaluate(s);
+    return HN_ERR_UNREACHABLE;
+}

@@ -1,0 +1,24 @@
+#ifndef HN_DYNAMICS_DRAWING_H
+#define HN_DYNAMICS_DRAWING_H
+// What to draw, with every point an index into the world points that HN_TERM_POINTS evaluates (x, y, z each).
+// The page, the snapshot and the terminal all draw from this list and from nothing else.
+
+#include "base/strbuf.h"
+#include "dynamics/compile/system.h"
+
+typedef struct hn_drawing {
+    int n_points;
+    const char *const *labels; ///< n_points, NULL where none
+    int n_shapes;
+    const hn_shape *shapes; ///< p, q are indices of world points
+    int n_tears;
+    const int (
+        *tears)[2]; ///< the two half-joints of each cut: they coincide when the loop is closed
+    const char *const *tear_names;
+} hn_drawing;
+
+hn_drawing hn_system_drawing(const hn_system *sys); ///< borrowed
+/// {"points":n,"labels":[...],"shapes":[{"kind","p","q","n","width","body"}],"tears":[{"p","q","name"}]}
+void hn_drawing_json(hn_strbuf *b, const hn_system *sys);
+
+#endif

@@ -1,0 +1,104 @@
+// Formulas of a scene in its own names: parameters, t, coordinates and rates as the scene calls them.
+#include "dynamics/compile/system_impl.h"
+#include "expr/parse.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct scope {
+    hn_system *sys;
+    int with_state;         ///< coordinates, rates and t may appear
+    const hn_ex *positions; ///< of the scene coordinates
+    const hn_ex *rates;
+    const char *refused; ///< a name that exists but has no expression here
+    int refused_ball;    ///< because it is an entry of an orientation
+} scope;
+
+static int find_state(scope *s, const char *name, hn_ex *out) {
+    hn_system *sys = s->sys;
+    if (!strcmp(name, "t")) {
+        *out = sys->t;
+        return 1;
+    }
+    for (int i = 0; i < sys->scene->n_coordinates; i++) {
+        const hn_coordinate *c = &sys->scene->coordinates[i];
+        int is_position = !strcmp(c->name, name);
+        if (!is_position && strcmp(c->rate, name) != 0) {
+            continue;
+        }
+        if (sys->user_known[i] == HN_KNOWN_NOTHING ||
+            (is_position && sys->user_known[i] == HN_KNOWN_RATE)) {
+            s->refused = c->name;
+            s->refused_ball = sys->user_known[i] == HN_KNOWN_RATE;
+            *out = hn_num(0);
+            return 1;
+        }
+        *out = is_position ? s->positions[i] : s->rates[i];
+        return 1;
+    }
+    return 0;
+}
+
+static int find_name(void *user, const char *name, hn_ex *out) {
+    scope *s = user;
+    for (int i = 0; i < s->sys->scene->n_params; i++) {
+        if (!strcmp(s->sys->scene->params[i].name, name)) {
+            *out = s->sys->params[i];
+            return 1;
+        }
+    }
+    return s->with_state && find_state(s, name, out);
+}
+
+hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out) {
+    return hn_system_quantity_of(sys, quantity, sys->user_q, sys->user_v, out);
+}
+
+hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, const hn_ex *positions,
+                                const hn_ex *rates, hn_ex *out) {
+    *out = hn_num(quantity->value);
+    if (!quantity->formula || (!quantity->varies && !sys->opts.symbolic_params)) {
+        return HN_OK;
+    }
+    scope s = {.sys = sys, .with_state = quantity->varies, .positions = positions, .rates = rates};
+    hn_parse_opts opts = {.lookup = find_name, .user = &s};
+    hn_diag diag = {0};
+    hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
+    if (status == HN_OK && s.refused && s.refused_ball) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+                            "use its rates, or a joint of revolutes in its place",
+                            "'%s' is an entry of an orientation, which jumps where the turn passes "
+                            "half a revolution, so it has no formula that holds at every pose",
+                            s.refused);
+    }
+    if (status == HN_OK && s.refused) {
+        return hn_diags_add(
+            sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+            "cut another joint of its loop, or use coordinates of joints that are not cut",
+            "'%s' belongs to a cut joint between bodies that do not turn about parallel axes, so "
+            "it has no formula",
+            s.refused);
+    }
+    if (status != HN_OK) {
+        (void)hn_diags_add(sys->diags, status, quantity->pointer, diag.hint, "in '%s': %s",
+                           quantity->formula, diag.message);
+    }
+    return status;
+}
+
+void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symbols) {
+    for (int i = 0; i < sys->scene->n_coordinates; i++) {
+        char name[160];
+        snprintf(name, sizeof name, "%s %s", kind, sys->scene->coordinates[i].name);
+        out[i] = hn_symbol(sys->g, name, NULL);
+        symbols[i] = hn_ex_symbol(sys->g, out[i]);
+    }
+}
+
+hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out) {
+    hn_status status = HN_OK;
+    for (int i = 0; i < 3 && status == HN_OK; i++) {
+        status = hn_system_quantity(sys, &quantity[i], &out->x[i]);
+    }
+    return status;
+}

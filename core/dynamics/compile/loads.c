@@ -1,0 +1,254 @@
+// Loads as generalised forces, by virtual work: what a load does is power = force . rate, and the coefficients of the rates
+// are those that closures use too.
+//     spring between points, D = p - q, l = |D|, e_i = D . dD/dq_i:  l l' = sum e_i u_i
+//         Q_i = -(k (1 - l0 / l) + c l'/ l) e_i,   V = k (l - l0)^2 / 2
+//     moment N on a body that turns with w = sum w_i u_i:  Q_i = N . w_i
+//     on a coordinate x:  Q_i = tau dx'/du_i
+//         follower   tau = k (x_d(t) - x) + c (x_d' - x'), clamped
+//         table      tau(t)
+#include "dynamics/compile/system_impl.h"
+
+/// Kept for telling the wrenches of loads.
+static void note_value(hn_system *sys, const hn_load *load, hn_vec3 value) {
+    hn_load_value *out = &sys->load_values[load - sys->scene->loads];
+    for (int i = 0; i < 3; i++) {
+        out->x[i] = value.x[i];
+    }
+}
+
+static hn_status read_law(hn_system *sys, const hn_load *load, hn_ex *k, hn_ex *rest, hn_ex *c) {
+    hn_status status = hn_system_quantity(sys, &load->stiffness, k);
+    if (status == HN_OK) {
+        status = hn_system_quantity(sys, &load->rest, rest);
+    }
+    return status == HN_OK ? hn_system_quantity(sys, &load->damping, c) : status;
+}
+
+/// A spring whose law changes with the state has no potential that could be told.
+static void add_spring_energy(hn_system *sys, const hn_load *load, hn_ex k, hn_ex stretch_squared) {
+    if (!load->stiffness.varies && !load->rest.varies) {
+        sys->potential =
+            hn_add(sys->g, sys->potential, hn_scale(0.5, hn_mul(sys->g, k, stretch_squared)));
+    }
+}
+
+static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    hn_graph *g = sys->g;
+    hn_ex k, rest, c;
+    hn_span span;
+    hn_status status = read_law(sys, load, &k, &rest, &c);
+    if (status == HN_OK) {
+        status = geometry->span(geometry->self, load->p, load->q, &span);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_ex l2 = hn_vec3_dot(g, span.delta, span.delta);
+    hn_ex pull = k; // force over length
+    hn_ex stretch2 = l2;
+    if (!hn_is_zero(rest)) {
+        hn_ex l = hn_sqrt(g, l2);
+        hn_ex stretch = hn_sub(g, l, rest);
+        pull = hn_mul(g, k, hn_sub(g, hn_num(1), hn_div(g, rest, l)));
+        stretch2 = hn_mul(g, stretch, stretch);
+    }
+    if (!hn_is_zero(c)) {
+        hn_ex l_rate = hn_num(0); // l l'
+        for (int i = 0; i < span.n; i++) {
+            hn_ex e = hn_vec3_dot(g, span.delta, span.coefficient[i]);
+            l_rate = hn_add(g, l_rate, hn_mul(g, e, sys->v[span.coordinate[i]]));
+        }
+        pull = hn_add(g, pull, hn_mul(g, c, hn_div(g, l_rate, l2)));
+    }
+    note_value(sys, load, (hn_vec3){{pull, hn_num(0), hn_num(0)}});
+    for (int i = 0; i < span.n; i++) {
+        hn_ex e = hn_vec3_dot(g, span.delta, span.coefficient[i]);
+        hn_ex *f = &sys->f[span.coordinate[i]];
+        *f = hn_sub(g, *f, hn_mul(g, pull, e));
+    }
+    add_spring_energy(sys, load, k, stretch2);
+    return HN_OK;
+}
+
+static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex tau) {
+    if (!sys->user_known[load->coordinate]) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
+                            "cut another joint of its loop",
+                            "a load on '%s' is not served: its joint is cut between bodies that do "
+                            "not turn about parallel axes",
+                            sys->scene->coordinates[load->coordinate].name);
+    }
+    hn_ex *gradient = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *gradient);
+    if (!gradient) {
+        return HN_ERR_MEMORY;
+    }
+    note_value(sys, load, (hn_vec3){{tau, hn_num(0), hn_num(0)}});
+    hn_diff_reverse(sys->g, sys->user_v[load->coordinate], sys->v_symbols, sys->nv, gradient);
+    for (int i = 0; i < sys->nv; i++) {
+        sys->f[i] = hn_add(sys->g, sys->f[i], hn_mul(sys->g, tau, gradient[i]));
+    }
+    return HN_OK;
+}
+
+static hn_status refuse_position(hn_system *sys, const hn_load *load, const char *what) {
+    return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
+                        "give it damping only, or use springs between points",
+                        "%s on '%s' is not served: an entry of an orientation jumps where "
+                        "the turn passes half a revolution",
+                        what, sys->scene->coordinates[load->coordinate].name);
+}
+
+static hn_status add_joint_spring(hn_system *sys, const hn_geometry *geometry,
+                                  const hn_load *load) {
+    (void)geometry;
+    hn_ex k, rest, c;
+    hn_status status = read_law(sys, load, &k, &rest, &c);
+    if (status != HN_OK) {
+        return status;
+    }
+    if (sys->user_known[load->coordinate] == HN_KNOWN_RATE && !hn_is_zero(k)) {
+        return refuse_position(sys, load, "a spring");
+    }
+    hn_graph *g = sys->g;
+    hn_ex stretch = hn_sub(g, sys->user_q[load->coordinate], rest);
+    hn_ex tau = hn_add(g, hn_mul(g, k, stretch), hn_mul(g, c, sys->user_v[load->coordinate]));
+    status = add_on_coordinate(sys, load, hn_neg(tau));
+    if (status == HN_OK) {
+        add_spring_energy(sys, load, k, hn_mul(g, stretch, stretch));
+    }
+    return status;
+}
+
+static hn_status add_coordinate(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    (void)geometry;
+    hn_ex tau;
+    hn_status status = hn_system_quantity(sys, &load->value[0], &tau);
+    return status == HN_OK ? add_on_coordinate(sys, load, tau) : status;
+}
+
+static void add_power(hn_system *sys, hn_vec3 wrench, const hn_span *span) {
+    for (int i = 0; i < span->n; i++) {
+        hn_ex *f = &sys->f[span->coordinate[i]];
+        *f = hn_add(sys->g, *f, hn_vec3_dot(sys->g, wrench, span->coefficient[i]));
+    }
+}
+
+static hn_status add_force(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    hn_vec3 force;
+    hn_span span;
+    hn_status status = hn_system_vector(sys, load->value, &force);
+    if (status == HN_OK) {
+        status = geometry->span(geometry->self, load->p, -1, &span);
+    }
+    if (status == HN_OK) {
+        note_value(sys, load, force);
+        add_power(sys, force, &span);
+    }
+    return status;
+}
+
+static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    hn_vec3 moment;
+    hn_span span;
+    if (!geometry->spin) {
+        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
+                            "a moment needs a body to act on");
+    }
+    hn_status status = hn_system_vector(sys, load->value, &moment);
+    if (status == HN_OK) {
+        status = geometry->spin(geometry->self, load->p, &span);
+    }
+    if (status == HN_OK) {
+        note_value(sys, load, moment);
+        add_power(sys, moment, &span);
+    }
+    return status;
+}
+
+/// No more than `limit` either way.
+static hn_ex clamp(hn_graph *g, hn_ex e, hn_ex limit) {
+    hn_ex below = hn_apply(g, HN_OP_MIN, (hn_ex[2]){e, limit});
+    return hn_apply(g, HN_OP_MAX, (hn_ex[2]){below, hn_neg(limit)});
+}
+
+/// The target is a formula of t, so its rate is its derivative.
+static hn_status add_follow(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    (void)geometry;
+    hn_graph *g = sys->g;
+    hn_ex k, rest, c, target, limit, target_rate;
+    hn_status status = read_law(sys, load, &k, &rest, &c);
+    if (status == HN_OK) {
+        status = hn_system_quantity(sys, &load->value[0], &target);
+    }
+    if (status == HN_OK) {
+        status = hn_system_quantity(sys, &load->value[1], &limit);
+    }
+    if (status == HN_OK && sys->user_known[load->coordinate] == HN_KNOWN_RATE) {
+        return refuse_position(sys, load, "a follower");
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_diff(g, target, &sys->t_symbol, 1, &target_rate);
+    hn_ex off = hn_sub(g, target, sys->user_q[load->coordinate]);
+    hn_ex slow = hn_sub(g, target_rate, sys->user_v[load->coordinate]);
+    hn_ex tau = hn_add(g, hn_mul(g, k, off), hn_mul(g, c, slow));
+    if (load->value[1].value > 0) {
+        tau = clamp(g, tau, limit);
+    }
+    return add_on_coordinate(sys, load, tau);
+}
+
+/// From value to value with every stretch as a number between 0 and 1: past its end it is 1 exactly, and the sum of what stands
+/// before holds to rounding, however long ago it was.
+static hn_status profile(hn_system *sys, const hn_profile *table, hn_ex *out) {
+    hn_graph *g = sys->g;
+    hn_ex *terms = hn_arena_get(sys->arena, ((size_t)table->n + 1) * sizeof *terms);
+    if (!terms) {
+        return HN_ERR_MEMORY;
+    }
+    terms[0] = hn_num(table->value[0]);
+    for (int i = 1; i < table->n; i++) {
+        hn_ex part;
+        if (table->steps) {
+            hn_ex since = hn_sub(g, sys->t, hn_num(table->t[i]));
+            part = hn_apply(g, HN_OP_STEP, &since);
+        } else {
+            hn_ex since = hn_sub(g, sys->t, hn_num(table->t[i - 1]));
+            part = hn_scale(1 / (table->t[i] - table->t[i - 1]), since);
+            part = hn_apply(g, HN_OP_MAX, (hn_ex[2]){part, hn_num(0)});
+            part = hn_apply(g, HN_OP_MIN, (hn_ex[2]){part, hn_num(1)});
+        }
+        terms[i] = hn_scale(table->value[i] - table->value[i - 1], part);
+    }
+    *out = hn_sum(g, terms, table->n);
+    return HN_OK;
+}
+
+static hn_status add_table(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
+    (void)geometry;
+    hn_ex tau;
+    hn_status status = profile(sys, &load->table, &tau);
+    return status == HN_OK ? add_on_coordinate(sys, load, tau) : status;
+}
+
+typedef hn_status (*load_adder)(hn_system *sys, const hn_geometry *geometry, const hn_load *load);
+static const load_adder ADDERS[] = {
+    [HN_LOAD_SPRING] = add_spring,         [HN_LOAD_JOINT_SPRING] = add_joint_spring,
+    [HN_LOAD_COORDINATE] = add_coordinate, [HN_LOAD_FORCE] = add_force,
+    [HN_LOAD_MOMENT] = add_moment,         [HN_LOAD_FOLLOW] = add_follow,
+    [HN_LOAD_TABLE] = add_table,
+};
+
+hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry) {
+    hn_status status = HN_OK;
+    for (int i = 0; i < sys->scene->n_loads && status == HN_OK; i++) {
+        const hn_load *load = &sys->scene->loads[i];
+        if (load->kind >= sizeof ADDERS / sizeof *ADDERS) {
+            return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
+                                "a load of this kind cannot be compiled");
+        }
+        status = ADDERS[load->kind](sys, geometry, load);
+    }
+    return status;
+}

@@ -1,0 +1,566 @@
+#include "dynamics/evaluate/blur.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/factor.h"
+#include "dynamics/evaluate/inputs.h"
+#include "dynamics/evaluate/ldl.h"
+#include "dynamics/evaluate/row_groups.h"
+#include "linalg/dense.h"
+#include "linalg/kkt.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *const hn_solver_names[HN_SOLVER_COUNT] = {
+#define HN_SOLVER_NAME(code, name) name,
+    HN_SOLVER_LIST(HN_SOLVER_NAME)
+#undef HN_SOLVER_NAME
+};
+
+static const double ROW_RESIDUAL = 1e-2; // what rows that have all but vanished may disagree
+
+struct hn_accel {
+    int nv, nc;
+    const hn_system *sys;
+    hn_accel_opts opts;
+    int available; ///< a static order exists
+    hn_inputs in;  ///< outputs: a, lambda if wanted, then pivot and reference of each guard
+    int n_out, n_guards, n_rows; ///< then the squared length of each row
+    hn_row_groups rows;
+    // behind it
+    hn_eval *terms;
+    int n_M, n_J;
+    const int *M_row, *M_col, *J_row, *J_col;
+    hn_kkt *kkt;
+    double *gamma, *dense_a, *dense_lambda;
+    double *row_unit; ///< nc: the characteristic length for rows in metres, else 1
+    // refinement of what the tape's order gives
+    hn_factor *factor;
+    double *rest, *step; ///< nv + nc each
+    hn_sum2 *sum;        ///< nv + nc
+    long long count, fallbacks, refinements;
+    double ops;
+    char refusal[160];
+};
+
+// compiling --------------------------------------------------------------------------------------------------------
+
+/// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
+static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
+    hn_graph *g = sys->g;
+    if (!baumgarte) {
+        for (int i = 0; i < sys->nc; i++) {
+            rhs[i] = hn_neg(sys->gamma[i]);
+        }
+        return;
+    }
+    for (int i = 0; i < sys->nc; i++) {
+        rhs[i] = sys->phi_t[i]; // gathers J v + phi_t
+    }
+    for (int k = 0; k < sys->J.n; k++) {
+        const hn_entry *J = &sys->J.at[k];
+        rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
+    }
+    hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
+    for (int i = 0; i < sys->nc; i++) {
+        hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
+                          hn_mul(g, stiffness, sys->phi[i])};
+        rhs[i] = hn_neg(hn_sum(g, terms, 3));
+    }
+}
+
+/// Outputs of the tape: a, lambda, guards. Returns owned, or NULL.
+static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
+    hn_ex *outputs = malloc((4 * (size_t)ldl->n + 1) * sizeof *outputs);
+    if (!outputs) {
+        return NULL;
+    }
+    int n = 0;
+    for (int i = 0; i < sys->nv + (s->opts.want_lambda ? sys->nc : 0); i++) {
+        outputs[n++] = i < sys->nv ? x[i] : hn_neg(x[i]);
+    }
+    for (int k = 0; k < ldl->n_guards; k++) {
+        outputs[n++] = ldl->guard[k][0];
+        outputs[n++] = ldl->guard[k][1];
+    }
+    s->n_guards = ldl->n_guards;
+    s->n_rows = sys->nc;
+    memcpy(outputs + n, ldl->row_ref, (size_t)s->n_rows * sizeof *outputs);
+    s->n_out = n + s->n_rows;
+    return outputs;
+}
+
+static hn_status compile_tape(hn_accel *s, hn_system *sys, hn_arena *arena) {
+    hn_arena *scratch = hn_arena_create(0);
+    if (!scratch) {
+        return HN_ERR_MEMORY;
+    }
+    const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
+    hn_ldl ldl;
+    hn_ex *x = NULL, *outputs = NULL;
+    hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
+    s->available = status == HN_OK && ldl.available;
+    if (s->available) {
+        x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
+        status = x ? HN_OK : HN_ERR_MEMORY;
+    }
+    if (status == HN_OK && s->available) {
+        memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
+        closure_rhs(sys, s->opts.baumgarte, x + sys->nv);
+        status = hn_ldl_solve(sys->g, &ldl, x, x);
+        outputs = status == HN_OK ? list_outputs(s, sys, &ldl, x) : NULL;
+        status = outputs ? hn_inputs_compile(sys, outputs, s->n_out, arena, &s->in) : HN_ERR_MEMORY;
+    }
+    free(outputs);
+    hn_arena_free(scratch);
+    return status;
+}
+
+static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
+    const unsigned terms =
+        HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | HN_TERM_PHI | HN_TERM_PHI_T;
+    s->kkt = hn_kkt_create(arena, s->nv, s->nc);
+    s->rest = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
+    s->step = hn_arena_doubles(arena, (size_t)s->nv + (size_t)s->nc);
+    s->sum = hn_arena_get(arena, ((size_t)s->nv + (size_t)s->nc + 1) * sizeof *s->sum);
+    s->gamma = hn_arena_doubles(arena, (size_t)s->nc);
+    s->dense_a = hn_arena_doubles(arena, (size_t)s->nv);
+    s->dense_lambda = hn_arena_doubles(arena, (size_t)s->nc);
+    s->row_unit = hn_arena_doubles(arena, (size_t)s->nc);
+    if (!s->kkt || hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < s->nc; i++) {
+        s->row_unit[i] = hn_system_row_unit(sys, i);
+    }
+    hn_status status = hn_eval_create(sys, terms, arena, &s->terms);
+    if (status != HN_OK) {
+        return status;
+    }
+    s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
+    s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
+    if (!s->available) {
+        return HN_OK;
+    }
+    status = hn_row_groups_init(sys, arena, &s->rows);
+    return status == HN_OK ? hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor) : status;
+}
+
+static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
+    const int by_tape = s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL;
+    hn_status status = by_tape ? compile_tape(s, sys, arena) : HN_OK;
+    if (status == HN_OK && !s->available) {
+        status = hn_inputs_create(sys, arena, &s->in);
+    }
+    return status == HN_OK ? prepare_dense(s, sys, arena) : status;
+}
+
+hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena,
+                          hn_accel **out) {
+    HN_ASSERT(sys && opts && arena && out);
+    hn_accel *s = hn_arena_get(arena, sizeof *s);
+    *out = NULL;
+    if (!s) {
+        return HN_ERR_MEMORY;
+    }
+    s->sys = sys;
+    s->nv = sys->nv;
+    s->nc = sys->nc;
+    s->opts = *opts;
+    hn_status status = build(s, (hn_system *)sys, arena);
+    if (status != HN_OK) {
+        hn_accel_free(s);
+        return status;
+    }
+    *out = s;
+    return HN_OK;
+}
+
+void hn_accel_free(hn_accel *s) {
+    if (s) {
+        hn_inputs_free(&s->in);
+        hn_eval_free(s->terms);
+        hn_factor_free(s->factor);
+        s->terms = NULL;
+        s->factor = NULL;
+    }
+}
+
+// running ----------------------------------------------------------------------------------------------------------
+
+/// Smallest pivot relative to its reference; NaN counts as lost.
+static double worst_pivot(const hn_accel *s) {
+    const double *x = s->in.x;
+    const uint16_t *slots = s->in.slots + s->n_out - s->n_rows - 2 * s->n_guards;
+    double worst = 1;
+    for (int k = 0; k < s->n_guards; k++) {
+        double ratio = fabs(x[slots[2 * k]]) / fabs(x[slots[2 * k + 1]]);
+        if (!(ratio >= worst)) {
+            worst = ratio;
+        }
+    }
+    return worst >= 0 ? worst : 0;
+}
+
+/// Takes the tape's answer if all of it is finite.
+static int take_answer(const hn_accel *s, double *a, double *lambda) {
+    const double *x = s->in.x;
+    const uint16_t *slots = s->in.slots;
+    int n = s->n_out - s->n_rows - 2 * s->n_guards;
+    double zero = 0;
+    for (int k = 0; k < n; k++) {
+        zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
+    }
+    if (!(zero == 0)) {
+        return 0;
+    }
+    for (int i = 0; i < s->nv; i++) {
+        a[i] = x[slots[i]];
+    }
+    for (int i = 0; lambda && i < s->nc; i++) {
+        lambda[i] = x[slots[s->nv + i]];
+    }
+    return 1;
+}
+
+static int all_finite(const double *x, int n) {
+    double zero = 0;
+    for (int i = 0; i < n; i++) {
+        zero += x[i] * 0; // a value that is not finite leaves NaN
+    }
+    return zero == 0;
+}
+
+/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (blur.h).
+static double stabilise(hn_accel *s, const double *v, double alpha, double beta) {
+    const hn_blur_terms at = {.n_J = s->n_J,
+                              .row = s->J_row,
+                              .col = s->J_col,
+                              .J = hn_eval_get(s->terms, HN_TERM_J),
+                              .phi = hn_eval_get(s->terms, HN_TERM_PHI),
+                              .phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T)};
+    const double *rate = s->rest, gap = hn_blur_gap(s->sys, &at, v, s->rest, s->step);
+    for (int i = 0; s->opts.baumgarte && i < s->nc; i++) {
+        s->gamma[i] += 2 * alpha * rate[i] + beta * beta * at.phi[i];
+    }
+    return gap;
+}
+
+/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the relative gap of the loops.
+static double eval_terms(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                         double beta) {
+    hn_eval_run(s->terms, t, q, v);
+    s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
+    memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
+    return stabilise(s, v, alpha, beta);
+}
+
+// refinement ---------------------------------------------------------------------------------------------------------
+
+static void subtract(hn_accel *s, int row, double entry, double x) {
+    hn_sum2_add_product(&s->sum[row], -entry, x);
+}
+
+/// rest = [f; -gamma] - K [a; -lambda] in twice the working precision, entry by entry.
+static void find_rest(hn_accel *s, const double *a, const double *lambda) {
+    const double *M = hn_eval_get(s->terms, HN_TERM_M), *J = hn_eval_get(s->terms, HN_TERM_J);
+    const double *f = hn_eval_get(s->terms, HN_TERM_F);
+    const size_t nv = (size_t)s->nv;
+    for (int i = 0; i < s->nv + s->nc; i++) {
+        s->sum[i] = (hn_sum2){i < s->nv ? f[i] : -s->gamma[i - s->nv], 0};
+    }
+    for (int k = 0; k < s->n_M; k++) {
+        const int i = s->M_row[k], j = s->M_col[k];
+        const double m = M[(size_t)i * nv + (size_t)j];
+        subtract(s, i, m, a[j]);
+        if (i != j) {
+            subtract(s, j, m, a[i]);
+        }
+    }
+    for (int k = 0; k < s->n_J; k++) {
+        const int i = s->J_row[k], j = s->J_col[k];
+        const double e = J[(size_t)i * nv + (size_t)j];
+        subtract(s, j, -e, lambda[i]);
+        subtract(s, s->nv + i, e, a[j]);
+    }
+    for (int i = 0; i < s->nv + s->nc; i++) {
+        s->rest[i] = hn_sum2_value(&s->sum[i]);
+    }
+}
+
+/// The sparse factor's own solution, corrected while the corrections halve. Fails where the factor does.
+static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a, double *lambda,
+                               hn_accel_info *info) {
+    enum { MAX_CORRECTIONS = 4 };
+    double *step_a = s->step, *step_l = s->step + s->nv, last = HUGE_VAL;
+    const hn_status status = hn_factor_update(s->factor, t, q, NULL);
+    s->ops += hn_factor_get_info(s->factor).update_ops;
+    if (status != HN_OK) {
+        return status;
+    }
+    memset(s->dense_a, 0, (size_t)s->nv * sizeof *s->dense_a);
+    memset(s->dense_lambda, 0, (size_t)s->nc * sizeof *s->dense_lambda);
+    for (int turn = 0; turn <= MAX_CORRECTIONS; turn++) {
+        find_rest(s, s->dense_a, s->dense_lambda);
+        hn_factor_solve(s->factor, s->rest, s->rest + s->nv, step_a, step_l);
+        s->ops += hn_factor_get_info(s->factor).solve_ops + 34.0 * (s->n_M + s->n_J);
+        const double size = hn_norm_max(s->nv, s->dense_a);
+        const double moved = hn_norm_max(s->nv, step_a);
+        if (!isfinite(moved) || !(moved < 0.5 * last)) {
+            break;
+        }
+        hn_axpy(s->nv, 1, step_a, s->dense_a);
+        hn_axpy(s->nc, 1, step_l, s->dense_lambda);
+        info->refinements = turn;
+        last = moved;
+        if (turn > 0 && moved <= DBL_EPSILON * size) {
+            break;
+        }
+    }
+    if (!hn_all_finite(s->nv, s->dense_a) || !hn_all_finite(s->nc, s->dense_lambda)) {
+        return HN_ERR_SINGULAR;
+    }
+    s->refinements++;
+    memcpy(a, s->dense_a, (size_t)s->nv * sizeof *a);
+    if (lambda) {
+        memcpy(lambda, s->dense_lambda, (size_t)s->nc * sizeof *lambda);
+    }
+    return HN_OK;
+}
+
+// the dense ways -----------------------------------------------------------------------------------------------------
+
+static hn_kkt_way way_of(hn_solver solver) {
+    switch (solver) {
+    case HN_SOLVER_DENSE:
+        return HN_KKT_DENSE;
+    case HN_SOLVER_RANGE_SPACE:
+        return HN_KKT_RANGE_SPACE;
+    case HN_SOLVER_NULL_SPACE:
+        return HN_KKT_NULL_SPACE;
+    case HN_SOLVER_PROXIMAL:
+        return HN_KKT_PROXIMAL;
+    default:
+        return HN_KKT_LEAST_NORM;
+    }
+}
+
+static const char *name_of_speed(const hn_accel *s, int i) {
+    if (i >= hn_system_get_info(s->sys).n_user) {
+        return "a speed";
+    }
+    return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, i)].name;
+}
+
+/// The first speed that moves no mass by itself, -1: each moves some.
+static int find_massless(const hn_accel *s) {
+    const double nothing = 1e-14; // of the largest mass, as in the dense solves
+    const double *M = hn_eval_get(s->terms, HN_TERM_M);
+    double heaviest = 0;
+    for (int i = 0; i < s->nv; i++) {
+        heaviest = fmax(heaviest, M[(size_t)i * s->nv + i]);
+    }
+    for (int i = 0; i < s->nv; i++) {
+        if (M[(size_t)i * s->nv + i] <= nothing * heaviest) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void refuse_massless(hn_accel *s) {
+    const int massless = find_massless(s);
+    snprintf(s->refusal, sizeof s->refusal,
+             "the loops leave a motion free that moves no mass%s%.60s: no acceleration of it "
+             "follows from forces",
+             massless >= 0 ? ", such as that of " : "",
+             massless >= 0 ? name_of_speed(s, massless) : "");
+}
+
+/// Says why; HN_ERR_MASS where it is a mass that is missing, else `status`.
+static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
+    const char *name = hn_solver_names[solver];
+    if (massless >= 0) {
+        snprintf(s->refusal, sizeof s->refusal,
+                 "solver=%s needs M^-1, and %s moves no mass; solver=auto serves this", name,
+                 name_of_speed(s, massless));
+        return HN_ERR_MASS;
+    }
+    if (status == HN_ERR_SINGULAR && solver != HN_SOLVER_AUTO && solver != HN_SOLVER_LEAST_NORM) {
+        snprintf(s->refusal, sizeof s->refusal,
+                 "solver=%s needs closure rows that do not depend on each other; solver=auto, "
+                 "proximal or least-norm serve this",
+                 name);
+    } else if (status == HN_ERR_SINGULAR) {
+        refuse_massless(s);
+        return HN_ERR_MASS;
+    }
+    return status;
+}
+
+static double dense_ops(const hn_accel *s) {
+    const double n = s->nv, c = s->nc;
+    return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
+}
+
+/// A row that is short at a pose says little there, also where the loops are closed to rounding: stretched, rounding is all it says.
+/// Of one below HN_ROW_LOST speeds and pose leave rounding and the error of the step.
+static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
+    hn_kkt_opts opts = hn_kkt_opts_default();
+    opts.row_floor = HN_BLUR_ROW_FLOOR;
+    opts.row_unit = s->row_unit;
+    opts.rank_tol = fmax(opts.rank_tol, hn_blur_of(gap));
+    opts.residual_tol = fmax(opts.residual_tol, hn_blur_of_sides(gap));
+    opts.want_cond = want_cond;
+    if (row_ratio < HN_ROW_LOST) {
+        opts.row_floor = 1;
+        opts.rank_tol = fmax(opts.rank_tol, HN_ROW_RANK_TOL);
+        opts.residual_tol = fmax(opts.residual_tol, ROW_RESIDUAL);
+    }
+    return opts;
+}
+
+static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *a, double *lambda,
+                             hn_accel_info *info) {
+    const hn_kkt_opts opts = dense_opts(s, gap, info->row_ratio, 0);
+    hn_kkt_info dense;
+    const hn_status status =
+        hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
+                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
+                     s->dense_a, s->dense_lambda, &dense, &opts);
+    s->ops += dense_ops(s);
+    info->massless = dense.massless;
+    if (status != HN_OK) {
+        return refuse(s, solver, status, dense.massless);
+    }
+    info->solver = solver;
+    info->rank = dense.rank;
+    info->residual = dense.residual;
+    info->refinements = dense.refinements;
+    memcpy(a, s->dense_a, (size_t)s->nv * sizeof *a);
+    if (lambda) {
+        memcpy(lambda, s->dense_lambda, (size_t)s->nc * sizeof *lambda);
+    }
+    return HN_OK;
+}
+
+/// As in hn_accel_info, after a run of the tape.
+static double find_row_ratio(hn_accel *s) {
+    return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
+}
+
+/// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs correcting (*doubtful).
+static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
+                               int *doubtful) {
+    if (!s->available) {
+        return HN_ERR_SINGULAR;
+    }
+    hn_tape_run(s->in.tape, s->in.x);
+    s->ops += hn_tape_get_info(s->in.tape).ops;
+    info->pivot_ratio = worst_pivot(s);
+    info->row_ratio = find_row_ratio(s);
+    info->solver = HN_SOLVER_LDL;
+    if (info->row_ratio < HN_ROW_LOST) {
+        return HN_ERR_SINGULAR;
+    }
+    *doubtful = info->pivot_ratio >= HN_PIVOT_GUARD && info->pivot_ratio < HN_PIVOT_DOUBT;
+    const int good = info->pivot_ratio >= HN_PIVOT_DOUBT && take_answer(s, a, lambda);
+    return good ? HN_OK : HN_ERR_SINGULAR;
+}
+
+hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v, double alpha,
+                        double beta, double *a, double *lambda, hn_accel_info *info) {
+    HN_ASSERT(!lambda || s->opts.want_lambda);
+    hn_accel_info own;
+    const hn_solver solver = s->opts.solver;
+    int doubtful = 0;
+    info = info ? info : &own;
+    s->count++;
+    s->refusal[0] = '\0';
+    hn_inputs_set(&s->in, t, q, v, alpha, beta);
+    *info = (hn_accel_info){.solver = solver, .rank = s->nc, .massless = -1, .row_ratio = 1};
+    hn_status status = solve_by_tape(s, a, lambda, info, &doubtful);
+    if (status == HN_OK) {
+        return HN_OK;
+    }
+    if (!all_finite(s->in.x, s->in.n)) {
+        s->fallbacks++;
+        return HN_ERR_DIVERGED;
+    }
+    const double gap = eval_terms(s, t, q, v, alpha, beta);
+    if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
+        return HN_OK;
+    }
+    if (solver == HN_SOLVER_LDL) {
+        return refuse(s, solver, HN_ERR_SINGULAR, -1);
+    }
+    info->fallback = solver == HN_SOLVER_AUTO;
+    s->fallbacks += info->fallback;
+    return solve_dense(s, solver == HN_SOLVER_AUTO ? HN_SOLVER_LEAST_NORM : solver, gap, a, lambda,
+                       info);
+}
+
+hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
+                             double *condition) {
+    hn_kkt_info dense = {0};
+    double row_ratio = 1;
+    hn_inputs_set(&s->in, t, q, v, 0, 0);
+    if (!all_finite(s->in.x, s->in.n)) {
+        return HN_ERR_DIVERGED;
+    }
+    if (s->available) { // a row that the accelerations leave out is left out here
+        hn_tape_run(s->in.tape, s->in.x);
+        row_ratio = find_row_ratio(s);
+    }
+    const hn_kkt_opts opts = dense_opts(s, eval_terms(s, t, q, v, 0, 0), row_ratio, 1);
+    const hn_status status =
+        hn_kkt_solve(s->kkt, HN_KKT_LEAST_NORM, s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
+                     hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
+                     s->dense_a, s->dense_lambda, &dense, &opts);
+    *condition = status == HN_OK ? dense.cond : 0;
+    return status;
+}
+
+const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS] = {"determined", "one of many",
+                                                                "no digit left", "no solution"};
+
+hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
+                                 const hn_accel_info *info) {
+    const int sure = s->available && !info->fallback && info->pivot_ratio >= HN_PIVOT_DOUBT &&
+                     info->row_ratio >= HN_PIVOT_GUARD;
+    double condition = 0;
+    if (s->nc == 0 || sure) {
+        return HN_MULTIPLIERS_DETERMINED;
+    }
+    if (hn_accel_condition(s, t, q, v, &condition) != HN_OK) {
+        return HN_MULTIPLIERS_NONE;
+    }
+    return condition > HN_CONDITION_LOST ? HN_MULTIPLIERS_LOST
+           : info->rank < s->nc          ? HN_MULTIPLIERS_ONE_OF_MANY
+                                         : HN_MULTIPLIERS_DETERMINED;
+}
+
+hn_tape_info hn_accel_tape_info(const hn_accel *s) {
+    return s->available ? hn_tape_get_info(s->in.tape) : hn_eval_info(s->terms);
+}
+
+long long hn_accel_count(const hn_accel *s) {
+    return s->count;
+}
+
+long long hn_accel_fallbacks(const hn_accel *s) {
+    return s->fallbacks;
+}
+
+long long hn_accel_refinements(const hn_accel *s) {
+    return s->refinements;
+}
+
+double hn_accel_ops(const hn_accel *s) {
+    return s->ops;
+}
+
+const char *hn_accel_refusal(const hn_accel *s) {
+    return s->refusal[0] ? s->refusal : NULL;
+}

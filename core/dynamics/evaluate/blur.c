@@ -1,0 +1,38 @@
+#include "dynamics/evaluate/blur.h"
+
+#include <math.h>
+
+static const double BLUR = 30;
+static const double BLUR_MAX =
+    1e-2; // a gap of a third of a per mille and more: pivots that size are real
+
+double hn_blur_of(double gap) {
+    return fmin(BLUR * gap, BLUR_MAX);
+}
+
+double hn_blur_of_sides(double gap) {
+    return fmin(BLUR * gap, 1);
+}
+
+double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *v, double *rate,
+                   double *size) {
+    const hn_system_info info = hn_system_get_info(sys);
+    double gap = 0, rates = 0, sizes = 0;
+    for (int i = 0; i < info.nc; i++) {
+        rate[i] = at->phi_t[i];
+        size[i] = fabs(at->phi_t[i]);
+    }
+    for (int k = 0; k < at->n_J; k++) {
+        const int i = at->row[k], j = at->col[k];
+        const double part = at->J[(size_t)i * (size_t)info.nv + (size_t)j] * v[j];
+        rate[i] += part;
+        size[i] = fmax(size[i], fabs(part));
+    }
+    for (int i = 0; i < info.nc; i++) {
+        const double unit = hn_system_row_unit(sys, i);
+        gap = fmax(gap, fabs(at->phi[i]) / unit);
+        rates = fmax(rates, fabs(rate[i]) / unit);
+        sizes = fmax(sizes, size[i] / unit);
+    }
+    return fmax(gap, sizes > 0 ? rates / sizes : 0);
+}

@@ -1,0 +1,81 @@
+#include "dynamics/evaluate/inputs.h"
+
+#include <string.h>
+
+static int count_params(const hn_system *sys) {
+    return sys->opts.symbolic_params ? sys->scene->n_params : 0;
+}
+
+static void begin(const hn_system *sys, double *x, hn_inputs *in) {
+    in->x = x;
+    for (int i = 0; x && i < count_params(sys); i++) {
+        x[sys->nq + sys->nv + 3 + i] = sys->scene->params[i].value;
+    }
+}
+
+static void set_sizes(const hn_system *sys, hn_inputs *in) {
+    *in = (hn_inputs){.nq = sys->nq, .nv = sys->nv, .n = sys->nq + sys->nv + 3 + count_params(sys)};
+}
+
+hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in) {
+    set_sizes(sys, in);
+    begin(sys, hn_arena_doubles(arena, (size_t)in->n), in);
+    return in->x ? HN_OK : HN_ERR_MEMORY;
+}
+
+static void list_symbols(const hn_system *sys, int *symbols) {
+    memcpy(symbols, sys->q_symbols, (size_t)sys->nq * sizeof *symbols);
+    memcpy(symbols + sys->nq, sys->v_symbols, (size_t)sys->nv * sizeof *symbols);
+    int at = sys->nq + sys->nv;
+    symbols[at++] = sys->t_symbol;
+    symbols[at++] = sys->alpha_symbol;
+    symbols[at++] = sys->beta_symbol;
+    for (int i = 0; i < count_params(sys); i++) {
+        symbols[at++] = hn_ex_symbol(sys->g, sys->params[i]);
+    }
+}
+
+hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out, hn_arena *arena,
+                            hn_inputs *in) {
+    set_sizes(sys, in);
+    int *symbols = malloc((size_t)in->n * sizeof *symbols);
+    if (!symbols) {
+        return HN_ERR_MEMORY;
+    }
+    list_symbols(sys, symbols);
+    hn_status status = hn_tape_compile(sys->g, outputs, n_out, symbols, in->n, &in->tape);
+    free(symbols);
+    if (status != HN_OK) {
+        return status;
+    }
+    double *work = hn_arena_doubles(arena, hn_tape_work_size(in->tape));
+    if (!work) {
+        hn_inputs_free(in);
+        return HN_ERR_MEMORY;
+    }
+    hn_tape_prepare(in->tape, work);
+    in->slots = hn_tape_output_slots(in->tape);
+    begin(sys, work, in);
+    return HN_OK;
+}
+
+void hn_inputs_free(hn_inputs *in) {
+    hn_tape_free(in->tape);
+    in->tape = NULL;
+}
+
+void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
+                   double beta) {
+    double *x = in->x;
+    for (int i = 0; i < in->nq; i++) { // for a handful of numbers a loop is quicker than a call
+        x[i] = q[i];
+    }
+    x += in->nq;
+    for (int i = 0; i < in->nv; i++) {
+        x[i] = v ? v[i] : 0;
+    }
+    x += in->nv;
+    x[0] = t;
+    x[1] = alpha;
+    x[2] = beta;
+}

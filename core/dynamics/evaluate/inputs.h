@@ -1,0 +1,25 @@
+#ifndef HN_DYNAMICS_INPUTS_H
+#define HN_DYNAMICS_INPUTS_H
+// The inputs every tape of a system takes: q, v, t, alpha, beta, and the parameters where they stayed symbols. They are
+// written straight into the tape's workspace.
+
+#include "dynamics/compile/system_impl.h"
+#include "expr/tape.h"
+
+typedef struct hn_inputs {
+    int nq, nv, n;
+    double *x;             ///< n values; with a tape they stand at the start of its workspace
+    hn_tape *tape;         ///< owned; NULL until compiled
+    const uint16_t *slots; ///< output k is x[slots[k]]
+} hn_inputs;
+
+/// Room for the values alone, where there is no tape.
+HN_MUST_CHECK hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in);
+/// The same with a tape for `outputs` and its workspace.
+HN_MUST_CHECK hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out,
+                                          hn_arena *arena, hn_inputs *in);
+void hn_inputs_free(hn_inputs *in); ///< the tape
+/// q (nq); v (nv) or NULL for zero.
+void hn_inputs_set(hn_inputs *in, double t, const double *q, const double *v, double alpha,
+                   double beta);
+#endif

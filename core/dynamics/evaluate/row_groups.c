@@ -1,0 +1,41 @@
+#include "dynamics/evaluate/row_groups.h"
+
+#include <math.h>
+
+hn_status hn_row_groups_init(const hn_system *sys, hn_arena *arena, hn_row_groups *g) {
+    const int n = hn_system_get_info(sys).nc;
+    *g = (hn_row_groups){.n = n,
+                         .group = hn_arena_ints(arena, (size_t)n),
+                         .largest = hn_arena_doubles(arena, (size_t)n)};
+    if (hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < n; i++) {
+        int first = 0;
+        while (hn_system_row_loop(sys, first) != hn_system_row_loop(sys, i) ||
+               hn_system_row_is_length(sys, first) != hn_system_row_is_length(sys, i)) {
+            first++;
+        }
+        g->group[i] = first;
+    }
+    return HN_OK;
+}
+
+double hn_row_groups_ratio(hn_row_groups *g, const double *square, const uint16_t *slots) {
+    double least = 1;
+    for (int i = 0; i < g->n; i++) {
+        g->largest[i] = 0;
+    }
+    for (int i = 0; i < g->n; i++) {
+        double *largest = &g->largest[g->group[i]];
+        const double size = fabs(square[slots[i]]);
+        *largest = size > *largest ? size : *largest;
+    }
+    for (int i = 0; i < g->n; i++) {
+        const double size = fabs(square[slots[i]]), largest = g->largest[g->group[i]];
+        if (size < least * largest && size > 0) {
+            least = size / largest;
+        }
+    }
+    return least;
+}

@@ -1,0 +1,291 @@
+#include "formulations/chart/minimal_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// accepted steps over which HN_POSITION_AUTO counts what Newton's method costs
+enum { STEPS_MEASURED = 8 };
+#define STEPS_AHEAD \
+    2 // |det J_d| is nearly linear in t there; twice the step leaves room for its bend
+
+hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
+                          hn_diag *diag) {
+    const size_t nv = (size_t)hn_system_get_info(sys).nv;
+    s->q = hn_arena_doubles(arena, (size_t)hn_system_get_info(sys).nq);
+    s->v = hn_arena_doubles(arena, nv);
+    s->last_v = hn_arena_doubles(arena, nv);
+    if (!s->q || !s->v || !s->last_v) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    const hn_status status = hn_chart_init(&s->chart, sys, 1, arena, diag);
+    s->chart.plain_only = 1;
+    s->position = HN_POSITION_NEWTON;
+    s->dyads = NULL;
+    s->closings = s->newton_steps = 0;
+    s->n_settled = 0;
+    s->arena = arena;
+    return status;
+}
+
+void hn_minimal_destroy(void *self) {
+    hn_minimal_state *s = self;
+    hn_chart_destroy(&s->chart);
+    hn_chart_jacobian_free(&s->slopes);
+    hn_dyads_free(s->dyads);
+    s->dyads = NULL;
+}
+
+// `here` goes to the closed pose with the independent entries of y
+static hn_status place(hn_minimal_state *s, double t, const double *y, double tol) {
+    hn_chart *chart = &s->chart;
+    hn_chart_point *p = &chart->here;
+    int same = p->valid && p->t == t && p->tol <= tol;
+    for (int j = 0; j < chart->r && same; j++) {
+        same = p->q[chart->at[chart->ind[j]]] == y[j];
+    }
+    if (same) {
+        return HN_OK;
+    }
+    hn_chart_predict(chart, t, y, s->q);
+    const long long newton = chart->cost.newton;
+    const hn_status status = hn_chart_close(chart, p, t, s->q, tol);
+    s->closings++;
+    s->newton_steps += chart->cost.newton - newton;
+    return status == HN_OK ? hn_chart_check_mode(chart) : status;
+}
+
+static hn_status rhs(void *self, double t, const double *y, double *ydot) {
+    hn_minimal_state *s = self;
+    const int r = s->chart.r;
+    s->chart.cost.evals++;
+    const hn_status status = place(s, t, y, HN_CHART_TOL);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_chart_speeds(&s->chart, &s->chart.here, y + r, s->v);
+    memcpy(ydot, y + r, (size_t)r * sizeof *y);
+    return hn_chart_accel(&s->chart, s->v, ydot + r);
+}
+
+static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
+    const hn_minimal_state *s = self;
+    (void)t;
+    memcpy(pos_dot, y + s->chart.r, (size_t)s->chart.r * sizeof *y);
+    return HN_OK;
+}
+
+static hn_status prepare(void *self) {
+    hn_minimal_state *s = self;
+    return hn_chart_jacobian_prepare(&s->slopes, &s->chart, s->arena);
+}
+
+static hn_status jacobian(void *self, double t, const double *y, double *jac) {
+    hn_minimal_state *s = self;
+    hn_status status = place(s, t, y, HN_CHART_TOL);
+    if (status == HN_OK) {
+        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.r, s->v);
+        status = hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v);
+    }
+    if (status == HN_OK) {
+        hn_chart_jacobian_minimal(&s->slopes, &s->chart, jac);
+    }
+    return status;
+}
+
+void hn_minimal_ode(void *self, hn_ode *out) {
+    const hn_minimal_state *s = self;
+    *out = (hn_ode){.n_pos = s->chart.r,
+                    .n_vel = s->chart.r,
+                    .self = self,
+                    .rhs = rhs,
+                    .kinematics = kinematics,
+                    .jacobian = jacobian,
+                    .prepare = prepare};
+}
+
+// the closed form takes over at the closed pose `here`; 0: a dyad stands at its dead point
+static int adopt_dyads(hn_minimal_state *s, double t) {
+    if (!hn_dyads_take_branch(s->dyads, t, s->chart.here.q)) {
+        return 0;
+    }
+    s->chart.dyads = s->dyads;
+    return 1;
+}
+
+// the closed form must serve, or the run is refused with the reason
+static hn_status demand_dyads(hn_minimal_state *s, double t) {
+    hn_chart *chart = &s->chart;
+    const char *refusal = hn_dyads_refusal(s->dyads);
+    if (refusal) {
+        char text[HN_CHART_TEXT];
+        snprintf(text, sizeof text, "no position analysis in closed form: %.180s", refusal);
+        return hn_chart_fail(chart, HN_ERR_UNSUPPORTED, t, chart->here.q, text);
+    }
+    return adopt_dyads(s, t) ? HN_OK
+                             : hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
+                                             "a dyad stands at its dead point: which way it goes "
+                                             "on is not told by the pose");
+}
+
+// a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose `here`
+static hn_status choose_position(hn_minimal_state *s, double t) {
+    hn_chart *chart = &s->chart;
+    hn_status status = HN_OK;
+    if (s->position == HN_POSITION_NEWTON || chart->nc == 0) {
+        return HN_OK;
+    }
+    if (!s->dyads || !hn_dyads_serve(s->dyads, chart->dep, chart->rank)) {
+        hn_dyads_free(s->dyads);
+        s->dyads = NULL;
+        status = hn_dyads_create(chart->sys, chart->dep, chart->rank, s->arena, &s->dyads);
+    }
+    if (status != HN_OK) {
+        return hn_chart_fail(chart, status, t, chart->here.q, hn_status_text(status));
+    }
+    return s->position == HN_POSITION_DYADS ? demand_dyads(s, t) : HN_OK;
+}
+
+// Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed form takes one run of its tape
+// for each closing, and looks at its branches twice a step.
+static void compare_costs(hn_minimal_state *s, double t) {
+    const hn_chart *chart = &s->chart;
+    if (s->position != HN_POSITION_AUTO || chart->dyads || !s->dyads ||
+        hn_dyads_refusal(s->dyads) || ++s->n_settled < STEPS_MEASURED) {
+        return;
+    }
+    const double step = hn_eval_info(chart->loop).ops + hn_sparse_lu_factor_ops(chart->here.lu) +
+                        hn_sparse_lu_solve_ops(chart->here.lu);
+    const double newton = step * (double)s->newton_steps;
+    const double dyads = hn_dyads_info(s->dyads).ops * (double)s->closings +
+                         2.0 * hn_dyads_branch_info(s->dyads).ops * STEPS_MEASURED;
+    if (dyads < newton) {
+        (void)adopt_dyads(s, t); // at a dead point Newton's method goes on, as long as it can
+    }
+    s->closings = s->newton_steps = 0; // a mechanism that starts from rest needs more of them later
+    s->n_settled = 0;
+}
+
+hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
+                           const double *v, double *y) {
+    hn_chart *chart = &s->chart;
+    memmove(s->q, q, (size_t)chart->nq * sizeof *q);
+    memmove(s->v, v, (size_t)chart->nv * sizeof *v);
+    chart->dyads = NULL;
+    // a start that is made again gives the same bits
+    s->closings = s->newton_steps = 0;
+    s->n_settled = 0;
+    hn_status status = hn_chart_choose(chart, t, s->q, first);
+    if (status == HN_OK) {
+        status = hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE);
+    }
+    if (status == HN_OK) {
+        status = choose_position(s, t);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int j = 0; j < chart->r; j++) {
+        y[j] = s->q[chart->at[chart->ind[j]]];
+        y[chart->r + j] = s->v[chart->ind[j]];
+    }
+    status = hn_chart_settle(chart);
+    hn_chart_speeds(chart, &chart->here, y + chart->r, s->last_v);
+    s->volume = 1;
+    s->has_rate = 0;
+    return status;
+}
+
+hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v) {
+    hn_minimal_state *s = self;
+    hn_chart *chart = &s->chart;
+    hn_chart_predict(chart, t, y, q);
+    // at the accepted state itself nothing has to be solved
+    const hn_chart_point *p = &chart->base;
+    if (!hn_chart_is_at(chart, p, t, q)) {
+        const hn_status status = hn_chart_close(chart, &chart->probe, t, q, HN_CHART_TOL_FINE);
+        if (status != HN_OK) {
+            return status;
+        }
+        p = &chart->probe;
+    }
+    hn_chart_speeds(chart, p, y + chart->r, v);
+    return HN_OK;
+}
+
+// A step that jumps over a dead point finds a closed loop on the near side of it again: the coordinate turns back although
+// the mechanism went on. Then |det J_d| was on its way to zero and all speeds have turned round.
+static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
+    const hn_chart *chart = &s->chart;
+    double along = 0;
+    if (!s->has_rate || s->volume + STEPS_AHEAD * h * s->volume_rate >= 0) {
+        return 0;
+    }
+    for (int i = 0; i < chart->nv; i++) {
+        along += s->v[i] * s->last_v[i] / (chart->scale[i] * chart->scale[i]);
+    }
+    return along < 0;
+}
+
+// A closed form keeps its sign and so never goes over to the other mode: where the two ways of assembling a dyad meet inside a
+// step, it turns back on a kinked path. The tangent does not: from the last state forth or from this one back it arrives at a pose
+// of the other sign (of two points on either side of the meeting at least one sees it).
+static hn_status check_dyads(hn_minimal_state *s, double t, const double *y) {
+    hn_chart *chart = &s->chart;
+    const hn_chart_point *here = &chart->here, *base = &chart->base;
+    int turned;
+    if (!chart->dyads || !base->valid) {
+        return HN_OK;
+    }
+    hn_chart_predict(chart, t, y, s->q);
+    turned = hn_dyads_find_turned(chart->dyads, t, s->q);
+    if (turned < 0) {
+        for (int j = 0; j < chart->r; j++) {
+            s->v[j] = base->q[chart->at[chart->ind[j]]];
+        }
+        hn_chart_predict_from(chart, here, base->t, s->v, s->q);
+        turned = hn_dyads_find_turned(chart->dyads, base->t, s->q);
+    }
+    return turned < 0 ? HN_OK : hn_chart_fail_dyad(chart, turned);
+}
+
+hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
+    hn_chart *chart = &s->chart;
+    const double h = t - chart->base.t;
+    hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
+    if (status == HN_OK) {
+        status = check_dyads(s, t, y);
+    }
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
+    if (jumped_a_dead_point(s, h)) {
+        chart->here.valid = 0;
+        return hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
+                             "a dead point lies inside this step: the coordinate turns back there");
+    }
+    status = hn_chart_settle(chart);
+    if (status == HN_OK && h != 0) {
+        const double volume = hn_chart_volume(chart);
+        s->volume_rate = (volume - s->volume) / h;
+        s->volume = volume;
+        s->has_rate = 1;
+        memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
+    }
+    if (status == HN_OK) {
+        compare_costs(s, t);
+    }
+    return status;
+}
+
+void hn_minimal_add_cost(const void *self, hn_cost *cost) {
+    const hn_minimal_state *s = self;
+    hn_chart_add_cost(&s->chart, cost);
+    hn_chart_jacobian_add_cost(&s->slopes, cost);
+    cost->ops += s->chart.dyads ? hn_dyads_ops(s->chart.dyads) : 0;
+}
+
+const char *hn_minimal_why(const void *self) {
+    const hn_minimal_state *s = self;
+    return s->chart.why[0] ? s->chart.why : NULL;
+}

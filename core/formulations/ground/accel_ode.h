@@ -1,0 +1,33 @@
+#ifndef HN_FORMULATIONS_ACCEL_ODE_H
+#define HN_FORMULATIONS_ACCEL_ODE_H
+// What index-1, Baumgarte and projection share: the state y = (q, v) in system coordinates and the right-hand side
+//
+//     q' = G(q) v,    v' = a   from   K [a; -lambda] = [f; -gamma - 2 alpha (J v + phi_t) - beta^2 phi]        (1)
+//
+// A formulation's instance begins with an hn_accel_ode, so that the functions below and those of hn_state_ode fit its table.
+
+#include "dynamics/evaluate/eval.h"
+#include "formulations/ground/state_ode.h"
+
+typedef struct hn_accel_ode {
+    hn_state_ode base; // first
+    hn_accel *accel;
+    double alpha, beta; ///< [1/s], used with baumgarte
+} hn_accel_ode;
+
+HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
+                                          hn_solver solver, hn_arena *arena, hn_diag *diag);
+/// The setting "solver" of the formulations that use this; the value is an hn_solver.
+#define HN_ACCEL_ODE_SOLVER_SETTING                                                             \
+    {                                                                                           \
+        "solver", 0, 0, HN_SOLVER_COUNT - 1, "",                                                \
+            "who solves for the accelerations; auto: the tape, refined or least-norm where it " \
+            "must be",                                                                          \
+            hn_solver_names, HN_SOLVER_COUNT, 0                                                 \
+    }
+void hn_accel_ode_destroy(void *self);
+void hn_accel_ode_get(void *self, hn_ode *out);
+hn_status hn_accel_ode_rhs(void *self, double t, const double *y, double *ydot);
+void hn_accel_ode_add_cost(const void *self, hn_cost *cost);
+
+#endif

@@ -1,0 +1,59 @@
+#include "formulations/ground/flops.h"
+
+double hn_flops_qr(int m, int n) {
+    const double a = m > n ? m : n, b = m > n ? n : m;
+    return 2 * a * b * b - 2 * b * b * b / 3;
+}
+
+double hn_flops_qr_solve(int m, int n) {
+    const double k = m < n ? m : n;
+    return 4.0 * m * k - 2 * k * k + k * k;
+}
+
+double hn_flops_cholesky(int n) {
+    const double k = n;
+    return k * k * k / 3 + k * k / 2;
+}
+
+double hn_flops_cholesky_solve(int n) {
+    return 2.0 * n * n;
+}
+
+double hn_flops_product(int m, int k, int n) {
+    return 2.0 * m * k * n;
+}
+
+double hn_flops_saddle(int nv, int nc) {
+    const double n = nv, c = nc, residual = 2 * (n * n + 2 * n * c);
+    return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 2 * residual;
+}
+
+void hn_cost_add(hn_cost *sum, const hn_cost *part) {
+    sum->evals += part->evals;
+    sum->factorisations += part->factorisations;
+    sum->solves += part->solves;
+    sum->newton += part->newton;
+    sum->ops += part->ops;
+    sum->fallbacks += part->fallbacks;
+    sum->refinements += part->refinements;
+    sum->projections += part->projections;
+    sum->energy_removed += part->energy_removed;
+    sum->chart_changes += part->chart_changes;
+    sum->rejected += part->rejected;
+}
+
+hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
+    return (hn_cost){
+        .evals = after->evals - before->evals,
+        .factorisations = after->factorisations - before->factorisations,
+        .solves = after->solves - before->solves,
+        .newton = after->newton - before->newton,
+        .ops = after->ops - before->ops,
+        .fallbacks = after->fallbacks - before->fallbacks,
+        .refinements = after->refinements - before->refinements,
+        .projections = after->projections - before->projections,
+        .energy_removed = after->energy_removed - before->energy_removed,
+        .chart_changes = after->chart_changes - before->chart_changes,
+        .rejected = after->rejected - before->rejected,
+    };
+}

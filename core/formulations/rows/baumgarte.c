@@ -1,0 +1,143 @@
+#include "formulations/ground/accel_ode.h"
+#include "formulations/ground/registry.h"
+
+#include <math.h>
+
+// J a = -gamma - 2 alpha (J v + phi_t) - beta^2 phi, so the gap e obeys e'' + 2 alpha e' + beta^2 e = 0; with
+// alpha = beta it is critically damped:  e(t) = (e0 + (e0' + alpha e0) t) exp(-alpha t).            (1)
+//
+// The automatic rule follows the motion, not the step: alpha = min(1.3 w_rms, 0.1 / h), where w_rms is the running
+// rms of the largest rate. Tying alpha to 1/h alone would bring any integrator down to order 2, because inner stages
+// leave a gap of O(h^2) that alpha^2 then multiplies.
+
+enum { SET_ALPHA, SET_BETA, SET_RULE, SET_SOLVER };
+enum { RULE_GIVEN, RULE_AUTO };
+#define AUTO_RATE 1.3
+#define AUTO_STEP 0.1
+
+typedef struct baumgarte {
+    hn_accel_ode ode; // first: see accel_ode.h
+    int rule;
+    double *user_rates; // n_user
+    double *rate_scale; // n_user: 1 for an angle, 1 / length for a length
+    int n_user;
+    double t_last, sum_square, sum_time;
+} baumgarte;
+
+static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    baumgarte *b = hn_arena_get(arena, sizeof *b);
+    if (!b) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *self = b;
+    const hn_scene *scene = hn_system_scene(sys);
+    b->rule = (int)settings[SET_RULE];
+    b->ode.alpha = settings[SET_ALPHA];
+    b->ode.beta = settings[SET_BETA];
+    b->n_user = hn_system_get_info(sys).n_user;
+    b->user_rates = hn_arena_doubles(arena, (size_t)b->n_user);
+    b->rate_scale = hn_arena_doubles(arena, (size_t)b->n_user);
+    if (!b->user_rates || !b->rate_scale) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    for (int i = 0; i < b->n_user; i++) {
+        const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i)];
+        b->rate_scale[i] = c->kind == HN_LENGTH ? 1 / hn_system_length(sys) : 1;
+    }
+    return hn_accel_ode_init(&b->ode, sys, 1, (hn_solver)settings[SET_SOLVER], arena, diag);
+}
+
+static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
+    baumgarte *b = self;
+    b->t_last = t;
+    b->sum_square = b->sum_time = 0;
+    // before the first step neither h nor the motion's rate is known; the start is consistent
+    if (b->rule == RULE_AUTO) {
+        b->ode.alpha = b->ode.beta = 0;
+    }
+    return hn_state_ode_set_state(self, t, q, v, y);
+}
+
+static double fastest_rate(baumgarte *b, const double *v) {
+    double fastest = 0;
+    hn_system_rates_to_user(b->ode.base.sys, v, b->user_rates);
+    for (int i = 0; i < b->n_user; i++) {
+        fastest = fmax(fastest, fabs(b->user_rates[i]) * b->rate_scale[i]);
+    }
+    return fastest;
+}
+
+static hn_status after_step(void *self, double t, double *y, int *changed) {
+    baumgarte *b = self;
+    const double h = t - b->t_last;
+    (void)hn_state_ode_after_step(self, t, y, changed);
+    b->t_last = t;
+    if (b->rule != RULE_AUTO || !(h > 0)) {
+        return HN_OK;
+    }
+    const double rate = fastest_rate(b, y + b->ode.base.nq);
+    b->sum_square += h * rate * rate;
+    b->sum_time += h;
+    b->ode.alpha = fmin(AUTO_RATE * sqrt(b->sum_square / b->sum_time), AUTO_STEP / h);
+    b->ode.beta = b->ode.alpha;
+    *changed = 1; // y stays, its slope does not
+    return HN_OK;
+}
+
+static hn_status set(void *self, int setting, double value) {
+    baumgarte *b = self;
+    if (setting == SET_SOLVER) {
+        return HN_ERR_UNSUPPORTED; // compiled in
+    }
+    if (setting == SET_RULE) {
+        b->rule = (int)value;
+    } else if (b->rule == RULE_AUTO) {
+        return HN_ERR_UNSUPPORTED; // the rule would overwrite it at the next step
+    } else if (setting == SET_ALPHA) {
+        b->ode.alpha = value;
+    } else {
+        b->ode.beta = value;
+    }
+    return HN_OK;
+}
+
+static const char *const rules[] = {"given", "auto"};
+
+const hn_formulation hn_formulation_baumgarte = {
+    .name = "baumgarte",
+    .title = "Baumgarte stabilisation",
+    .short_name = "Baumgarte",
+    .rule = "Replace zero acceleration error by a damped oscillator: the gap decays like "
+            "exp(-alpha t) instead of "
+            "growing, and the force that closes it also disturbs the motion.",
+    .drift =
+        "bounded: truncation feeds the gap, alpha and beta drain it; alpha = beta damps critically",
+    .when = "a small gap at almost the price of index-1; real time",
+    .when_not =
+        "near a singular pose (the correction is divided by a vanishing singular value); alpha h "
+        "beyond the "
+        "integrator's stability limit; alpha tied to 1/h with an integrator of order above 1",
+    .source = "Baumgarte 1972; Ascher, Chin, Petzold & Reich 1995",
+    .needs = "M f phi J gamma",
+    .also = HN_FORM_STABILISED,
+    .index = 1,
+    .n_settings = 4,
+    .settings =
+        {
+            {"alpha", 5, -1e6, 1e6, "1/s", "damping of the gap", NULL, 0, 1},
+            {"beta", 5, -1e6, 1e6, "1/s", "natural rate of the gap", NULL, 0, 1},
+            {"rule", 0, 0, 1, "",
+             "given: alpha and beta as set; auto: min(1.3 x rms rate, 0.1 / step)", rules, 2, 0},
+            HN_ACCEL_ODE_SOLVER_SETTING,
+        },
+    .create = create,
+    .destroy = hn_accel_ode_destroy,
+    .ode = hn_accel_ode_get,
+    .set_state = set_state,
+    .get_state = hn_state_ode_get_state,
+    .after_step = after_step,
+    .set = set,
+    .add_cost = hn_accel_ode_add_cost,
+    .why = hn_state_ode_why,
+};

@@ -1,0 +1,30 @@
+#include "formulations/ground/registry.h"
+
+static const char *const projects[] = {"no", "yes"};
+
+// q' = G v,   M v' = f + J' lambda,   phi = 0: the loop as it is. What a collocation method loses of the speeds lies across the loops
+// (in M^-1 J'), so that a projection at the end of a step gives back the order that positions have.
+const hn_formulation hn_formulation_index3 = {
+    .name = "index3",
+    .title = "index 3, the loop as it is",
+    .short_name = "index-3",
+    .rule = "Ask that the loop is closed at the end of the step, nothing else. The gap stays at "
+            "rounding; speeds and multipliers pay for it with orders.",
+    .drift = "loop gap at rounding, speed gap of the order of the speeds",
+    .when = "to see what the index costs; implicit Euler for robust first-order runs",
+    .when_not = "accurate speeds or reactions, variable steps at tight tolerances: take ggl",
+    .source =
+        "Hairer, Lubich & Roche 1989; Hairer & Wanner 1996, VII; Bottasso, Dopico & Trainelli 2008",
+    .needs = "M f phi J and derivatives",
+    .order_note = "radau5: q 5, v 3, its own multipliers 2, with project=yes 5 in q, v and "
+                  "recomputed lambda; implicit Euler: 1, 1, 1",
+    .limits = "Gauss methods do not converge on it",
+    .form = HN_FORM_INDEX3,
+    .index = 3,
+    .keeps_gap = 1,
+    .n_settings = 1,
+    .settings = {{"project", 0, 0, 1, "",
+                  "speeds are taken to what the loops allow at the end of each step; radau5, "
+                  "radau3 and implicit-euler only",
+                  projects, 2, 0}},
+};

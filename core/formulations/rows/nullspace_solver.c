@@ -1,0 +1,41 @@
+#include "formulations/ground/accel_ode.h"
+#include "formulations/ground/registry.h"
+
+// J N = 0:  a = N z + c,  (N' M N) z = N' (f - M c),  c = -J^+ gamma, at the state (q, v) as it stands.        (1)
+//
+// N is an orthonormal basis by pivoted QR, found anew each time (linalg/saddle.h). It may turn or change sign from one evaluation to the next:
+// only a is used, which no choice of N changes. The same as index1 with its solver set to least-norm, under the name that textbooks
+// give it.
+
+static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    (void)settings;
+    hn_accel_ode *ode = hn_arena_get(arena, sizeof *ode);
+    if (!ode) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *self = ode;
+    return hn_accel_ode_init(ode, sys, 0, HN_SOLVER_LEAST_NORM, arena, diag);
+}
+
+const hn_formulation hn_formulation_nullspace_solver = {
+    .name = "nullspace-solver",
+    .title = "null space as a linear solver",
+    .short_name = "NS solver",
+    .rule = "Use the null space of J only to solve for the accelerations, at positions and speeds "
+            "that are free. The multipliers are gone, and nothing else: it drifts exactly as "
+            "index-1 does.",
+    .drift = "as index-1: the gap grows like t^2, the speed gap like t",
+    .when = "to see that eliminating multipliers does not remove drift; redundant rows",
+    .when_not = "long runs; large mechanisms (dense)",
+    .source = "Kim & Vanderploeg 1986; Potra & Rheinboldt 1991",
+    .needs = "M f J gamma",
+    .index = 1,
+    .create = create,
+    .destroy = hn_accel_ode_destroy,
+    .ode = hn_accel_ode_get,
+    .set_state = hn_state_ode_set_state,
+    .get_state = hn_state_ode_get_state,
+    .add_cost = hn_accel_ode_add_cost,
+    .why = hn_state_ode_why,
+};

@@ -1,0 +1,42 @@
+#include "formulations/chart/orthonormal_state.h"
+#include "formulations/ground/registry.h"
+
+// v = N u with an orthonormal N from a factorisation of J at each right-hand side. J N = 0 leaves N free up to a rotation, and
+// the factorisation chooses: when it changes its mind, a column changes its sign (or turns) from one evaluation to the next, u
+// does not, and so v does. The loop stays closed. An exhibit; nullspace:basis=orthonormal is the same with the basis carried.
+
+static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    (void)settings;
+    hn_orthonormal_state *s = hn_arena_get(arena, sizeof *s);
+    if (!s) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *self = s;
+    return hn_orthonormal_init(s, sys, 0, arena, diag);
+}
+
+const hn_formulation hn_formulation_nullspace_untracked = {
+    .name = "nullspace-untracked",
+    .title = "null-space, basis not tracked",
+    .short_name = "untracked",
+    .rule = "Take an orthonormal basis of the free speeds anew at every evaluation. The "
+            "factorisation may change its sign at any time; the speeds along it then turn round "
+            "in the middle of the motion.",
+    .drift = "none in the gap; the motion is wrong by radians after the first change of sign",
+    .when = "to see why a basis has to be carried along",
+    .when_not = "for any result that matters: nullspace:basis=orthonormal carries its basis",
+    .source = "Kim & Vanderploeg 1986; Liang & Lance 1987, the remedy",
+    .needs = "M f phi J gamma",
+    .order_note = "none: the basis jumps",
+    .model_error = 1,
+    .keeps_gap = 1,
+    .create = create,
+    .destroy = hn_orthonormal_destroy,
+    .ode = hn_orthonormal_ode,
+    .set_state = hn_orthonormal_set_state,
+    .get_state = hn_orthonormal_get_state,
+    .after_step = hn_orthonormal_after_step,
+    .add_cost = hn_orthonormal_add_cost,
+    .why = hn_orthonormal_why,
+};

@@ -1,0 +1,68 @@
+#include "formulations/chart/minimal_state.h"
+#include "formulations/ground/registry.h"
+
+enum { SET_TAU };
+
+typedef struct partitioning {
+    hn_minimal_state state; // first: see minimal_state.h
+    double tau;
+} partitioning;
+
+static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    partitioning *p = hn_arena_get(arena, sizeof *p);
+    if (!p) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *self = p;
+    p->tau = settings[SET_TAU];
+    return hn_minimal_init(&p->state, sys, arena, diag);
+}
+
+static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
+    partitioning *p = self;
+    return hn_minimal_start(&p->state, HN_CHART_PREFERRED, t, q, v, y);
+}
+
+static hn_status after_step(void *self, double t, double *y, int *changed) {
+    partitioning *p = self;
+    hn_minimal_state *s = &p->state;
+    hn_chart *chart = &s->chart;
+    *changed = 0;
+    const hn_status status = hn_minimal_settle(s, t, y);
+    if (status != HN_OK || !hn_chart_is_poor(chart, p->tau)) {
+        return status;
+    }
+    // the chosen coordinates near their dead point: others take over, with the state as it is
+    hn_chart_speeds(chart, &chart->base, y + chart->r, s->v);
+    *changed = 1;
+    chart->cost.chart_changes++;
+    return hn_minimal_start(s, HN_CHART_BEST, t, chart->base.q, s->v, y);
+}
+
+const hn_formulation hn_formulation_partitioning = {
+    .name = "partitioning",
+    .title = "coordinate partitioning",
+    .short_name = "partitioning",
+    .rule = "Integrate as many coordinates as there are freedoms; the others follow from the "
+            "closed loops. Near a "
+            "dead point of the chosen ones, others are chosen.",
+    .drift = "none: every right-hand side closes the loops",
+    .when = "one or two freedoms, no drift wanted, motions that pass dead points",
+    .when_not = "poses where the rank of J drops: no choice of coordinates is regular there",
+    .source = "Wehage & Haug 1982",
+    .needs = "M f phi J gamma",
+    .keeps_gap = 1,
+    .n_settings = 1,
+    .settings = {{"tau", HN_CHART_TAU, 0, 1, "",
+                  "change coordinates when |det J_d| falls below tau times the best choice", NULL,
+                  0, 0}},
+    .create = create,
+    .destroy = hn_minimal_destroy,
+    .ode = hn_minimal_ode,
+    .set_state = set_state,
+    .get_state = hn_minimal_get_state,
+    .after_step = after_step,
+    .add_cost = hn_minimal_add_cost,
+    .why = hn_minimal_why,
+};

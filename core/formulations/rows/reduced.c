@@ -1,0 +1,84 @@
+#include "formulations/chart/minimal_state.h"
+#include "formulations/ground/registry.h"
+
+// q = f(q_r) for a fixed choice q_r, with B = df/dq_r:
+//
+//     M_r q_r'' + B' (M B' q_r' + h) = B' Q,   M_r = B' M B,   B' q_r' = [0; -J_d^-1 gamma]           (1)
+//
+// (the primes on B mark its rate on the left of q_r', its transpose elsewhere). f exists as far as the next fold,
+// det J_d = 0; there the method stops and says so. Where the loops fall apart into dyads f can be written down (dynamics/analyse/dyads.h) and
+// nothing is iterated; else it is found by Newton's method. Neither is always cheaper: a parallelogram moves along its tangent, where
+// Newton's method has nothing to do.
+
+enum { SET_COORDINATE, SET_POSITION };
+
+static const char *const positions[] = {"auto", "newton", "dyads"}; // as hn_position counts them
+enum { N_POSITIONS = sizeof positions / sizeof positions[0] };
+
+typedef struct reduced {
+    hn_minimal_state state; // first: see minimal_state.h
+    int first;              // column that has to be independent, -1: any
+} reduced;
+
+static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+                        hn_diag *diag) {
+    reduced *red = hn_arena_get(arena, sizeof *red);
+    if (!red) {
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *self = red;
+    // 0 is "the best choice": HN_CHART_PREFERRED
+    red->first = (int)settings[SET_COORDINATE] - 1;
+    const int nv = hn_system_get_info(sys).nv;
+    if (red->first >= nv) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
+                           "coordinate=%d: this scene has coordinates 1 to %d", red->first + 1, nv);
+    }
+    const hn_status status = hn_minimal_init(&red->state, sys, arena, diag);
+    red->state.position = (hn_position)settings[SET_POSITION];
+    return status;
+}
+
+static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
+    reduced *red = self;
+    return hn_minimal_start(&red->state, red->first, t, q, v, y);
+}
+
+static hn_status after_step(void *self, double t, double *y, int *changed) {
+    reduced *red = self;
+    *changed = 0;
+    return hn_minimal_settle(&red->state, t, y);
+}
+
+const hn_formulation hn_formulation_reduced = {
+    .name = "reduced",
+    .title = "reduced coordinates",
+    .short_name = "reduced",
+    .rule = "Write all coordinates as functions of as many as there are freedoms and integrate "
+            "only those; the loops "
+            "are closed by construction, as far as the chosen coordinates reach.",
+    .drift = "none: every right-hand side closes the loops",
+    .when = "teaching, closed-form loops, a driven crank that turns all the way round",
+    .when_not = "motions through a dead point of the chosen coordinate: the run stops there "
+                "(partitioning goes on)",
+    .source = "Wehage & Haug 1982; Featherstone 2008, ch. 8",
+    .needs = "M f phi J gamma",
+    .keeps_gap = 1,
+    .n_settings = 2,
+    .settings = {{"coordinate", 0, 0, 4000, "",
+                  "number of the joint coordinate to keep, as inspect lists them; 0: the best "
+                  "choice at the start",
+                  NULL, 0, 0},
+                 {"position", HN_POSITION_AUTO, 0, N_POSITIONS - 1, "",
+                  "who closes the loops: dyads in closed form, Newton's method, or auto: dyads "
+                  "once they are seen to cost fewer operations than Newton's method did",
+                  positions, N_POSITIONS, 0}},
+    .create = create,
+    .destroy = hn_minimal_destroy,
+    .ode = hn_minimal_ode,
+    .set_state = set_state,
+    .get_state = hn_minimal_get_state,
+    .after_step = after_step,
+    .add_cost = hn_minimal_add_cost,
+    .why = hn_minimal_why,
+};

@@ -1,0 +1,96 @@
+#include "integrators/step/dae_base.h"
+#include "integrators/constrained/half_explicit.h"
+#include "integrators/step/registry.h"
+
+#define HALF_EXPLICIT(name, scheme, doubled)                                                       \
+    static hn_status create_##name(const hn_system *sys, hn_dae_form form, const double *settings, \
+                                   const double *form_settings, hn_arena *arena, void **self,      \
+                                   hn_diag *diag) {                                                \
+        (void)settings;                                                                            \
+        const int close = hn_dae_close_setting(form, form_settings);                               \
+        return hn_half_explicit_create(&(scheme), doubled, close, sys, arena, self, diag);         \
+    }                                                                                              \
+    static const hn_dae_stepper dae_##name = {                                                     \
+        .create = create_##name,                                                                   \
+        .destroy = hn_half_explicit_destroy,                                                       \
+        .start = hn_half_explicit_start,                                                           \
+        .step = hn_half_explicit_step,                                                             \
+        .accepted = hn_half_explicit_accepted,                                                     \
+        .raw_lambda = hn_half_explicit_raw_lambda,                                                 \
+        .add_cost = hn_half_explicit_add_cost,                                                     \
+        .why = hn_half_explicit_why,                                                               \
+    }
+
+HALF_EXPLICIT(hem3, hn_half_explicit_hem3, 0);
+HALF_EXPLICIT(hem4, hn_half_explicit_hem4, 0);
+HALF_EXPLICIT(hem4a, hn_half_explicit_hem4, 1);
+HALF_EXPLICIT(hrk4, hn_half_explicit_rk4, 0);
+
+const hn_stepper hn_stepper_hem3 = {
+    .name = "hem3",
+    .title = "half-explicit Runge-Kutta 3",
+    .about = "Three explicit stages, each with multipliers that make the next stage's speeds fit "
+             "the loops. J v = 0 to rounding, no Newton, no rate of J; phi drifts with the error.",
+    .source = "Brasey & Hairer 1993",
+    .order = 3,
+    .stages = 3,
+    .real_limit = 2.513,
+    .imag_limit = 1.732,
+    .n_settings = 1,
+    .settings = {HN_SETTING_STEP},
+    .forms = 1u << HN_FORM_INDEX2,
+    .dae = &dae_hem3,
+};
+
+const hn_stepper hn_stepper_hem4 = {
+    .name = "hem4",
+    .title = "half-explicit Runge-Kutta 4",
+    .about =
+        "Five explicit stages of order 4 for the index-2 system; speeds fit the loops at every "
+        "stage, positions drift with the error of the method.",
+    .source = "Brasey & Hairer 1993",
+    .order = 4,
+    .stages = 5,
+    .real_limit = 5.364,
+    .imag_limit = 3.275,
+    .n_settings = 1,
+    .settings = {HN_SETTING_STEP},
+    .forms = 1u << HN_FORM_INDEX2,
+    .dae = &dae_hem4,
+};
+
+const hn_stepper hn_stepper_hem4_adaptive = {
+    .name = "hem4-adaptive",
+    .title = "half-explicit Runge-Kutta 4, adaptive",
+    .about = "hem4 with its error watched by step doubling: each step is made whole and in halves, "
+             "the halves are kept. A partitioned pair of order 5(4), PHEM56 (Murua 1997), would "
+             "need fewer evaluations; it is not here, because its coefficients could not be had "
+             "from a source that can be checked.",
+    .source = "Brasey & Hairer 1993; Hairer, Norsett & Wanner 1993, section II.4",
+    .order = 4,
+    .control_order = 5,
+    .stages = 15,
+    .adaptive = 1,
+    .real_limit = 10.729,
+    .imag_limit = 6.551,
+    .n_settings = 4,
+    .settings = {HN_SETTINGS_ADAPTIVE},
+    .forms = 1u << HN_FORM_INDEX2,
+    .dae = &dae_hem4a,
+};
+
+const hn_stepper hn_stepper_half_explicit_rk4 = {
+    .name = "half-explicit-rk4",
+    .title = "Runge-Kutta 4, used half-explicitly",
+    .about = "An exhibit: the classical tableau meets the conditions of order 4 for ordinary "
+             "differential equations, but not those for index 2. What is left is order 3.",
+    .source = "Brasey & Hairer 1993; Hairer, Lubich & Roche 1989",
+    .order = 3,
+    .stages = 4,
+    .real_limit = 2.785,
+    .imag_limit = 2.828,
+    .n_settings = 1,
+    .settings = {HN_SETTING_STEP},
+    .forms = 1u << HN_FORM_INDEX2,
+    .dae = &dae_hrk4,
+};

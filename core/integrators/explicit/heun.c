@@ -1,0 +1,24 @@
+#include "integrators/step/compensated.h"
+#include "integrators/explicit/explicit_rk.h"
+#include "integrators/step/registry.h"
+
+static void *create(int n_pos, int n_vel, hn_arena *arena) {
+    return hn_explicit_rk_create(&hn_tableau_heun, n_pos + n_vel, arena);
+}
+
+const hn_stepper hn_stepper_heun = {
+    .name = "heun",
+    .title = "Heun",
+    .about = "Two slopes a step, order 2. An undamped oscillation still grows, slowly.",
+    .source = "Heun 1900",
+    .order = 2,
+    .stages = 2,
+    .real_limit = 2,
+    .imag_limit = 0,
+    .n_settings = 2,
+    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
+    .create = create,
+    .configure = hn_explicit_rk_configure,
+    .step = hn_explicit_rk_step,
+    .accepted = hn_explicit_rk_accepted,
+};

@@ -1,0 +1,116 @@
+#include "integrators/step/compensated.h"
+#include "integrators/step/registry.h"
+
+#include <string.h>
+
+// v' = v + h/2 a(t, q, v)
+// q1 = q + h qdot(q + h/2 qdot(q, v), v')                                                           (1)
+// v1 = v' + h/2 a(t + h, q1, v' + h/2 a(t, q, v))
+//
+// With qdot = v and accelerations that do not depend on speed this is velocity Verlet: the midpoint in the middle line is v'
+// itself, and the predicted speed in the last line is not looked at. Where positions turn with their rates (tangent
+// coordinates) or forces depend on speed (every mechanism in angles), the two keep the order at 2, but the map is
+// then not symplectic. The acceleration is taken anew at the start of each step, at the state that was kept.
+// Source: Swope et al. 1982; Hairer, Lubich & Wanner 2003, Geometric numerical integration illustrated by Stormer-Verlet.
+
+typedef struct verlet {
+    int n_pos, n_vel;
+    double *slope; // n_pos + n_vel
+    double *mixed; // n_pos + n_vel: a state to evaluate at
+    double *half;  // n_vel: v' - v = h/2 a
+    hn_compensated sum;
+} verlet;
+
+static void *create(int n_pos, int n_vel, hn_arena *arena) {
+    verlet *s = hn_arena_get(arena, sizeof *s);
+    if (!s) {
+        return NULL;
+    }
+    s->n_pos = n_pos;
+    s->n_vel = n_vel;
+    s->slope = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
+    s->mixed = hn_arena_doubles(arena, (size_t)(n_pos + n_vel));
+    s->half = hn_arena_doubles(arena, (size_t)n_vel);
+    return hn_compensated_init(&s->sum, n_pos + n_vel, arena) && !hn_arena_failed(arena) ? s : NULL;
+}
+
+static void configure(void *self, const double *settings) {
+    verlet *s = self;
+    hn_compensated_switch(&s->sum, settings[HN_SUM_SETTING] != 0);
+}
+
+// the middle line of (1): new positions from s->slope = y' at y and the kicked speeds in s->half
+static hn_status drift(verlet *s, const hn_ode *ode, double t, double h, const double *y,
+                       double *y_new) {
+    for (int i = 0; i < s->n_pos; i++) {
+        s->mixed[i] = y[i] + h / 2 * s->slope[i];
+    }
+    for (int i = 0; i < s->n_vel; i++) {
+        s->mixed[s->n_pos + i] = y[s->n_pos + i] + s->half[i];
+    }
+    const hn_status status = ode->kinematics(ode->self, t + h / 2, s->mixed, s->slope);
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int i = 0; i < s->n_pos; i++) {
+        s->slope[i] *= h;
+    }
+    hn_compensated_add(&s->sum, 0, s->n_pos, y, s->slope, y_new);
+    return HN_OK;
+}
+
+static hn_status step(void *self, const hn_ode *ode, double t, double h, const double *y,
+                      double *y_new, double *err) {
+    (void)err;
+    verlet *s = self;
+    const int n_pos = s->n_pos, n_vel = s->n_vel;
+    hn_status status = ode->rhs(ode->self, t, y, s->slope);
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int i = 0; i < n_vel; i++) {
+        s->half[i] = h / 2 * s->slope[n_pos + i];
+    }
+    status = drift(s, ode, t, h, y, y_new);
+    if (status != HN_OK) {
+        return status;
+    }
+    memcpy(s->mixed, y_new, (size_t)n_pos * sizeof *y);
+    for (int i = 0; i < n_vel; i++) {
+        s->mixed[n_pos + i] = y[n_pos + i] + 2 * s->half[i];
+    }
+    status = ode->rhs(ode->self, t + h, s->mixed, s->slope);
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int i = 0; i < n_vel; i++) {
+        s->half[i] += h / 2 * s->slope[n_pos + i];
+    }
+    hn_compensated_add(&s->sum, n_pos, n_vel, y, s->half, y_new);
+    return HN_OK;
+}
+
+static void accepted(void *self, int changed) {
+    verlet *s = self;
+    hn_compensated_accepted(&s->sum, changed);
+}
+
+const hn_stepper hn_stepper_verlet = {
+    .name = "verlet",
+    .title = "velocity Verlet",
+    .about = "Half a kick, drift, half a kick: order 2. Where forces depend on position alone the "
+             "energy stays bounded for ever; where they depend on speed, as in every mechanism "
+             "described by angles, it is kept only to the order.",
+    .source = "Swope, Andersen, Berens & Wilson 1982; Hairer, Lubich & Wanner 2003",
+    .order = 2,
+    .stages = 2,
+    .partitioned = 1,
+    .real_limit = 1.0, // of x'' + 2 a x' + a^2 x = 0: a h < 1
+    .imag_limit = 2,
+    .n_settings = 2,
+    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
+    .create = create,
+    .configure = configure,
+    .step = step,
+    .accepted = accepted,
+};

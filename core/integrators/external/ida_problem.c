@@ -1,0 +1,270 @@
+#include "integrators/external/ida_problem.h"
+
+#include "integrators/step/control.h"
+#include "linalg/dense.h"
+#include "formulations/ground/flops.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ROW_RANK \
+    1e-10 // a row of J shorter than this beside the others, once they are taken out of it, depends on them
+
+static int has_mu(const hn_ida_problem *p) {
+    return p->form == HN_FORM_GGL;
+}
+
+static int is_stabilised(const hn_ida_problem *p) {
+    return p->form == HN_FORM_STABILISED;
+}
+
+static unsigned terms_of(hn_dae_form form) {
+    const unsigned always = HN_TERM_M | HN_TERM_F | HN_TERM_J;
+    static const unsigned constraints[HN_FORM_COUNT] = {
+        [HN_FORM_INDEX1] = HN_TERM_GAMMA,
+        [HN_FORM_STABILISED] = HN_TERM_GAMMA | HN_TERM_PHI_T | HN_TERM_PHI,
+        [HN_FORM_INDEX2] = HN_TERM_PHI_T,
+        [HN_FORM_INDEX3] = HN_TERM_PHI,
+        [HN_FORM_GGL] = HN_TERM_PHI_T | HN_TERM_PHI,
+    };
+    return always | constraints[form];
+}
+
+static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
+    const size_t nv = (size_t)p->nv, nc = (size_t)p->nc;
+    p->a = hn_arena_doubles(arena, nv);
+    p->lambda = hn_arena_doubles(arena, nc);
+    p->work = hn_arena_doubles(arena, nv > nc ? nv : nc);
+    p->slope = hn_arena_doubles(arena, 3 * ((size_t)p->nq + nv));
+    p->kept = hn_arena_ints(arena, nc);
+    p->place = hn_arena_ints(arena, nc);
+    if (hn_arena_failed(arena) || !hn_qr_init(&p->qr, arena, p->nv, p->nc)) {
+        return HN_ERR_MEMORY;
+    }
+    const hn_accel_opts opts = {.baumgarte = is_stabilised(p), .want_lambda = 1};
+    hn_status status = hn_eval_create(p->sys, terms_of(p->form), arena, &p->eval);
+    if (status == HN_OK) {
+        p->n_M = hn_eval_pattern(p->eval, HN_TERM_M, &p->M_row, &p->M_col);
+        p->n_J = hn_eval_pattern(p->eval, HN_TERM_J, &p->J_row, &p->J_col);
+        status = hn_accel_create(p->sys, &opts, arena, &p->accel);
+    }
+    return status;
+}
+
+hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys, hn_dae_form form,
+                              const double *form_settings, hn_arena *arena, hn_diag *diag) {
+    const hn_system_info info = hn_system_get_info(sys);
+    *p = (hn_ida_problem){.sys = sys, .form = form, .nq = info.nq, .nv = info.nv, .nc = info.nc};
+    if (is_stabilised(p) && form_settings[2] != 0) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "rule=given with alpha and beta",
+                           "rule=auto follows the steps of an integrator that takes the ordinary "
+                           "differential equation; ida takes alpha and beta as given");
+    }
+    if (is_stabilised(p)) {
+        p->alpha = form_settings[0];
+        p->beta = form_settings[1];
+    }
+    if (has_mu(p) && p->nq != p->nv) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "index2@ida serves it",
+                           "ida takes ggl only where every coordinate has a speed of its own; a "
+                           "spherical or free joint has four coordinates and three speeds");
+    }
+    const hn_status status = create_memory(p, arena);
+    return status == HN_OK ? HN_OK
+                           : hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
+}
+
+void hn_ida_problem_free(hn_ida_problem *p) {
+    hn_eval_free(p->eval);
+    hn_accel_free(p->accel);
+}
+
+int hn_ida_problem_room(const hn_ida_problem *p) {
+    return p->nq + p->nv + (has_mu(p) ? 2 : 1) * p->nc;
+}
+
+// The first columns of the pivoted QR of J' are rows that span all of them; J' lambda = b with those alone.
+static void keep_independent_rows(hn_ida_problem *p, const double *J) {
+    memcpy(p->qr.a, J, (size_t)p->nc * (size_t)p->nv * sizeof *J);
+    hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
+    p->n_kept = 0;
+    for (int row = 0; row < p->nc; row++) {
+        p->place[row] = -1;
+        for (int k = 0; k < p->qr.rank; k++) {
+            if (p->qr.perm[k] == row) {
+                p->place[row] = p->n_kept;
+                p->kept[p->n_kept++] = row;
+            }
+        }
+    }
+    p->n = p->nq + p->nv + (has_mu(p) ? 2 : 1) * p->n_kept;
+}
+
+// lambda of the kept rows from M a - f = J' lambda; needs the factors of keep_independent_rows()
+static void solve_multipliers(hn_ida_problem *p) {
+    const double *M = hn_eval_get(p->eval, HN_TERM_M), *f = hn_eval_get(p->eval, HN_TERM_F);
+    hn_mat_vec(p->nv, p->nv, M, p->a, p->work);
+    hn_axpy(p->nv, -1, f, p->work);
+    hn_qr_apply_qt(&p->qr, p->work);
+    hn_qr_solve_r(&p->qr, p->work);
+    memset(p->lambda, 0, (size_t)p->nc * sizeof *p->lambda);
+    for (int k = 0; k < p->qr.rank; k++) {
+        p->lambda[p->qr.perm[k]] = p->work[k];
+    }
+}
+
+hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state, double *y,
+                               double *ydot) {
+    const double *q = state, *v = state + p->nq;
+    hn_accel_info info = {0};
+    const hn_status status =
+        hn_accel_eval(p->accel, t, q, v, p->alpha, p->beta, p->a, p->lambda, &info);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_eval_run(p->eval, t, q, v);
+    keep_independent_rows(p, hn_eval_get(p->eval, HN_TERM_J));
+    if (p->n_kept < p->nc) {
+        solve_multipliers(p);
+    }
+    const size_t room = (size_t)hn_ida_problem_room(p);
+    memset(y, 0, room * sizeof *y);
+    memset(ydot, 0, room * sizeof *ydot);
+    memcpy(y, state, (size_t)(p->nq + p->nv) * sizeof *y);
+    hn_system_kinematics(p->sys, q, v, ydot);
+    memcpy(ydot + p->nq, p->a, (size_t)p->nv * sizeof *ydot);
+    for (int k = 0; k < p->n_kept; k++) {
+        y[p->nq + p->nv + k] = p->lambda[p->kept[k]];
+    }
+    return HN_OK;
+}
+
+static hn_status slope(void *self, double t, const double *y, double *ydot) {
+    hn_ida_problem *p = self;
+    hn_accel_info info = {0};
+    hn_system_kinematics(p->sys, y, y + p->nq, ydot);
+    return hn_accel_eval(p->accel, t, y, y + p->nq, p->alpha, p->beta, ydot + p->nq, p->lambda,
+                         &info);
+}
+
+hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state, double rtol,
+                                    double atol, double hmax, double *h) {
+    enum { ERROR_POWER = 2 }; // of h in the error of a step of order 1
+    const size_t n = (size_t)(p->nq + p->nv);
+    const hn_ode ode = {.n_pos = p->nq, .n_vel = p->nv, .self = p, .rhs = slope};
+    return hn_first_step(&ode, t, state, ERROR_POWER, rtol, atol, hmax, p->slope, p->slope + n,
+                         p->slope + 2 * n, h);
+}
+
+// r -= J' x over the kept rows
+static void subtract_reaction(const hn_ida_problem *p, const double *J, const double *x,
+                              double *r) {
+    for (int e = 0; e < p->n_J; e++) {
+        const int row = p->J_row[e], col = p->J_col[e];
+        if (p->place[row] >= 0) {
+            r[col] -= x[p->place[row]] * J[(size_t)row * (size_t)p->nv + (size_t)col];
+        }
+    }
+}
+
+// r (nv) = M x
+static void multiply_mass(const hn_ida_problem *p, const double *x, double *r) {
+    const double *M = hn_eval_get(p->eval, HN_TERM_M);
+    memset(r, 0, (size_t)p->nv * sizeof *r);
+    for (int e = 0; e < p->n_M; e++) {
+        const int i = p->M_row[e], k = p->M_col[e];
+        const double m = M[(size_t)i * (size_t)p->nv + (size_t)k];
+        r[i] += m * x[k];
+        r[k] += i != k ? m * x[i] : 0;
+    }
+}
+
+// r += k J x over the kept rows
+static void add_rows(const hn_ida_problem *p, double k, const double *x, double *r) {
+    const double *J = hn_eval_get(p->eval, HN_TERM_J);
+    for (int e = 0; e < p->n_J; e++) {
+        const int row = p->J_row[e], col = p->J_col[e];
+        if (p->place[row] >= 0) {
+            r[p->place[row]] += k * J[(size_t)row * (size_t)p->nv + (size_t)col] * x[col];
+        }
+    }
+}
+
+// eq. (1)
+static void put_kinematics(hn_ida_problem *p, const double *y, const double *ydot, double *r) {
+    const double *v = y + p->nq;
+    if (!has_mu(p)) {
+        hn_system_kinematics(p->sys, y, v, r);
+        for (int i = 0; i < p->nq; i++) {
+            r[i] = ydot[i] - r[i];
+        }
+        return;
+    }
+    for (int i = 0; i < p->nv; i++) {
+        p->work[i] = ydot[i] - v[i];
+    }
+    multiply_mass(p, p->work, r);
+    subtract_reaction(p, hn_eval_get(p->eval, HN_TERM_J), v + p->nv + p->n_kept, r);
+}
+
+// r += k (J v + phi_t) over the kept rows
+static void add_speed_gap(const hn_ida_problem *p, double k, const double *v, double *r) {
+    const double *phi_t = hn_eval_get(p->eval, HN_TERM_PHI_T);
+    add_rows(p, k, v, r);
+    for (int i = 0; i < p->n_kept; i++) {
+        r[i] += k * phi_t[p->kept[i]];
+    }
+}
+
+static void add_kept(const hn_ida_problem *p, double k, hn_term term, double *r) {
+    const double *x = hn_eval_get(p->eval, term);
+    for (int i = 0; i < p->n_kept; i++) {
+        r[i] += k * x[p->kept[i]];
+    }
+}
+
+// eq. (3)
+static void put_constraints(const hn_ida_problem *p, const double *v, const double *a, double *r) {
+    memset(r, 0, (size_t)((has_mu(p) ? 2 : 1) * p->n_kept) * sizeof *r);
+    if (p->form == HN_FORM_INDEX3) {
+        add_kept(p, 1, HN_TERM_PHI, r);
+    } else if (p->form == HN_FORM_INDEX1 || is_stabilised(p)) {
+        add_rows(p, 1, a, r);
+        add_kept(p, 1, HN_TERM_GAMMA, r);
+    } else {
+        add_speed_gap(p, 1, v, r);
+    }
+    if (is_stabilised(p)) {
+        add_speed_gap(p, 2 * p->alpha, v, r);
+        add_kept(p, p->beta * p->beta, HN_TERM_PHI, r);
+    }
+    if (has_mu(p)) {
+        add_kept(p, 1, HN_TERM_PHI, r + p->n_kept);
+    }
+}
+
+void hn_ida_problem_residual(hn_ida_problem *p, double t, const double *y, const double *ydot,
+                             double *r) {
+    const double *v = y + p->nq, *a = ydot + p->nq, *lambda = v + p->nv;
+    double *const dynamics = r + p->nq;
+    hn_eval_run(p->eval, t, y, v);
+    p->residuals++;
+    put_kinematics(p, y, ydot, r);
+    multiply_mass(p, a, dynamics);
+    hn_axpy(p->nv, -1, hn_eval_get(p->eval, HN_TERM_F), dynamics);
+    subtract_reaction(p, hn_eval_get(p->eval, HN_TERM_J), lambda, dynamics);
+    put_constraints(p, v, a, dynamics + p->nv);
+}
+
+void hn_ida_problem_lambda(const hn_ida_problem *p, const double *y, double *lambda) {
+    memset(lambda, 0, (size_t)p->nc * sizeof *lambda);
+    for (int k = 0; k < p->n_kept; k++) {
+        lambda[p->kept[k]] = y[p->nq + p->nv + k];
+    }
+}
+
+double hn_ida_problem_ops(const hn_ida_problem *p) {
+    const double mass = 4.0 * p->n_M, rows = 2.0 * p->n_J;
+    return hn_eval_info(p->eval).ops + (has_mu(p) ? 2 : 1) * (mass + rows) +
+           (is_stabilised(p) ? 2 : 1) * rows;
+}

@@ -1,0 +1,47 @@
+#include "integrators/step/dae_base.h"
+#include "integrators/implicit/implicit_steppers.h"
+
+#include <math.h>
+
+static hn_collocation nodes_of_radau3(void) {
+    hn_collocation col;
+    const double c[] = {1.0 / 3, 1};
+    hn_collocation_init(&col, 2, 3, c);
+    return col;
+}
+
+static void *create_radau3(int n_pos, int n_vel, hn_arena *arena) {
+    const hn_collocation col = nodes_of_radau3();
+    return hn_implicit_ode_create(&col, n_pos + n_vel, arena);
+}
+
+static hn_status create_radau3_dae(const hn_system *sys, hn_dae_form form, const double *settings,
+                                   const double *form_settings, hn_arena *arena, void **self,
+                                   hn_diag *diag) {
+    const hn_collocation col = nodes_of_radau3();
+    const hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
+                                       .projects = hn_dae_projects_speeds(form, form_settings)};
+    (void)settings;
+    return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
+}
+
+static const hn_dae_stepper radau3_dae = {.create = create_radau3_dae, HN_IMPLICIT_DAE_SLOTS};
+
+const hn_stepper hn_stepper_radau3 = {
+    .name = "radau3",
+    .title = "Radau IIA, 2 stages",
+    .about = "Order 3, every stiff motion damped, two stages. Serves the differential-algebraic "
+             "forms as they are.",
+    .source = "Hairer & Wanner 1996, IV.5",
+    .order = 3,
+    .stages = 2,
+    .real_limit = HUGE_VAL,
+    .imag_limit = HUGE_VAL,
+    .n_settings = 1,
+    .settings = {HN_SETTING_STEP},
+    .forms = HN_FORMS_STIFFLY_ACCURATE,
+    .dae = &radau3_dae,
+    .create = create_radau3,
+    HN_IMPLICIT_ODE_SLOTS,
+    .dense_order = 2,
+};

@@ -1,0 +1,147 @@
+#include "integrators/method/method_spec.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_VALUE = 48 };
+
+static const char *unit_text(const hn_setting_info *info) {
+    return info->unit && info->unit[0] ? info->unit : NULL;
+}
+
+hn_status hn_setting_check(const hn_setting_info *info, double value, hn_diag *diag) {
+    const char *unit = unit_text(info);
+    if (!isfinite(value)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be a finite number", info->key);
+    }
+    if (value <= 0 && info->min > 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be > 0, found %g", info->key,
+                           value);
+    }
+    if (value < info->min || value > info->max) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s = %g is out of range: %g to %g%s%s",
+                           info->key, value, info->min, info->max, unit ? " " : "",
+                           unit ? unit : "");
+    }
+    if (info->choices && value != floor(value)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes a name, not %g", info->key,
+                           value);
+    }
+    return HN_OK;
+}
+
+static hn_status find_choice(const hn_setting_info *info, const char *word, double *value,
+                             hn_diag *diag) {
+    for (int i = 0; i < info->n_choices; i++) {
+        if (strcmp(info->choices[i], word) == 0) {
+            *value = i;
+            return HN_OK;
+        }
+    }
+    char list[160] = "", hint[96] = "";
+    size_t n = 0;
+    for (int i = 0; i < info->n_choices && n < sizeof list; i++) {
+        const int wrote =
+            snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", info->choices[i]);
+        n += wrote > 0 ? (size_t)wrote : 0;
+    }
+    const char *near = hn_nearest_name(word, info->choices, info->n_choices);
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s = '%s' is not one of: %s", info->key,
+                       word, list);
+}
+
+// 1 when the unit that follows a number is known; *parts of it make the setting's own unit
+static int read_unit(const hn_setting_info *info, const char *unit, double *parts) {
+    *parts = 1;
+    if (unit[0] == '\0' || (info->unit && strcmp(unit, info->unit) == 0)) {
+        return 1;
+    }
+    const int is_time = info->unit && strcmp(info->unit, "s") == 0;
+    if (is_time && strcmp(unit, "ms") == 0) {
+        *parts = 1e3;
+        return 1;
+    }
+    if (is_time && strcmp(unit, "us") == 0) {
+        *parts = 1e6;
+        return 1;
+    }
+    return 0;
+}
+
+// Length of the decimal number at the start of s (no hexadecimal, no nan, no inf), 0 if there is none.
+static size_t number_length(const char *s) {
+    size_t i = s[0] == '+' || s[0] == '-';
+    size_t digits = 0;
+    for (; isdigit((unsigned char)s[i]); i++) {
+        digits++;
+    }
+    if (s[i] == '.') {
+        for (i++; isdigit((unsigned char)s[i]); i++) {
+            digits++;
+        }
+    }
+    if (digits == 0) {
+        return 0;
+    }
+    if (s[i] == 'e' || s[i] == 'E') {
+        size_t j = i + 1;
+        j += s[j] == '+' || s[j] == '-';
+        if (isdigit((unsigned char)s[j])) {
+            while (isdigit((unsigned char)s[j])) {
+                j++;
+            }
+            i = j;
+        }
+    }
+    return i;
+}
+
+hn_status hn_setting_parse(const hn_setting_info *info, const char *text, double *value,
+                           hn_diag *diag) {
+    char word[MAX_VALUE];
+    size_t n = 0;
+    while (isspace((unsigned char)*text)) {
+        text++;
+    }
+    for (; text[n] && n + 1 < sizeof word; n++) {
+        word[n] = text[n] == ',' ? '.' : text[n]; // a decimal comma
+    }
+    const int too_long = text[n] != '\0';
+    while (n > 0 && isspace((unsigned char)word[n - 1])) {
+        n--;
+    }
+    word[n] = '\0';
+    if (info->choices && !too_long) {
+        return find_choice(info, word, value, diag);
+    }
+    const size_t length = too_long ? 0 : number_length(word);
+    if (length == 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs a number, found '%s'",
+                           info->key, word);
+    }
+    const char *unit = word + length;
+    while (isspace((unsigned char)*unit)) {
+        unit++;
+    }
+    double parts = 1;
+    if (!read_unit(info, unit, &parts)) {
+        const char *own = unit_text(info);
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s: '%s' is not understood, %s%s",
+                           info->key, unit, own ? "its unit is " : "it has no unit",
+                           own ? own : "");
+    }
+    word[length] = '\0';
+    // dividing by a power of ten keeps "20 ms" equal to 0.02 to the last bit
+    const double number = strtod(word, NULL) / parts;
+    const hn_status status = hn_setting_check(info, number, diag);
+    if (status == HN_OK) {
+        *value = number;
+    }
+    return status;
+}

@@ -1,0 +1,71 @@
+#include "integrators/step/control.h"
+
+#include <math.h>
+
+double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
+                     double atol) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        const double e = err[i] / (atol + rtol * fmax(fabs(y0[i]), fabs(y1[i])));
+        if (!isfinite(e) || !isfinite(y1[i])) {
+            return HUGE_VAL;
+        }
+        sum += e * e;
+    }
+    return n > 0 ? sqrt(sum / n) : 0;
+}
+
+double hn_step_factor(hn_step_control *control, double err, int k) {
+    // a step that failed outright says nothing about how far to shrink
+    if (!isfinite(err)) {
+        control->just_rejected = 1;
+        return HN_STEP_SHRINK;
+    }
+    const double floor_err = fmax(err, 1e-10);
+    double factor = HN_STEP_SAFETY * pow(floor_err, -0.7 / k) * pow(control->last, 0.4 / k);
+    factor = fmin(HN_STEP_GROW, fmax(HN_STEP_SHRINK, factor));
+    if (err > 1) {
+        // the PI term may ask for growth after a good step; a rejection must shrink
+        factor = fmin(factor, HN_STEP_SAFETY);
+        control->just_rejected = 1;
+        return factor;
+    }
+    if (control->just_rejected) {
+        factor = fmin(1, factor);
+    }
+    control->just_rejected = 0;
+    control->last = fmax(err, 1e-4);
+    return factor;
+}
+
+static double scaled_norm(int n, const double *x, const double *y, double rtol, double atol) {
+    return hn_error_norm(n, x, y, y, rtol, atol);
+}
+
+hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order, double rtol,
+                        double atol, double hmax, double *f0, double *work, double *work2,
+                        double *h) {
+    const int n = ode->n_pos + ode->n_vel;
+    hn_status status = ode->rhs(ode->self, t, y, f0);
+    if (status != HN_OK) {
+        return status;
+    }
+    const double d0 = scaled_norm(n, y, y, rtol, atol), d1 = scaled_norm(n, f0, y, rtol, atol);
+    double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+    h0 = fmin(h0, hmax);
+    for (int i = 0; i < n; i++) {
+        work[i] = y[i] + h0 * f0[i];
+    }
+    status = ode->rhs(ode->self, t + h0, work, work2);
+    if (status != HN_OK) {
+        return status;
+    }
+    for (int i = 0; i < n; i++) {
+        work2[i] -= f0[i];
+    }
+    const double d2 = scaled_norm(n, work2, y, rtol, atol) / h0;
+    const double steepest = fmax(d1, d2);
+    const double h1 = steepest <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / steepest, 1.0 / order);
+    *h = fmin(fmin(100 * h0, h1), hmax);
+    return HN_OK;
+}

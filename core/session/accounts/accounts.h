@@ -1,0 +1,68 @@
+#ifndef HN_SESSION_ACCOUNTS_H
+#define HN_SESSION_ACCOUNTS_H
+// Where errors and energy come from, for several methods of one scene: study/account/account.h method by method, as tables, documents and pictures.
+// With a folder each account is kept as it is made: the same request goes on behind the last whole one.
+
+#include "session/model/model.h"
+#include "study/account/account.h"
+
+enum { HN_ACCOUNTS_METHODS = 24 };
+
+/// One method's account, or why there is none.
+typedef struct hn_account_row {
+    char spelling[HN_SPEC_MAX];
+    hn_status status;             ///< HN_OK: `account` is one; HN_ERR_BUDGET: left out
+    char reason[HN_DIAG_MESSAGE]; ///< why there is none, or why the run ended early; "" else
+    hn_account account;
+} hn_account_row;
+/// "done", "failed" (the run ended early), "refused" or "left out".
+const char *hn_account_state(const hn_account_row *row);
+/// Coordinate whose error it is; NULL: there is no error at the end.
+const hn_coordinate *hn_account_coordinate(const hn_model *model, const hn_account_row *row);
+/// Part i of the error (energy = 0, of HN_CAUSE_COUNT) or of the energy (1, of HN_BILL_COUNT); NaN: it cannot be told.
+double hn_account_part(const hn_account_row *row, int energy, int i);
+
+typedef struct hn_accounts_request {
+    const char *const *methods; ///< spellings; NULL: the scene's
+    int n_methods;              ///< at most HN_ACCOUNTS_METHODS
+    double time;                ///< [s]; NaN: the scene's duration
+    const char *folder;         ///< where unfinished accounts are kept; NULL: nowhere
+    int (*stop)(void *user);    ///< asked now and then; NULL: never
+    void (*progress)(void *user, double share);
+    void *user;
+} hn_accounts_request;
+hn_accounts_request hn_accounts_request_default(void);
+
+typedef struct hn_accounts hn_accounts;
+/// Reads the request and what is kept of it. Returns owned in *out; model and request's texts must outlive it. Fails: HN_ERR_INPUT
+/// and HN_ERR_LIMIT (methods, time), HN_ERR_IO as hn_journal_open(), HN_ERR_MEMORY; told in diags.
+HN_MUST_CHECK hn_status hn_accounts_open(const hn_model *model, const hn_accounts_request *request,
+                                         hn_accounts **out, hn_diags *diags);
+void hn_accounts_free(hn_accounts *accounts); ///< NULL is legal
+/// Makes those that are not there; 1 when all are, 0 when it was stopped. A method that cannot be accounted for stands with its reason.
+int hn_accounts_run(hn_accounts *accounts);
+
+int hn_accounts_resumed(const hn_accounts *accounts); ///< that were there
+int hn_accounts_n(const hn_accounts *accounts);
+const hn_account_row *hn_accounts_at(const hn_accounts *accounts, int i);
+const hn_model *hn_accounts_model(const hn_accounts *accounts);
+double hn_accounts_time(const hn_accounts *accounts); ///< [s]
+
+// documents
+/// {"scene","title","time","methods":[{"method","state","reason","t","steps","error":{"coordinate","unit","value","sum","parts":{cause:
+/// number or null}} or null,"energy":{"change","swing","conservative","loops_back_and_forth","parts":{item: number}}}...]}, energies in J;
+/// from "t" on only where there is an account.
+void hn_accounts_json(hn_strbuf *b, const hn_accounts *accounts);
+/// A row a method, with a head; what cannot be told is empty.
+void hn_accounts_csv(hn_strbuf *b, const hn_accounts *accounts);
+/// One file without network or script: both pictures, and their numbers as tables; light, dark, and A4.
+void hn_accounts_html(hn_strbuf *b, const hn_accounts *accounts);
+
+/// One row as it stands in "methods".
+void hn_account_put(hn_strbuf *b, const hn_model *model, const hn_account_row *row);
+/// 1 if one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
+int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
+/// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a row; colours as in study_plot.h.
+void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,
+                      int energy);
+#endif

@@ -1,0 +1,128 @@
+// Accounts as one HTML file: no network, no script. Both pictures, and every number in tables.
+#include "session/accounts/accounts_internal.h"
+
+#include "base/units.h"
+#include "session/precision/study_page.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char STYLE[] =
+    "main{max-width:1080px}.scroll>svg{min-width:640px;margin:16px 0}dl{margin:8px "
+    "0;font-size:13px}"
+    "dt{font-weight:500;float:left;clear:left;width:104px}dd{margin:0 0 4px 104px}"
+    "@media print{.scroll>svg{min-width:0}}";
+
+static void put_quantity(hn_strbuf *b, double value, const char *unit) {
+    char text[HN_SI_TEXT] = "\xe2\x80\x93";
+    if (isfinite(value)) {
+        hn_si_format(fabs(value), unit, 3, text);
+    }
+    hn_strbuf_printf(b, "<td class=\"n\">%s%s</td>", value < 0 ? "\xe2\x88\x92" : "", text);
+}
+
+static void put_head(hn_strbuf *b, int energy) {
+    hn_strbuf_add(b, "<thead><tr><th>method</th><th>");
+    hn_strbuf_add(b, energy ? "to t</th><th class=\"n\">change"
+                            : "error of</th><th class=\"n\">at the end");
+    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
+        hn_strbuf_printf(b, "</th><th class=\"n\">%s",
+                         energy ? hn_bill_name((hn_bill_item)k) : hn_cause_name((hn_cause)k));
+    }
+    hn_strbuf_add(b, energy ? "</th></tr></thead>"
+                            : "</th><th class=\"n\">their sum</th></tr></thead>");
+}
+
+/// Nothing for a row without an account, or without an error at its end.
+static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row, int energy) {
+    const hn_coordinate *c = hn_account_coordinate(a->model, row);
+    const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
+    if (row->status != HN_OK || (!energy && !c)) {
+        return;
+    }
+    hn_strbuf_add(b, "<tr><th scope=\"row\" class=\"m\">");
+    hn_html_text(b, row->spelling);
+    hn_strbuf_add(b, "</th><td class=\"m\">");
+    if (energy) {
+        hn_strbuf_printf(b, "%.4g s", row->account.t);
+    } else {
+        hn_html_text(b, c->name);
+    }
+    hn_strbuf_add(b, "</td>");
+    put_quantity(b, energy ? row->account.energy : row->account.error, unit);
+    for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
+        put_quantity(b, hn_account_part(row, energy, k), unit);
+    }
+    if (!energy) {
+        put_quantity(b, row->account.sum, unit);
+    }
+    hn_strbuf_add(b, "</tr>\n");
+}
+
+/// error = parts (energy = 0), change of energy = parts (1)
+static void put_table(hn_strbuf *b, const hn_accounts *a, int energy) {
+    hn_page_table(b, energy ? "account of energy" : "account of the error");
+    put_head(b, energy);
+    hn_strbuf_add(b, "<tbody>");
+    for (int i = 0; i < a->n; i++) {
+        put_row(b, a, &a->rows[i], energy);
+    }
+    hn_strbuf_add(b, "</tbody></table></div>");
+}
+
+static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
+    for (int i = 0; i < a->n; i++) {
+        const hn_account_row *row = &a->rows[i];
+        if (row->reason[0]) {
+            hn_strbuf_add(b, "<p class=\"wrong\">");
+            hn_html_text(b, row->spelling);
+            hn_strbuf_printf(b, ": %s, ", hn_account_state(row));
+            hn_html_text(b, row->reason);
+            hn_strbuf_add(b, "</p>");
+        }
+    }
+}
+
+static void put_legend(hn_strbuf *b) {
+    hn_strbuf_add(b, "<h2>What the words mean</h2><dl>");
+    for (int i = 0; i < HN_CAUSE_COUNT; i++) {
+        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_cause_name((hn_cause)i),
+                         hn_cause_about((hn_cause)i));
+    }
+    for (int i = HN_BILL_LOOPS; i < HN_BILL_COUNT; i++) {
+        hn_strbuf_printf(b, "<dt>%s</dt><dd>%s</dd>", hn_bill_name((hn_bill_item)i),
+                         hn_bill_about((hn_bill_item)i));
+    }
+    hn_strbuf_add(b, "</dl><p class=\"quiet\">A formulation without equations of its own has its "
+                     "part in truncation; \xe2\x80\x93: it cannot be told.</p>");
+}
+
+void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
+    static const char *const heads[] = {"Where the error at the end comes from",
+                                        "Who put energy in, or took it out"};
+    const hn_scene *scene = hn_model_scene(a->model);
+    char title[300];
+    snprintf(title, sizeof title, "%.250s: errors and energy",
+             scene->title ? scene->title : scene->id);
+    hn_page_head(b, title, STYLE);
+    hn_strbuf_add(b, "<h1>");
+    hn_html_text(b, title);
+    hn_strbuf_printf(
+        b,
+        "</h1><p class=\"quiet\">Each method from the scene's start to t = %g s, every step of it "
+        "beside the exact flow of its own equations and of the equations of motion.</p>",
+        a->request.time);
+    put_reasons(b, a);
+    for (int energy = 0; energy < 2; energy++) {
+        if (!hn_accounts_can_plot(a->rows, a->n, energy)) {
+            continue;
+        }
+        hn_strbuf_printf(b, "<h2>%s</h2>", heads[energy]);
+        hn_page_scroll(b, energy ? "picture of energy" : "picture of the error");
+        hn_accounts_plot(b, a->model, a->rows, a->n, energy);
+        hn_strbuf_add(b, "</div>");
+        put_table(b, a, energy);
+    }
+    put_legend(b);
+    hn_strbuf_add(b, "</main></body></html>\n");
+}

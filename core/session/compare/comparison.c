@@ -1,0 +1,441 @@
+#include "session/compare/comparison.h"
+
+#include "render/look.h"
+#include "study/run/pace.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double FRAME = 1.0 / 60; // [s]
+enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length would not show it
+
+/// One method of the comparison.
+typedef struct entry {
+    hn_run *run;
+    double h; ///< fixed step [s], 0 for an adaptive method
+    int slot; ///< colour and dash, see render/look.h
+    int incidents_told;
+    char warning[HN_DIAG_MESSAGE]; ///< what its spelling deserves to be told, "" if nothing
+    int over_budget;               ///< stopped by the comparison because one frame cost too much
+} entry;
+
+struct hn_comparison {
+    const hn_model *model;
+    int n;
+    entry entries[HN_COMPARISON_MAX_METHODS];
+    double frame_dt, duration, cpu_budget;
+    long long frame;
+};
+
+hn_comparison_opts hn_comparison_opts_default(void) {
+    return (hn_comparison_opts){.cpu_budget = 5};
+}
+
+/// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when two methods share it.
+static int choose_slot(const hn_comparison *c, const hn_formulation *formulation) {
+    int wanted = 0;
+    while (wanted < hn_formulation_count() && hn_formulation_at(wanted) != formulation) {
+        wanted++;
+    }
+    for (int shift = 0; shift < HN_LOOK_METHODS; shift++) {
+        int slot = (wanted + shift) % HN_LOOK_METHODS, taken = 0;
+        for (int i = 0; i < c->n; i++) {
+            taken |= c->entries[i].slot == slot;
+        }
+        if (!taken) {
+            return slot;
+        }
+    }
+    return wanted % HN_LOOK_METHODS;
+}
+
+static hn_status add_method(hn_comparison *c, const char *text, const hn_comparison_opts *opts,
+                            hn_diags *diags) {
+    char pointer[32];
+    snprintf(pointer, sizeof pointer, "/methods/%d", c->n);
+    hn_diag diag = {0};
+    hn_method_spec spec;
+    hn_status status = hn_method_parse(text, &spec, &diag);
+    if (status == HN_OK) {
+        // a spelling may be right and still deserve a word: a negative alpha, for one
+        snprintf(c->entries[c->n].warning, sizeof c->entries[c->n].warning, "%s", diag.message);
+        hn_run_opts run_opts = hn_run_opts_default();
+        if (opts->max_steps > 0) {
+            run_opts.max_steps = opts->max_steps;
+        }
+        status = hn_run_create(hn_model_system(c->model), &spec, hn_model_q(c->model),
+                               hn_model_v(c->model), &run_opts, &c->entries[c->n].run, &diag);
+    }
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+    }
+    entry *e = &c->entries[c->n];
+    e->h = hn_method_is_adaptive(&spec) ? 0 : hn_method_setting(&spec, "h", 0);
+    e->slot = choose_slot(c, spec.formulation);
+    c->n++;
+    return HN_OK;
+}
+
+/// A whole number of the largest fixed step, at least a sixtieth of a second or of a short run its part.
+static double choose_frame_dt(const hn_comparison *c) {
+    const double shortest = fmin(FRAME, c->duration / LEAST_FRAMES);
+    double h = 0;
+    for (int i = 0; i < c->n; i++) {
+        h = fmax(h, c->entries[i].h);
+    }
+    return h > 0 ? h * fmax(1, ceil(shortest / h - 1e-9)) : shortest;
+}
+
+static hn_status check_opts(const hn_comparison_opts *opts, int n_methods, hn_diags *diags) {
+    if (n_methods < 1 || n_methods > HN_COMPARISON_MAX_METHODS) {
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/methods", "name one method, such as projection@rk4:h=1e-3",
+            "%d methods were given; 1 to %d are allowed", n_methods, HN_COMPARISON_MAX_METHODS);
+    }
+    if (!(opts->frame_dt >= 0) || !isfinite(opts->frame_dt) ||
+        (opts->frame_dt > 0 && opts->frame_dt < 1e-6)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/frame_dt", "leave it out to have it chosen",
+                            "frame_dt is %g s; it must be at least 1e-6 s", opts->frame_dt);
+    }
+    if (!(opts->duration >= 0) || !(opts->duration <= 1e6)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/duration", NULL,
+                            "the duration is %g s; 0 to 1e6 s are allowed", opts->duration);
+    }
+    return HN_OK;
+}
+
+hn_status hn_comparison_create(const hn_model *model, const char *const *methods, int n_methods,
+                               const hn_comparison_opts *opts, hn_comparison **out,
+                               hn_diags *diags) {
+    hn_comparison_opts chosen = opts ? *opts : hn_comparison_opts_default();
+    hn_status status = check_opts(&chosen, n_methods, diags);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_comparison *c = calloc(1, sizeof *c);
+    if (!c) {
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    c->model = model;
+    for (int i = 0; i < n_methods && status == HN_OK; i++) {
+        status = add_method(c, methods[i], &chosen, diags);
+    }
+    if (status != HN_OK) {
+        hn_comparison_free(c);
+        return status;
+    }
+    c->duration = chosen.duration > 0 ? chosen.duration : hn_model_scene(model)->duration;
+    c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
+    c->cpu_budget =
+        chosen.cpu_budget > 0 ? chosen.cpu_budget : hn_comparison_opts_default().cpu_budget;
+    *out = c;
+    return HN_OK;
+}
+
+void hn_comparison_free(hn_comparison *c) {
+    if (c) {
+        for (int i = 0; i < c->n; i++) {
+            hn_run_free(c->entries[i].run);
+        }
+        free(c);
+    }
+}
+
+int hn_comparison_n_methods(const hn_comparison *c) {
+    return c->n;
+}
+
+double hn_comparison_frame_dt(const hn_comparison *c) {
+    return c->frame_dt;
+}
+
+double hn_comparison_duration(const hn_comparison *c) {
+    return c->duration;
+}
+
+long long hn_comparison_frame(const hn_comparison *c) {
+    return c->frame;
+}
+
+const hn_run *hn_comparison_run(const hn_comparison *c, int method) {
+    return c->entries[method].run;
+}
+
+int hn_comparison_slot(const hn_comparison *c, int method) {
+    return c->entries[method].slot;
+}
+
+static int is_live(const entry *e) {
+    return !e->over_budget && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
+}
+
+int hn_comparison_finished(const hn_comparison *c) {
+    if ((double)c->frame * c->frame_dt >= c->duration * (1 - 1e-12)) {
+        return 1;
+    }
+    for (int i = 0; i < c->n; i++) {
+        if (is_live(&c->entries[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/// Steps one method to the last point of its own grid at or before t (fixed step), or past t (adaptive).
+static void advance_entry(hn_comparison *c, entry *e, double t) {
+    double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
+    double cpu = hn_run_get_summary(e->run).cpu_seconds;
+    hn_pace pace = hn_pace_begin();
+    while (hn_run_time(e->run) < target * (1 - 1e-14)) {
+        if (hn_run_step_towards(e->run, target) != HN_OK) {
+            return;
+        }
+        if (hn_pace_is_due(&pace) && hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
+            e->over_budget = 1;
+            return;
+        }
+    }
+}
+
+void hn_comparison_next(hn_comparison *c) {
+    c->frame++;
+    for (int i = 0; i < c->n; i++) {
+        if (is_live(&c->entries[i])) {
+            advance_entry(c, &c->entries[i], (double)c->frame * c->frame_dt);
+        }
+    }
+}
+
+void hn_comparison_reset(hn_comparison *c) {
+    c->frame = 0;
+    for (int i = 0; i < c->n; i++) {
+        c->entries[i].incidents_told = 0;
+        c->entries[i].over_budget = 0;
+        hn_run_reset(
+            c->entries[i]
+                .run); // a run that cannot be set back stays failed, and its summary says why
+    }
+}
+
+/// 1 if the formulation of this method has the setting.
+static int has_setting(const hn_run *run, const char *key) {
+    const hn_formulation *f = hn_run_spec(run)->formulation;
+    for (int i = 0; i < f->n_settings; i++) {
+        if (strcmp(f->settings[i].key, key) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, double value,
+                            hn_diag *diag) {
+    if (method < -1 || method >= c->n) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/set/method", NULL,
+                           "method %d was named; -1 to %d are allowed", method, c->n - 1);
+    }
+    int served = 0;
+    for (int i = 0; i < c->n; i++) {
+        if ((method == -1 && has_setting(c->entries[i].run, key)) || method == i) {
+            hn_status status = hn_run_set(c->entries[i].run, key, value, diag);
+            if (status != HN_OK) {
+                return status;
+            }
+            served++;
+        }
+    }
+    if (!served) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/set/key", "alpha and beta belong to baumgarte",
+                           "no method of this comparison has a setting '%.40s'", key);
+    }
+    return HN_OK;
+}
+
+int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out) {
+    entry *e = &c->entries[method];
+    double t = (double)c->frame * c->frame_dt;
+    if (is_live(e) && hn_run_sample(e->run, t, out) == HN_OK) {
+        return 1;
+    }
+    // the last good state: a failed run keeps it as its present one
+    if (hn_run_sample(e->run, hn_run_time(e->run), out) != HN_OK) {
+        *out = (hn_sample){0};
+    }
+    return 0;
+}
+
+/// "running", "finished", "failed": as a person would say it of this method now.
+static const char *state_name(const hn_comparison *c, const entry *e) {
+    return !is_live(e) ? "failed" : hn_comparison_finished(c) ? "finished" : "running";
+}
+
+static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
+                       const hn_run_summary *s) {
+    if (e->over_budget) {
+        char text[160];
+        snprintf(
+            text, sizeof text,
+            "one frame took more than %g s of computing; take a larger step or a shorter frame",
+            c->cpu_budget);
+        hn_json_put_string(b, "status", hn_status_name(HN_ERR_BUDGET));
+        hn_json_put_string(b, "reason", text);
+    } else {
+        hn_json_put_string(b, "status", hn_status_name(s->status));
+        hn_json_put_string(b, "reason", s->reason);
+    }
+}
+
+static void put_warning(hn_strbuf *b, const entry *e) {
+    if (e->warning[0]) {
+        hn_json_put_string(b, "warning", e->warning);
+    }
+}
+
+static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
+    hn_json_put_int(b, "steps", s->steps);
+    hn_json_put_int(b, "rejected", s->rejected);
+    hn_json_put_int(b, "evals", s->cost.evals);
+    hn_json_put_number(b, "ops", s->cost.ops);
+    hn_json_put_number(b, "cpu", s->cpu_seconds);
+    hn_json_put_number(b, "worst_gap", s->worst_gap);
+    hn_json_put_number(b, "worst_velocity_gap", s->worst_velocity_gap);
+    hn_json_put_number(b, "worst_energy_change", s->worst_energy_change);
+}
+
+static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sample) {
+    hn_system_info info = hn_system_get_info(hn_model_system(c->model));
+    hn_json_put_number(b, "t", sample->t);
+    if (!sample->q) {
+        return;
+    }
+    hn_json_put_numbers(b, "q", sample->q, (size_t)info.n_user);
+    hn_json_put_numbers(b, "v", sample->v, (size_t)info.n_user);
+    hn_json_put_numbers(b, "points", sample->points, 3 * (size_t)info.n_points);
+    hn_json_put_number(b, "gap", sample->gap);
+    hn_json_put_number(b, "velocity_gap", sample->velocity_gap);
+    hn_json_put_number(b, "energy", sample->energy);
+    hn_json_put_number(b, "energy_change", sample->energy_change);
+    hn_json_put_number(b, "pivot_ratio", sample->pivot_ratio);
+    hn_json_put_int(b, "rank", sample->rank);
+}
+
+void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
+    hn_json_object(b);
+    if (method >= 0) {
+        hn_json_put_int(b, "method", method);
+    }
+    hn_json_put_string(b, "code", hn_incident_name(incident->code));
+    hn_json_put_number(b, "t", incident->t);
+    hn_json_put_string(b, "quantity", incident->quantity);
+    hn_json_put_number(b, "value", incident->value);
+    hn_json_put_number(b, "limit", incident->limit);
+    hn_json_put_string(b, "message", incident->message);
+    hn_json_key(b, "remedies");
+    hn_json_array(b);
+    for (int i = 0; i < 3 && incident->remedy[i][0]; i++) {
+        hn_json_string(b, incident->remedy[i]);
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
+/// All incidents, or only those not told yet.
+static void put_incidents(hn_strbuf *b, const hn_comparison *c, int only_new) {
+    hn_json_key(b, "incidents");
+    hn_json_array(b);
+    for (int i = 0; i < c->n; i++) {
+        const hn_incident *list;
+        int n = hn_run_incidents(c->entries[i].run, &list);
+        for (int k = only_new ? c->entries[i].incidents_told : 0; k < n; k++) {
+            hn_incident_json(b, i, &list[k]);
+        }
+    }
+    hn_json_end_array(b);
+}
+
+static void mark_incidents_told(hn_comparison *c) {
+    for (int i = 0; i < c->n; i++) {
+        const hn_incident *list;
+        c->entries[i].incidents_told = hn_run_incidents(c->entries[i].run, &list);
+    }
+}
+
+void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c) {
+    hn_json_object(b);
+    hn_json_put_int(b, "frame", c->frame);
+    hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
+    hn_json_put_bool(b, "finished", hn_comparison_finished(c));
+    hn_json_key(b, "methods");
+    hn_json_array(b);
+    for (int i = 0; i < c->n; i++) {
+        hn_sample sample = {0};
+        hn_comparison_sample(c, i, &sample);
+        hn_run_summary s = hn_run_get_summary(c->entries[i].run);
+        hn_json_object(b);
+        hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
+        put_reason(b, c, &c->entries[i], &s);
+        put_sample(b, c, &sample);
+        put_cost(b, &s);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+    put_incidents(b, c, 1);
+    mark_incidents_told(c);
+    hn_json_end_object(b);
+}
+
+void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
+    hn_json_object(b);
+    hn_json_put_number(b, "frame_dt", c->frame_dt);
+    hn_json_put_number(b, "duration", c->duration);
+    hn_json_key(b, "methods");
+    hn_json_array(b);
+    for (int i = 0; i < c->n; i++) {
+        const hn_method_spec *spec = hn_run_spec(c->entries[i].run);
+        hn_json_object(b);
+        hn_json_put_int(b, "slot", c->entries[i].slot);
+        hn_json_put_string(b, "short", spec->formulation->short_name);
+        hn_json_put_string(b, "rule", spec->formulation->rule);
+        hn_json_put_string(b, "drift", spec->formulation->drift);
+        hn_json_put_bool(b, "model_error", spec->formulation->model_error);
+        hn_json_put_bool(b, "keeps_gap", spec->formulation->keeps_gap);
+        hn_json_put_int(b, "order", spec->stepper->order);
+        put_warning(b, &c->entries[i]);
+        hn_json_key(b, "method");
+        hn_method_json(b, spec);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}
+
+void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
+    hn_json_object(b);
+    hn_json_put_string(b, "scene", hn_model_scene(c->model)->id);
+    hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
+    hn_json_key(b, "methods");
+    hn_json_array(b);
+    for (int i = 0; i < c->n; i++) {
+        hn_run_summary s = hn_run_get_summary(c->entries[i].run);
+        char spelling[HN_SPEC_MAX];
+        hn_method_format(hn_run_spec(c->entries[i].run), spelling);
+        hn_json_object(b);
+        hn_json_put_string(b, "method", spelling);
+        hn_json_put_string(b, "short", hn_run_spec(c->entries[i].run)->formulation->short_name);
+        hn_json_put_int(b, "slot", c->entries[i].slot);
+        hn_json_put_string(b, "state", state_name(c, &c->entries[i]));
+        put_warning(b, &c->entries[i]);
+        put_reason(b, c, &c->entries[i], &s);
+        // an adaptive step may end beyond the clock; what was reached is what can be shown
+        hn_json_put_number(b, "t_reached", fmin(s.t, (double)c->frame * c->frame_dt));
+        put_cost(b, &s);
+        hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
+        hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
+        hn_json_put_int(b, "chart_changes", s.cost.chart_changes);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+    put_incidents(b, c, 0);
+    hn_json_end_object(b);
+}

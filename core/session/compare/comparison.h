@@ -1,0 +1,81 @@
+#ifndef HN_SESSION_COMPARISON_H
+#define HN_SESSION_COMPARISON_H
+// A comparison: several methods on one scene and one clock. Frame k holds every method's state at t = k * frame_dt.
+// A method that fails stays in the comparison with its last good state, its status and the reason.
+
+#include "base/diag.h"
+#include "base/strbuf.h"
+#include "session/model/model.h"
+#include "study/run/run.h"
+
+enum { HN_COMPARISON_MAX_METHODS = 8 };
+
+typedef struct hn_comparison hn_comparison;
+
+typedef struct hn_comparison_opts {
+    double
+        frame_dt; ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the duration, whichever is less
+    double duration; ///< [s]; 0: the scene's
+    double
+        cpu_budget; ///< seconds of stepping allowed for one frame of one method; beyond it the method is stopped with HN_ERR_BUDGET; 0: 5
+    long long max_steps; ///< per method
+} hn_comparison_opts;
+hn_comparison_opts hn_comparison_opts_default(void);
+
+/// The model must outlive the comparison. A spelling that is at fault, or a method the scene cannot serve, is told in diags (pointer "/methods/2").
+HN_MUST_CHECK hn_status hn_comparison_create(const hn_model *model, const char *const *methods,
+                                             int n_methods, const hn_comparison_opts *opts,
+                                             hn_comparison **out, hn_diags *diags);
+void hn_comparison_free(hn_comparison *c);
+int hn_comparison_n_methods(const hn_comparison *c);
+double hn_comparison_frame_dt(const hn_comparison *c);
+double hn_comparison_duration(const hn_comparison *c);
+long long
+hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
+int hn_comparison_finished(
+    const hn_comparison *c); ///< the clock reached the duration, or every method failed
+/// Advances every method to the next frame. Failures of single methods are not an error of the comparison.
+void hn_comparison_next(hn_comparison *c);
+void hn_comparison_reset(hn_comparison *c);
+/// Changes "alpha" ... of one method (-1: all that have the key) while running.
+HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
+                                          double value, hn_diag *diag);
+const hn_run *hn_comparison_run(const hn_comparison *c, int method);
+int hn_comparison_slot(const hn_comparison *c, int method); ///< colour and dash, see render/look.h
+/// The sample of a method at the present frame; 0 when the method has failed (then it is its last good one).
+int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out);
+
+/// One frame: {"frame","t","methods":[{"state","t","points":[...],"gap","velocity_gap","energy_change","steps","evals","ops","cpu","worst_gap",...}],"incidents":[new since the last frame]}
+void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c);
+/// Methods with spelling, title, short name, look slot, card; frame_dt, duration.
+void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
+/// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy change, steps, rejected, evals, ops, cpu, incidents.
+void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
+/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...]}; method -1: left out.
+void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
+
+// one run with output, for `holonom run` and POST /runs -----------------------------------------------------------
+typedef struct hn_run_request {
+    const char *method;
+    double time;      ///< end [s]
+    const double *at; ///< output times, ascending; NULL: `every`
+    int n_at;
+    double every;          ///< 0: 200 samples
+    long long max_samples; ///< bound
+    long long max_steps;
+    int raw_lambda; ///< 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
+    int reactions; ///< 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names: "efforts") too
+    /// called now and then with the share done; returns 0 to stop. May be NULL.
+    int (*progress)(void *user, double share);
+    const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"
+    void *user;
+} hn_run_request;
+
+/// The object of `run --json`: scene, method, status, reason, t_reached, coordinates, samples as columns, incidents, cost. The column
+/// "lambda_mark" says what a sample's multipliers are worth, and the reactions that rest on them: an index into "lambda_marks"
+/// (hn_multiplier_mark); it is left out of a scene without closure rows. *status says how the run
+/// ended (HN_OK or why it ended early). Returns not HN_OK only when the request itself is at fault.
+HN_MUST_CHECK hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model,
+                                          const hn_run_request *request, hn_status *ended,
+                                          hn_diags *diags);
+#endif

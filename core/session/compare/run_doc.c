@@ -1,0 +1,381 @@
+// One run with its output: the object of `holonom run --json`.
+#include "session/store/columns_json.h"
+#include "session/compare/comparison.h"
+#include "session/model/reactions_json.h"
+#include "study/run/pace.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DEFAULT_SAMPLES = 200, LARGEST_TABLE = 1 << 25 }; // doubles of one table: 256 MiB
+
+/// Samples gathered row by row before they are written as columns.
+typedef struct table {
+    hn_arena *arena;
+    int n_user, nc;
+    long long n, cap;
+    double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
+    double *mark;                  ///< hn_multiplier_mark of a sample
+    double *raw_lambda;            ///< NULL: not asked for, or the method has none
+    hn_reaction_writer *reactions; ///< NULL: not asked for
+    double *force, *moment;        ///< 3 per carrier
+    double *effort;                ///< one per effort
+    double *state;                 ///< q and v of a sample in system coordinates
+    const hn_system *sys;
+} table;
+
+static hn_status table_create(table *tab, const hn_system *sys, long long cap, int raw_lambda,
+                              hn_diags *diags) {
+    hn_system_info info = hn_system_get_info(sys);
+    *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
+    double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
+    if (width * (double)cap > LARGEST_TABLE) {
+        return hn_diags_add(
+            diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
+            "%lld samples of %g numbers are more than one answer may hold (%d numbers)", cap, width,
+            LARGEST_TABLE);
+    }
+    tab->arena = hn_arena_create(0);
+    if (!tab->arena) {
+        return HN_ERR_MEMORY;
+    }
+    size_t n = (size_t)cap;
+    tab->t = hn_arena_doubles(tab->arena, n);
+    tab->q = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
+    tab->v = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
+    tab->lambda = hn_arena_doubles(tab->arena, n * (size_t)info.nc);
+    tab->mark = hn_arena_doubles(tab->arena, n);
+    tab->raw_lambda = raw_lambda ? hn_arena_doubles(tab->arena, n * (size_t)info.nc) : NULL;
+    tab->gap = hn_arena_doubles(tab->arena, n);
+    tab->velocity_gap = hn_arena_doubles(tab->arena, n);
+    tab->energy = hn_arena_doubles(tab->arena, n);
+    return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+static hn_status table_want_reactions(table *tab, const hn_model *model, hn_diags *diags) {
+    const hn_system_info info = hn_system_get_info(hn_model_system(model));
+    hn_status status = hn_reaction_writer_create(model, tab->arena, &tab->reactions, diags);
+    if (status != HN_OK) {
+        return status;
+    }
+    const int carriers = hn_reaction_writer_count(tab->reactions),
+              efforts = hn_reaction_writer_efforts(tab->reactions);
+    if ((double)tab->cap * (6.0 * carriers + efforts) > LARGEST_TABLE) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/reactions", "ask for fewer output times",
+                            "%lld samples of %d reactions are more than one answer may hold",
+                            tab->cap, carriers + efforts);
+    }
+    const size_t n = 3 * (size_t)tab->cap * (size_t)carriers;
+    tab->sys = hn_model_system(model);
+    tab->force = hn_arena_doubles(tab->arena, n + 1);
+    tab->moment = hn_arena_doubles(tab->arena, n + 1);
+    tab->effort = hn_arena_doubles(tab->arena, (size_t)tab->cap * (size_t)efforts + 1);
+    tab->state = hn_arena_doubles(tab->arena, (size_t)info.nq + (size_t)info.nv + 1);
+    return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+/// A state without accelerations has no reactions either: told as null.
+static void add_reactions(table *tab, const hn_sample *s, size_t k) {
+    const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions),
+                 n_efforts = (size_t)hn_reaction_writer_efforts(tab->reactions);
+    double *q = tab->state, *v = tab->state + hn_system_get_info(tab->sys).nq;
+    double *effort = tab->effort + k * n_efforts;
+    hn_system_from_user(tab->sys, s->q, q);
+    hn_system_rates_from_user(tab->sys, s->v, v);
+    if (hn_reaction_writer_eval(tab->reactions, s->t, q, v) == HN_OK) {
+        hn_reaction_writer_rows(tab->reactions, tab->force + k * n, tab->moment + k * n, effort);
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        tab->force[k * n + i] = tab->moment[k * n + i] = nan("");
+    }
+    for (size_t i = 0; i < n_efforts; i++) {
+        effort[i] = nan("");
+    }
+}
+
+static void table_add(table *tab, const hn_sample *s, hn_run *run) {
+    size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
+    tab->t[k] = s->t;
+    memcpy(tab->q + k * nq, s->q, nq * sizeof(double));
+    memcpy(tab->v + k * nq, s->v, nq * sizeof(double));
+    if (nc > 0) {
+        memcpy(tab->lambda + k * nc, s->lambda, nc * sizeof(double));
+        tab->mark[k] = hn_run_sample_mark(run);
+    }
+    for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
+        tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // told as null
+    }
+    if (tab->reactions) {
+        add_reactions(tab, s, k);
+    }
+    tab->gap[k] = s->gap;
+    tab->velocity_gap[k] = s->velocity_gap;
+    tab->energy[k] = s->energy;
+}
+
+/// Output times, one after the other.
+typedef struct schedule {
+    const hn_run_request *request;
+    double every;
+    long long n;
+} schedule;
+
+static double schedule_time(const schedule *s, long long k) {
+    if (s->request->at) {
+        return s->request->at[k];
+    }
+    return k == s->n - 1 ? s->request->time : (double)k * s->every;
+}
+
+static hn_status check_at(const hn_run_request *r, hn_diags *diags) {
+    for (int i = 0; i < r->n_at; i++) {
+        double before = i ? r->at[i - 1] : 0;
+        if (!(r->at[i] >= before) || !isfinite(r->at[i])) {
+            return hn_diags_add(
+                diags, HN_ERR_INPUT, "/at", NULL,
+                "output time %d is %g; times must be finite, ascending and not before 0", i + 1,
+                r->at[i]);
+        }
+        if (r->at[i] > r->time * (1 + 1e-12)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/at", NULL,
+                                "output time %g s lies after the end, %g s", r->at[i], r->time);
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *diags) {
+    if (!(r->time > 0) || !(r->time <= 1e7)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
+                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
+    }
+    if (!(r->every >= 0) || !isfinite(r->every)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
+                            "the output interval is %g s; it must be above 0", r->every);
+    }
+    *s = (schedule){.request = r, .every = r->every > 0 ? r->every : r->time / DEFAULT_SAMPLES};
+    double n = r->at ? r->n_at : floor(r->time / s->every * (1 + 1e-12)) + 1;
+    if (!r->at && (n - 1) * s->every < r->time * (1 - 1e-9)) {
+        n += 1; // the end is always told
+    }
+    long long allowed = r->max_samples > 0 ? r->max_samples : 1000000;
+    if (n > (double)allowed) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every",
+                            "ask for fewer output times",
+                            "%.0f samples were asked for; at most %lld are given", n, allowed);
+    }
+    s->n = (long long)n;
+    return r->at ? check_at(r, diags) : HN_OK;
+}
+
+/// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
+static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r) {
+    while (hn_run_time(run) < t * (1 - 1e-14)) {
+        hn_status status = hn_run_step_towards(run, t);
+        if (status != HN_OK) {
+            return status;
+        }
+        if (r->progress && hn_pace_is_due(pace) &&
+            !r->progress(r->user, hn_run_time(run) / r->time)) {
+            return HN_ERR_BUDGET;
+        }
+    }
+    return HN_OK;
+}
+
+/// The sample at t. Where no step of the integrator's own reaches it the run goes on first: if it ends there, that is the reason.
+static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
+    hn_status status = hn_run_sample(run, t, sample);
+    if (status != HN_OK && hn_run_time(run) < t) {
+        status = hn_run_step_towards(run, t);
+        if (status == HN_OK) {
+            status = hn_run_sample(run, t, sample);
+        }
+    }
+    return status;
+}
+
+/// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
+static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
+                             const hn_run_request *r, table *tab) {
+    hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r);
+    hn_sample sample;
+    if (status == HN_OK) {
+        status = sample_at(run, t, &sample);
+    }
+    if (status == HN_OK) {
+        table_add(tab, &sample, run);
+    }
+    return status;
+}
+
+static double fixed_step(const hn_method_spec *spec) {
+    return hn_method_is_adaptive(spec) ? 0 : hn_method_setting(spec, "h", 0);
+}
+
+/// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
+static hn_status record(hn_run *run, const schedule *s, table *tab) {
+    double h = fixed_step(hn_run_spec(run));
+    hn_pace pace = hn_pace_begin();
+    hn_status status = HN_OK;
+    for (long long k = 0; k < s->n && status == HN_OK; k++) {
+        status = take_sample(run, h, schedule_time(s, k), &pace, s->request, tab);
+    }
+    hn_sample last;
+    double t = hn_run_time(run);
+    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
+        hn_run_sample(run, t, &last) == HN_OK) {
+        table_add(tab, &last, run);
+    }
+    return status;
+}
+
+static void put_samples(hn_strbuf *b, const table *tab) {
+    hn_json_key(b, "samples");
+    hn_json_object(b);
+    hn_json_put_numbers(b, "t", tab->t, (size_t)tab->n);
+    hn_columns_put_table(b, "q", tab->q, tab->n, tab->n_user);
+    hn_columns_put_table(b, "v", tab->v, tab->n, tab->n_user);
+    hn_columns_put_table(b, "lambda", tab->lambda, tab->n, tab->nc);
+    if (tab->nc > 0) {
+        hn_json_put_numbers(b, "lambda_mark", tab->mark, (size_t)tab->n);
+    }
+    if (tab->raw_lambda) {
+        hn_columns_put_table(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
+    }
+    if (tab->reactions) {
+        const int width = 3 * hn_reaction_writer_count(tab->reactions);
+        hn_columns_put_table(b, "reaction_force", tab->force, tab->n, width);
+        hn_columns_put_table(b, "reaction_moment", tab->moment, tab->n, width);
+        hn_columns_put_table(b, "effort", tab->effort, tab->n,
+                             hn_reaction_writer_efforts(tab->reactions));
+    }
+    hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
+    hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
+    hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
+    hn_json_end_object(b);
+}
+
+static void put_names(hn_strbuf *b, const hn_model *model) {
+    const hn_system *sys = hn_model_system(model);
+    hn_columns_put_coordinates(b, sys);
+    hn_columns_put_rates(b, sys);
+    hn_columns_put_rows(b, sys);
+    hn_json_key(b, "lambda_marks");
+    hn_json_strings(b, hn_multiplier_marks, HN_N_MULTIPLIER_MARKS);
+}
+
+static void put_run_cost(hn_strbuf *b, const hn_run_summary *s) {
+    hn_json_key(b, "cost");
+    hn_json_object(b);
+    hn_json_put_number(b, "cpu_seconds", s->cpu_seconds);
+    hn_json_put_int(b, "evaluations", s->cost.evals);
+    hn_json_put_number(b, "operations", s->cost.ops);
+    hn_json_put_int(b, "steps", s->steps);
+    hn_json_put_int(b, "rejected", s->rejected);
+    hn_json_put_int(b, "factorisations", s->cost.factorisations);
+    hn_json_put_int(b, "solves", s->cost.solves);
+    hn_json_put_int(b, "newton", s->cost.newton);
+    hn_json_put_int(b, "projections", s->cost.projections);
+    hn_json_put_int(b, "fallbacks", s->cost.fallbacks);
+    hn_json_put_number(b, "energy_removed", s->cost.energy_removed);
+    hn_json_end_object(b);
+}
+
+static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
+    const hn_incident *list;
+    int n = hn_run_incidents(run, &list);
+    hn_json_key(b, "incidents");
+    hn_json_array(b);
+    for (int i = 0; i < n; i++) {
+        hn_incident_json(b, -1, &list[i]);
+    }
+    hn_json_end_array(b);
+}
+
+/// The run's own reason; where it would have gone on, what ended the output.
+static const char *reason_of(const hn_run *run, const hn_run_request *request,
+                             const hn_run_summary *s, hn_status ended) {
+    if (ended == HN_OK || s->status != HN_OK) {
+        return s->reason;
+    }
+    if (ended == HN_ERR_BUDGET) {
+        return request->stop_reason ? request->stop_reason : "stopped on request";
+    }
+    return hn_run_sample_why(run, ended);
+}
+
+static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
+                    const hn_run_request *request, const char *warning, hn_status ended,
+                    const table *tab) {
+    hn_run_summary s = hn_run_get_summary(run);
+    char spelling[HN_SPEC_MAX];
+    hn_method_format(hn_run_spec(run), spelling);
+    hn_json_object(b);
+    hn_json_put_string(b, "scene", hn_model_scene(model)->id);
+    hn_json_put_string(b, "method", spelling);
+    if (warning[0]) {
+        hn_json_put_string(b, "warning", warning);
+    }
+    hn_json_put_string(b, "status", hn_status_name(ended));
+    hn_json_put_string(b, "reason", reason_of(run, request, &s, ended));
+    // an adaptive step may end beyond the time asked for
+    hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
+    put_names(b, model);
+    if (tab->reactions) {
+        hn_reaction_writer_names(b, tab->reactions);
+    }
+    put_samples(b, tab);
+    hn_json_put_number(b, "worst_gap", s.worst_gap);
+    hn_json_put_number(b, "worst_velocity_gap", s.worst_velocity_gap);
+    hn_json_put_number(b, "worst_energy_change", s.worst_energy_change);
+    put_run_incidents(b, run);
+    put_run_cost(b, &s);
+    hn_json_end_object(b);
+}
+
+hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_request *request,
+                            hn_status *ended, hn_diags *diags) {
+    hn_diag diag = {0};
+    hn_method_spec spec;
+    schedule times = {0};
+    table tab = {0};
+    hn_run *run = NULL;
+    hn_status status = hn_method_parse(request->method, &spec, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+    }
+    char warning[HN_DIAG_MESSAGE];
+    snprintf(warning, sizeof warning, "%s", diag.message);
+    status = make_schedule(request, &times, diags);
+    if (status == HN_OK) {
+        hn_run_opts opts = hn_run_opts_default();
+        if (request->max_steps > 0) {
+            opts.max_steps = request->max_steps;
+        }
+        opts.raw_lambda = request->raw_lambda;
+        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
+                               &opts, &run, &diag);
+        if (status != HN_OK) {
+            hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
+        }
+    }
+    if (status == HN_OK) {
+        const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
+        status = table_create(&tab, hn_model_system(model), times.n + 1, raw, diags);
+    }
+    if (status == HN_OK && request->reactions) {
+        status = table_want_reactions(&tab, model, diags);
+    }
+    if (status == HN_OK) {
+        *ended = record(run, &times, &tab);
+        put_run(b, model, run, request, warning, *ended, &tab);
+        status = b->failed ? HN_ERR_MEMORY : HN_OK;
+    }
+    hn_reaction_writer_free(tab.reactions);
+    hn_arena_free(tab.arena);
+    hn_run_free(run);
+    return status;
+}

@@ -1,0 +1,161 @@
+#ifndef HN_SESSION_EXTREME_H
+#define HN_SESSION_EXTREME_H
+// The extreme matrix: cases in which a method is known to break, or must not, each a data file with what theory says will be
+// seen, and where that is written. What is measured is a table here; what is expected stands in the files alone.
+//
+// A case holds trials. A trial runs a scene by some methods (or hands its saddle system to some solvers) for every value of one
+// swept name, takes one quantity from each run, reduces the quantities of a sweep to one number (measure), and compares the
+// numbers of all methods with what is predicted.
+//
+//     pass   every number lies in the band, or every outcome is the word
+//     warn   outside, by no more than three times the tolerance (a one-sided bound: a factor of ten); or the word for some only
+//     fail   anything else
+
+#include "base/arena.h"
+#include "base/diag.h"
+#include "base/strbuf.h"
+#include "session/store/journal.h"
+#include "session/model/library.h"
+
+enum {
+    HN_EXTREME_CASES = 64,
+    HN_EXTREME_TRIALS = 32, ///< of a case
+    HN_EXTREME_RUNS = 24,   ///< methods (or solvers) times scenes of a trial
+    HN_EXTREME_SWEEP = 24,
+    HN_EXTREME_SETTINGS = 16
+};
+
+#define HN_VERDICT_LIST(X)             \
+    X(HN_EXTREME_PASS, "pass")         \
+    X(HN_EXTREME_WARN, "warn")         \
+    X(HN_EXTREME_FAIL, "fail")         \
+    X(HN_EXTREME_LONG, "needs --long") \
+    X(HN_EXTREME_NOT_RUN, "not run")
+typedef enum hn_extreme_verdict {
+#define HN_VERDICT_ENUM(code, name) code,
+    HN_VERDICT_LIST(HN_VERDICT_ENUM)
+#undef HN_VERDICT_ENUM
+        HN_EXTREME_VERDICTS
+} hn_extreme_verdict;
+const char *hn_extreme_verdict_name(hn_extreme_verdict verdict);
+
+/// What is predicted: a band for a number, or a word for an outcome.
+typedef struct hn_extreme_expect {
+    const char *word; ///< NULL: a number
+    const char *says; ///< that the reason of the outcome must hold, or NULL
+    double low, high; ///< band; one side may be infinite
+    double warn_low, warn_high;
+    int from_spectrum; ///< the number is the ratio to the limit that the spectrum of the scene gives
+    char text[96];     ///< as people read it
+    const char *reason, *source;
+    const char *was, *was_why,
+        *was_source; ///< an earlier prediction that was not observed, and why not; NULL: none
+} hn_extreme_expect;
+
+/// One number or outcome of a trial.
+typedef struct hn_extreme_seen {
+    const char *scene,
+        *method;      ///< method: a spelling as in the file, or a solver's name; "" for neither
+    double value;     ///< NaN: there is none
+    char word[32];    ///< outcome; "" for a number
+    char reason[200]; ///< why there is no number, or what the outcome said
+} hn_extreme_seen;
+
+struct hn_extreme_measure;
+struct hn_extreme_quantity;
+
+typedef struct hn_extreme_number {
+    double value;
+    const char *formula; ///< in the swept name; NULL: value
+} hn_extreme_number;
+typedef struct hn_extreme_assign {
+    const char *name;
+    hn_extreme_number number;
+} hn_extreme_assign;
+typedef struct hn_extreme_scene {
+    const char *name;
+    const char *shipped; ///< name of a shipped scene, or NULL
+    const char *text;    ///< JSON of an own one
+} hn_extreme_scene;
+
+typedef struct hn_extreme_trial {
+    const char *what;
+    const struct hn_extreme_measure *measure;
+    const struct hn_extreme_quantity *of; ///< NULL where the measure takes none
+    int n_scenes, n_methods, n_set, n_state, n_truth, n_sweep;
+    const hn_extreme_scene *scenes[HN_EXTREME_RUNS];
+    const char *methods[HN_EXTREME_RUNS]; ///< {formula} in the swept name is filled in
+    int solvers;                          ///< 1: methods are solvers of the saddle system
+    int refine;                           ///< corrections allowed to them
+    hn_extreme_assign set[HN_EXTREME_SETTINGS], state[HN_EXTREME_SETTINGS],
+        truth[HN_EXTREME_SETTINGS];
+    const char *truth_method; ///< a run that counts as exact, or NULL
+    int is_open; ///< the start is moved off row `row` of the constraints: by gap, and speed
+    int row;
+    double gap, speed;
+    const char *sweep; ///< NULL: none
+    double values[HN_EXTREME_SWEEP];
+    hn_extreme_number time;
+    const char *coordinate, *incident;
+    double scale; ///< that numbers are divided by; 1
+    double
+        limit[2]; ///< of a search for the largest stable step [s]; {0, 0}: about the predicted one
+    double max_steps; ///< 0: no bound of its own
+    double steps;     ///< that a step size is tried for
+    int is_long;      ///< run only when asked for
+    hn_extreme_expect expect;
+    // what was seen
+    hn_extreme_verdict verdict;
+    int n_seen;
+    hn_extreme_seen seen[HN_EXTREME_RUNS];
+    char observed[160];
+} hn_extreme_trial;
+
+typedef struct hn_extreme_case {
+    const char *id, *title, *why, *about; ///< about: what a teacher may add, or NULL
+    int n_scenes, n_trials;
+    hn_extreme_scene *scenes;
+    hn_extreme_trial *trials;
+    hn_extreme_verdict verdict; ///< the worst of its trials
+} hn_extreme_case;
+
+typedef struct hn_extreme {
+    hn_arena *arena;
+    const hn_library *lib;
+    int n_cases;
+    hn_extreme_case cases[HN_EXTREME_CASES];
+    uint64_t hash; ///< of the files
+    hn_journal journal;
+    int resumed; ///< trials that were done before
+    int stopped, out_of_time;
+} hn_extreme;
+
+typedef struct hn_extreme_opts {
+    double budget; ///< wall time [s]; 0: none. A trial that is begun is ended by it
+    int run_long;  ///< trials that take minutes too
+    void *user;
+    int (*stop)(void *user);
+    void (*progress)(void *user, const char *id, double share);
+} hn_extreme_opts;
+
+/// Reads lessons/extreme/ (one file a case, by number): all cases, or those named ("x4", in any case). The library must outlive it.
+/// Every fault of the files is told with the file's name and a JSON pointer. Fails: HN_ERR_INPUT, HN_ERR_IO, HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
+                                        hn_extreme **out, hn_diags *diags);
+/// One case from JSON text, with the library's scenes to refer to.
+HN_MUST_CHECK hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n,
+                                             hn_extreme **out, hn_diags *diags);
+void hn_extreme_free(hn_extreme *x); ///< NULL is legal
+/// Takes the trials that the same cases have done before from the folder, and keeps those to come there until all are done. Before
+/// hn_extreme_run(). Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
+HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags);
+/// Runs all trials that are not done; those that were stopped, or stand behind the budget, say so.
+void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts);
+int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials
+
+// documents, the same on every run: no timings
+void hn_extreme_json(hn_strbuf *b, const hn_extreme *x);
+void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x); ///< a row a trial, with a head
+/// One file without network.
+void hn_extreme_html(hn_strbuf *b, const hn_extreme *x);
+#endif

@@ -1,0 +1,150 @@
+// The files of the extreme matrix: lessons/extreme/xNN-....json.
+#include "session/extreme/extreme_reader.h"
+
+#include "base/hash.h"
+#include "base/json_text.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_BYTES = 1 << 18, MOST_DEPTH = 20 };
+
+static hn_extreme *make(const hn_library *lib) {
+    hn_arena *arena = hn_arena_create(1 << 16);
+    hn_extreme *x = arena ? hn_arena_get(arena, sizeof *x) : NULL;
+    if (!x) {
+        hn_arena_free(arena);
+        return NULL;
+    }
+    memset(x, 0, sizeof *x);
+    x->arena = arena;
+    x->lib = lib;
+    x->hash = HN_HASH_START;
+    return x;
+}
+
+static hn_status add_case(hn_extreme *x, const char *file, const char *text, size_t n,
+                          hn_diags *diags) {
+    hn_diag diag;
+    if (hn_json_text_check(text, n, MOST_DEPTH, &diag) != HN_OK) {
+        return hn_diags_add(diags, diag.status, "", diag.hint, "%s: %s", file, diag.message);
+    }
+    hn_xr r = {
+        .lib = x->lib, .arena = x->arena, .diags = diags, .file = file, .c = &x->cases[x->n_cases]};
+    cJSON *root = cJSON_ParseWithLength(text, n);
+    if (!root) {
+        return HN_ERR_MEMORY;
+    }
+    hn_xr_case(&r, root);
+    cJSON_Delete(root);
+    x->hash = hn_hash_bytes(x->hash, text, n);
+    x->n_cases += r.status == HN_OK;
+    return r.status;
+}
+
+hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n, hn_extreme **out,
+                               hn_diags *diags) {
+    hn_extreme *x = make(lib);
+    const hn_status status = x ? add_case(x, "case", text, n, diags) : HN_ERR_MEMORY;
+    if (status != HN_OK) {
+        hn_extreme_free(x);
+        return status;
+    }
+    *out = x;
+    return HN_OK;
+}
+
+/// "x04-stiff-spring.json" is case x4.
+static int number_of(const char *file) {
+    int number = 0, used = 0;
+    const size_t n = strlen(file);
+    return n > 5 && strcmp(file + n - 5, ".json") == 0 &&
+                   sscanf(file, "x%2d-%n", &number, &used) == 1 && used == 4
+               ? number
+               : 0;
+}
+
+static int is_wanted(const char *file, const char *const *ids, int n_ids) {
+    const int number = number_of(file);
+    for (int i = 0; i < n_ids; i++) {
+        if (tolower((unsigned char)ids[i][0]) == 'x' && atoi(ids[i] + 1) == number) {
+            return 1;
+        }
+    }
+    return n_ids == 0;
+}
+
+static int is_case_file(const struct dirent *e) {
+    return number_of(e->d_name) > 0;
+}
+
+static hn_status read_file(hn_extreme *x, const char *folder, const char *name, hn_diags *diags) {
+    char path[4400];
+    snprintf(path, sizeof path, "%.4096s/%.255s", folder, name);
+    FILE *f = fopen(path, "rb");
+    char *text = f ? malloc(MOST_BYTES + 1) : NULL;
+    const size_t n = text ? fread(text, 1, MOST_BYTES + 1, f) : 0;
+    hn_status status =
+        !f || !text || n > MOST_BYTES
+            ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL,
+                           "%s cannot be read, or holds more than %d bytes", path, (int)MOST_BYTES)
+            : add_case(x, name, text, n, diags);
+    free(text);
+    if (f) {
+        fclose(f);
+    }
+    return status;
+}
+
+/// An id that no file has is told.
+static hn_status check_ids(struct dirent **entries, int n, const char *const *ids, int n_ids,
+                           hn_diags *diags) {
+    for (int i = 0; i < n_ids; i++) {
+        int found = 0;
+        for (int k = 0; k < n; k++) {
+            found |= is_wanted(entries[k]->d_name, &ids[i], 1);
+        }
+        if (!found) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/id", "they are x1 to x25",
+                                "there is no case '%.40s'", ids[i]);
+        }
+    }
+    return HN_OK;
+}
+
+hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
+                          hn_extreme **out, hn_diags *diags) {
+    char folder[4200];
+    struct dirent **entries = NULL;
+    hn_extreme *x = make(lib);
+    snprintf(folder, sizeof folder, "%.4096s/extreme", hn_library_lessons(lib));
+    const int n = x ? scandir(folder, &entries, is_case_file, alphasort) : 0;
+    hn_status status =
+        !x      ? HN_ERR_MEMORY
+        : n < 1 ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "there is no case in %s", folder)
+                : check_ids(entries, n, ids, n_ids, diags);
+    for (int i = 0; i < n; i++) {
+        if ((status == HN_OK || status == HN_ERR_INPUT) && x->n_cases < HN_EXTREME_CASES &&
+            is_wanted(entries[i]->d_name, ids, n_ids)) {
+            const hn_status read = read_file(x, folder, entries[i]->d_name, diags);
+            status = read == HN_OK ? status : read; // further files may have faults to tell too
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    if (status != HN_OK) {
+        hn_extreme_free(x);
+        return status;
+    }
+    *out = x;
+    return HN_OK;
+}
+
+void hn_extreme_free(hn_extreme *x) {
+    if (x) {
+        hn_journal_end(&x->journal, 0);
+        hn_arena_free(x->arena);
+    }
+}

@@ -1,0 +1,103 @@
+// The extreme matrix as one HTML file: no network, no script; for the screen, light and dark, and for paper.
+#include "session/extreme/extreme_internal.h"
+
+#include "session/precision/study_page.h"
+
+#include <stdio.h>
+
+static const char STYLE[] =
+    "main{max-width:1080px}h2{margin-bottom:4px}p{margin:4px 0 8px}a{color:inherit}"
+    "table{font-size:14px}th,td{vertical-align:top}tbody th{vertical-align:top}"
+    "td.v{white-space:nowrap;min-width:0}td .why{display:block;color:var(--muted);font-size:12px}"
+    ".warn{font-weight:600}.fail{font-weight:600;color:var(--tear)}.none{color:var(--muted)}"
+    "@media print{table{font-size:8pt}}";
+
+static const char *css_class(hn_extreme_verdict verdict) {
+    return verdict <= HN_EXTREME_FAIL ? hn_extreme_verdict_name(verdict) : "none";
+}
+
+static void put_text(hn_strbuf *b, const char *tag, const char *text) {
+    hn_strbuf_printf(b, "<%s>", tag);
+    hn_html_text(b, text ? text : "");
+    hn_strbuf_printf(b, "</%.2s>", tag);
+}
+
+static void put_why(hn_strbuf *b, const char *label, const char *text) {
+    if (text) {
+        hn_strbuf_printf(b, "<span class=\"why\">%s", label);
+        hn_html_text(b, text);
+        hn_strbuf_add(b, "</span>");
+    }
+}
+
+static void put_trial(hn_strbuf *b, const hn_extreme_trial *t) {
+    hn_strbuf_add(b, "<tr><td>");
+    hn_html_text(b, t->what);
+    put_why(b, "", t->expect.reason);
+    put_why(b, "Source: ", t->expect.source);
+    if (t->expect.was) {
+        put_why(b, "Predicted before: ", t->expect.was);
+        put_why(b, "Corrected, because: ", t->expect.was_why);
+        put_why(b, "Source: ", t->expect.was_source);
+    }
+    hn_strbuf_add(b, "</td>");
+    put_text(b, "td", t->expect.text);
+    put_text(b, "td", t->observed);
+    hn_strbuf_printf(b, "<td class=\"v %s\">%s</td></tr>", css_class(t->verdict),
+                     hn_extreme_verdict_name(t->verdict));
+}
+
+static void put_case(hn_strbuf *b, const hn_extreme_case *c) {
+    hn_strbuf_printf(b, "<h2 id=\"%s\">%s: ", c->id, c->id);
+    hn_html_text(b, c->title);
+    hn_strbuf_add(b, "</h2>");
+    put_text(b, "p", c->why);
+    if (c->about) {
+        hn_strbuf_add(b, "<p class=\"quiet\">");
+        hn_html_text(b, c->about);
+        hn_strbuf_add(b, "</p>");
+    }
+    hn_page_table(b, c->id);
+    hn_strbuf_add(b, "<thead><tr><th>what</th><th>predicted</th><th>observed</th><th>verdict</th>"
+                     "</tr></thead><tbody>");
+    for (int i = 0; i < c->n_trials; i++) {
+        put_trial(b, &c->trials[i]);
+    }
+    hn_strbuf_add(b, "</tbody></table></div>");
+}
+
+static void put_summary(hn_strbuf *b, const hn_extreme *x) {
+    hn_page_table(b, "All cases");
+    hn_strbuf_add(b, "<thead><tr><th>case</th><th>what</th><th>trials</th><th>verdict</th></tr>"
+                     "</thead><tbody>");
+    for (int i = 0; i < x->n_cases; i++) {
+        const hn_extreme_case *c = &x->cases[i];
+        hn_strbuf_printf(b, "<tr><th scope=\"row\"><a href=\"#%s\">%s</a></th>", c->id, c->id);
+        put_text(b, "td", c->title);
+        hn_strbuf_printf(b, "<td>%d</td><td class=\"v %s\">%s</td></tr>", c->n_trials,
+                         css_class(c->verdict), hn_extreme_verdict_name(c->verdict));
+    }
+    hn_strbuf_add(b, "</tbody></table></div>");
+}
+
+void hn_extreme_html(hn_strbuf *b, const hn_extreme *x) {
+    hn_page_head(b, "holonom: the extreme matrix", STYLE);
+    hn_strbuf_add(b, "<h1>The extreme matrix</h1><p>Where methods break, and whether theory said "
+                     "so. Each line states what was expected, with its reason, before it was run. "
+                     "Pass: inside the band. Warn: outside, by no more than three times the "
+                     "tolerance or a factor of ten behind a bound, or for some methods "
+                     "only.</p><p class=\"quiet\">");
+    for (int v = 0; v < HN_EXTREME_VERDICTS; v++) {
+        const hn_extreme_verdict verdict = (hn_extreme_verdict)v;
+        if (hn_extreme_count(x, verdict) > 0) {
+            hn_strbuf_printf(b, "%s: %d. ", hn_extreme_verdict_name(verdict),
+                             hn_extreme_count(x, verdict));
+        }
+    }
+    hn_strbuf_add(b, "</p>");
+    put_summary(b, x);
+    for (int i = 0; i < x->n_cases; i++) {
+        put_case(b, &x->cases[i]);
+    }
+    hn_strbuf_add(b, "</main></body></html>\n");
+}

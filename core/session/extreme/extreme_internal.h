@@ -1,0 +1,151 @@
+#ifndef HN_SESSION_EXTREME_INTERNAL_H
+#define HN_SESSION_EXTREME_INTERNAL_H
+// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts), extreme_model.c (scene and start of
+// a point), extreme_walk.c (a run), extreme_quantity.c and extreme_measure.c (the two tables), extreme_solve.c,
+// extreme_stable.c (measures with a loop of their own).
+
+#include "session/extreme/extreme.h"
+#include "session/model/model.h"
+#include "study/run/run.h"
+#include "study/run/walk.h"
+
+/// One point of a trial: a scene, a method, a value of the swept name.
+typedef struct hn_extreme_point {
+    const hn_extreme_trial *trial;
+    const hn_extreme_scene *scene;
+    const char *method; ///< as in the file
+    double value;       ///< of the swept name
+} hn_extreme_point;
+
+/// What lasts while trials run: the model last loaded, its exact end, who may stop it.
+typedef struct hn_extreme_bench {
+    const hn_library *lib;
+    const hn_extreme_opts *opts;
+    double deadline; ///< wall clock [s]; 0: none
+    const char *id;  ///< of the present case
+    double share;    ///< of all that is done
+    hn_model *model;
+    const hn_extreme_scene *scene; ///< of the model
+    int n_set, is_open;            ///< open: loaded though its loops do not close
+    hn_setting settings[HN_EXTREME_SETTINGS];
+    hn_status load_status;
+    hn_diags diags; ///< of the last load
+    // the exact end of the model, as a trial's truth method gives it
+    hn_arena *truth_arena;
+    const hn_extreme_trial *truth_trial; ///< NULL: there is none yet
+    double truth_time;
+    double *truth_q, *truth_v, *truth_lambda;
+} hn_extreme_bench;
+
+/// Tells how far it is, and asks whether to stop: as the `stop` of a walk.
+int hn_extreme_is_stopped(void *bench);
+
+/// Value of a number at a point; HN_ERR_INPUT (told in diags) for a formula that has none.
+HN_MUST_CHECK hn_status hn_extreme_value(const hn_extreme_number *number, const char *name,
+                                         double value, double *out, hn_diags *diags);
+/// The method's spelling with its {formulas} filled in.
+HN_MUST_CHECK hn_status hn_extreme_spell(const hn_extreme_point *point, char out[256],
+                                         hn_diags *diags);
+/// The model of the point, borrowed from the bench until the next call; NULL with bench->load_status and diags.
+const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point *point);
+/// (q, v) where the point's runs start, system coordinates, from arena; HN_ERR_INPUT, HN_ERR_MEMORY, HN_ERR_SINGULAR.
+HN_MUST_CHECK hn_status hn_extreme_start(hn_extreme_bench *bench, const hn_model *model,
+                                         const hn_extreme_trial *trial, hn_arena *arena, double **q,
+                                         double **v);
+/// Unloads the model.
+void hn_extreme_bench_clear(hn_extreme_bench *bench);
+
+/// Verdict and words of a trial whose numbers are all there.
+void hn_extreme_conclude(hn_extreme_trial *trial);
+/// Puts trial k of case i into the journal.
+void hn_extreme_keep(hn_extreme *x, int i, int k);
+
+/// A run at its end, and what was seen on its way.
+typedef struct hn_extreme_look {
+    hn_extreme_bench *bench;
+    const hn_extreme_point *point;
+    const hn_model *model; ///< NULL: the scene was refused
+    hn_arena *arena;
+    const double *q, *v; ///< start, system coordinates
+    hn_run *run;         ///< NULL: refused
+    double time;         ///< asked for
+    hn_status status;    ///< of load, creation or run
+    char reason[200];
+    double start_energy;
+    hn_sample end; ///< when it finished
+    hn_run_summary summary;
+    double least_step;     ///< of the whole run, where each step was looked at
+    double first, last;    ///< largest |v| over the first and the last tenth, likewise
+    const double *truth;   ///< n_user, what q should be; NULL: none
+    const double *truth_v; ///< likewise, NULL: unknown
+    const double *truth_lambda;
+} hn_extreme_look;
+
+enum {
+    HN_EXTREME_EACH_STEP = 1,   ///< step by step: least_step, first, last
+    HN_EXTREME_TRUTH = 2,       ///< the trial must give one
+    HN_EXTREME_FAILED_TOO = 4,  ///< defined for a run that ended early
+    HN_EXTREME_MODEL = 8,       ///< of the model alone: no run is made
+    HN_EXTREME_RAW = 16,        ///< the scheme's own multipliers
+    HN_EXTREME_COORDINATE = 32, ///< the trial must name a coordinate
+    HN_EXTREME_INCIDENT = 64,   ///< the trial must name an incident
+    HN_EXTREME_SOLVE = 128,     ///< of an answer of a solver
+    HN_EXTREME_WATCHED = 256    ///< needs the run's watch
+};
+
+/// An answer of a solver beside the exact one.
+typedef struct hn_extreme_answer {
+    hn_status status;
+    int nv, nc;
+    double error;       ///< max |a - exact| / max |exact|
+    double force_error; ///< of J' lambda, likewise
+    double lambda_norm;
+    double
+        exact_lambda_norm; ///< of the multipliers of the exact elimination (0 for rows that depend on others)
+    char reason[200];
+} hn_extreme_answer;
+
+typedef struct hn_extreme_quantity {
+    const char *name, *unit, *about;
+    unsigned needs;
+    double (*of_run)(const hn_extreme_look *look);
+    double (*of_answer)(const hn_extreme_answer *answer);
+} hn_extreme_quantity;
+
+typedef struct hn_extreme_measure {
+    const char *name, *about;
+    int takes_quantity, takes_sweep; ///< 1 must, 0 must not, -1 may
+    int gives_word;
+    /// One number or outcome for a scene and a method.
+    void (*see)(hn_extreme_bench *bench, const hn_extreme_trial *trial,
+                const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out);
+} hn_extreme_measure;
+
+extern const hn_extreme_quantity hn_extreme_quantities[];
+extern const int hn_extreme_n_quantities;
+extern const hn_extreme_measure hn_extreme_measures[];
+extern const int hn_extreme_n_measures;
+
+/// Runs the point to its time. look->run is NULL and status set when it could not begin. hn_extreme_look_end() in any case.
+void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
+                           hn_extreme_look *look);
+void hn_extreme_look_end(hn_extreme_look *look);
+/// The point's quantity: NaN with a reason, and the status, where there is none.
+double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *point,
+                              char reason[200], hn_status *status);
+/// The saddle system of the scene's start by the way of that name.
+void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
+                      hn_extreme_answer *out);
+int hn_extreme_is_solver(const char *name);
+/// How a status is called in the files: "finished", "diverged", "refused", ...
+const char *hn_extreme_outcome(hn_status status);
+const char *const *hn_extreme_outcomes(int *n);
+
+/// The largest step that does not grow, over the predicted one where that comes from the spectrum.
+void hn_extreme_see_stable_step(hn_extreme_bench *bench, const hn_extreme_trial *trial,
+                                const hn_extreme_scene *scene, const char *method,
+                                hn_extreme_seen *out);
+void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *trial,
+                             const hn_extreme_scene *scene, const char *method,
+                             hn_extreme_seen *out);
+#endif

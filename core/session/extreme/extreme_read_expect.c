@@ -1,0 +1,139 @@
+// What a trial predicts: a band for a number, or a word for an outcome.
+#include "session/extreme/extreme_reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define WARN_TOLERANCES 3.0 // a number is warned of up to so many tolerances
+#define WARN_FACTOR 10.0    // and behind a one-sided bound up to this factor
+
+static void set_band(hn_extreme_expect *e, double low, double high, double tolerance) {
+    e->low = low;
+    e->high = high;
+    e->warn_low = low - (WARN_TOLERANCES - 1) * tolerance;
+    e->warn_high = high + (WARN_TOLERANCES - 1) * tolerance;
+}
+
+/// A bound on one side: a factor beyond it is warned of; where the bound is 0 there is nothing to warn of.
+static void set_bounds(hn_extreme_expect *e, double low, double high) {
+    e->low = low;
+    e->high = high;
+    e->warn_low = low > 0 ? low / WARN_FACTOR : low * WARN_FACTOR;
+    e->warn_high = high > 0 ? high * WARN_FACTOR : high / WARN_FACTOR;
+}
+
+static void read_band(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
+    const double value = hn_xr_number(r, node, "value", -HN_XR_NUMBER, HN_XR_NUMBER, (double)NAN);
+    const double within = hn_xr_number(r, node, "within", 0, HN_XR_NUMBER, (double)NAN);
+    const double share = hn_xr_number(r, node, "within_share", 0, 1, (double)NAN);
+    if (isnan(within) == isnan(share)) {
+        hn_xr_fault(r, "value", NULL, "a value takes one of 'within' and 'within_share'");
+    }
+    const double tolerance = isnan(within) ? share * fabs(value) : within;
+    set_band(e, value - tolerance, value + tolerance, tolerance);
+    if (e->from_spectrum) {
+        snprintf(e->text, sizeof e->text, "the spectrum's limit, %g %%", 100 * tolerance);
+    } else if (isnan(within)) {
+        snprintf(e->text, sizeof e->text, "%.6g, %g %%", value, 100 * share);
+    } else {
+        snprintf(e->text, sizeof e->text, "%.14g, within %g", value, within);
+    }
+}
+
+static void read_between(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
+    const cJSON *low = cJSON_GetArrayItem(node, 0), *high = cJSON_GetArrayItem(node, 1);
+    if (!cJSON_IsArray(node) || cJSON_GetArraySize(node) != 2 || !cJSON_IsNumber(low) ||
+        !cJSON_IsNumber(high) || !(low->valuedouble < high->valuedouble)) {
+        hn_xr_fault(r, "between", NULL, "expected two numbers, the smaller one first");
+        return;
+    }
+    const double half = (high->valuedouble - low->valuedouble) / 2;
+    set_band(e, low->valuedouble, high->valuedouble, half);
+    snprintf(e->text, sizeof e->text, "%.6g to %.6g", low->valuedouble, high->valuedouble);
+}
+
+static void read_word(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
+    int n = 0, known = 0;
+    const char *const *words = hn_extreme_outcomes(&n);
+    e->word = hn_xr_text(r, node, "word", 1);
+    e->says = hn_xr_text(r, node, "says", 0);
+    for (int i = 0; i < n; i++) {
+        known |= strcmp(words[i], e->word) == 0;
+    }
+    if (!known) {
+        char hint[HN_DIAG_HINT] = "";
+        hn_xr_suggest(hint, e->word, words, n);
+        hn_xr_fault(r, "word", hint, "no run ends as '%.60s'", e->word);
+    }
+    snprintf(e->text, sizeof e->text, e->says ? "%s: \"%s\"" : "%s", e->word, e->says);
+}
+
+void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
+    hn_extreme_expect *e = &t->expect;
+    const cJSON *node = hn_xr_get(root, "predicted");
+    const size_t mark = hn_xr_enter(r, "predicted", -1);
+    if (hn_xr_object(r, node,
+                     HN_XR_FIELDS("value", "within", "within_share", "at_most", "at_least",
+                                  "between", "word", "says", "from", "reason", "source"))) {
+        static const char *const forms[] = {"value", "at_most", "at_least", "between", "word"};
+        int given = 0;
+        for (int i = 0; i < 5; i++) {
+            given += hn_xr_get(node, forms[i]) != NULL;
+        }
+        const char *from = hn_xr_text(r, node, "from", 0);
+        e->from_spectrum = from != NULL;
+        if (from && strcmp(from, "spectrum") != 0) {
+            hn_xr_fault(r, "from", "take \"spectrum\"",
+                        "a prediction comes from the spectrum, or stands here");
+        }
+        e->reason = hn_xr_text(r, node, "reason", 1);
+        e->source = hn_xr_text(r, node, "source", 0);
+        if (given != 1) {
+            hn_xr_fault(r, NULL, NULL,
+                        "a prediction is one of value, at_most, at_least, between and word");
+        } else if (hn_xr_get(node, "value")) {
+            read_band(r, node, e);
+        } else if (hn_xr_get(node, "between")) {
+            read_between(r, hn_xr_get(node, "between"), e);
+        } else if (hn_xr_get(node, "word")) {
+            read_word(r, node, e);
+        } else if (hn_xr_get(node, "at_most")) {
+            set_bounds(e, -HUGE_VAL,
+                       hn_xr_number(r, node, "at_most", -HN_XR_NUMBER, HN_XR_NUMBER, 0));
+            snprintf(e->text, sizeof e->text, "at most %.6g", e->high);
+        } else {
+            set_bounds(e, hn_xr_number(r, node, "at_least", -HN_XR_NUMBER, HN_XR_NUMBER, 0),
+                       HUGE_VAL);
+            snprintf(e->text, sizeof e->text, "at least %.6g", e->low);
+        }
+        if (e->from_spectrum && t->measure && t->measure->see != hn_extreme_see_stable_step) {
+            hn_xr_fault(r, "from", NULL, "only 'stable-step' is predicted from the spectrum");
+        }
+        if (t->measure && t->measure->see == hn_extreme_see_stable_step &&
+            (t->limit[0] > 0) == e->from_spectrum) {
+            hn_xr_fault(
+                r, "from", NULL,
+                "a step is searched about the spectrum's limit, or between the two of 'limit'");
+        }
+        if (t->measure && t->measure->gives_word != (e->word != NULL) && given == 1) {
+            hn_xr_fault(r, NULL, NULL, "'%s' gives %s", t->measure->name,
+                        t->measure->gives_word ? "a word" : "a number");
+        }
+    }
+    hn_xr_leave(r, mark);
+}
+
+void hn_xr_corrected(hn_xr *r, const cJSON *root, hn_extreme_expect *e) {
+    const cJSON *node = hn_xr_get(root, "corrected");
+    if (!node) {
+        return;
+    }
+    const size_t mark = hn_xr_enter(r, "corrected", -1);
+    if (hn_xr_object(r, node, HN_XR_FIELDS("was", "reason", "source"))) {
+        e->was = hn_xr_text(r, node, "was", 1);
+        e->was_why = hn_xr_text(r, node, "reason", 1);
+        e->was_source = hn_xr_text(r, node, "source", 1);
+    }
+    hn_xr_leave(r, mark);
+}

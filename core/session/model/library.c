@@ -1,0 +1,234 @@
+#define _XOPEN_SOURCE 700
+#include "session/model/library.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_PATH_CHARS = 4096, MAX_ENTRIES = 512 };
+
+/// Files of one kind (scenes, problems), sorted by id.
+typedef struct shelf {
+    int n;
+    const char *ids[MAX_ENTRIES];
+    const char *paths[MAX_ENTRIES];
+} shelf;
+
+struct hn_library {
+    hn_arena *arena;
+    const char *web, *lessons;
+    shelf scenes, problems;
+};
+
+static int is_folder(const char *path) {
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
+}
+
+/// Joins two parts; 0 if the result would not fit.
+static int join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name) {
+    int n = snprintf(out, MAX_PATH_CHARS, "%s/%s", folder, name);
+    return n > 0 && n < MAX_PATH_CHARS;
+}
+
+/// The folder of the running program, without a trailing slash; 0 if it cannot be told.
+static int program_folder(char out[MAX_PATH_CHARS]) {
+    ssize_t n = readlink("/proc/self/exe", out, MAX_PATH_CHARS - 1);
+    if (n <= 0) {
+        return 0;
+    }
+    out[n] = 0;
+    char *slash = strrchr(out, '/');
+    if (!slash) {
+        return 0;
+    }
+    *slash = 0;
+    return 1;
+}
+
+static int is_home(const char *folder) {
+    char path[MAX_PATH_CHARS];
+    return join_path(path, folder, "lessons") && is_folder(path) &&
+           join_path(path, folder, "web") && is_folder(path);
+}
+
+/// Keeps a list of the places tried, for the message.
+static void note_place(char *tried, size_t size, const char *folder) {
+    size_t used = strlen(tried);
+    snprintf(tried + used, size - used, "%s%s", used ? ", " : "", folder);
+}
+
+/// The folder that holds lessons/ and web/; 0 when there is none.
+static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, size_t n_tried) {
+    static const char *const beside[] = {"..", "../..", "../share/holonom"};
+    const char *named = home ? home : getenv("HOLONOM_HOME");
+    if (named && *named) {
+        snprintf(out, MAX_PATH_CHARS, "%s", named);
+        note_place(tried, n_tried, named);
+        return is_home(out);
+    }
+    char program[MAX_PATH_CHARS];
+    if (!program_folder(program)) {
+        return 0;
+    }
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+        char place[MAX_PATH_CHARS];
+        if (!join_path(place, program, beside[i])) {
+            continue;
+        }
+        char *real = realpath(place, NULL);
+        if (!real) {
+            continue;
+        }
+        note_place(tried, n_tried, real);
+        snprintf(out, MAX_PATH_CHARS, "%s", real);
+        free(real);
+        if (is_home(out)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/// Puts one file on the shelf at its place in the order of ids; a second file of the same id is left out.
+static void shelve(hn_library *lib, shelf *s, const char *folder, const char *file) {
+    size_t n = strlen(file);
+    char path[MAX_PATH_CHARS];
+    if (n < 6 || strcmp(file + n - 5, ".json") != 0 || s->n == MAX_ENTRIES ||
+        !join_path(path, folder, file)) {
+        return;
+    }
+    char id[256];
+    snprintf(id, sizeof id, "%.*s", (int)(n - 5 < 255 ? n - 5 : 255), file);
+    int at = s->n;
+    while (at > 0 && strcmp(s->ids[at - 1], id) > 0) {
+        at--;
+    }
+    if (at > 0 && strcmp(s->ids[at - 1], id) == 0) {
+        return;
+    }
+    memmove(s->ids + at + 1, s->ids + at, (size_t)(s->n - at) * sizeof *s->ids);
+    memmove(s->paths + at + 1, s->paths + at, (size_t)(s->n - at) * sizeof *s->paths);
+    s->ids[at] = hn_arena_strdup(lib->arena, id);
+    s->paths[at] = hn_arena_strdup(lib->arena, path);
+    s->n++;
+}
+
+static void read_shelf(hn_library *lib, shelf *s, const char *lesson, const char *kind) {
+    char folder[MAX_PATH_CHARS];
+    if (!join_path(folder, lesson, kind)) {
+        return;
+    }
+    DIR *dir = opendir(folder);
+    if (!dir) {
+        return;
+    }
+    for (struct dirent *e = readdir(dir); e; e = readdir(dir)) {
+        if (e->d_name[0] != '.') {
+            shelve(lib, s, folder, e->d_name);
+        }
+    }
+    closedir(dir);
+}
+
+static hn_status read_lessons(hn_library *lib, hn_diag *diag) {
+    DIR *dir = opendir(lib->lessons);
+    if (!dir) {
+        return hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "the folder %s cannot be read",
+                           lib->lessons);
+    }
+    for (struct dirent *e = readdir(dir); e; e = readdir(dir)) {
+        char lesson[MAX_PATH_CHARS];
+        if (e->d_name[0] != '.' && join_path(lesson, lib->lessons, e->d_name)) {
+            read_shelf(lib, &lib->scenes, lesson, "scenes");
+            read_shelf(lib, &lib->problems, lesson, "problems");
+        }
+    }
+    closedir(dir);
+    return HN_OK;
+}
+
+hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
+    char folder[MAX_PATH_CHARS] = "", tried[2 * MAX_PATH_CHARS] = "", path[MAX_PATH_CHARS];
+    if (!find_home(home, folder, tried, sizeof tried)) {
+        return hn_diag_set(diag, HN_ERR_IO, NULL,
+                           "set HOLONOM_HOME to the folder that holds lessons/ and web/",
+                           "no folder with lessons/ and web/ was found; tried: %.300s", tried);
+    }
+    hn_arena *arena = hn_arena_create(1 << 14);
+    hn_library *lib = arena ? hn_arena_get(arena, sizeof *lib) : NULL;
+    if (!lib) {
+        hn_arena_free(arena);
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    lib->arena = arena;
+    if (join_path(path, folder, "web")) {
+        lib->web = hn_arena_strdup(arena, path);
+    }
+    if (join_path(path, folder, "lessons")) {
+        lib->lessons = hn_arena_strdup(arena, path);
+    }
+    hn_status status = lib->web && lib->lessons ? read_lessons(lib, diag) : HN_ERR_IO;
+    if (status == HN_OK && hn_arena_failed(arena)) {
+        status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    if (status != HN_OK) {
+        hn_arena_free(arena);
+        return status;
+    }
+    *out = lib;
+    return HN_OK;
+}
+
+void hn_library_free(hn_library *lib) {
+    if (lib) {
+        hn_arena_free(lib->arena);
+    }
+}
+
+const char *hn_library_web(const hn_library *lib) {
+    return lib->web;
+}
+
+const char *hn_library_lessons(const hn_library *lib) {
+    return lib->lessons;
+}
+
+static const char *find_path(const shelf *s, const char *id) {
+    for (int i = 0; i < s->n; i++) {
+        if (strcmp(s->ids[i], id) == 0) {
+            return s->paths[i];
+        }
+    }
+    return NULL;
+}
+
+int hn_library_n_scenes(const hn_library *lib) {
+    return lib->scenes.n;
+}
+
+const char *hn_library_scene_id(const hn_library *lib, int i) {
+    return lib->scenes.ids[i];
+}
+
+const char *hn_library_scene_path(const hn_library *lib, const char *id) {
+    return find_path(&lib->scenes, id);
+}
+
+const char *const *hn_library_scene_ids(const hn_library *lib) {
+    return lib->scenes.ids;
+}
+
+const char *hn_library_problem_path(const hn_library *lib, const char *id) {
+    return find_path(&lib->problems, id);
+}
+
+int hn_library_n_problems(const hn_library *lib) {
+    return lib->problems.n;
+}
+
+const char *hn_library_problem_id(const hn_library *lib, int i) {
+    return lib->problems.ids[i];
+}

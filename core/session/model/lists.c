@@ -1,0 +1,96 @@
+#include "session/model/lists.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_TEXT = 1 << 20, MAX_TITLE = 256 };
+
+/// The whole file, zero-terminated, owned by the caller; NULL when it cannot be read or is too long.
+static char *read_file(const char *path) {
+    FILE *f = fopen(path, "rb");
+    char *text = f ? malloc(MAX_TEXT + 1) : NULL;
+    size_t n = text ? fread(text, 1, MAX_TEXT + 1, f) : 0;
+    if (f) {
+        fclose(f);
+    }
+    if (!text || n > MAX_TEXT) {
+        free(text);
+        return NULL;
+    }
+    text[n] = 0;
+    return text;
+}
+
+/// The first heading of a lesson's text, or its id.
+static void find_title(const char *folder, const char *id, char title[MAX_TITLE]) {
+    hn_strbuf path;
+    hn_strbuf_init(&path);
+    hn_strbuf_printf(&path, "%s/text.md", folder);
+    char *text = path.failed ? NULL : read_file(hn_strbuf_text(&path));
+    hn_strbuf_reset(&path);
+    const char *heading = text ? strstr(text, "# ") : NULL;
+    if (heading) {
+        snprintf(title, MAX_TITLE, "%.*s", (int)strcspn(heading + 2, "\r\n"), heading + 2);
+    } else {
+        snprintf(title, MAX_TITLE, "%s", id);
+    }
+    free(text);
+}
+
+static int lies_in(const char *path, const char *folder) {
+    size_t n = strlen(folder);
+    return path && strncmp(path, folder, n) == 0 && path[n] == '/';
+}
+
+static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
+    char title[MAX_TITLE];
+    hn_strbuf place;
+    hn_strbuf_init(&place);
+    hn_strbuf_printf(&place, "%s/%s", hn_library_lessons(lib), id);
+    const char *folder = hn_strbuf_text(&place);
+    find_title(folder, id, title);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", id);
+    hn_json_put_string(b, "title", title);
+    hn_json_key(b, "scenes");
+    hn_json_array(b);
+    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
+        const char *scene = hn_library_scene_id(lib, i);
+        if (lies_in(hn_library_scene_path(lib, scene), folder)) {
+            hn_json_string(b, scene);
+        }
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "problems");
+    hn_json_array(b);
+    for (int i = 0; i < hn_library_n_problems(lib); i++) {
+        const char *problem = hn_library_problem_id(lib, i);
+        if (lies_in(hn_library_problem_path(lib, problem), folder)) {
+            hn_json_string(b, problem);
+        }
+    }
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+    b->failed |= place.failed;
+    hn_strbuf_reset(&place);
+}
+
+static int is_lesson(const struct dirent *e) {
+    return e->d_name[0] >= '0' && e->d_name[0] <= '9';
+}
+
+void hn_lessons_json(hn_strbuf *b, const hn_library *lib) {
+    struct dirent **entries = NULL;
+    int n = scandir(hn_library_lessons(lib), &entries, is_lesson, alphasort);
+    hn_json_object(b);
+    hn_json_key(b, "lessons");
+    hn_json_array(b);
+    for (int i = 0; i < n; i++) {
+        put_lesson(b, lib, entries[i]->d_name);
+        free(entries[i]);
+    }
+    free(entries);
+    hn_json_end_array(b);
+    hn_json_end_object(b);
+}

@@ -1,0 +1,146 @@
+#include "session/model/model.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct hn_model {
+    hn_scene *scene;
+    hn_system *system;
+    hn_arena *arena;
+    double *q, *v;
+    hn_assembly assembly;
+    hn_diag open;          ///< why its loops did not close; no message: they did
+    const char *reference; ///< where its shipped reference stands, NULL: it is no shipped scene
+};
+
+/// lessons/NN-topic/scenes/ID.json has its reference in lessons/NN-topic/references/ID.json.
+static const char *find_reference(hn_arena *arena, const hn_library *lib, const char *id) {
+    static const char from[] = "/scenes/", to[] = "/references/";
+    const char *path = lib && id ? hn_library_scene_path(lib, id) : NULL, *last = NULL;
+    for (const char *at = path; at && (at = strstr(at, from)) != NULL; at++) {
+        last = at;
+    }
+    const size_t size = last ? strlen(path) + sizeof to : 0;
+    char *out = last ? hn_arena_get(arena, size) : NULL;
+    if (out) {
+        snprintf(out, size, "%.*s%s%s", (int)(last - path), path, to, last + strlen(from));
+    }
+    return out;
+}
+
+static hn_status load_shipped(const hn_library *lib, const hn_model_source *source,
+                              hn_scene **scene, hn_diags *diags) {
+    const char *path = hn_library_scene_path(lib, source->name);
+    if (!path) {
+        const char *near =
+            hn_nearest_name(source->name, hn_library_scene_ids(lib), hn_library_n_scenes(lib));
+        char hint[HN_DIAG_HINT];
+        snprintf(hint, sizeof hint,
+                 near ? "did you mean '%s'?" : "'holonom list scenes' names them all%s",
+                 near ? near : "");
+        return hn_diags_add(diags, HN_ERR_INPUT, "/scene", hint,
+                            "no shipped scene is called '%.80s'", source->name);
+    }
+    return hn_scene_load_file(path, source->settings, source->n_settings, scene, diags);
+}
+
+static hn_status load_scene(const hn_library *lib, const hn_model_source *source, hn_scene **scene,
+                            hn_diags *diags) {
+    HN_ASSERT((source->name != NULL) + (source->path != NULL) + (source->text != NULL) == 1);
+    if (source->name) {
+        return load_shipped(lib, source, scene, diags);
+    }
+    if (source->path) {
+        return hn_scene_load_file(source->path, source->settings, source->n_settings, scene, diags);
+    }
+    return hn_scene_load_json(source->text, source->n_text, source->id, source->settings,
+                              source->n_settings, scene, diags);
+}
+
+/// Consistent starting values; an open loop is an error unless the caller wants to look at it.
+static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags) {
+    hn_system_info info = hn_system_get_info(model->system);
+    model->q = hn_arena_doubles(model->arena, (size_t)info.nq);
+    model->v = hn_arena_doubles(model->arena, (size_t)info.nv);
+    if (hn_arena_failed(model->arena)) {
+        return HN_ERR_MEMORY;
+    }
+    hn_diags why = {0};
+    hn_status status =
+        hn_assemble(model->system, 0, model->q, model->v, NULL, NULL, &model->assembly, &why);
+    int open = status == HN_ERR_UNREACHABLE || status == HN_ERR_INCONSISTENT;
+    if (open && allow_open) {
+        model->open = why.item[0];
+        return HN_OK;
+    }
+    for (int i = 0; i < why.n; i++) {
+        hn_diags_add(diags, why.item[i].status, why.item[i].pointer, why.item[i].hint, "%s",
+                     why.item[i].message);
+    }
+    return status;
+}
+
+hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn_model **out,
+                        hn_diags *diags) {
+    hn_arena *arena = hn_arena_create(0);
+    hn_model *model = arena ? hn_arena_get(arena, sizeof *model) : NULL;
+    if (!model) {
+        hn_arena_free(arena);
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    model->arena = arena;
+    hn_status status = load_scene(lib, source, &model->scene, diags);
+    if (status == HN_OK) {
+        status = hn_system_compile(model->scene, NULL, &model->system, diags);
+    }
+    if (status == HN_OK) {
+        status = assemble(model, source->allow_open, diags);
+    }
+    if (status == HN_ERR_LIMIT && diags && diags->n == 0) {
+        hn_diags_add(diags, status, "/scene", "take fewer bodies, or shorter chains",
+                     "the scene's equations hold more values at once than a tape can (65,000)");
+    }
+    if (status != HN_OK) {
+        hn_model_free(model);
+        return status;
+    }
+    model->reference = find_reference(arena, lib, model->scene->id);
+    *out = model;
+    return HN_OK;
+}
+
+void hn_model_free(hn_model *model) {
+    if (model) {
+        hn_system_free(model->system);
+        hn_scene_free(model->scene);
+        hn_arena_free(model->arena);
+    }
+}
+
+const hn_scene *hn_model_scene(const hn_model *model) {
+    return model->scene;
+}
+
+const char *hn_model_reference_path(const hn_model *model) {
+    return model->reference;
+}
+
+const hn_system *hn_model_system(const hn_model *model) {
+    return model->system;
+}
+
+const hn_assembly *hn_model_assembly(const hn_model *model) {
+    return &model->assembly;
+}
+
+const hn_diag *hn_model_open(const hn_model *model) {
+    return model->open.message[0] ? &model->open : NULL;
+}
+
+const double *hn_model_q(const hn_model *model) {
+    return model->q;
+}
+
+const double *hn_model_v(const hn_model *model) {
+    return model->v;
+}

@@ -1,0 +1,325 @@
+#include "session/report/report_internal.h"
+
+#include "study/run/timing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double DEFAULT_BUDGET = 240; // [s]
+static const double STUDY_SHARE = 0.75;   // of a scene's time; accounts and survival take the rest
+static const double ACCOUNT_SHARE = 0.1;
+static const double SURVIVAL_SHARE = 0.15;
+static const double ACCOUNT_STEP = 4;              // times the scene's
+static const double NO_BUDGET = 1e9;               // [s]
+static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
+
+// one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground; space
+static const char *const SCENES[] = {
+    "fb0", "five-bar", "n-four-bar", "seven-body-squeezer", "car-axis", "stewart-6-6",
+};
+
+// one that drifts, one that is held back, one that is put back
+static const char *const ACCOUNTED[HN_REPORT_ACCOUNTS] = {
+    "index1@rk4",
+    "baumgarte@rk4",
+    "projection@rk4",
+};
+
+// in which order sizes are tried, so that what a budget leaves is spread evenly: prime to HN_REPORT_SIZES
+enum { STRIDE = 7 };
+
+const char *const *hn_report_standard(int *n) {
+    *n = (int)(sizeof SCENES / sizeof *SCENES);
+    return SCENES;
+}
+
+hn_report_request hn_report_request_default(void) {
+    return (hn_report_request){.budget = (double)NAN};
+}
+
+// telling and asking -------------------------------------------------------------------------------------------------
+
+static double elapsed(const hn_report *r) {
+    return hn_wall_seconds() - r->started;
+}
+
+static void tell(hn_report *r, double part) {
+    const double all = r->request.budget > 0 ? elapsed(r) / r->request.budget : 0;
+    const double scenes = (r->at + part) / r->n;
+    if (r->request.progress) {
+        r->request.progress(r->request.user, hn_report_scene_id(&r->scenes[r->at]),
+                            fmin(1, fmax(all, scenes)));
+    }
+}
+
+static int ask_stop(void *user) {
+    hn_report *r = user;
+    r->stopped |= r->request.stop && r->request.stop(r->request.user);
+    return r->stopped;
+}
+
+/// The same, and when the time for this part of a scene is over.
+static int ask_end(void *user) {
+    hn_report *r = user;
+    return ask_stop(r) || hn_wall_seconds() > r->until;
+}
+
+static void tell_study(void *user, double part) {
+    tell(user, STUDY_SHARE * part);
+}
+
+static void tell_account(void *user, double part) {
+    hn_report *r = user;
+    const hn_report_scene *s = &r->scenes[r->at];
+    tell(r, STUDY_SHARE + ACCOUNT_SHARE * (s->n_accounts + part) / HN_REPORT_ACCOUNTS);
+}
+
+// one scene ----------------------------------------------------------------------------------------------------------
+
+static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
+    hn_diags diags = {0};
+    hn_study_request q = hn_study_request_default();
+    q.methods = r->request.methods;
+    q.n_methods = r->request.n_methods;
+    q.levels = r->request.levels;
+    q.samples = r->request.samples;
+    q.budget = r->request.budget > 0 ? STUDY_SHARE * seconds : 0;
+    q.build = r->request.build;
+    q.folder = r->request.folder;
+    q.keep = 1;
+    q.hooks = (hn_wp_hooks){.user = r, .stop = ask_stop, .progress = tell_study};
+    const hn_status status = hn_study_open(s->model, &q, &s->study, &diags);
+    if (status == HN_OK) {
+        hn_study_run(s->study);
+        return HN_OK;
+    }
+    s->study = NULL;
+    snprintf(s->reason, sizeof s->reason, "%s",
+             r->stopped    ? "stopped on request before it began"
+             : diags.n > 0 ? diags.item[0].message
+                           : hn_status_text(status));
+    return status;
+}
+
+static void account(hn_report *r, hn_report_scene *s) {
+    const hn_ref *ref = hn_study_wp(s->study)->ref;
+    // past a singular pose there is no account, which looking for the exact motion finds
+    const double *end = ref->q + (size_t)ref->n * (size_t)ref->n_user;
+    const hn_account_opts opts = {
+        .exact = s->singular ? NULL : end, .stop = ask_end, .progress = tell_account, .user = r};
+    for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
+        hn_account_row *a = &s->accounts[s->n_accounts];
+        hn_diag diag = {0};
+        hn_method_spec spec;
+        snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", ACCOUNTED[s->n_accounts],
+                 ACCOUNT_STEP * hn_model_scene(s->model)->step);
+        a->status = hn_method_parse(a->spelling, &spec, &diag);
+        if (a->status == HN_OK && ask_end(r)) {
+            a->status = HN_ERR_BUDGET;
+        } else if (a->status == HN_OK) {
+            a->status = hn_account_make(hn_model_system(s->model), &spec, hn_model_q(s->model),
+                                        hn_model_v(s->model), ref->T, &opts, &a->account, &diag);
+        }
+        if (a->status == HN_ERR_BUDGET) {
+            hn_diag_set(&diag, HN_ERR_BUDGET, NULL, NULL, "left out to keep the budget");
+        }
+        snprintf(a->reason, sizeof a->reason, "%s",
+                 a->status == HN_OK ? a->account.reason : diag.message);
+    }
+}
+
+/// Whether the motion passes near singular poses: a run that puts itself back after each step looks out for them.
+static void find_singular(hn_report *r, hn_report_scene *s) {
+    const double T = hn_study_wp(s->study)->ref->T;
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    hn_run *run = NULL;
+    char spelling[HN_SPEC_MAX];
+    snprintf(spelling, sizeof spelling, "projection@rk4:h=%.6g", hn_model_scene(s->model)->step);
+    if (hn_method_parse(spelling, &spec, &diag) != HN_OK ||
+        hn_run_create(hn_model_system(s->model), &spec, hn_model_q(s->model), hn_model_v(s->model),
+                      NULL, &run, &diag) != HN_OK) {
+        return;
+    }
+    // how it ends is told by its incidents
+    while (hn_run_time(run) < T && !ask_end(r) && hn_run_step(run) == HN_OK) {}
+    s->singular = hn_run_passed_singular(run, &s->singular_at);
+    hn_run_free(run);
+}
+
+static double size_of(const hn_wp *wp, int m, double step, int k) {
+    return wp->methods[m].adaptive
+               ? pow(10, -(FIRST_RTOL + (LAST_RTOL - FIRST_RTOL) * k / (HN_REPORT_SIZES - 1)))
+               : hn_survival_step(step, k, HN_REPORT_SIZES);
+}
+
+static void try_size(const hn_report_scene *s, const hn_survival_judge *judge, int m, int k) {
+    const hn_wp *wp = hn_study_wp(s->study);
+    hn_strip *strip = &s->strips[m];
+    hn_diag diag = {0};
+    hn_run *run = NULL;
+    const double size = size_of(wp, m, hn_model_scene(s->model)->step, k);
+    const hn_method_spec spec = hn_wp_spec(wp, m, size);
+    const hn_status status = hn_run_create(hn_model_system(s->model), &spec, hn_model_q(s->model),
+                                           hn_model_v(s->model), NULL, &run, &diag);
+    if (status != HN_OK) {
+        snprintf(strip->reason, sizeof strip->reason, "%.190s", diag.message);
+        return;
+    }
+    if (hn_survival_try(run, judge, &strip->run[strip->n])) {
+        strip->size[strip->n++] = size;
+    }
+    hn_run_free(run);
+}
+
+/// Every method with one size, then with the next, until the time is over.
+static void survive(hn_report *r, hn_report_scene *s) {
+    const hn_wp *wp = hn_study_wp(s->study);
+    const hn_walk_limits limits = {0, ask_end, r};
+    hn_survival_judge judge = {0};
+    hn_arena *arena = hn_arena_create(1 << 14);
+    s->strips = arena ? calloc((size_t)wp->n_methods, sizeof *s->strips) : NULL;
+    if (s->strips &&
+        hn_survival_by_reference(hn_model_system(s->model), wp->ref, arena, &judge) == HN_OK) {
+        judge.limits = &limits;
+        for (int i = 0; i < HN_REPORT_SIZES && !ask_end(r); i++) {
+            for (int m = 0; m < wp->n_methods && !ask_end(r); m++) {
+                try_size(s, &judge, m, i * STRIDE % HN_REPORT_SIZES);
+            }
+            tell(r, STUDY_SHARE + ACCOUNT_SHARE + SURVIVAL_SHARE * (i + 1) / HN_REPORT_SIZES);
+        }
+    } else {
+        r->no_memory = 1;
+    }
+    hn_survival_unjudge(&judge);
+    hn_arena_free(arena);
+}
+
+static void make_scene(hn_report *r, double seconds) {
+    hn_report_scene *s = &r->scenes[r->at];
+    if (study_scene(r, s, seconds) != HN_OK || r->stopped) {
+        return;
+    }
+    r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
+    find_singular(r, s);
+    // where there is nothing to survive its time goes to the accounts, which take long in space
+    const double share = s->singular ? ACCOUNT_SHARE : ACCOUNT_SHARE + SURVIVAL_SHARE;
+    r->until = hn_wall_seconds() + share * seconds;
+    account(r, s);
+    if (s->singular) {
+        r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
+        survive(r, s);
+    }
+}
+
+// the whole ----------------------------------------------------------------------------------------------------------
+
+static hn_status check(const hn_report_request *q, hn_diags *diags) {
+    if (q->n_models < 1 || q->n_models > HN_REPORT_SCENES) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/scenes", NULL,
+                            "%d scenes were given; a report takes 1 to %d", q->n_models,
+                            HN_REPORT_SCENES);
+    }
+    if (!(q->budget >= 0) || !isfinite(q->budget)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL,
+                            "the budget is %g s; it must be above 0, or 0 for none", q->budget);
+    }
+    if (q->n_methods < 1 || q->n_methods > HN_WP_METHODS) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/methods", NULL,
+                            "%d methods were given; a report takes 1 to %d", q->n_methods,
+                            HN_WP_METHODS);
+    }
+    if (q->levels != 0 && (q->levels < 2 || q->levels > HN_WP_LEVELS)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/levels", NULL,
+                            "%d sizes were asked for; a report takes 2 to %d", q->levels,
+                            HN_WP_LEVELS);
+    }
+    for (int i = 0; i < q->n_methods; i++) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        const hn_status status = hn_method_parse(q->methods[i], &spec, &diag);
+        if (status != HN_OK) {
+            return hn_diags_add(diags, status, "/methods", diag.hint, "%s", diag.message);
+        }
+    }
+    return HN_OK;
+}
+
+/// Time for the present scene: an even share of what is left.
+static double share_of(const hn_report *r) {
+    return r->request.budget > 0 ? fmax(1, (r->request.budget - elapsed(r)) / (r->n - r->at))
+                                 : NO_BUDGET;
+}
+
+hn_status hn_report_make(const hn_report_request *request, hn_report **out, hn_diags *diags) {
+    hn_report_request q = *request;
+    if (q.n_methods == 0) {
+        q.methods = hn_study_standard(&q.n_methods);
+    }
+    q.budget = isnan(q.budget) ? DEFAULT_BUDGET : q.budget;
+    const hn_status status = check(&q, diags);
+    if (status != HN_OK) {
+        return status;
+    }
+    hn_report *r = calloc(1, sizeof *r);
+    if (!r) {
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    r->request = q;
+    r->n = q.n_models;
+    r->started = hn_wall_seconds();
+    for (int i = 0; i < r->n; i++) {
+        r->scenes[i].model = q.models[i];
+        snprintf(r->scenes[i].reason, sizeof r->scenes[i].reason,
+                 "not begun: the report was stopped before");
+    }
+    for (r->at = 0; r->at < r->n && !ask_stop(r); r->at++) {
+        make_scene(r, share_of(r));
+    }
+    for (int i = 0; i < r->n && !r->stopped; i++) {
+        if (r->scenes[i].study) {
+            hn_study_forget(r->scenes[i].study);
+        }
+    }
+    r->elapsed = elapsed(r);
+    if (r->no_memory) {
+        hn_report_free(r);
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    *out = r;
+    return HN_OK;
+}
+
+void hn_report_free(hn_report *r) {
+    for (int i = 0; r && i < r->n; i++) {
+        hn_study_free(r->scenes[i].study);
+        free(r->scenes[i].strips);
+    }
+    free(r);
+}
+
+int hn_report_n_scenes(const hn_report *r) {
+    return r->n;
+}
+
+const hn_report_scene *hn_report_scene_at(const hn_report *r, int i) {
+    return &r->scenes[i];
+}
+
+double hn_report_elapsed(const hn_report *r) {
+    return r->elapsed;
+}
+
+int hn_report_stopped(const hn_report *r) {
+    return r->stopped;
+}
+
+int hn_strip_survived(const hn_strip *strip) {
+    int n = 0;
+    for (int i = 0; i < strip->n; i++) {
+        n += strip->run[i].end == HN_SURVIVAL_SURVIVED;
+    }
+    return n;
+}

@@ -1,0 +1,121 @@
+#ifndef HN_SESSION_REPORT_H
+#define HN_SESSION_REPORT_H
+// The full report: for several scenes a work-precision study of the same methods, the account of errors and energy of a few of them,
+// and, where the scene passes singular poses, how many step sizes each method survives. One budget of time for all.
+//
+// Scenes are taken one after another, and nothing runs beside what is timed: a second process on the other core would share its
+// caches and its clock, and times would be those of the pair. What a scene does not use of its share goes to those after it.
+//
+// Studies are kept in the folder as they are made, finished ones too, until the report is whole: the same request goes on where it was
+// interrupted. Accounts and survivals take seconds and are made anew.
+
+#include "session/accounts/accounts.h"
+#include "session/precision/study.h"
+#include "study/cost/survival.h"
+
+enum { HN_REPORT_SCENES = 12, HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
+
+typedef struct hn_report_request {
+    const hn_model *const *models; ///< they must outlive the report
+    int n_models;                  ///< 1..HN_REPORT_SCENES
+    const char *const *methods;    ///< spellings, as in a study
+    int n_methods;                 ///< 0: hn_study_standard()
+    double budget;                 ///< wall time of the whole [s]; NaN: 240; 0: none
+    int levels, samples;           ///< as in a study
+    const char *build, *folder;    ///< as in a study
+    int (*stop)(void *user);       ///< asked now and then; NULL: never
+    void (*progress)(void *user, const char *scene, double share); ///< of the whole; may be NULL
+    void *user;
+} hn_report_request;
+hn_report_request hn_report_request_default(void);
+
+/// The scenes of a report that names none: plane and space, singular, stiff, one loop and several.
+const char *const *hn_report_standard(int *n);
+
+typedef struct hn_report hn_report;
+/// Makes it; what a scene refuses stands in it with its reason. Returns owned in *out. Fails: HN_ERR_INPUT (the request), HN_ERR_MEMORY; told in diags.
+HN_MUST_CHECK hn_status hn_report_make(const hn_report_request *request, hn_report **out,
+                                       hn_diags *diags);
+void hn_report_free(hn_report *report); ///< NULL is legal
+
+// what is in it
+/// Of one method: what it did with so many sizes.
+typedef struct hn_strip {
+    int n; ///< sizes that were tried; 0: none, `reason` says why
+    double size[HN_REPORT_SIZES];
+    hn_survival run[HN_REPORT_SIZES];
+    char reason[200];
+} hn_strip;
+
+typedef struct hn_report_scene {
+    const hn_model *model;
+    hn_study *study;              ///< NULL: `reason`
+    char reason[HN_DIAG_MESSAGE]; ///< why there is no study
+    hn_account_row accounts[HN_REPORT_ACCOUNTS];
+    int n_accounts;
+    int singular;       ///< 1: it passes near singular poses
+    double singular_at; ///< the first of them [s]
+    hn_strip *strips;   ///< one a method of the study where it is singular, else NULL
+} hn_report_scene;
+
+int hn_report_n_scenes(const hn_report *report);
+const hn_report_scene *hn_report_scene_at(const hn_report *report, int i);
+double hn_report_elapsed(const hn_report *report); ///< wall time [s]
+int hn_report_stopped(const hn_report *report);    ///< 1: on request
+/// Sizes that a method survived, of strip->n.
+int hn_strip_survived(const hn_strip *strip);
+
+/// Who reaches an accuracy for the least: by time where that may be ranked, else by operations.
+typedef struct hn_report_answer {
+    int method; ///< -1: nobody reaches it
+    double cost;
+    hn_cost_kind by;
+    int n_alike; ///< by operations alone: others as cheap
+} hn_report_answer;
+enum { HN_REPORT_BANDS = 3 };
+extern const double hn_report_accuracy[HN_REPORT_BANDS]; ///< 1e-3, 1e-6, 1e-9
+hn_report_answer hn_report_find_answer(const hn_report_scene *scene, double accuracy);
+
+typedef enum hn_verdict_kind {
+    HN_VERDICT_GOOD,
+    HN_VERDICT_PARTLY,    ///< some sizes fail
+    HN_VERDICT_FAILS,     ///< all do
+    HN_VERDICT_ELSEWHERE, ///< converges to something else
+    HN_VERDICT_REFUSED,   ///< the method does not serve the scene
+    HN_VERDICT_NOT_RUN    ///< the budget left it out
+} hn_verdict_kind;
+typedef struct hn_verdict {
+    hn_verdict_kind kind;
+    double
+        best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
+    int done, failed, skipped; ///< sizes
+    int untrusted;             ///< 1: nothing that came out is right to one digit
+    char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "no digit", "elsewhere, by 0.3"
+    const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
+} hn_verdict;
+hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
+/// The report in a few lines, one sentence each: who is cheapest how often, who may be relied on, what fails where, what is ranked by time.
+void hn_report_sentences(hn_strbuf *b, const hn_report *report);
+
+const char *hn_report_scene_id(const hn_report_scene *scene); ///< "scene" where it has none
+/// One of its studies: methods are the same in all. NULL: there is none.
+const hn_study *hn_report_any_study(const hn_report *report);
+
+// documents
+/// {"report","budget","elapsed","stopped","scenes":[{"scene","title","reason","study": as hn_study_json(),"accounts":[as in hn_accounts_json()],
+/// "singular_at","survival":[{"method","survived","tried","runs":[...]}...]}...]}
+void hn_report_json(hn_strbuf *b, const hn_report *report);
+/// One file without network: the answer in a table, then each scene with its plots; works without scripts, and with them points tell their
+/// numbers and methods can be hidden; light, dark, and A4 in grey.
+void hn_report_html(hn_strbuf *b, const hn_report *report);
+
+typedef struct hn_report_plot {
+    char name[160]; ///< for a file: "fb0-q-time"
+    const hn_report *of;
+    int scene, kind, error, cost;
+} hn_report_plot;
+int hn_report_n_plots(const hn_report *report);
+hn_report_plot hn_report_plot_at(const hn_report *report, int i);
+/// An SVG file on its own, in the light theme. 0: there is nothing to draw.
+int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *plot);
+#endif

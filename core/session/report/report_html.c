@@ -1,0 +1,372 @@
+// The report as one HTML file: the answer on the first screen, then each scene. Scripts only add to it: without them points tell their
+// numbers as the browser shows titles, and every method is drawn.
+#include "session/report/report_internal.h"
+
+#include "base/units.h"
+#include "session/precision/study_page.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char STYLE[] =
+    "h1{font-size:26px}h2{margin-top:56px;padding-top:8px;border-top:1px solid var(--hairline)}"
+    ".top h2,details h2,h2:first-child{border:0;margin-top:24px;padding-top:0}"
+    ".top td,.top th{padding:3px 12px 3px 0}.top td,.top th,.top a{white-space:nowrap}.top "
+    "th[scope=row]{white-space:normal}"
+    ".top small{color:var(--muted);font-size:12px}.top .wrong{color:var(--tear)}"
+    ".top .none{color:var(--muted)}.top a{color:inherit}"
+    ".lines>*{margin:16px 0}"
+    ".bars{position:sticky;top:0;z-index:2;background:var(--paper);padding:6px 0;"
+    "border-bottom:1px solid var(--hairline);margin-top:32px}.bars .bar{margin:2px 0}"
+    ".names{display:flex;flex-wrap:wrap;gap:2px 12px;margin:2px 0}"
+    ".names button{all:unset;cursor:pointer;font-size:12px;padding:1px 4px;border-radius:4px}"
+    ".names button:focus-visible{outline:2px solid var(--ink)}"
+    ".names button[aria-pressed=false]{opacity:.4;text-decoration:line-through}"
+    ".script .entry,.script .point,.script .failed,.script .part,.script .mark{cursor:pointer}"
+    ".tip{position:fixed;z-index:9;max-width:420px;padding:6px 10px;white-space:pre-line;"
+    "background:var(--raised);color:var(--ink);border:1px solid var(--muted);border-radius:4px;"
+    "font-size:13px;pointer-events:none}"
+    "h3{font-size:15px;font-weight:600;margin:24px 0 4px}"
+    ".scroll>svg,.plot>svg{min-width:640px}section>details{margin:12px 0}"
+    "@media (max-width:760px){main{padding:16px 12px 48px}"
+    ".bars{position:static}.names{font-size:12px}}"
+    // what is folded is printed: by the style sheet, and for browsers that cannot by the script
+    "@media print{.names{display:none}.bars{display:none}section>details>summary{display:none}"
+    "section>details{break-before:page}section>details::details-content{content-visibility:visible;"
+    "block-size:auto}"
+    "section{break-before:page}section:last-of-type{break-before:auto}h2{border:0}"
+    ".scroll>svg,.plot>svg{min-width:0;max-height:88mm}h3{break-after:avoid}"
+    ".top table{font-size:8pt}.top small{font-size:7pt}h1{font-size:16pt}p{max-width:none}"
+    "h2,.top h2{font-size:12pt;margin-top:12px}.quiet{font-size:8pt;margin:4px 0}"
+    ".answers{margin:4px 0}.answers li{font-size:9pt;margin:1px 0}h3{font-size:10pt;margin:10px 0 "
+    "2px}"
+    ".lines>*{margin:4px 0}}";
+
+static const char SCRIPT[] =
+    "(function(){'use strict';var "
+    "d=document,main=d.querySelector('main'),tip=d.createElement('div')"
+    ";tip.className='tip';tip.hidden=true;d.body.appendChild(tip);main.classList.add('script');"
+    "var held=new WeakMap();"
+    "function target(e){return e.target.closest&&e.target.closest('.point,.failed,.part,.mark')}"
+    "function words(g){if(!held.has(g)){var t=g.querySelector('title');held.set(g,t?t.textContent:"
+    "'');if(t){g.setAttribute('aria-label',t.textContent);t.remove()}}return held.get(g)}"
+    "d.addEventListener('pointerover',function(e){var g=target(e);tip.hidden=!g;if(!g)return;"
+    "tip.textContent=words(g);var r=g.getBoundingClientRect(),w=tip.offsetWidth,h=tip.offsetHeight;"
+    "tip.style.left=Math.max(4,Math.min(innerWidth-w-4,r.left+r.width/2-w/2))+'px';"
+    "tip.style.top=(r.top>h+12?r.top-h-8:r.bottom+8)+'px'});"
+    "d.addEventListener('scroll',function(){tip.hidden=true},{passive:true});"
+    "function toggle(m){var off=main.classList.toggle('hide-'+m);"
+    "var b=d.querySelector('.names button[data-m=\"'+m+'\"]');"
+    "if(b)b.setAttribute('aria-pressed',String(!off))}"
+    "d.addEventListener('click',function(e){var g=e.target.closest&&"
+    "e.target.closest('.entry,.names button');if(g)toggle(g.getAttribute('data-m'))});"
+    "var folded=[];addEventListener('beforeprint',function(){folded=[].slice.call("
+    "d.querySelectorAll('section>details:not([open])'));folded.forEach(function(f){f.open=true})});"
+    "addEventListener('afterprint',function(){folded.forEach(function(f){f.open=false});"
+    "folded=[]})})();";
+
+static const char *title_of(const hn_report_scene *s) {
+    const hn_scene *scene = hn_model_scene(s->model);
+    return scene->title ? scene->title : scene->id ? scene->id : "scene";
+}
+
+/// What a method that is switched off looks like.
+static void put_hiding_style(hn_strbuf *b) {
+    for (int m = 0; m < HN_WP_METHODS; m++) {
+        hn_strbuf_printf(b, ".hide-%d .plot .series[data-m=\"%d\"]{display:none}", m, m);
+        hn_strbuf_printf(b, ".hide-%d .entry[data-m=\"%d\"]{opacity:.3}", m, m);
+    }
+}
+
+// the first screen ---------------------------------------------------------------------------------------------------
+
+static void put_answer(hn_strbuf *b, const hn_report_scene *s, double accuracy) {
+    const hn_report_answer a = hn_report_find_answer(s, accuracy);
+    char cost[HN_SI_TEXT];
+    if (a.method < 0) {
+        hn_strbuf_add(b, "<td class=\"none\">nobody</td>");
+        return;
+    }
+    hn_si_format(a.cost, a.by == HN_COST_TIME ? "s" : "op", 2, cost);
+    hn_strbuf_add(b, "<td>");
+    hn_study_key(b, a.method);
+    hn_strbuf_add(b, " ");
+    hn_html_text(b, hn_study_wp(s->study)->methods[a.method].spelling);
+    hn_strbuf_printf(b, " <small>%s", cost);
+    if (a.n_alike > 0) {
+        hn_strbuf_printf(b, ", %d alike", a.n_alike);
+    }
+    hn_strbuf_add(b, "</small></td>");
+}
+
+static void put_answers(hn_strbuf *b, const hn_report *r) {
+    hn_strbuf_add(b, "<h2>The cheapest method, for an error of the coordinates of</h2>");
+    hn_page_table(b, "The cheapest method");
+    hn_strbuf_add(b, "<thead><tr><th>scene</th>");
+    for (int i = 0; i < HN_REPORT_BANDS; i++) {
+        hn_strbuf_printf(b, "<th>10<sup>%.0f</sup></th>", log10(hn_report_accuracy[i]));
+    }
+    hn_strbuf_add(b, "</tr></thead><tbody>");
+    for (int i = 0; i < r->n; i++) {
+        const hn_report_scene *s = &r->scenes[i];
+        hn_strbuf_printf(b, "<tr><th scope=\"row\"><a href=\"#scene-%d\">", i + 1);
+        hn_html_text(b, title_of(s));
+        hn_strbuf_add(b, "</a> <small>");
+        hn_html_text(b, hn_report_scene_id(s));
+        hn_strbuf_add(b, "</small>");
+        if (s->study && hn_wp_is_beyond_horizon(hn_study_wp(s->study))) {
+            hn_strbuf_add(b, " <small>chaotic: by energy</small>");
+        }
+        hn_strbuf_add(b, "</th>");
+        for (int k = 0; k < HN_REPORT_BANDS && s->study; k++) {
+            put_answer(b, s, hn_report_accuracy[k]);
+        }
+        if (!s->study) {
+            hn_strbuf_printf(b, "<td class=\"wrong\" colspan=\"%d\">", HN_REPORT_BANDS);
+            hn_html_text(b, s->reason);
+            hn_strbuf_add(b, "</td>");
+        }
+        hn_strbuf_add(b, "</tr>");
+    }
+    hn_strbuf_add(
+        b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
+           "only where two measurements agree and the next method is clearly slower. "
+           "Operations (op): time does not decide there, arithmetic does; “2 alike”: so many "
+           "others need as few.</p>");
+}
+
+static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
+    if (!s->study) {
+        hn_strbuf_add(b, "<td class=\"none\">–</td>");
+        return;
+    }
+    const hn_verdict v = hn_report_find_verdict(s, m);
+    const int none = v.kind == HN_VERDICT_REFUSED || v.kind == HN_VERDICT_NOT_RUN;
+    hn_strbuf_printf(b, "<td%s title=\"",
+                     v.untrusted ? " class=\"wrong\""
+                     : none      ? " class=\"none\""
+                                 : "");
+    hn_html_text(b, v.why);
+    hn_strbuf_printf(b, "\">%s", v.text);
+    if (v.skipped > 0 && v.done > 0) {
+        hn_strbuf_printf(b, "<small>, %d left out</small>", v.skipped);
+    }
+    if (s->strips && s->strips[m].n > 0) {
+        hn_strbuf_printf(b, "<small>, survives %d/%d</small>", hn_strip_survived(&s->strips[m]),
+                         s->strips[m].n);
+    }
+    hn_strbuf_add(b, "</td>");
+}
+
+static void put_verdicts(hn_strbuf *b, const hn_report *r) {
+    const hn_study *any = hn_report_any_study(r);
+    if (!any) {
+        return;
+    }
+    hn_strbuf_add(b,
+                  "<h2>What each method reaches: smallest error of the coordinates, and where it "
+                  "fails</h2>");
+    hn_page_table(b, "What each method reaches");
+    hn_strbuf_add(b, "<thead><tr><th>method</th>");
+    for (int i = 0; i < r->n; i++) {
+        hn_strbuf_printf(b, "<th><a href=\"#scene-%d\">", i + 1);
+        hn_html_text(b, hn_report_scene_id(&r->scenes[i]));
+        hn_strbuf_add(b, "</a></th>");
+    }
+    hn_strbuf_add(b, "</tr></thead><tbody>");
+    for (int m = 0; m < hn_study_wp(any)->n_methods; m++) {
+        hn_strbuf_add(b, "<tr>");
+        hn_study_put_method(b, any, m);
+        for (int i = 0; i < r->n; i++) {
+            put_verdict(b, &r->scenes[i], m);
+        }
+        hn_strbuf_add(b, "</tr>");
+    }
+    hn_strbuf_add(
+        b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
+           "or tolerance did not come to the end. “3 left out”: so many finer ones, to keep the "
+           "budget; the method may reach more. “no digit”: no error is below 0.1. “elsewhere”: it "
+           "converges, but not to "
+           "the motion of the scene. “survives n/m”: so many other step sizes came "
+           "through the singular poses within 1e-2.</p>\n");
+}
+
+static void put_sentences(hn_strbuf *b, const hn_report *r) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_report_sentences(&text, r);
+    if (text.n > 0) {
+        hn_strbuf_add(b, "<ul class=\"answers\">");
+        hn_page_lines(b, hn_strbuf_text(&text));
+        hn_strbuf_add(b, "</ul>");
+    }
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
+}
+
+static void put_top(hn_strbuf *b, const hn_report *r) {
+    const hn_study *any = hn_report_any_study(r);
+    hn_strbuf_printf(b,
+                     "<h1>Which method should I use, and what does accuracy cost?</h1>"
+                     "<p class=\"quiet\">%d scenes, %d methods, %d sizes each; made in %.0f s",
+                     r->n, r->request.n_methods, any ? hn_study_wp(any)->n_levels : 0, r->elapsed);
+    if (r->request.build) {
+        hn_strbuf_add(b, " by holonom ");
+        hn_html_text(b, r->request.build);
+    }
+    hn_strbuf_add(b, "; one thread, nothing beside what is timed</p>");
+    if (r->stopped) {
+        hn_strbuf_add(b, "<p class=\"wrong\">Stopped on request before its end; the same command "
+                         "goes on from there.</p>");
+    }
+    put_sentences(b, r);
+    hn_strbuf_add(b, "<div class=\"top\">");
+    put_answers(b, r);
+    put_verdicts(b, r);
+    hn_strbuf_add(b, "</div>\n");
+}
+
+// a scene ------------------------------------------------------------------------------------------------------------
+
+static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
+    const int error = hn_accounts_can_plot(s->accounts, s->n_accounts, 0);
+    const int energy = hn_accounts_can_plot(s->accounts, s->n_accounts, 1);
+    if (error || energy) {
+        hn_strbuf_printf(b, "<h3>Where %senergy come%s from</h3>", error ? "errors and " : "",
+                         error ? "" : "s");
+    }
+    if (!error) {
+        hn_strbuf_printf(
+            b, "<p class=\"quiet\">No account of %s: ", energy ? "errors" : "errors and energy");
+        hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
+        hn_strbuf_add(b, ".</p>");
+    }
+    for (int k = 0; k < 2; k++) {
+        if (k ? energy : error) {
+            hn_strbuf_add(b, "<div class=\"lines\">");
+            hn_page_scroll(b, k ? "account of energy" : "account of the error");
+            hn_accounts_plot(b, s->model, s->accounts, s->n_accounts, k);
+            hn_strbuf_add(b, "</div></div>\n");
+        }
+    }
+}
+
+static void put_survival(hn_strbuf *b, const hn_report_scene *s) {
+    if (!s->strips) {
+        return;
+    }
+    hn_strbuf_printf(b,
+                     "<h3>Through singular poses</h3><p class=\"quiet\">The first of them at t = "
+                     "%.3g s. A mark a run: across its step or tolerance, up the time it came to; "
+                     "what survives stands on the upper line.</p>",
+                     s->singular_at);
+    hn_page_scroll(b, "sizes that survive");
+    hn_report_survival_plot(b, s);
+    hn_strbuf_add(b, "</div>\n");
+}
+
+static void put_wrong_models(hn_strbuf *b, const hn_report_scene *s) {
+    const hn_wp *wp = hn_study_wp(s->study);
+    for (int m = 0; m < wp->n_methods; m++) {
+        const hn_class *c = &hn_study_classes(s->study)[m];
+        if (c->kind == HN_CLASS_ELSEWHERE) {
+            hn_strbuf_add(b, "<p class=\"wrong\">");
+            hn_html_text(b, wp->methods[m].spelling);
+            hn_strbuf_add(b, " ");
+            hn_html_text(b, c->text);
+            hn_strbuf_add(b, ".</p>");
+        }
+    }
+}
+
+static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
+    hn_strbuf_printf(b,
+                     "<section id=\"scene-%d\" aria-labelledby=\"title-%d\"><h2 id=\"title-%d\">",
+                     i + 1, i + 1, i + 1);
+    hn_html_text(b, title_of(s));
+    hn_strbuf_add(b, "</h2>");
+    if (!s->study) {
+        hn_strbuf_add(b, "<p class=\"wrong\">");
+        hn_html_text(b, s->reason);
+        hn_strbuf_add(b, "</p></section>\n");
+        return;
+    }
+    const hn_wp *wp = hn_study_wp(s->study);
+    if (wp->out_of_time || wp->stopped) {
+        hn_strbuf_add(b,
+                      "<p class=\"quiet\">The budget left finer sizes or samples of time out; they "
+                      "are listed below.</p>");
+    }
+    put_wrong_models(b, s);
+    hn_page_scroll(b, "error against cost");
+    hn_study_put_plots(b, s->study);
+    hn_strbuf_add(b, "</div>");
+    hn_study_put_answers(b, s->study);
+    hn_study_put_chaos(b, s->study);
+    put_accounts(b, s);
+    put_survival(b, s);
+    hn_strbuf_add(b, "<details><summary>Methods, equal cost, failures, how it was measured, every "
+                     "point</summary>");
+    hn_study_put_methods(b, s->study, 3);
+    hn_study_put_race(b, s->study, 3);
+    hn_study_put_failures(b, s->study, 3);
+    hn_study_put_measures(b, s->study, 3);
+    hn_study_put_points(b, s->study);
+    hn_strbuf_add(b, "</details></section>\n");
+}
+
+/// What plots show first: time where all of it was measured, else operations, which always are.
+static hn_cost_kind first_cost(const hn_report *r) {
+    for (int i = 0; i < r->n; i++) {
+        hn_pareto p;
+        if (r->scenes[i].study) {
+            hn_wp_pareto(hn_study_wp(r->scenes[i].study), hn_study_classes(r->scenes[i].study),
+                         HN_ERROR_ENERGY, HN_COST_TIME, &p);
+            if (p.few || !hn_study_is_timed(r->scenes[i].study)) {
+                return HN_COST_OPS;
+            }
+        }
+    }
+    return hn_report_any_study(r) ? HN_COST_TIME : HN_COST_OPS;
+}
+
+static void put_names(hn_strbuf *b, const hn_study *any) {
+    hn_strbuf_add(b, "<div class=\"names\" role=\"group\" aria-label=\"methods shown\">");
+    for (int m = 0; any && m < hn_study_wp(any)->n_methods; m++) {
+        hn_strbuf_printf(b, "<button type=\"button\" data-m=\"%d\" aria-pressed=\"true\">", m);
+        hn_study_key(b, m);
+        hn_strbuf_add(b, " ");
+        hn_html_text(b, hn_study_wp(any)->methods[m].spelling);
+        hn_strbuf_add(b, "</button>");
+    }
+    hn_strbuf_add(b, "</div>");
+}
+
+void hn_report_html(hn_strbuf *b, const hn_report *r) {
+    const hn_study *any = hn_report_any_study(r);
+    hn_strbuf style;
+    hn_strbuf_init(&style);
+    hn_strbuf_add(&style, STYLE);
+    put_hiding_style(&style);
+    hn_page_head(b, "Methods for mechanisms with closed loops: the report", hn_strbuf_text(&style));
+    b->failed |= style.failed;
+    hn_strbuf_reset(&style);
+    put_top(b, r);
+    hn_page_choices(b, first_cost(r));
+    hn_strbuf_add(b, "<div class=\"plots\">");
+    put_names(b, any);
+    hn_strbuf_add(b,
+                  "<p class=\"quiet\">Down is more accurate, left is cheaper. A cross on the upper "
+                  "edge is a run that ended early, at what it had cost by then; a faint curve "
+                  "converges to something else; the grey band is what the reference cannot "
+                  "resolve.</p>");
+    for (int i = 0; i < r->n; i++) {
+        put_scene(b, &r->scenes[i], i);
+    }
+    hn_strbuf_add(b,
+                  "<section aria-labelledby=\"timing\"><h2 id=\"timing\">How time was taken</h2>");
+    hn_page_timing(b);
+    hn_strbuf_add(b, "</section></div></main><script>");
+    hn_strbuf_add(b, SCRIPT);
+    hn_strbuf_add(b, "</script></body></html>\n");
+}

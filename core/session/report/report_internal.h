@@ -1,0 +1,21 @@
+#ifndef HN_SESSION_REPORT_INTERNAL_H
+#define HN_SESSION_REPORT_INTERNAL_H
+// The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c (pictures), report_html.c and
+// report_doc.c (documents).
+
+#include "session/report/report.h"
+
+struct hn_report {
+    hn_report_request request; ///< methods and budget filled in
+    int n;
+    hn_report_scene scenes[HN_REPORT_SCENES];
+    double started, elapsed; ///< wall clock [s]
+    int stopped, no_memory;
+    // while it is made
+    int at;       ///< the present scene
+    double until; ///< when the present part of it has to end, wall clock [s]
+};
+
+/// Every run that was counted: its size across, where it ended up.
+void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *scene);
+#endif

@@ -1,0 +1,291 @@
+#include "session/stability/stability_internal.h"
+
+#include "study/run/timing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { COARSEST_STRIDE = 8, PATH_SHARE = 10 }; // of the budget, for the motion of one scene
+static const double PATH_SECONDS = 5; // computing time of a motion where there is no budget
+
+hn_map_request hn_map_request_default(void) {
+    return (hn_map_request){.time = (double)NAN, .budget = (double)NAN};
+}
+
+hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row) {
+    return &map->cells[(m * map->y.n + row) * map->x.n + column];
+}
+
+hn_map_column *hn_map_column_at(const hn_map *map, int m, int column) {
+    return &map->columns[m * map->x.n + column];
+}
+
+static void blank(hn_map *map) {
+    for (int m = 0; m < map->n_methods; m++) {
+        for (int i = 0; i < map->x.n; i++) {
+            hn_map_column *c = hn_map_column_at(map, m, i);
+            c->stable = c->unstable = c->visible = (double)NAN;
+            for (int j = 0; j < map->y.n; j++) {
+                hn_map_cell_at(map, m, i, j)->margin = (double)NAN;
+            }
+        }
+    }
+}
+
+hn_status hn_map_open(const hn_model *model, const hn_map_request *request, hn_map **out,
+                      hn_diags *diags) {
+    hn_map *map = calloc(1, sizeof *map);
+    *out = NULL;
+    if (!map) {
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    map->model = model;
+    map->request = *request;
+    hn_status status = hn_map_set_up(map, diags);
+    if (status == HN_OK) {
+        const size_t columns = (size_t)map->n_methods * (size_t)map->x.n;
+        map->scenes = calloc((size_t)map->n_scenes, sizeof *map->scenes);
+        map->cells = calloc(columns * (size_t)map->y.n, sizeof *map->cells);
+        map->columns = calloc(columns, sizeof *map->columns);
+        if (!map->scenes || !map->cells || !map->columns) {
+            status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+        }
+    }
+    if (status == HN_OK) {
+        blank(map);
+        status = request->folder ? hn_map_open_journal(map, diags) : HN_OK;
+    }
+    if (status != HN_OK) {
+        hn_map_free(map);
+        return status;
+    }
+    *out = map;
+    return HN_OK;
+}
+
+void hn_map_free(hn_map *map) {
+    if (map) {
+        hn_journal_end(&map->journal, 0);
+        for (int i = 0; map->scenes && i < map->n_scenes; i++) {
+            hn_stability_path_free(map->scenes[i].path);
+            hn_model_free(map->scenes[i].model);
+        }
+        free(map->scenes);
+        free(map->cells);
+        free(map->columns);
+        free(map);
+    }
+}
+
+// scenes -----------------------------------------------------------------------------------------------------------
+
+static int ask_to_stop(void *user) {
+    return hn_map_must_end(user);
+}
+
+static hn_status load_scene(hn_map *map, hn_map_scene *s, int column, int row, hn_diags *diags) {
+    hn_setting settings[2];
+    int n = 0;
+    if (map->x.is_param) {
+        settings[n++] = (hn_setting){map->x.name, map->x.value[column]};
+    }
+    if (map->y.is_param) {
+        settings[n++] = (hn_setting){map->y.name, map->y.value[row]};
+    }
+    return n ? map->request.load(map->request.load_user, settings, n, &s->model, diags) : HN_OK;
+}
+
+static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
+    hn_diags diags = {0};
+    hn_diag diag = {0};
+    const double budget = map->request.budget;
+    const hn_walk_limits limits = {budget > 0 ? budget / PATH_SHARE : PATH_SECONDS, ask_to_stop,
+                                   map};
+    hn_status status = load_scene(map, s, column, row, &diags);
+    if (status != HN_OK && diags.n > 0) {
+        diag = diags.item[0];
+    }
+    if (status == HN_OK) {
+        const hn_model *model = s->model ? s->model : map->model;
+        status = hn_stability_path_create(hn_model_system(model), hn_model_q(model),
+                                          hn_model_v(model), map->T, &limits, &s->path, &diag);
+    }
+    if (status != HN_OK) {
+        snprintf(s->why, sizeof s->why, "no motion to compare with: %.200s",
+                 diag.message[0] ? diag.message : hn_status_text(status));
+    }
+    s->tried = !map->stopped && !map->out_of_time;
+}
+
+hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
+    const int at = (map->y.is_param ? row : 0) * (map->x.is_param ? map->x.n : 1) +
+                   (map->x.is_param ? column : 0);
+    hn_map_scene *s = &map->scenes[at];
+    // what was cut short is left as it is: no motion is begun for what nobody waits for
+    if (!s->tried && !s->path && !map->stopped && !map->out_of_time) {
+        make_scene(map, s, column, row);
+    }
+    return s;
+}
+
+// cells ------------------------------------------------------------------------------------------------------------
+
+hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
+    hn_method_spec spec = map->specs[m];
+    if (map->x.name[0] && !map->x.is_param) {
+        *hn_method_find_setting(&spec, map->x.name, NULL) = map->x.value[column];
+    }
+    if (!map->y.is_param) {
+        *hn_method_find_setting(&spec, map->y.name, NULL) = y;
+    }
+    return spec;
+}
+
+int hn_map_must_end(hn_map *map) {
+    if (map->request.stop && map->request.stop(map->request.user)) {
+        map->stopped = 1;
+    }
+    if (map->request.budget > 0 && hn_wall_seconds() - map->started > map->request.budget) {
+        map->out_of_time = 1;
+    }
+    return map->stopped || map->out_of_time;
+}
+
+int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
+               hn_stability_trial *out) {
+    const hn_walk_limits limits = {HN_MAP_CELL_SECONDS, ask_to_stop, map};
+    if (!scene->path) {
+        *out = (hn_stability_trial){.kind = HN_STABILITY_REFUSED, .status = HN_ERR_UNSUPPORTED};
+        snprintf(out->reason, sizeof out->reason, "%s", scene->why);
+        return scene->tried;
+    }
+    return hn_stability_try(scene->path, spec, &limits, out);
+}
+
+static int try_cell(hn_map *map, int m, int column, int row) {
+    hn_map_cell *cell = hn_map_cell_at(map, m, column, row);
+    const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[row]);
+    hn_stability_trial trial;
+    if (!hn_map_try(map, hn_map_scene_of(map, column, row), &spec, &trial)) {
+        return 0;
+    }
+    cell->trial = trial;
+    hn_map_keep_cell(map, m, column, row);
+    return 1;
+}
+
+// rounds -----------------------------------------------------------------------------------------------------------
+
+static int count_pending(const hn_map *map) {
+    int n = 0;
+    for (int k = 0; k < map->n_methods * map->x.n * map->y.n; k++) {
+        n += map->cells[k].trial.kind == HN_STABILITY_PENDING;
+    }
+    return n;
+}
+
+static void tell_share(hn_map *map, double share) {
+    if (map->request.progress) {
+        map->request.progress(map->request.user, share);
+    }
+}
+
+// one round: what lies on the grid of this stride and is pending yet; 0 when it has to end
+static int try_round(hn_map *map, int stride) {
+    const double all = (double)map->n_methods * map->x.n * map->y.n;
+    for (int row = 0; row < map->y.n; row += stride) {
+        for (int column = 0; column < map->x.n; column += stride) {
+            for (int m = 0; m < map->n_methods; m++) {
+                if (hn_map_cell_at(map, m, column, row)->trial.kind != HN_STABILITY_PENDING) {
+                    continue;
+                }
+                if (hn_map_must_end(map) || !try_cell(map, m, column, row)) {
+                    return 0;
+                }
+                tell_share(map, 0.85 * (1 - count_pending(map) / all));
+            }
+        }
+    }
+    return 1;
+}
+
+static int observe(hn_map *map) {
+    for (int i = 0; map->y.is_step && i < map->x.n; i++) {
+        for (int m = 0; m < map->n_methods; m++) {
+            if (hn_map_must_end(map) || !hn_map_observe_column(map, m, i)) {
+                return 0;
+            }
+        }
+        tell_share(map, 0.85 + 0.15 * (i + 1) / map->x.n);
+    }
+    return 1;
+}
+
+int hn_map_run(hn_map *map) {
+    map->started = hn_wall_seconds();
+    map->stopped = map->out_of_time = 0;
+    int going = 1;
+    for (int stride = COARSEST_STRIDE; stride >= 1 && going; stride /= 2) {
+        going = try_round(map, stride);
+    }
+    const int finished = going && observe(map);
+    for (int m = 0; m < map->n_methods; m++) {
+        for (int i = 0; i < map->x.n; i++) {
+            hn_map_predict_column(map, m, i);
+            hn_map_judge_column(map, m, i);
+        }
+    }
+    map->elapsed = hn_wall_seconds() - map->started;
+    hn_journal_end(&map->journal, finished);
+    return finished;
+}
+
+// reading ----------------------------------------------------------------------------------------------------------
+
+const hn_model *hn_map_model(const hn_map *map) {
+    return map->model;
+}
+
+const hn_map_axis *hn_map_x(const hn_map *map) {
+    return &map->x;
+}
+
+const hn_map_axis *hn_map_y(const hn_map *map) {
+    return &map->y;
+}
+
+int hn_map_n_methods(const hn_map *map) {
+    return map->n_methods;
+}
+
+const char *hn_map_method(const hn_map *map, int m) {
+    return map->names[m];
+}
+
+const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row) {
+    return hn_map_cell_at(map, m, column, row);
+}
+
+const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column) {
+    return hn_map_column_at(map, m, column);
+}
+
+double hn_map_time(const hn_map *map) {
+    return map->T;
+}
+
+int hn_map_resumed(const hn_map *map) {
+    return map->resumed;
+}
+
+int hn_map_stopped(const hn_map *map) {
+    return map->stopped;
+}
+
+int hn_map_out_of_time(const hn_map *map) {
+    return map->out_of_time;
+}
+
+double hn_map_elapsed(const hn_map *map) {
+    return map->elapsed;
+}

@@ -1,0 +1,113 @@
+#ifndef HN_SESSION_STABILITY_H
+#define HN_SESSION_STABILITY_H
+// A map of stability: a grid over two of {a scene's parameters, a method's settings, the step}, every cell a trial that is
+// classed (study/stability/stability.h), with the boundary predicted from the spectrum on the loops beside what was observed. Where the
+// vertical axis is the step h, the observed boundary of every column is found to 2 %, so that prediction and observation can be
+// compared as numbers. Cells are tried in rounds from coarse to fine; finished ones are kept in a folder, so that the same request
+// goes on where it was interrupted.
+
+#include "session/model/model.h"
+#include "study/stability/stability.h"
+#include "study/cost/workprecision.h"
+
+enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSINGS = 4 };
+#define HN_MAP_STEPS 2e5 ///< most steps of one trial
+#define HN_MAP_REFINED \
+    1.02 ///< ratio of the steps between which an observed boundary lies in the end
+#define HN_MAP_AGREES 0.05    ///< relative difference of boundaries that agree
+#define HN_MAP_CELL_SECONDS 5 ///< computing time of one trial
+
+typedef struct hn_map hn_map;
+
+/// Gives the scene with these parameters, owned by the caller.
+typedef hn_status (*hn_map_load)(void *user, const hn_setting *settings, int n, hn_model **out,
+                                 hn_diags *diags);
+
+typedef struct hn_map_request {
+    const char *preset; ///< "stiffness", "mass-ratio", "baumgarte", "limits"; NULL: `over` says it
+    const char *over; ///< "h=1e-4..1e-1,k=1e2..1e8", each with ":lin" or ":log" behind it if wanted
+    int columns, rows; ///< 0: 24 x 24
+    const char *const *methods;
+    int n_methods; ///< 0: index1 and projection with rk4, Dormand-Prince 8 and symplectic Euler as they fit
+    double time;   ///< [s]; NaN: the scene's, shortened where the smallest step would take too many
+    double budget; ///< wall time [s]; NaN: 60; 0: none
+    const char *folder; ///< where unfinished maps are kept; NULL: nowhere
+    hn_map_load load;
+    void *load_user;
+    int (*stop)(void *user);
+    void (*progress)(void *user, double share);
+    void *user;
+} hn_map_request;
+hn_map_request hn_map_request_default(void);
+/// The names of the presets and what each is about; NULL beyond the last.
+const char *hn_map_preset(int i, const char **about);
+
+typedef struct hn_map_axis {
+    char name[64]; ///< "h", "alpha", a parameter's; "" of a map with one column
+    char unit[24];
+    int is_param, is_step, is_log;
+    int n;
+    double value[HN_MAP_SIDE]; ///< rising
+} hn_map_axis;
+
+typedef struct hn_map_cell {
+    hn_stability_trial trial;
+    double margin; ///< h / predicted limit: above 1 unstable; NaN: nothing is predicted
+} hn_map_cell;
+
+/// What one column of one method says.
+typedef struct hn_map_column {
+    int n_predicted;
+    double predicted
+        [HN_MAP_CROSSINGS];  ///< places on the vertical axis; one of a step may lie outside it
+    double visible;          ///< step axis: growth is seen from here on within a trial [s]
+    double stable, unstable; ///< step axis: the boundary observed lies between; NaN: not on the map
+    char how[HN_STABILITY_REASON]; ///< it ended at `unstable`
+    enum {
+        HN_MAP_UNTOLD, ///< no prediction, or no observation to compare it with
+        HN_MAP_AGREE,
+        HN_MAP_UNSEEN,  ///< beyond the predicted limit growth is too slow for the trial
+        HN_MAP_EARLIER, ///< observed before it was predicted
+        HN_MAP_LATER
+    } verdict;
+} hn_map_column;
+
+/// Agreement of prediction and observation of one method: columns where the vertical axis is a step, cells otherwise.
+typedef struct hn_map_agreement {
+    int by_columns, compared, agree, unseen, earlier, later;
+    const char *why; ///< why nothing could be compared; NULL otherwise
+} hn_map_agreement;
+
+/// Checks the request and takes up what an interrupted map of the same request left. `model` is the scene as it is; it and the request's texts
+/// must outlive the map. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO; told in diags.
+HN_MUST_CHECK hn_status hn_map_open(const hn_model *model, const hn_map_request *request,
+                                    hn_map **out, hn_diags *diags);
+void hn_map_free(hn_map *map); ///< NULL is legal
+/// Runs what is left. Returns 1 when finished; 0: stopped, or out of its budget.
+int hn_map_run(hn_map *map);
+
+const hn_model *hn_map_model(const hn_map *map);
+const hn_map_axis *hn_map_x(const hn_map *map);
+const hn_map_axis *hn_map_y(const hn_map *map);
+int hn_map_n_methods(const hn_map *map);
+/// Spelling without what the axes set.
+const char *hn_map_method(const hn_map *map, int m);
+const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);
+const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column);
+hn_map_agreement hn_map_agrees(const hn_map *map, int m);
+/// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
+void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
+double hn_map_time(const hn_map *map);
+int hn_map_resumed(const hn_map *map);
+int hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
+double hn_map_elapsed(const hn_map *map); ///< [s]
+
+// documents
+void hn_map_json(hn_strbuf *b, const hn_map *map);
+void hn_map_csv(hn_strbuf *b, const hn_map *map); ///< one row a cell
+void hn_map_svg(hn_strbuf *b, const hn_map *map); ///< light theme, all methods one below the other
+void hn_map_html(
+    hn_strbuf *b,
+    const hn_map *map); ///< one file without network; a cell tells its outcome when pointed at
+HN_MUST_CHECK hn_status hn_map_png(hn_strbuf *png, const hn_map *map, hn_diag *diag);
+#endif

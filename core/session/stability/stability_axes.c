@@ -1,0 +1,374 @@
+// What a map is asked for: axes from text or from a preset, methods, and how long a trial lasts.
+#include "session/stability/stability_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEFAULT_SIDE = 24 };
+static const double LOG_FROM = 15;     // a range of this ratio and above zero is divided in ratios
+static const double PRESET_SPAN = 1e3; // a preset takes a parameter so far up and down
+static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
+static const double PRESET_STEPS = 2e4;          // of the finest trial of a preset
+
+static const char *const STANDARD[] = {"projection@rk4", "projection@dop853:h=1e-3",
+                                       "projection@symplectic-euler"};
+static const char *const STABILISED[] = {"baumgarte@rk4", "baumgarte@symplectic-euler"};
+
+// axes -------------------------------------------------------------------------------------------------------------
+
+static void fill_axis(hn_map_axis *a, double low, double high, int n) {
+    a->n = n;
+    for (int i = 0; i < n; i++) {
+        const double share = n > 1 ? (double)i / (n - 1) : 0;
+        a->value[i] = i == n - 1 && n > 1 ? high
+                      : a->is_log         ? low * pow(high / low, share)
+                                          : low + (high - low) * share;
+    }
+}
+
+static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high, hn_diags *diags) {
+    const hn_scene *scene = hn_model_scene(map->model);
+    const int p = hn_scene_find_param(scene, a->name);
+    hn_diag diag = {0};
+    if (p >= 0) {
+        const hn_param *param = &scene->params[p];
+        a->is_param = 1;
+        snprintf(a->unit, sizeof a->unit, "%s", param->unit);
+        if (low < param->min || high > param->max) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
+                                "%s may be %g to %g %s in this scene, not %g to %g", a->name,
+                                param->min, param->max, param->unit, low, high);
+        }
+        return HN_OK;
+    }
+    // a setting: every method has to have it
+    a->is_step = strcmp(a->name, "h") == 0;
+    for (int m = 0; m < map->n_methods; m++) {
+        const hn_setting_info *info = NULL;
+        if (!hn_method_find_setting(&map->specs[m], a->name, &info) || info->choices) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/over",
+                                "name a parameter of the scene, h, or a setting of every method",
+                                "'%s' is no parameter of the scene and no number that %s takes",
+                                a->name, map->names[m]);
+        }
+        if (hn_setting_check(info, low, &diag) != HN_OK ||
+            hn_setting_check(info, high, &diag) != HN_OK) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "%s", diag.message);
+        }
+        snprintf(a->unit, sizeof a->unit, "%s", info->unit ? info->unit : "");
+    }
+    return HN_OK;
+}
+
+static hn_status make_axis(hn_map *map, hn_map_axis *a, const char *name, double low, double high,
+                           int n, int form, hn_diags *diags) {
+    *a = (hn_map_axis){0};
+    snprintf(a->name, sizeof a->name, "%s", name);
+    if (!(high > low)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
+                            "%s goes from %g to %g: the second has to be larger", name, low, high);
+    }
+    if (form == 'l' && low <= 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
+                            "%s starts at %g: ratios need values above 0", name, low);
+    }
+    a->is_log = form ? form == 'l' : low > 0 && high / low >= LOG_FROM;
+    fill_axis(a, low, high, n);
+    return name_axis(map, a, low, high, diags);
+}
+
+// "NAME=LOW..HIGH" with ":lin" or ":log"; form: 'i', 'l', 0
+static int read_axis(char *text, char **name, double *low, double *high, int *form) {
+    char *equals = strchr(text, '='), *dots = equals ? strstr(equals, "..") : NULL, *end;
+    if (!equals || equals == text || !dots) {
+        return 0;
+    }
+    *equals = 0;
+    *dots = 0;
+    *name = text;
+    *low = strtod(equals + 1, &end);
+    if (end == equals + 1 || *end) {
+        return 0;
+    }
+    *high = strtod(dots + 2, &end);
+    *form = strcmp(end, ":lin") == 0 ? 'i' : strcmp(end, ":log") == 0 ? 'l' : 0;
+    return end != dots + 2 && (!*end || *form) && isfinite(*low) && isfinite(*high);
+}
+
+static hn_status read_over(hn_map *map, hn_diags *diags) {
+    char copy[200], *rest = copy;
+    hn_map_axis axes[2];
+    int n = 0;
+    const int fits = snprintf(copy, sizeof copy, "%s", map->request.over) < (int)sizeof copy;
+    for (char *part = strsep(&rest, ","); part; part = strsep(&rest, ",")) {
+        char *name;
+        double low, high;
+        int form;
+        if (!fits || n == 2 || !read_axis(part, &name, &low, &high, &form)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/over", "as in h=1e-4..1e-1,k=1e2..1e8",
+                                "'%.80s' does not name one or two axes", map->request.over);
+        }
+        const int vertical = strcmp(name, "h") == 0 || (n == 1 && !axes[0].is_step);
+        const int side = vertical ? map->request.rows : map->request.columns;
+        const hn_status status = make_axis(map, &axes[n], name, low, high, side, form, diags);
+        if (status != HN_OK) {
+            return status;
+        }
+        n++;
+    }
+    if (n == 2 && strcmp(axes[0].name, axes[1].name) == 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "both axes are %s", axes[0].name);
+    }
+    const int swap = n == 1 || axes[0].is_step; // the step stands upright
+    map->y = axes[swap ? 0 : 1];
+    map->x = n == 2 ? axes[swap ? 1 : 0] : (hn_map_axis){.n = 1};
+    return HN_OK;
+}
+
+// presets ----------------------------------------------------------------------------------------------------------
+
+// modulus of the fastest eigenvalue at the start of a model; 0 when it has none
+static double fastest_rate(const hn_model *model) {
+    hn_arena *arena = hn_arena_create(0);
+    hn_spectrum *s = NULL;
+    const hn_eigenvalue *values;
+    int n = 0;
+    double rate = 0;
+    if (arena && hn_spectrum_create(hn_model_system(model), arena, &s) == HN_OK &&
+        hn_spectrum_calc(s, 0, hn_model_q(model), hn_model_v(model), &values, &n) == HN_OK &&
+        n > 0) {
+        rate = hypot(values[0].re, values[0].im);
+    }
+    hn_spectrum_free(s);
+    hn_arena_free(arena);
+    return rate;
+}
+
+static hn_status rate_with(hn_map *map, const char *name, double value, double *rate,
+                           hn_diags *diags) {
+    const hn_setting setting = {name, value};
+    hn_model *model = NULL;
+    const hn_status status = map->request.load(map->request.load_user, &setting, 1, &model, diags);
+    if (status == HN_OK) {
+        *rate = fastest_rate(model);
+        hn_model_free(model);
+    }
+    return status;
+}
+
+static int has_unit(const hn_param *p, const char *const *units, int n) {
+    for (int i = 0; i < n; i++) {
+        if (strcmp(p->unit, units[i]) == 0 && p->max > 0 && !p->integer) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diags *diags) {
+    if (!(fast > 0)) {
+        return hn_diags_add(
+            diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
+            "nothing vibrates or creeps at the start, so no range of steps follows");
+    }
+    const double low = FINEST / fast, high = fmin(100, COARSEST / (slow > 0 ? slow : fast));
+    if (isnan(map->request.time)) {
+        map->T = fmin(map->T, PRESET_STEPS * low);
+    }
+    return make_axis(map, &map->y, "h", low, fmax(high, 40 * low), n, 'l', diags);
+}
+
+// a parameter of one of these units over its range, and the steps that the spectra at both ends ask for
+static hn_status over_param(hn_map *map, const char *what, const char *const *units, int n_units,
+                            hn_diags *diags) {
+    const hn_scene *scene = hn_model_scene(map->model);
+    const hn_param *found = NULL;
+    for (int i = scene->n_params - 1; i >= 0; i--) {
+        found = has_unit(&scene->params[i], units, n_units) ? &scene->params[i] : found;
+    }
+    if (!found) {
+        return hn_diags_add(diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
+                            "this scene has no parameter that is %s", what);
+    }
+    const double middle = found->value > 0 ? found->value : sqrt(found->max);
+    const double low = fmax(found->min, middle / PRESET_SPAN),
+                 high = fmin(found->max, middle * PRESET_SPAN);
+    double first, last;
+    hn_status status =
+        make_axis(map, &map->x, found->name, low, high, map->request.columns, 'l', diags);
+    if (status == HN_OK) {
+        status = rate_with(map, found->name, low, &first, diags);
+    }
+    if (status == HN_OK) {
+        status = rate_with(map, found->name, high, &last, diags);
+    }
+    return status == HN_OK
+               ? steps_for(map, fmin(first, last), fmax(first, last), map->request.rows, diags)
+               : status;
+}
+
+static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
+    const double h = hn_method_setting(&map->specs[0], "h", 1e-3);
+    hn_status status =
+        make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->request.columns, 'l', diags);
+    if (status == HN_OK) {
+        status = make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->request.rows, 'l', diags);
+    }
+    return status;
+}
+
+static hn_status stiffness_axes(hn_map *map, hn_diags *diags) {
+    static const char *const units[] = {"N/m", "N*m/rad"};
+    return over_param(map, "a stiffness in N/m or N*m/rad", units, 2, diags);
+}
+
+static hn_status mass_axes(hn_map *map, hn_diags *diags) {
+    static const char *const units[] = {"kg"};
+    return over_param(map, "a mass in kg", units, 1, diags);
+}
+
+// steps doubled, one column
+static hn_status limit_axes(hn_map *map, hn_diags *diags) {
+    const double rate = fastest_rate(map->model);
+    const hn_status status = steps_for(map, rate / 40, rate, 2, diags);
+    if (status == HN_OK) {
+        const double low = map->y.value[0], times = floor(log2(map->y.value[1] / low));
+        map->x = (hn_map_axis){.n = 1};
+        fill_axis(&map->y, low, low * pow(2, times), 1 + (int)times);
+    }
+    return status;
+}
+
+static const struct {
+    const char *name, *about;
+    hn_status (*make)(hn_map *map, hn_diags *diags);
+    int stabilised; ///< 1: of formulations that have alpha and beta
+} PRESETS[] = {
+    {"stiffness", "steps over a stiffness of the scene", stiffness_axes, 0},
+    {"mass-ratio", "steps over a mass of the scene", mass_axes, 0},
+    {"baumgarte", "beta over alpha at one step", baumgarte_axes, 1},
+    {"limits", "steps doubled until each method fails", limit_axes, 0},
+};
+enum { N_PRESETS = sizeof PRESETS / sizeof *PRESETS };
+
+const char *hn_map_preset(int i, const char **about) {
+    if (i < 0 || i >= N_PRESETS) {
+        return NULL;
+    }
+    *about = PRESETS[i].about;
+    return PRESETS[i].name;
+}
+
+/// -1: there is none of that name.
+static int find_preset(const char *name) {
+    for (int i = 0; i < N_PRESETS; i++) {
+        if (strcmp(PRESETS[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static hn_status take_preset(hn_map *map, hn_diags *diags) {
+    const int i = find_preset(map->request.preset);
+    if (i >= 0) {
+        return PRESETS[i].make(map, diags);
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/preset",
+                        "there are stiffness, mass-ratio, baumgarte and limits",
+                        "there is no preset called '%.40s'", map->request.preset);
+}
+
+// methods ----------------------------------------------------------------------------------------------------------
+
+static hn_status take_methods(hn_map *map, hn_diags *diags) {
+    const hn_map_request *r = &map->request;
+    const int preset = r->preset ? find_preset(r->preset) : -1;
+    const int stabilised = r->preset ? preset >= 0 && PRESETS[preset].stabilised
+                                     : strstr(r->over, "alpha=") || strstr(r->over, "beta=");
+    const char *const *list = r->n_methods ? r->methods : stabilised ? STABILISED : STANDARD;
+    const int n = r->n_methods ? r->n_methods : stabilised ? 2 : 3;
+    if (n > HN_MAP_METHODS) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/methods", NULL,
+                            "%d methods were given; a map takes 1 to %d", n, HN_MAP_METHODS);
+    }
+    for (int m = 0; m < n; m++) {
+        char pointer[32];
+        hn_diag diag = {0};
+        snprintf(pointer, sizeof pointer, "/methods/%d", m);
+        const hn_status status = hn_method_parse(list[m], &map->specs[m], &diag);
+        if (status != HN_OK) {
+            return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+        }
+        snprintf(map->names[m], HN_SPEC_MAX, "%s@%s", map->specs[m].formulation->name,
+                 map->specs[m].stepper->name);
+    }
+    map->n_methods = n;
+    return HN_OK;
+}
+
+// the spelling shows what no axis sets
+static void name_methods(hn_map *map) {
+    for (int m = 0; m < map->n_methods; m++) {
+        if (!map->y.is_step && !map->x.is_step) {
+            hn_method_spec spec = map->specs[m];
+            hn_method_format(&spec, map->names[m]);
+        }
+    }
+}
+
+static hn_status check_sizes(hn_map *map, hn_diags *diags) {
+    double h = HUGE_VAL;
+    for (int m = 0; m < map->n_methods && !map->y.is_step; m++) {
+        const double own = hn_method_setting(&map->specs[m], "h", 0);
+        if (!(own > 0)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, "/methods", "give it one, as in :h=1e-3",
+                                "%s has no fixed step", map->names[m]);
+        }
+        h = fmin(h, own);
+    }
+    h = map->y.is_step ? map->y.value[0] : h;
+    if (map->T / h > HN_MAP_STEPS) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a shorter --time or larger steps",
+                            "%g s at steps of %.3g s take %.3g of them; a trial has at most %g",
+                            map->T, h, map->T / h, HN_MAP_STEPS);
+    }
+    map->n_scenes = (map->x.is_param ? map->x.n : 1) * (map->y.is_param ? map->y.n : 1);
+    return map->n_scenes <= HN_MAP_MODELS ? HN_OK
+                                          : hn_diags_add(diags, HN_ERR_LIMIT, "/grid", NULL,
+                                                         "%d scenes differ in this map; at most %d",
+                                                         map->n_scenes, HN_MAP_MODELS);
+}
+
+hn_status hn_map_set_up(hn_map *map, hn_diags *diags) {
+    hn_map_request *r = &map->request;
+    r->columns = r->columns ? r->columns : DEFAULT_SIDE;
+    r->rows = r->rows ? r->rows : DEFAULT_SIDE;
+    r->budget = isnan(r->budget) ? 60 : r->budget;
+    map->T = isnan(r->time) ? hn_model_scene(map->model)->duration : r->time;
+    if (r->columns < 2 || r->rows < 2 || r->columns > HN_MAP_SIDE || r->rows > HN_MAP_SIDE) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/grid", NULL,
+                            "a grid of %d by %d; each side has 2 to %d", r->columns, r->rows,
+                            HN_MAP_SIDE);
+    }
+    if (!(map->T > 0) || !(map->T <= 1e7) || !(r->budget >= 0) || !isfinite(r->budget)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
+                            "the time is %g s and the budget %g s; the time must be above 0 and at "
+                            "most 1e7 s, the budget 0 or more",
+                            map->T, r->budget);
+    }
+    if (!r->preset == !r->over) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
+                            "a map needs either --preset or --over");
+    }
+    hn_status status = take_methods(map, diags);
+    if (status == HN_OK) {
+        status = r->preset ? take_preset(map, diags) : read_over(map, diags);
+    }
+    if (status == HN_OK) {
+        name_methods(map);
+        status = check_sizes(map, diags);
+    }
+    return status;
+}

@@ -1,0 +1,235 @@
+// What a column says: the boundary predicted, the boundary observed, and whether they are the same.
+#include "session/stability/stability_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double WITHIN =
+    0.95; // of a margin of 1: cells closer to the boundary are not compared
+
+// the prediction ---------------------------------------------------------------------------------------------------
+
+// log of h over the limit, bounded so that limits of 0 and infinity can stand between others
+static double log_margin(double margin) {
+    return margin > 0 ? fmax(-40, fmin(40, log(margin))) : -40;
+}
+
+static double steps_of(const hn_map *map, double h) {
+    return fmax(HN_STABILITY_LEAST_STEPS, map->T / h);
+}
+
+static void predict_steps(hn_map *map, int m, int column) {
+    hn_map_column *c = hn_map_column_at(map, m, column);
+    const hn_map_scene *scene = hn_map_scene_of(map, column, 0);
+    if (!scene->path) {
+        return;
+    }
+    const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[0]);
+    hn_stability_forecast f = hn_stability_predict(scene->path, &spec, 1);
+    if (isfinite(f.limit) && f.limit > 0) {
+        f = hn_stability_predict(scene->path, &spec, (long long)steps_of(map, f.limit));
+    }
+    map->forecasts[m] = f;
+    c->visible = f.visible;
+    if (isfinite(f.limit)) {
+        c->predicted[c->n_predicted++] = f.limit;
+    }
+    for (int j = 0; j < map->y.n; j++) {
+        hn_map_cell_at(map, m, column, j)->margin =
+            f.limit > 0 ? map->y.value[j] / f.limit : HUGE_VAL;
+    }
+}
+
+// where the margin passes 1 between two rows, in the axis' own scale
+static void find_crossings(hn_map *map, int m, int column) {
+    hn_map_column *c = hn_map_column_at(map, m, column);
+    for (int j = 0; j + 1 < map->y.n; j++) {
+        const double a = hn_map_cell_at(map, m, column, j)->margin,
+                     b = hn_map_cell_at(map, m, column, j + 1)->margin;
+        const double low = log_margin(a), high = log_margin(b);
+        if (isnan(a) || isnan(b) || (low > 0) == (high > 0) || c->n_predicted == HN_MAP_CROSSINGS) {
+            continue;
+        }
+        const double share = low / (low - high), y0 = map->y.value[j], y1 = map->y.value[j + 1];
+        c->predicted[c->n_predicted++] =
+            map->y.is_log ? y0 * pow(y1 / y0, share) : y0 + (y1 - y0) * share;
+    }
+}
+
+static void predict_cells(hn_map *map, int m, int column) {
+    for (int j = 0; j < map->y.n; j++) {
+        const hn_map_scene *scene = hn_map_scene_of(map, column, j);
+        if (!scene->path) {
+            continue;
+        }
+        const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[j]);
+        const hn_stability_forecast f = hn_stability_predict(scene->path, &spec, 1);
+        const double h = hn_method_setting(&spec, "h", (double)NAN);
+        map->forecasts[m] = f;
+        hn_map_cell_at(map, m, column, j)->margin = f.limit > 0 ? h / f.limit
+                                                    : f.why     ? (double)NAN
+                                                                : HUGE_VAL;
+    }
+    find_crossings(map, m, column);
+}
+
+void hn_map_predict_column(hn_map *map, int m, int column) {
+    hn_map_column_at(map, m, column)->n_predicted = 0;
+    if (map->y.is_step) {
+        predict_steps(map, m, column);
+    } else {
+        predict_cells(map, m, column);
+    }
+}
+
+// the observation --------------------------------------------------------------------------------------------------
+
+static int is_over(hn_stability_class kind) {
+    return kind == HN_STABILITY_GREW || kind == HN_STABILITY_STOPPED;
+}
+
+int hn_map_observe_column(hn_map *map, int m, int column) {
+    hn_map_column *c = hn_map_column_at(map, m, column);
+    if (!isnan(c->unstable)) {
+        return 1; // taken up from before
+    }
+    int j = 0;
+    while (j < map->y.n && hn_stability_is_stable(hn_map_cell_at(map, m, column, j)->trial.kind)) {
+        j++;
+    }
+    if (j == map->y.n || !is_over(hn_map_cell_at(map, m, column, j)->trial.kind)) {
+        return 1; // stable throughout, or no observation there
+    }
+    double low = j > 0 ? map->y.value[j - 1] : 0, high = map->y.value[j];
+    hn_stability_trial trial = hn_map_cell_at(map, m, column, j)->trial;
+    snprintf(c->how, sizeof c->how, "%s", trial.reason);
+    while (low > 0 && high / low > HN_MAP_REFINED) {
+        const double middle = sqrt(low * high);
+        const hn_method_spec spec = hn_map_spec_at(map, m, column, middle);
+        if (!hn_map_try(map, hn_map_scene_of(map, column, j), &spec, &trial)) {
+            return 0;
+        }
+        if (hn_stability_is_stable(trial.kind)) {
+            low = middle;
+        } else if (!is_over(trial.kind)) {
+            break; // no observation there
+        } else {
+            high = middle;
+            snprintf(c->how, sizeof c->how, "%s", trial.reason);
+        }
+    }
+    c->stable = low;
+    c->unstable = high;
+    hn_map_keep_column(map, m, column);
+    return 1;
+}
+
+void hn_map_judge_column(hn_map *map, int m, int column) {
+    hn_map_column *c = hn_map_column_at(map, m, column);
+    const double limit = c->n_predicted ? c->predicted[0] : (double)NAN;
+    c->verdict = HN_MAP_UNTOLD;
+    if (!map->y.is_step || !(limit >= map->y.value[0]) || !(limit <= map->y.value[map->y.n - 1])) {
+        return;
+    }
+    const double seen = isnan(c->unstable) ? HUGE_VAL : sqrt(c->stable * c->unstable);
+    const int never =
+        isnan(c->unstable) &&
+        !hn_stability_is_stable(hn_map_cell_at(map, m, column, map->y.n - 1)->trial.kind);
+    if (never) {
+        return; // not all of the column was tried
+    }
+    if (fabs(seen / limit - 1) <= HN_MAP_AGREES) {
+        c->verdict = HN_MAP_AGREE;
+    } else if (seen < limit) {
+        c->verdict = HN_MAP_EARLIER;
+    } else {
+        c->verdict =
+            c->visible > limit * (1 + HN_MAP_AGREES) && seen <= c->visible * (1 + HN_MAP_AGREES)
+                ? HN_MAP_UNSEEN
+                : HN_MAP_LATER;
+    }
+}
+
+// agreement --------------------------------------------------------------------------------------------------------
+
+static void count_columns(const hn_map *map, int m, hn_map_agreement *a) {
+    for (int i = 0; i < map->x.n; i++) {
+        const hn_map_column *c = hn_map_get_column(map, m, i);
+        a->compared += c->verdict != HN_MAP_UNTOLD;
+        a->agree += c->verdict == HN_MAP_AGREE;
+        a->unseen += c->verdict == HN_MAP_UNSEEN;
+        a->earlier += c->verdict == HN_MAP_EARLIER;
+        a->later += c->verdict == HN_MAP_LATER;
+    }
+}
+
+static void count_cells(const hn_map *map, int m, hn_map_agreement *a) {
+    for (int i = 0; i < map->x.n; i++) {
+        for (int j = 0; j < map->y.n; j++) {
+            const hn_map_cell *cell = hn_map_get(map, m, i, j);
+            const int over = is_over(cell->trial.kind),
+                      stable = hn_stability_is_stable(cell->trial.kind);
+            const int beyond = cell->margin > 1 / WITHIN, below = cell->margin < WITHIN;
+            if ((!over && !stable) || (!beyond && !below)) {
+                continue;
+            }
+            a->compared++;
+            a->agree += over == beyond;
+            a->earlier += over && below;
+            a->later += stable && beyond;
+        }
+    }
+}
+
+hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
+    hn_map_agreement a = {.by_columns = map->y.is_step, .why = map->forecasts[m].why};
+    if (a.by_columns) {
+        count_columns(map, m, &a);
+    } else {
+        count_cells(map, m, &a);
+    }
+    if (a.compared == 0 && !a.why) {
+        a.why = "no boundary was both predicted and tried inside this map";
+    }
+    a.why = a.compared ? NULL : a.why;
+    return a;
+}
+
+// what ended the first of the columns that ended earlier
+static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
+    for (int i = 0; i < map->x.n; i++) {
+        const hn_map_column *c = hn_map_get_column(map, m, i);
+        if (c->verdict == HN_MAP_EARLIER) {
+            hn_strbuf_add(b, ", as ");
+            if (map->x.name[0]) {
+                hn_strbuf_printf(b, "at %s = %.4g ", map->x.name, map->x.value[i]);
+            }
+            hn_strbuf_printf(b, "from h = %.3g s on, %.2g of the limit: %s", c->unstable,
+                             c->unstable / c->predicted[0], c->how);
+            return;
+        }
+    }
+}
+
+void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
+    const hn_map_agreement a = hn_map_agrees(map, m);
+    if (a.why) {
+        hn_strbuf_printf(b, "nothing to compare: %s", a.why);
+        return;
+    }
+    hn_strbuf_printf(b,
+                     a.by_columns ? "prediction within %.0f %% on %d of %d columns"
+                                  : "prediction right, %.0f %% or more from the boundary, in %d of "
+                                    "%d cells",
+                     100 * HN_MAP_AGREES, a.agree, a.compared);
+    if (a.unseen) {
+        hn_strbuf_printf(b, "; %d: beyond the limit a step grows too little to be seen", a.unseen);
+    }
+    if (a.earlier) {
+        hn_strbuf_printf(b, "; %d: ended earlier than predicted", a.earlier);
+        put_first_earlier(b, map, m);
+    }
+    if (a.later) {
+        hn_strbuf_printf(b, "; %d: stable further than predicted", a.later);
+    }
+}

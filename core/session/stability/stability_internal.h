@@ -1,0 +1,60 @@
+#ifndef HN_SESSION_STABILITY_INTERNAL_H
+#define HN_SESSION_STABILITY_INTERNAL_H
+// The inside of a map: stability.c (life and running), stability_axes.c (what is asked for), stability_column.c (what a column says),
+// stability_store.c (what is kept of an unfinished one), and the documents.
+
+#include "session/store/journal.h"
+#include "session/stability/stability.h"
+
+/// One scene of the map with its motion; made when a cell first needs it.
+typedef struct hn_map_scene {
+    hn_model *model; ///< owned; NULL: the map's own serves, or there is none
+    hn_stability_path *path;
+    int tried;
+    char why[HN_STABILITY_REASON]; ///< it has no motion to compare with
+} hn_map_scene;
+
+struct hn_map {
+    const hn_model *model;
+    hn_map_request request;
+    hn_map_axis x, y;
+    int n_methods;
+    hn_method_spec specs[HN_MAP_METHODS];
+    char names[HN_MAP_METHODS][HN_SPEC_MAX];
+    double T;
+    int n_scenes;
+    hn_map_scene *scenes;
+    hn_map_cell *cells; ///< method, row, column
+    hn_map_column *columns;
+    hn_stability_forecast forecasts[HN_MAP_METHODS]; ///< the last made, for reasons
+    int resumed, stopped, out_of_time;
+    double elapsed, started;
+    hn_journal journal;
+};
+
+hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row);
+hn_map_column *hn_map_column_at(const hn_map *map, int m, int column);
+/// The scene of a cell, with its motion if it has one.
+hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row);
+/// The method of a cell; `y` in place of the row's value.
+hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y);
+/// 1 when asked to stop or out of the budget; then noted.
+int hn_map_must_end(hn_map *map);
+/// One trial within the limits of a cell; 0 when it was stopped.
+int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
+               hn_stability_trial *out);
+
+/// Axes, methods and time from the request.
+HN_MUST_CHECK hn_status hn_map_set_up(hn_map *map, hn_diags *diags);
+
+/// Margins and predicted boundary of a column; the scenes must be there.
+void hn_map_predict_column(hn_map *map, int m, int column);
+/// Step axis: halves the interval between the last stable and the first other step. 0 when stopped.
+int hn_map_observe_column(hn_map *map, int m, int column);
+void hn_map_judge_column(hn_map *map, int m, int column);
+
+/// Opens the journal of this map and reads what it holds into the map. Fails as hn_journal_open().
+HN_MUST_CHECK hn_status hn_map_open_journal(hn_map *map, hn_diags *diags);
+void hn_map_keep_cell(hn_map *map, int m, int column, int row);
+void hn_map_keep_column(hn_map *map, int m, int column);
+#endif

@@ -1,0 +1,98 @@
+#include "session/store/journal.h"
+
+#include "base/hash.h"
+#include "session/store/stored_json.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/// Hands whole lines over; returns the bytes of those that were taken.
+static size_t take_lines(char *text, hn_journal_take take, void *user) {
+    size_t used = 0;
+    for (char *end; (end = strchr(text + used, '\n')) != NULL;) {
+        *end = 0;
+        cJSON *line = cJSON_Parse(text + used);
+        const int taken = line && take(user, line);
+        cJSON_Delete(line);
+        if (!taken) {
+            break;
+        }
+        used = (size_t)(end - text) + 1;
+    }
+    return used;
+}
+
+/// The key of this very program: its file is another one once it is built anew.
+static uint64_t add_program(uint64_t key) {
+    struct stat program;
+    if (stat("/proc/self/exe", &program) == 0) {
+        const long long marks[] = {(long long)program.st_size, (long long)program.st_mtim.tv_sec,
+                                   (long long)program.st_mtim.tv_nsec};
+        key = hn_hash_bytes(key, marks, sizeof marks);
+    }
+    return hn_hash_mix(key);
+}
+
+static hn_status open_file(hn_journal *j, hn_diags *diags) {
+    j->file = fopen(j->path, "a+b");
+    if (!j->file) {
+        return hn_diags_add(diags, HN_ERR_IO, NULL, NULL,
+                            "cannot keep unfinished work in '%.200s': %s", j->path,
+                            strerror(errno));
+    }
+    if (flock(fileno(j->file), LOCK_EX | LOCK_NB) != 0) {
+        hn_journal_end(j, 0);
+        return hn_diags_add(diags, HN_ERR_IO, NULL, "wait for it, or ask for something else",
+                            "another program is at this very work");
+    }
+    return HN_OK;
+}
+
+hn_status hn_journal_open(hn_journal *j, const char *folder, const char *kind, uint64_t key,
+                          hn_journal_take take, void *user, hn_diags *diags) {
+    char hex[17];
+    size_t n = 0;
+    *j = (hn_journal){0};
+    hn_hash_hex(add_program(key), hex);
+    if (snprintf(j->path, sizeof j->path, "%s/%s-%s.ndjson", folder, kind, hex) >=
+        (int)sizeof j->path) {
+        j->path[0] = 0;
+        return HN_OK;
+    }
+    const hn_status status = open_file(j, diags);
+    if (status != HN_OK) {
+        j->path[0] = 0;
+        return status;
+    }
+    char *text = hn_stored_text_of(j->file, &n);
+    const size_t used = text ? take_lines(text, take, user) : 0;
+    free(text);
+    // what comes next is written behind the last whole line
+    j->failed = ftruncate(fileno(j->file), (off_t)used) != 0;
+    return HN_OK;
+}
+
+void hn_journal_write(hn_journal *j, hn_strbuf *line) {
+    hn_json_end_object(line);
+    hn_strbuf_add(line, "\n");
+    if (j->file && !j->failed) {
+        j->failed = line->failed || fwrite(hn_strbuf_text(line), 1, line->n, j->file) != line->n ||
+                    fflush(j->file) != 0;
+    }
+    hn_strbuf_reset(line);
+}
+
+void hn_journal_end(hn_journal *j, int whole) {
+    if (whole && j->path[0]) {
+        remove(j->path);
+        j->path[0] = 0;
+    }
+    if (j->file) {
+        fclose(j->file);
+        j->file = NULL;
+    }
+}

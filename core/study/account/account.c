@@ -1,0 +1,366 @@
+#include "study/account/account_internal.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STEPS = 200000, NODES = 3 };
+#define MOST_DOUBLES 40e6 // of memory for the steps: 320 MB
+#define FLOW_TOL 1e-14    // of the flows beside each step
+
+static const char *const cause_names[HN_CAUSE_COUNT][2] = {
+#define HN_CAUSE_ROW(code, name, about) {name, about},
+    HN_CAUSE_LIST(HN_CAUSE_ROW)
+#undef HN_CAUSE_ROW
+};
+static const char *const bill_names[HN_BILL_COUNT][2] = {
+#define HN_BILL_ROW(code, name, about) {name, about},
+    HN_BILL_LIST(HN_BILL_ROW)
+#undef HN_BILL_ROW
+};
+
+const char *hn_cause_name(hn_cause cause) {
+    return cause_names[cause][0];
+}
+
+const char *hn_cause_about(hn_cause cause) {
+    return cause_names[cause][1];
+}
+
+const char *hn_bill_name(hn_bill_item item) {
+    return bill_names[item][0];
+}
+
+const char *hn_bill_about(hn_bill_item item) {
+    return bill_names[item][1];
+}
+
+// --- the equations of motion as index 1, defined off the loops too ---------------------------------------------
+
+static hn_status plain_rhs(void *self, double t, const double *y, double *ydot) {
+    hn_books *b = self;
+    const double *v = y + b->info.nq;
+    hn_system_kinematics(b->sys, y, v, ydot);
+    return hn_accel_eval(b->accel, t, y, v, 0, 0, ydot + b->info.nq, b->lambda, NULL);
+}
+
+static double energy_at(hn_books *b, double t, const double *y) {
+    hn_eval_run(b->eval, t, y, y + b->info.nq);
+    const double *e = hn_eval_get(b->eval, HN_TERM_ENERGY);
+    b->t_max = fmax(b->t_max, e[0]);
+    b->v_min = fmin(b->v_min, e[1]);
+    b->v_max = fmax(b->v_max, e[1]);
+    return e[0] + e[1];
+}
+
+/// lambda'(J v + phi_t): the power of loop forces on loops that are not closed in speed.
+static hn_status loop_power(hn_books *b, double t, const double *y, double *power) {
+    const int nv = b->info.nv, nc = b->info.nc;
+    const double *v = y + b->info.nq;
+    const hn_status status = hn_accel_eval(b->accel, t, y, v, 0, 0, b->a, b->lambda, NULL);
+    hn_eval_run(b->eval, t, y, v);
+    hn_mat_vec(nc, nv, hn_eval_get(b->eval, HN_TERM_J), v, b->gap);
+    hn_axpy(nc, 1, hn_eval_get(b->eval, HN_TERM_PHI_T), b->gap);
+    *power = hn_dot(nc, b->lambda, b->gap);
+    return status;
+}
+
+/// The flow I over one step, into b->flowed, and the work of the loop forces on the way, by Gauss quadrature of order 6.
+static hn_status follow(hn_books *b, double t, double h, const double *y, double *work) {
+    static const double at[NODES] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
+    static const double weight[NODES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    memcpy(b->flowed, y, (size_t)b->ny * sizeof *y);
+    double here = 0;
+    *work = 0;
+    hn_status status = HN_OK;
+    for (int i = 0; status == HN_OK && i < NODES; i++) {
+        double power = 0;
+        status = hn_flow_run(b->flow, &b->plain, FLOW_TOL, t + here, at[i] * h - here, b->flowed,
+                             b->flowed);
+        here = at[i] * h;
+        status = status == HN_OK ? loop_power(b, t + here, b->flowed, &power) : status;
+        *work += weight[i] * h * power;
+    }
+    return status == HN_OK
+               ? hn_flow_run(b->flow, &b->plain, FLOW_TOL, t + here, h - here, b->flowed, b->flowed)
+               : status;
+}
+
+// --- one step --------------------------------------------------------------------------------------------------
+
+static int is_ode(const hn_books *b) {
+    const hn_method_spec *spec = hn_run_spec(b->run);
+    return hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;
+}
+
+/// The flow B over one step, into b->owned, from the engine's own unknowns.
+static hn_status follow_own(hn_books *b, hn_run_engine *e, double t, double h, const double *y) {
+    if (!b->own_flow) {
+        const hn_status status = hn_flow_create(e->ode.n_pos, e->ode.n_vel, b->arena, &b->own_flow);
+        if (status != HN_OK) {
+            return status;
+        }
+        b->own_size = e->ode.n_pos + e->ode.n_vel;
+    }
+    if (e->ode.n_pos + e->ode.n_vel != b->own_size) {
+        return HN_ERR_CHART; // the rank has changed, and with it the number of unknowns
+    }
+    const hn_status status = hn_flow_run(b->own_flow, &e->ode, FLOW_TOL, t, h, y, b->y_own);
+    return status == HN_OK
+               ? hn_engine_read(b->run, e, t + h, b->y_own, b->owned, b->owned + b->info.nq)
+               : status;
+}
+
+/// B for a step that has been made: of a copy of the formulation started at its beginning.
+static hn_status follow_aside(hn_books *b, double t, double h, const double *y) {
+    hn_run_engine *side = &b->run->side;
+    const hn_status status = hn_engine_start(b->run, side, t, y, y + b->info.nq);
+    return status == HN_OK ? follow_own(b, side, t, h, side->y) : status;
+}
+
+void hn_books_difference(const hn_books *b, const double *from, const double *to, double *out) {
+    hn_system_difference(b->sys, from, to, out);
+    for (int i = 0; i < b->info.nv; i++) {
+        out[b->info.nv + i] = to[b->info.nq + i] - from[b->info.nq + i];
+    }
+}
+
+double *hn_books_record(const hn_books *b, size_t k) {
+    return b->record + k * b->width;
+}
+
+static hn_status make_room(hn_books *b, hn_diag *diag) {
+    if (b->kept < b->room) {
+        return HN_OK;
+    }
+    const size_t room = b->room ? 2 * b->room : 1024;
+    double *more = (double)(room * b->width) > 2 * MOST_DOUBLES
+                       ? NULL
+                       : realloc(b->record, room * b->width * sizeof *more);
+    if (!more) {
+        return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
+                           "an account of more than %zu steps does not fit into memory", b->kept);
+    }
+    b->record = more;
+    b->room = room;
+    return HN_OK;
+}
+
+void hn_books_present(const hn_books *b, double *y) {
+    memcpy(y, b->run->now.q, (size_t)b->info.nq * sizeof *y);
+    memcpy(y + b->info.nq, b->run->now.v, (size_t)b->info.nv * sizeof *y);
+}
+
+/// Books one step: the run's, the two flows beside it, their differences and energies.
+static hn_status book_step(hn_books *b, hn_diag *diag) {
+    hn_run *run = b->run;
+    hn_account *out = b->out;
+    hn_status status = make_room(b, diag);
+    if (status != HN_OK) {
+        return status;
+    }
+    double *r = hn_books_record(b, b->kept), *y = r + 2, *part = y + b->ny, work = 0;
+    const double t = run->now.t, planned = run->adaptive ? 0 : run->h_next;
+    hn_books_present(b, y);
+    // with a fixed step the formulation's own chart or basis is still the one the step will be made in
+    int owned =
+        is_ode(b) && planned > 0 && follow_own(b, &run->main, t, planned, run->main.y) == HN_OK;
+    status = hn_run_step(run);
+    if (status != HN_OK) {
+        return status;
+    }
+    const double h = run->now.t - t;
+    status = follow(b, t, h, y, &work);
+    if (status == HN_OK && is_ode(b) && (!owned || fabs(h - planned) > 1e-9 * h)) {
+        status = follow_aside(b, t, h, y);
+        owned = 1;
+    }
+    if (status != HN_OK) {
+        return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                           "the equations of motion could not be followed beside the step from t = "
+                           "%.4g to %.4g s: %s",
+                           t, run->now.t, hn_status_text(status));
+    }
+    const double *after_own = is_ode(b) ? b->owned : b->flowed;
+    double *unmended = b->unmended.q; // q and v stand together
+    r[0] = t;
+    r[1] = h;
+    hn_books_present(b, b->y);
+    hn_books_difference(b, after_own, unmended, part + HN_PART_TRUNCATION * b->nd);
+    hn_books_difference(b, b->flowed, after_own, part + HN_PART_FORMULATION * b->nd);
+    hn_books_difference(b, unmended, b->y, part + HN_PART_PROJECTION * b->nd);
+    const double e0 = energy_at(b, t, y), e1 = energy_at(b, t + h, b->flowed),
+                 e2 = energy_at(b, t + h, after_own), e3 = energy_at(b, t + h, unmended),
+                 e4 = energy_at(b, t + h, b->y);
+    out->bill[HN_BILL_LOOPS] += work;
+    out->bill[HN_BILL_OUTSIDE] += e1 - e0 - work;
+    out->bill[HN_BILL_FORMULATION] += e2 - e1;
+    out->bill[HN_BILL_TRUNCATION] += e3 - e2;
+    out->bill[HN_BILL_PROJECTION] += e4 - e3;
+    out->loop_work_abs += fabs(work);
+    b->kept++;
+    return HN_OK;
+}
+
+int hn_books_asked_to_stop(const hn_books *b, double share) {
+    if (b->opts->progress) {
+        b->opts->progress(b->opts->user, share);
+    }
+    return b->opts->stop && b->opts->stop(b->opts->user);
+}
+
+static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
+    const long long most = b->opts->max_steps > 0 ? b->opts->max_steps : MOST_STEPS;
+    hn_status status = HN_OK;
+    while (status == HN_OK && b->run->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
+        if ((long long)b->kept >= most) {
+            return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
+                               "the account is for %lld steps at most", most);
+        }
+        if (b->kept % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
+            hn_books_asked_to_stop(b, 0.3 * b->run->now.t / T)) {
+            return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
+        }
+        if (b->run->adaptive && b->run->h_next > T - b->run->now.t) {
+            b->run->h_next = T - b->run->now.t; // the last step ends at T
+        }
+        status = book_step(b, diag);
+    }
+    return status;
+}
+
+// --- the whole -------------------------------------------------------------------------------------------------
+
+static hn_status create_memory(hn_books *b) {
+    hn_arena *arena = b->arena;
+    const size_t ny = (size_t)b->ny, nd = (size_t)b->nd, nv = (size_t)b->info.nv;
+    double **states[] = {&b->y, &b->y_own, &b->flowed, &b->owned, &b->up, &b->down};
+    for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
+        *states[i] = hn_arena_doubles(arena, ny + nv); // room for user coordinates too
+    }
+    double **displacements[] = {&b->w, &b->column, &b->split};
+    for (size_t i = 0; i < sizeof displacements / sizeof *displacements; i++) {
+        *displacements[i] = hn_arena_doubles(arena, nd);
+    }
+    b->zero = hn_arena_doubles(arena, nv);
+    b->a = hn_arena_doubles(arena, nv);
+    b->gap = hn_arena_doubles(arena, (size_t)b->info.nc);
+    b->lambda = hn_arena_doubles(arena, (size_t)b->info.nc);
+    b->unmended.q = hn_arena_doubles(arena, ny);
+    if (hn_arena_failed(arena)) {
+        return HN_ERR_MEMORY;
+    }
+    memset(b->zero, 0, nv * sizeof *b->zero);
+    b->unmended.v = b->unmended.q + b->info.nq;
+    b->width = 2 + ny + HN_PARTS * nd;
+    return HN_OK;
+}
+
+static hn_status create_parts(hn_books *b) {
+    const hn_accel_opts with = {.want_lambda = 1};
+    hn_status status = create_memory(b);
+    if (status == HN_OK) {
+        status = hn_accel_create(b->sys, &with, b->arena, &b->accel);
+    }
+    if (status == HN_OK) {
+        status =
+            hn_eval_create(b->sys, HN_TERM_ENERGY | HN_TERM_J | HN_TERM_PHI_T, b->arena, &b->eval);
+    }
+    if (status == HN_OK) {
+        status =
+            hn_linear_create(b->sys, HN_LINEAR_M | HN_LINEAR_J | HN_LINEAR_V, b->arena, &b->linear);
+    }
+    if (status == HN_OK) {
+        status = hn_flow_create(b->info.nq, b->info.nv, b->arena, &b->flow);
+    }
+    if (status == HN_OK) {
+        status = hn_accel_jacobian_create(b->sys, &(hn_accel_law){0}, b->arena, &b->slopes);
+    }
+    if (status == HN_OK) {
+        status = hn_flow_carrier_create(b->info.nq, b->info.nv, b->nd, b->arena, &b->carrier);
+    }
+    b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
+    b->plain = (hn_ode){.n_pos = b->info.nq, .n_vel = b->info.nv, .self = b, .rhs = plain_rhs};
+    return status == HN_OK && !b->saddle ? HN_ERR_MEMORY : status;
+}
+
+/// Where flows cannot be followed, a singular pose on the way is mostly why.
+static void explain(const hn_books *b, hn_diag *diag) {
+    double t;
+    if (hn_run_passed_singular(b->run, &t)) {
+        const size_t used = strlen(diag->message);
+        snprintf(diag->message + used, sizeof diag->message - used,
+                 "; J all but loses rank near t = %.3g s, and neighbours off the loops cannot be "
+                 "followed past that",
+                 t);
+    }
+}
+
+static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
+    hn_account *out = b->out;
+    hn_books_present(b, b->y);
+    const double start = energy_at(b, b->run->now.t, b->y);
+    out->conservative = b->run->watch.conservative;
+    b->run->main.unmended = &b->unmended;
+    hn_status status = book_steps(b, T, diag);
+    const hn_run_summary s = hn_run_get_summary(b->run);
+    const int failed = s.state == HN_RUN_FAILED;
+    out->state = failed ? HN_RUN_FAILED : HN_RUN_FINISHED;
+    snprintf(out->reason, sizeof out->reason, "%s", s.reason);
+    out->t = b->run->now.t;
+    out->steps = (long long)b->kept;
+    hn_books_present(b, b->y);
+    out->energy = energy_at(b, out->t, b->y) - start;
+    out->swing = b->t_max + b->v_max - b->v_min;
+    if (failed) {
+        return HN_OK; // up to there the bill of energy stands; an error at the end there is none
+    }
+    if (status == HN_OK) {
+        status = hn_books_look_back(b, out->t, diag);
+    }
+    if (status == HN_ERR_NO_CONVERGENCE) {
+        explain(b, diag);
+    }
+    return status;
+}
+
+hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, const double *q,
+                          const double *v, double T, const hn_account_opts *opts, hn_account *out,
+                          hn_diag *diag) {
+    static const hn_account_opts none = {0};
+    hn_books b = {.sys = sys,
+                  .info = hn_system_get_info(sys),
+                  .opts = opts ? opts : &none,
+                  .out = out,
+                  .asked = T,
+                  .v_min = HUGE_VAL,
+                  .v_max = -HUGE_VAL};
+    *out = (hn_account){.coordinate = -1};
+    b.ny = b.info.nq + b.info.nv;
+    b.nd = 2 * b.info.nv;
+    if (!(T > 0) || !isfinite(T)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/time", NULL,
+                           "the end must lie after 0, not at %g s", T);
+    }
+    const hn_run_opts run_opts = hn_run_opts_default();
+    hn_status status = hn_run_create(sys, spec, q, v, &run_opts, &b.run, diag);
+    if (status == HN_OK) {
+        out->has_equations = is_ode(&b);
+        b.arena = hn_arena_create(1 << 16);
+        status = b.arena ? create_parts(&b) : HN_ERR_MEMORY;
+        status = status == HN_OK
+                     ? keep_books(&b, T, diag)
+                     : hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
+    }
+    hn_accel_free(b.accel);
+    hn_eval_free(b.eval);
+    hn_linear_free(b.linear);
+    hn_accel_jacobian_free(b.slopes);
+    free(b.record);
+    hn_run_free(b.run);
+    hn_arena_free(b.arena);
+    return status;
+}

@@ -1,0 +1,56 @@
+#ifndef HN_STUDY_ACCOUNT_INTERNAL_H
+#define HN_STUDY_ACCOUNT_INTERNAL_H
+// The inside of an account: account.c books the steps, account_back.c carries their parts to the end.
+
+#include "dynamics/evaluate/linearise.h"
+#include "linalg/saddle.h"
+#include "formulations/ground/accel_jacobian.h"
+#include "study/account/account.h"
+#include "study/account/flow.h"
+#include "study/run/run_internal.h"
+
+enum { HN_BOOKS_BETWEEN_QUESTIONS = 16 }; ///< steps
+
+#define HN_BOOKS_ARRIVED 1e-12 // of the time asked for
+
+/// The three parts of (1), each a displacement in q along the speeds (nv) and one in v (nv).
+enum { HN_PART_TRUNCATION, HN_PART_FORMULATION, HN_PART_PROJECTION, HN_PARTS };
+
+typedef struct hn_books {
+    hn_arena *arena;
+    const hn_system *sys;
+    hn_system_info info;
+    int ny, nd; ///< nq + nv, 2 nv
+    hn_run *run;
+    const hn_account_opts *opts;
+    hn_account *out;
+    double asked; ///< end [s]
+    hn_accel *accel;
+    hn_eval *eval;     ///< energy, J, phi_t
+    hn_linear *linear; ///< M, J, V
+    hn_saddle_ws *saddle;
+    hn_ode plain; ///< the equations of motion as index 1
+    hn_flow *flow, *own_flow;
+    hn_accel_jacobian *slopes; ///< of `plain`
+    hn_flow_carrier *carrier;
+    int own_size;
+    hn_run_state_at unmended;
+    double *record; ///< per step: t, h, y (ny), the parts (HN_PARTS x nd)
+    size_t kept, room, width;
+    double *y, *y_own, *flowed, *owned, *was_y; ///< ny each
+    double *w, *column, *up, *down, *split;     ///< nd, nd, ny, ny, nd
+    double *zero, *gap, *a, *lambda;
+    double v_min, v_max, t_max;
+} hn_books;
+
+/// Record of step k: t, h, y, parts.
+double *hn_books_record(const hn_books *b, size_t k);
+/// The displacement from one state to another, in q along the speeds and in v: out (nd).
+void hn_books_difference(const hn_books *b, const double *from, const double *to, double *out);
+/// The state the run has reached: y (ny).
+void hn_books_present(const hn_books *b, double *y);
+/// Tells how far the account is, and asks whether to stop.
+int hn_books_asked_to_stop(const hn_books *b, double share);
+/// Error at the end of the run, at time T, and where it comes from.
+HN_MUST_CHECK hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag);
+#endif

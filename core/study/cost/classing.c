@@ -1,0 +1,221 @@
+#include "study/cost/classing.h"
+
+#include "base/units.h"
+#include "study/cost/convergence.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { FITTED = 4 };                 // points: three halvings
+static const double SATURATED = 0.5; // errors of the motion's own size have no slope
+static const double FLAT = 0.35;     // of theory's order: slopes below it belong to a floor
+static const double ABOVE_FLOOR = 3; // times the floor, for a point that is fitted
+static const double WANDER =
+    0.1; // errors at a floor differ by less than this factor from the first there
+// no error below it is trusted to have a slope: what thousands of steps in double add up to
+static const double ROUNDING = 1e-13;
+static const double LEAST_ORDER = 0.5; // below it nothing converges
+
+static const char *const names[HN_CLASS_COUNT] = {
+#define HN_CLASS_ROW(code, name) name,
+    HN_CLASS_LIST(HN_CLASS_ROW)
+#undef HN_CLASS_ROW
+};
+
+const char *hn_class_name(hn_class_kind kind) {
+    HN_ASSERT((int)kind >= 0 && kind < HN_CLASS_COUNT);
+    return names[kind];
+}
+
+/// The finished points of a method, coarse ones first.
+typedef struct ladder {
+    int n, level[HN_WP_LEVELS];
+    double x[HN_WP_LEVELS]; ///< T / steps: the mean step [s]
+    double e[HN_WP_LEVELS], end[HN_WP_LEVELS], own[HN_WP_LEVELS];
+} ladder;
+
+static ladder collect(const hn_wp *wp, int m) {
+    ladder l = {0};
+    for (int k = 0; k < wp->n_levels; k++) {
+        const hn_wp_point *p = &wp->methods[m].point[k];
+        if (p->state == HN_WP_DONE && p->steps > 0) {
+            l.level[l.n] = k;
+            l.x[l.n] = wp->ref->T / (double)p->steps;
+            l.e[l.n] = p->worst[HN_ERROR_Q];
+            l.end[l.n] = p->end[HN_ERROR_Q];
+            l.own[l.n++] = p->own;
+        }
+    }
+    return l;
+}
+
+/// Slope between point i - 1 and point i; 0 where the step did not fall.
+static double slope(const ladder *l, int i) {
+    const double dx = log(l->x[i - 1] / l->x[i]);
+    return dx > 1e-3 && l->e[i] > 0 && l->e[i - 1] > 0 ? log(l->e[i - 1] / l->e[i]) / dx : 0;
+}
+
+/// A tolerance that is passed on unchanged makes the same steps: then neither error nor distance says anything.
+static int goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
+    if (l->n < 3) {
+        return 0;
+    }
+    const int last = l->n - 1;
+    const double own = fmax(l->own[last], l->own[last - 1]), far = l->end[last];
+    const double known = HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q];
+    if (far > HN_CLASS_OFFSET && far > known && far > HN_CLASS_APART * own &&
+        l->x[last] < l->x[0]) {
+        c->kind = HN_CLASS_ELSEWHERE;
+        c->offset = far;
+        c->own = l->own[last];
+        return 1;
+    }
+    return 0;
+}
+
+/// First point of the flat end, below which errors only wander. l->n when there is none.
+static int find_floor(const ladder *l, double theory, double known) {
+    const double sure = fmax(known, ROUNDING);
+    for (int i = 0; i < l->n; i++) {
+        if (l->e[i] > sure &&
+            (i == 0 || slope(l, i) >= FLAT * theory || l->e[i] > HN_CLASS_OFFSET)) {
+            continue; // still falling; or not small: that is no floor but a method that has not settled
+        }
+        int stays = 1;
+        for (int j = i + 1; j < l->n; j++) {
+            stays &= l->e[j] >= WANDER * l->e[i] || l->e[j] <= sure;
+        }
+        if (stays) {
+            return i;
+        }
+    }
+    return l->n;
+}
+
+/// The finest points above the floor that have a slope.
+static void fit(const ladder *l, int n, int most, hn_class *c) {
+    double x[HN_WP_LEVELS], e[HN_WP_LEVELS];
+    const double lowest = isnan(c->floor) ? ROUNDING : fmax(ROUNDING, ABOVE_FLOOR * c->floor);
+    int last = n - 1, first, used = 0;
+    while (last >= 0 && l->e[last] <= lowest) {
+        last--;
+    }
+    for (first = last + 1; first > 0 && used < most && l->e[first - 1] < SATURATED; used++) {
+        first--;
+    }
+    if (used < 2) {
+        return;
+    }
+    c->first = l->level[first];
+    c->last = l->level[last];
+    c->low = HUGE_VAL;
+    c->high = -HUGE_VAL;
+    for (int i = first; i <= last; i++) {
+        x[i - first] = l->x[i];
+        e[i - first] = l->e[i];
+        if (i > first) {
+            c->low = fmin(c->low, slope(l, i));
+            c->high = fmax(c->high, slope(l, i));
+        }
+    }
+    c->order = hn_fit_order(used, x, e);
+}
+
+static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *c) {
+    const hn_wp_point *p = &wp->methods[m].point[0];
+    for (int k = 0; k < wp->n_levels; k++) {
+        if (wp->methods[m].point[k].state == HN_WP_FAILED) {
+            p = &wp->methods[m].point[k];
+        }
+    }
+    snprintf(c->text, sizeof c->text, "%d of %d sizes came to the end%s%.180s", l->n, wp->n_levels,
+             p->reason[0] ? ": " : "", p->reason);
+}
+
+static void describe_order(const hn_wp *wp, int m, hn_class *c) {
+    char floor[120] = "", size[HN_SI_TEXT];
+    if (!isnan(c->floor)) {
+        hn_si_format(c->floor_size, wp->methods[m].adaptive ? "" : "s", 2, size);
+        if (wp->methods[m].adaptive) {
+            snprintf(size, sizeof size, "%.0e", c->floor_size);
+        }
+        snprintf(floor, sizeof floor, "; at its floor of %.1e from %s = %s on", c->floor,
+                 wp->methods[m].adaptive ? "rtol" : "h", size);
+    }
+    if (c->kind == HN_CLASS_CONVERGES && c->as_theory) {
+        snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
+                 c->theory, floor);
+    } else if (c->kind == HN_CLASS_CONVERGES) {
+        snprintf(c->text, sizeof c->text,
+                 "converges with order %.2f, where its integrator has %g%s", c->order, c->theory,
+                 floor);
+    } else if (c->kind == HN_CLASS_FLOOR) {
+        snprintf(c->text, sizeof c->text, "at its floor of %.1e from the coarsest sizes on",
+                 c->floor);
+    } else if (c->first >= 0 && c->last - c->first < 2) {
+        snprintf(c->text, sizeof c->text,
+                 "not in the asymptotic range: two points between 0.5 and the floor, slope %.1f "
+                 "(theory %g)%s",
+                 c->order, c->theory, floor);
+    } else if (c->first >= 0) {
+        snprintf(c->text, sizeof c->text,
+                 "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s", c->low,
+                 c->high, c->theory, floor);
+    } else {
+        snprintf(c->text, sizeof c->text,
+                 "not in the asymptotic range: fewer than two points between 0.5 and the floor");
+    }
+}
+
+void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
+    const ladder l = collect(wp, m);
+    const hn_wp_method *method = &wp->methods[m];
+    const double known = HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q];
+    hn_class c = {.kind = HN_CLASS_UNSETTLED,
+                  .theory = method->spec.stepper->order,
+                  .order = (double)NAN,
+                  .floor = (double)NAN,
+                  .first = -1,
+                  .last = -1};
+    *out = c;
+    if (l.n < 2) {
+        out->kind = HN_CLASS_FAILED;
+        describe_failure(wp, m, &l, out);
+        return;
+    }
+    if (hn_wp_is_beyond_horizon(wp)) {
+        snprintf(out->text, sizeof out->text,
+                 "not classed: neighbouring motions part, and from t = %.3g s on, before the end, "
+                 "where a method goes says nothing of it",
+                 wp->horizon);
+        return;
+    }
+    if (goes_elsewhere(wp, &l, out)) {
+        snprintf(out->text, sizeof out->text,
+                 "converges to something else: %.1e from the reference, while its finest sizes are "
+                 "%.0e from each other",
+                 out->offset, out->own);
+        return;
+    }
+    const int floor = find_floor(&l, c.theory, known);
+    if (floor < l.n) {
+        out->floor_size = method->point[l.level[floor]].size;
+        out->floor = known;
+        for (int i = floor; i < l.n; i++) {
+            out->floor = fmax(out->floor, l.e[i]);
+        }
+    }
+    // chosen steps do not halve evenly: single slopes say little, the line through all points does
+    fit(&l, floor, method->adaptive ? HN_WP_LEVELS : FITTED, out);
+    const double allowed =
+        method->adaptive ? HN_CLASS_FROM_THEORY_ADAPTIVE * out->theory : HN_CLASS_FROM_THEORY_FIXED;
+    out->as_theory = fabs(out->order - out->theory) <= allowed;
+    const int fitted = out->first >= 0 ? out->last - out->first + 1 : 0;
+    if (fitted >= 3 && out->order > LEAST_ORDER &&
+        ((method->adaptive && out->as_theory) || out->high - out->low <= HN_CLASS_SPREAD)) {
+        out->kind = HN_CLASS_CONVERGES;
+    } else if (floor < l.n && fitted < 3) {
+        out->kind = HN_CLASS_FLOOR;
+    }
+    describe_order(wp, m, out);
+}

@@ -1,0 +1,49 @@
+#ifndef HN_STUDY_CLASSING_H
+#define HN_STUDY_CLASSING_H
+// What a ladder of sizes says about a method: model error or discretisation error?
+//
+// A method that converges to something else is caught by comparing two numbers of its finest points: how far they are from
+// the reference, and how far they are from each other. Where the second falls and the first stays, the method has a limit,
+// and the limit is not the motion of the scene. Where both stay, rounding or an inner tolerance is the floor.
+
+#include "study/cost/workprecision.h"
+
+#define HN_CLASS_FROM_THEORY_FIXED 0.2 ///< observed order from theory's, with fixed steps
+#define HN_CLASS_FROM_THEORY_ADAPTIVE \
+    0.5                     ///< where steps are chosen: their number does not halve evenly
+#define HN_CLASS_SPREAD 0.6 ///< of the slopes between neighbours within a straight part
+#define HN_CLASS_OFFSET \
+    1e-6                 ///< a smaller distance from the reference is a floor, not another model
+#define HN_CLASS_APART 5 ///< distance from the reference over distance from each other
+
+#define HN_CLASS_LIST(X)               \
+    X(HN_CLASS_CONVERGES, "converges") \
+    X(HN_CLASS_FLOOR, "floor")         \
+    X(HN_CLASS_ELSEWHERE, "elsewhere") \
+    X(HN_CLASS_UNSETTLED, "unsettled") \
+    X(HN_CLASS_FAILED, "failed")
+typedef enum hn_class_kind {
+#define HN_CLASS_ENUM(code, name) code,
+    HN_CLASS_LIST(HN_CLASS_ENUM)
+#undef HN_CLASS_ENUM
+        HN_CLASS_COUNT
+} hn_class_kind;
+const char *hn_class_name(hn_class_kind kind);
+
+typedef struct hn_class {
+    hn_class_kind kind;
+    double order;      ///< of the coordinates against the number of steps; NaN: not found
+    double theory;     ///< the integrator's
+    int as_theory;     ///< 1: observed within the bounds above
+    int first, last;   ///< points the order was fitted to, -1: none
+    double low, high;  ///< slopes between neighbours that were met there
+    double floor;      ///< largest error of the flat end; NaN: there is none
+    double floor_size; ///< coarsest size there
+    double offset;     ///< elsewhere: distance of the limit from the reference
+    double own;        ///< elsewhere: distance of the finest points from each other
+    char text[256];    ///< in words
+} hn_class;
+
+/// Of the coordinates' largest error over the run; beyond the horizon nothing is said.
+void hn_wp_classify(const hn_wp *wp, int m, hn_class *out);
+#endif

@@ -1,0 +1,30 @@
+#ifndef HN_STUDY_WALK_H
+#define HN_STUDY_WALK_H
+// A run taken to its end with a look at equal intervals, within a limit of computing time, and stopped on request.
+
+#include "study/run/pace.h"
+#include "study/run/run.h"
+
+typedef struct hn_walk_limits {
+    double seconds; ///< CPU time of this thread; 0: none
+    /// Asked now and then; 1 stops. NULL: never.
+    int (*stop)(void *user);
+    void *user;
+} hn_walk_limits;
+
+typedef enum hn_walk_end {
+    HN_WALK_DONE,
+    HN_WALK_FAILED,  ///< the run's summary says why
+    HN_WALK_OVER,    ///< out of computing time
+    HN_WALK_STOPPED, ///< on request
+} hn_walk_end;
+
+/// At time number k (1..n) of T k / n, the sample there. Returns 0 to end the walk as failed.
+typedef int (*hn_walk_see)(void *user, int k, const hn_sample *sample);
+
+/// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed steps stay on their own grid.
+hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
+                    void *user);
+/// Whether what began at `started` (hn_thread_seconds()) is within its limits: done while it may go on.
+hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started);
+#endif

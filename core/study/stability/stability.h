@@ -1,0 +1,83 @@
+#ifndef HN_STUDY_STABILITY_H
+#define HN_STUDY_STABILITY_H
+// What a fixed step does to a motion: predicted from the spectrum on the loops (study/stability/spectrum.h), and tried.
+//
+// A path is a motion that has been computed finely once: looks at equal times, with the state, the energy and the eigenvalues
+// there. Against it a method's trial is classed, and along it the strictest of the predicted limits is found.
+
+#include "integrators/method/method_spec.h"
+#include "study/stability/spectrum.h"
+#include "study/run/walk.h"
+
+enum { HN_STABILITY_LOOKS = 48, HN_STABILITY_REASON = 256, HN_STABILITY_LEAST_STEPS = 500 };
+
+#define HN_STABILITY_ACCURATE 1e-2 ///< largest error of what counts as accurate
+#define HN_STABILITY_GROWN \
+    1.0 ///< energy above the path's, in its scale, that counts as growth if it still rises:
+#define HN_STABILITY_RISING \
+    3.0 ///< the highest in the last third of a trial is so many times that in the first
+#define HN_STABILITY_RUNAWAY 100.0 ///< energy above the path's that counts without a second look
+#define HN_STABILITY_OPEN 0.1      ///< loop gap / characteristic length that counts as growth
+#define HN_STABILITY_SLOW 10.0     ///< growth over a whole trial that nobody would see
+
+#define HN_STABILITY_CLASS_LIST(X)           \
+    X(HN_STABILITY_PENDING, "pending")       \
+    X(HN_STABILITY_FINE, "stable")           \
+    X(HN_STABILITY_INACCURATE, "inaccurate") \
+    X(HN_STABILITY_GREW, "grew")             \
+    X(HN_STABILITY_STOPPED, "stopped")       \
+    X(HN_STABILITY_REFUSED, "refused")       \
+    X(HN_STABILITY_SKIPPED, "skipped")
+typedef enum hn_stability_class {
+#define HN_STABILITY_ENUM(code, name) code,
+    HN_STABILITY_CLASS_LIST(HN_STABILITY_ENUM)
+#undef HN_STABILITY_ENUM
+        HN_STABILITY_CLASS_COUNT
+} hn_stability_class;
+const char *hn_stability_class_name(hn_stability_class kind);
+/// 1: it came to its end without growth (accurate or not).
+int hn_stability_is_stable(hn_stability_class kind);
+
+/// How one trial ended.
+typedef struct hn_stability_trial {
+    hn_stability_class kind;
+    hn_status status;
+    char reason[HN_STABILITY_REASON]; ///< why it is not stable, in words and numbers; "" when it is
+    double t_reached;                 ///< [s]
+    double error;  ///< largest speed difference from the path, in the energy norm and its scale [-]
+    double energy; ///< largest energy above the path's, in its scale [-]
+    double gap;    ///< largest loop gap seen [of the characteristic length]
+    long long steps;
+} hn_stability_trial;
+
+typedef struct hn_stability_path hn_stability_path;
+
+/// The motion from (q, v), system coordinates, to T, by explicit and failing that implicit high-order integration within `limits`; the
+/// system must outlive it. Fails: HN_ERR_BUDGET or what the integration ended with, HN_ERR_INPUT (nothing moves: there is no
+/// scale of growth), HN_ERR_MEMORY; told in diag.
+HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const double *q,
+                                                 const double *v, double T,
+                                                 const hn_walk_limits *limits,
+                                                 hn_stability_path **out, hn_diag *diag);
+void hn_stability_path_free(hn_stability_path *p);               ///< NULL is legal
+const char *hn_stability_path_means(const hn_stability_path *p); ///< the method that computed it
+/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum does not exist (a singular pose).
+int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out);
+
+/// A predicted limit of the step of one method.
+typedef struct hn_stability_forecast {
+    double limit; ///< strictest over the path [s]; HUGE_VAL: none; NaN: nothing can be said
+    double start; ///< at the start [s]
+    int look;     ///< where it is strictest
+    double
+        visible; ///< the smallest step beyond which a trial of `steps` steps grows by HN_STABILITY_SLOW [s]
+    const char *why; ///< why nothing can be said (static text), NULL otherwise
+} hn_stability_forecast;
+/// With Baumgarte's terms the roots they add count too. A setting h in the spec plays no part.
+hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_method_spec *spec,
+                                           long long steps);
+/// Runs the method from the path's start to its end, at least HN_STABILITY_LEAST_STEPS steps, and classes it. Returns 0 when stopped on
+/// request, the trial then being pending.
+int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
+                     const hn_walk_limits *limits, hn_stability_trial *out);
+#endif
