@@ -31,6 +31,14 @@ typedef enum hn_status {
         HN_STATUS_COUNT
 } hn_status;
 
+/// Returns the status of `call` from the calling function unless it is HN_OK.
+/// Legal wherever memory belongs to an arena, so that an early return leaks nothing.
+#define HN_TRY(call)                                                                              \
+    do {                                                                                          \
+        const hn_status hn_try_status = (call);                                                   \
+        if (hn_try_status != HN_OK) return hn_try_status;                                         \
+    } while (0)
+
 #define HN_MUST_CHECK __attribute__((warn_unused_result))
 #define HN_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 
