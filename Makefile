@@ -163,11 +163,11 @@ TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschem
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile
-	@.ci/packages.sh $@ $(RUN_PACKAGES)
+	@tests/tools/packages.sh $@ $(RUN_PACKAGES)
 build/.packages-test: Makefile
-	@.ci/packages.sh $@ $(TEST_PACKAGES)
+	@tests/tools/packages.sh $@ $(TEST_PACKAGES)
 build/.packages-check: Makefile
-	@.ci/packages.sh $@ $(CHECK_PACKAGES)
+	@tests/tools/packages.sh $@ $(CHECK_PACKAGES)
 
 # the libraries of the page and of its test; `vendor` in package.json copies what the page loads
 %/node_modules/.installed: %/package.json %/package-lock.json
@@ -333,21 +333,42 @@ run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-layers check-headers check-format format
-check: build/.packages-check check-layers
+.PHONY: check check-house check-layers check-width check-names check-circles check-licence check-headers check-format format
+check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=clang programs
 	@$(MAKE) -s --no-print-directory check-format
 	@echo 'check: all good'
 
-# awk gets the table above as layer:need,need
+# what the tree promises about itself; tests/house/test_checks.sh runs it inside `make test`
+check-house: check-layers
+
+# awk gets the table above as layer:need,need and layer.room:room,room
 COMMA := ,
 SPACE := $(subst x,,x x)
+LAYER_TABLE = $(foreach l,$(LAYERS),$(l):$(subst $(SPACE),$(COMMA),$(strip $(NEEDS_$(l)))))
+ROOM_TABLE  = $(foreach l,$(LAYERS),$(addprefix $(l).,$(ROOMS_$(l))))
+LAYERED_C   = $(filter-out tests/%,$(ALL_C))
 check-layers:
-	@awk -v layers='$(foreach l,$(LAYERS),$(l):$(subst $(SPACE),$(COMMA),$(strip $(NEEDS_$(l)))))' \
-	    -v rooms='$(foreach l,$(CORE_LAYERS),$(addprefix $(l).,$(ROOMS_$(l))))' \
-	    -f tests/check-layers.awk $(filter-out tests/%,$(ALL_C) $(HEADERS))
+	@awk -v layers='$(LAYER_TABLE)' -v rooms='$(ROOM_TABLE)' -f tests/tools/check-layers.awk \
+	    $(LAYERED_C) $(filter-out tests/%,$(HEADERS))
+
+check-width:
+	@LC_ALL=C awk -f tests/tools/check-width.awk $(ALL_C) $(HEADERS)
+
+check-names:
+	@python3 tests/tools/check-names.py tests/tools/names.txt $(LAYERED_C) $(SUPPORT)
+
+# read from the objects, which must be those of the sources
+check-circles: $(CORE_OBJECTS) $(call objects,$(SERVER_SOURCES))
+	@python3 tests/tools/check-circles.py --layers '$(LAYER_TABLE)' --rooms '$(ROOM_TABLE)' \
+	    --natural tests/tools/circles.txt --out $(OUT) $^
+
+check-licence:
+	@awk -f tests/tools/check-licence.awk $$(find core server web lessons tests \
+	    \( -name node_modules -o -path web/vendor -o -name test-results \) -prune -o -type f \
+	    \( $(foreach e,c h js mjs css py sh awk,-name '*.$e' -o) -false \) -print)
 
 check-headers:
 	@for h in $(HEADERS); do \

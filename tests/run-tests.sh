@@ -26,7 +26,7 @@ report_one() {
     status=$?
     ms=$((($(date +%s%N) - start) / 1000000))
     # prints "passed failed", then a line for each failure
-    awk -v status="$status" -v program="$program" -f tests/count-tests.awk "$work/$number.out" >"$work/$number.all"
+    awk -v status="$status" -v program="$program" -f tests/tools/count-tests.awk "$work/$number.out" >"$work/$number.all"
     read -r ok bad <"$work/$number.all" || {
         ok=0 bad=1
         printf '0 1\n%s: its tests could not be counted\n' "$program" >"$work/$number.all"

@@ -50,7 +50,7 @@ X
 }
 
 run() {
-    env -u DEBIAN_FRONTEND WORK="$work" PATH="$work/bin" .ci/packages.sh "$work/stamp" "$@" </dev/null 2>&1
+    env -u DEBIAN_FRONTEND WORK="$work" PATH="$work/bin" tests/tools/packages.sh "$work/stamp" "$@" </dev/null 2>&1
 }
 
 machine 0 gcc libpng-dev

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The counting of tests and the check of layers, tried on outputs and sources made for it. Speaks TAP.
+# The counting of tests, tried on outputs made for it. Speaks TAP.
 set -u
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -18,7 +18,7 @@ expect() { # name, expected, actual
 }
 
 count() { # exit status; output on standard input
-    awk -v status="$1" -v program=p -f tests/count-tests.awk | head -n 1
+    awk -v status="$1" -v program=p -f tests/tools/count-tests.awk | head -n 1
 }
 
 expect 'cmocka: passed, failed and skipped are told apart' '1 1' "$(count 1 <<'X'
@@ -85,27 +85,6 @@ expect 'a failure is told with its output, and again at the end; what was skippe
     "$(sh tests/run-tests.sh "$work/why.sh" | grep -c -e '^    not ok 1 - why' -e '^     ok 2' -e "^  $work/why.sh: not ok 1" -e '^FAIL ')"
 sh tests/run-tests.sh >/dev/null
 expect 'no programs at all is a failure' 1 $?
-
-mkdir -p "$work/core/base" "$work/core/render" "$work/server/http"
-here=$PWD
-layers() { # prints the faults of the files in $work
-    (cd "$work" && awk -v layers='base: expr:base session:expr,base render:base server:session,base' \
-        -f "$here/tests/check-layers.awk" "$@")
-}
-printf '#include "base/a.h"\n#include <math.h>\n' >"$work/core/base/good.c"
-printf '\n#include "expr/graph.h"\n' >"$work/core/base/up.c"
-printf '#include <GL/osmesa.h>\n' >"$work/core/render/gl.c"
-printf '#include "http/x.h"\n#include <GL/gl.h>\n' >"$work/server/http/y.c"
-printf '#include "graph.h"\n' >"$work/core/base/short.c"
-expect 'layers: below and libc are allowed' '' "$(layers core/base/good.c core/render/gl.c)"
-expect 'layers: above is told with file and line' \
-    'core/base/up.c:2: base must not include expr: expr/graph.h' "$(layers core/base/up.c)"
-expect 'layers: a library outside its layer is told' \
-    'server/http/y.c:2: server must not include <GL/gl.h>: only render may' "$(layers server/http/y.c)"
-expect 'layers: a header without its layer is told' \
-    'core/base/short.c:1: write "layer/file.h", not "graph.h"' "$(layers core/base/short.c)"
-layers core/base/up.c >/dev/null
-expect 'layers: a fault is an exit status' 1 $?
 
 echo "1..$n"
 exit $bad
