@@ -1,11 +1,12 @@
 // @ts-check
-// Puts the page together: one store, one session, the views, the keys, one drawing per animation frame.
+// Puts the page together: one store, one session, the views, the keys, one drawing per animation
+// frame.
 import { sentenceOf } from "./api/client.js";
-import { createSession } from "./state/session.js";
+import { createSession } from "./session/session.js";
 import { createStore } from "./state/store.js";
 import { findKey } from "./state/keys.js";
 import { createControls } from "./views/controls.js";
-import { createDrawing } from "./views/drawing.js";
+import { createDrawing } from "./views/drawing/drawing.js";
 import { createEquations } from "./views/equations.js";
 import { createHappening } from "./views/happening.js";
 import { createHeader } from "./views/header.js";
@@ -59,7 +60,10 @@ store.on("frame", () => {
   }
 });
 
-/** Where a key means something of its own: the page keeps out of it. @param {KeyboardEvent} event */
+/**
+ * Where a key means something of its own: the page keeps out of it.
+ * @param {KeyboardEvent} event
+ */
 function takesKey(event) {
   const target = /** @type {HTMLElement} */ (event.target);
   if (target.closest("dialog, input:not([type=checkbox]), select, textarea, [contenteditable]")) {

@@ -1,4 +1,5 @@
-// Starts the real server and a real browser, and keeps what a page must not do: errors on its console, requests to other hosts.
+// Starts the real server and a real browser, and keeps what a page must not do: errors on its
+// console, requests to other hosts.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync } from "node:fs";
@@ -82,7 +83,8 @@ export async function startBrowser() {
 function watch(page, host) {
   const faults = [];
   page.on("console", (message) => {
-    // the browser itself reports each refused request; refusals are part of some tests and shown by the page
+    // the browser itself reports each refused request; refusals are part of some tests and shown by
+    // the page
     if (message.type() === "error" && !/Failed to load resource/.test(message.text())) {
       faults.push(`console: ${message.text()}`);
     }
@@ -103,8 +105,10 @@ function watch(page, host) {
 }
 
 /**
- * What a file of tests drives: a server and a browser, from before its first test until after its last. A page, and a line,
- * live as long as the test that opened them; pages with the same options share what the browser keeps of the files it
+ * What a file of tests drives: a server and a browser, from before its first test until after its
+ * last. A page, and a line,
+ * live as long as the test that opened them; pages with the same options share what the browser
+ * keeps of the files it
  * loaded, unless they ask to be `fresh`.
  */
 export function createBench() {
@@ -144,9 +148,11 @@ export function createBench() {
     /** Faults of a page so far; what is taken out of the list is forgiven. */
     faultsOf: (page) => faultsOf.get(page),
     /**
-     * Opens the page and waits until it can be used. The test fails if the page does what it must not.
+     * Opens the page and waits until it can be used. The test fails if the page does what it must
+     * not.
      * @param {import("node:test").TestContext} t
-     * @param {{url?: string, hash?: string, wait?: boolean, init?: () => void, fresh?: boolean}} [options] and those of a browser's context
+     * @param {{url?: string, hash?: string, wait?: boolean, init?: () => void, fresh?: boolean}}
+     *   [options] and those of a browser's context
      */
     async open(t, options = {}) {
       const { url = server.url, hash = "", wait = true, init, fresh = false, ...context } = options;
@@ -173,7 +179,10 @@ export function createBench() {
       }
       return page;
     },
-    /** A line to the server; a page comes over it by its `url`. @param {import("node:test").TestContext} t */
+    /**
+     * A line to the server; a page comes over it by its `url`.
+     * @param {import("node:test").TestContext} t
+     */
     async line(t) {
       const line = await startLine(server.port);
       t.after(() => line.close());
@@ -187,7 +196,9 @@ export function read(page, pick) {
   return page.evaluate(`(${pick})(globalThis.holonom.data)`);
 }
 
-/** Waits until the data fulfil a condition; asked from here, since the page forbids text as script. */
+/**
+ * Waits until the data fulfil a condition; asked from here, since the page forbids text as script.
+ */
 export async function until(page, condition, timeout = 20000) {
   const end = Date.now() + timeout;
   while (!(await read(page, condition))) {
@@ -206,7 +217,10 @@ export function drawn(page) {
   );
 }
 
-/** Waits until the runs stand, and the last frame that the server made is here and drawn: frames may come after the answer. */
+/**
+ * Waits until the runs stand, and the last frame that the server made is here and drawn: frames may
+ * come after the answer.
+ */
 export async function stood(page) {
   await until(page, (data) => data.state !== "running");
   const id = await read(page, (data) => data.id);
@@ -234,7 +248,9 @@ export async function fastest(page) {
   await page.focus("#play");
 }
 
-/** A picture of the page for whoever wants to look; of all of it unless only the window is `seen`. */
+/**
+ * A picture of the page for whoever wants to look; of all of it unless only the window is `seen`.
+ */
 export async function screenshot(page, name, { seen = false } = {}) {
   const folder = join(ROOT, "build/screenshots");
   mkdirSync(folder, { recursive: true });
@@ -245,8 +261,10 @@ export async function screenshot(page, name, { seen = false } = {}) {
 const ASKS_EVENTS = /^GET \S+\/events[? ]/m;
 
 /**
- * A line between page and server. Cut, what connects through it loses its connection, and gets none until it is mended.
- * Held, the events of comparisons wait, and answers to all else overtake them, until they are let go.
+ * A line between page and server. Cut, what connects through it loses its connection, and gets none
+ * until it is mended.
+ * Held, the events of comparisons wait, and answers to all else overtake them, until they are let
+ * go.
  */
 async function startLine(port) {
   const open = new Set();

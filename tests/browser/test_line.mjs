@@ -170,7 +170,10 @@ test("a page that was hidden after the end of a run has nothing to reconnect to"
   await page.keyboard.press("-");
   await until(page, (data) => data.speed === 5);
   await page.waitForTimeout(100);
-  assert.deepEqual(asked.filter((url) => /events/.test(url)), []);
+  assert.deepEqual(
+    asked.filter((url) => /events/.test(url)),
+    [],
+  );
   assert.equal(await read(page, (data) => data.stream.state), "ended");
 });
 

@@ -418,7 +418,9 @@ test("a regular polygon is drawn as its circle, from wherever one looks", () => 
   const n = 12;
   const seen = (turn) => [Math.cos(turn) * 40, 0.3 * Math.sin(turn) * 40];
   const corners = Array.from({ length: n }, (_, i) => seen((2 * Math.PI * i) / n));
-  const numbers = disc(corners).match(/-?[\d.]+/g).map(Number);
+  const numbers = disc(corners)
+    .match(/-?[\d.]+/g)
+    .map(Number);
   // the middle of each cubic lies on the ellipse as well
   for (let i = 0; i < n; i++) {
     const at = (k) => numbers.slice(2 + 6 * i + 2 * k, 4 + 6 * i + 2 * k);
@@ -529,7 +531,10 @@ test("a link says the same after it was read and written again", () => {
     const text = encodeLink({
       scene: pick(["four", "bar", "6", "ä b&c=d"]).join("-") || "x",
       settings: Object.fromEntries(
-        pick(["l1", "g", "th_0"]).map((name) => [name, (random() - 0.5) * 10 ** (12 * random() - 6)]),
+        pick(["l1", "g", "th_0"]).map((name) => [
+          name,
+          (random() - 0.5) * 10 ** (12 * random() - 6),
+        ]),
       ),
       methods: pick(["index1@rk4:h=1e-3", "baumgarte:alpha=5,beta=5@dopri5:rtol=1e-8", "ggl@ida"]),
       frame: Math.floor(random() * 5000),

@@ -1,4 +1,5 @@
-// What the page is like to look at and to use without a mouse: layout, names, contrast, keys, tables, no script.
+// What the page is like to look at and to use without a mouse: layout, names, contrast, keys,
+// tables, no script.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, drawn, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
@@ -39,7 +40,8 @@ for (const width of [360, 320]) {
     const page = await open(t, { viewport: { width, height: 780 } });
     await playTo(page, 1.5);
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
-    await page.evaluate(() => scrollTo(0, document.body.scrollHeight)); // the status line is at its own place there
+    // the status line is at its own place at the end of the page
+    await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
     const tops = await page.evaluate(() =>
       [
         "mechanism",
@@ -336,9 +338,7 @@ for (const [theme, width] of [
       page.textContent(".reduced-tables table:first-child tbody tr:nth-child(2) td");
     const [M, C, g, tau, a] = await page.evaluate(() => {
       const numbers = [...document.querySelectorAll(".reduced-tables table")].map((one) =>
-        [...one.querySelectorAll("tbody td")].map((td) =>
-          Number(td.textContent.replace("−", "-")),
-        ),
+        [...one.querySelectorAll("tbody td")].map((td) => Number(td.textContent.replace("−", "-"))),
       );
       const [[v, a, g, tau], [M], [C]] = numbers;
       return [M, C * v, g, tau, a];

@@ -365,7 +365,9 @@ test("the forces in the joints are those of the state shown, as numbers and as a
   assert.match(efforts[0], /th1[−\d.]+ [mk]?N m$/);
   assert.equal(await page.locator(".arrows path").count(), 0);
   await page.selectOption("#scene", "four-bar"); // and asks again for one that has joints
-  await page.waitForFunction(() => document.querySelectorAll(".reaction-table tbody tr").length === 4);
+  await page.waitForFunction(
+    () => document.querySelectorAll(".reaction-table tbody tr").length === 4,
+  );
 });
 
 test("a link opens the same comparison at the same frame with the same numbers", async (t) => {
@@ -409,7 +411,11 @@ test("a singular pose is counted down, and then told with what became of each me
   await page.selectOption("#scene", "parallelogram");
   await until(page, (data) => data.scene.id === "parallelogram" && data.history.count > 0);
   await page.focus("#play");
-  for (let k = 1; !(await read(page, (data) => data.incidents.some(({ code }) => code === "rank-ahead"))); k++) {
+  for (
+    let k = 1;
+    !(await read(page, (data) => data.incidents.some(({ code }) => code === "rank-ahead")));
+    k++
+  ) {
     await page.keyboard.press("ArrowRight");
     await until(page, `(data) => data.latest?.frame === ${k}`);
   }

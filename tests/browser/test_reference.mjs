@@ -17,7 +17,13 @@ const ready = (points, stride = 1, own = 1e-9) => ({
 });
 
 test("between two samples the reference moves on a straight line, and past its end it says nothing", () => {
-  const reference = ready([[0, 0, 0], [1, 2, 3]], 4);
+  const reference = ready(
+    [
+      [0, 0, 0],
+      [1, 2, 3],
+    ],
+    4,
+  );
   assert.deepEqual([...referenceAt(reference, 4)], [1, 2, 3]);
   assert.deepEqual([...referenceAt(reference, 2)], [0.5, 1, 1.5]);
   assert.equal(referenceAt(reference, 5), null);
@@ -26,7 +32,14 @@ test("between two samples the reference moves on a straight line, and past its e
 });
 
 test("the farthest point counts, and no error below the reference's own is claimed", () => {
-  const reference = ready([[0, 0, 0, 1, 0, 0], [0, 0, 0, 1, 0, 0]], 2, 1e-6);
+  const reference = ready(
+    [
+      [0, 0, 0, 1, 0, 0],
+      [0, 0, 0, 1, 0, 0],
+    ],
+    2,
+    1e-6,
+  );
   assert.equal(offReference(reference, 2, [0, 0, 0, 1, 3, 4]), 5);
   assert.equal(offReference(reference, 0, [1e-9, 0, 0, 1, 0, 0]), 1e-6);
   assert.ok(Number.isNaN(offReference(reference, 1, [0, 0, 0, 1, 0, 0])), "between samples");
@@ -56,7 +69,10 @@ test("the reference is a grey ghost that moves, names its digits and can be put 
   const ghost = page.locator(".truth path");
   const button = page.getByRole("button", { name: "reference", exact: true });
   assert.ok((await ghost.count()) > 0);
-  assert.match(await button.getAttribute("title"), /in long double .* agree to 1\d\.\d digits to 10 s/);
+  assert.match(
+    await button.getAttribute("title"),
+    /in long double .* agree to 1\d\.\d digits to 10 s/,
+  );
   const grey = await page.evaluate(() => {
     const { look, theme } = globalThis.holonom.data;
     const probe = document.createElement("i");

@@ -1,4 +1,5 @@
-// The report as a file in a browser: no network, no error, from the keyboard, on a narrow screen, and on paper without scripts.
+// The report as a file in a browser: no network, no error, from the keyboard, on a narrow screen,
+// and on paper without scripts.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";

@@ -2,16 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, read, screenshot, until } from "./support.mjs";
-import {
-  barsOf,
-  boundaryOf,
-  dotsOf,
-  floorOf,
-  frameOf,
-  orderOf,
-  presetsOf,
-  signatureOf,
-} from "../../web/state/studies.js";
+import { barsOf, boundaryOf, dotsOf, floorOf, frameOf } from "../../web/state/study-documents.js";
+import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 
 const SHORT = "#scene=pendulum&method=index1@rk4:h=0.01&method=projection@dop853:rtol=1e-6";
@@ -25,7 +17,7 @@ const { open } = bench;
 const hasEnded = (kind) =>
   `(data) => ["finished", "stopped"].includes(data.studies["${kind}"].state) && data.studies["${kind}"].document`;
 
-// ---- reading documents ------------------------------------------------------------------------------------------
+// ---- reading documents -----------------------------------------------------------------------
 
 const point = (size, state, more = {}) => ({
   method: `a@rk4:h=${size}`,
@@ -41,7 +33,12 @@ const point = (size, state, more = {}) => ({
 });
 const STUDY = {
   reference: { error: { q: 1e-13, gap: 0 } },
-  methods: [{ size: "h", points: [point(1, "failed"), point(0.1, "done"), point(0.01, "done", { bounds: ["q"] })] }],
+  methods: [
+    {
+      size: "h",
+      points: [point(1, "failed"), point(0.1, "done"), point(0.01, "done", { bounds: ["q"] })],
+    },
+  ],
   pareto: [],
 };
 
@@ -57,7 +54,11 @@ test("a point that failed stands on the upper edge, at what it would have cost",
   );
   assert.ok(Math.abs(dots[0].cost - 100) < 1e-9, "a tenth of what a tenth of the step costs");
   assert.equal(dots[0].reason, "it fell apart");
-  assert.equal(dotsOf(STUDY, "q", "time")[0].length, 1, "what was not measured is not drawn, the failure is");
+  assert.equal(
+    dotsOf(STUDY, "q", "time")[0].length,
+    1,
+    "what was not measured is not drawn, the failure is",
+  );
 });
 
 test("the frame holds every finite error in whole decades, and the band of the reference where it is near", () => {
@@ -69,7 +70,10 @@ test("the frame holds every finite error in whole decades, and the band of the r
 });
 
 test("bars add up: what is negative goes to the left, what is positive to the right", () => {
-  const bars = barsOf({ a: 3, b: -1, c: 0, d: null, e: 1 }, [..."abcde"].map((name) => ({ name })));
+  const bars = barsOf(
+    { a: 3, b: -1, c: 0, d: null, e: 1 },
+    [..."abcde"].map((name) => ({ name })),
+  );
   assert.deepEqual(
     bars.map(({ name, from, to }) => [name, from, to]),
     [
@@ -81,11 +85,23 @@ test("bars add up: what is negative goes to the left, what is positive to the ri
 });
 
 test("the predicted boundary lies between cells on either side of the limit, or at the step itself", () => {
-  const cells = { rows: [[0.5, 2], [2, 2]].map((row) => row.map((margin) => ({ margin }))), columns: [] };
+  const cells = {
+    rows: [
+      [0.5, 2],
+      [2, 2],
+    ].map((row) => row.map((margin) => ({ margin }))),
+    columns: [],
+  };
   const grid = { x: { values: [1, 2] }, y: { values: [1, 2], scale: "lin", kind: "setting" } };
   assert.deepEqual(boundaryOf(grid, cells), [
-    [[1, 0], [1, 1]],
-    [[0, 1], [1, 1]],
+    [
+      [1, 0],
+      [1, 1],
+    ],
+    [
+      [0, 1],
+      [1, 1],
+    ],
   ]);
   const steps = { x: null, y: { values: [1e-3, 1e-1], scale: "log", kind: "step" } };
   const [line] = boundaryOf(steps, { rows: [], columns: [{ predicted: [1e-2] }] });
@@ -98,7 +114,9 @@ test("a map over alpha and beta is asked for the methods that have them alone", 
     settings: {},
     methods: [{ spelling: "index1@rk4" }, { spelling: "baumgarte:alpha=5,beta=5@rk4" }],
   };
-  assert.deepEqual(orderOf("stability", data, "baumgarte").methods, ["baumgarte:alpha=5,beta=5@rk4"]);
+  assert.deepEqual(orderOf("stability", data, "baumgarte").methods, [
+    "baumgarte:alpha=5,beta=5@rk4",
+  ]);
   assert.equal(orderOf("stability", data, "limits").methods.length, 2);
   assert.ok(presetsOf(data.methods).some(({ preset }) => preset === "baumgarte"));
   assert.ok(!presetsOf(data.methods.slice(0, 1)).some(({ preset }) => preset === "baumgarte"));
@@ -112,7 +130,7 @@ test("a link names the study that is open, and no other word", () => {
   assert.match(faults[0], /study is 'everything'/);
 });
 
-// ---- the page ---------------------------------------------------------------------------------------------------
+// ---- the page --------------------------------------------------------------------------------
 
 test("W draws error against cost; a point's step is taken over by click and by keyboard", async (t) => {
   const page = await open(t, { hash: SHORT });
@@ -122,20 +140,31 @@ test("W draws error against cost; a point's step is taken over by click and by k
   await until(page, hasEnded("work-precision"), LONG);
   const spots = dialog.locator(".scatter [data-spot]");
   const drawn = await spots.count();
-  const points = await read(page, (data) =>
-    data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
+  const points = await read(
+    page,
+    (data) =>
+      data.studies["work-precision"].document.methods.flatMap((method) => method.points).length,
   );
   assert.equal(drawn, points, "every point is there, failed ones too");
-  assert.match(await spots.first().getAttribute("aria-label"), /h = .*: (error .* operations|error .*op|failed)/);
+  assert.match(
+    await spots.first().getAttribute("aria-label"),
+    /h = .*: (error .* operations|error .*op|failed)/,
+  );
   await dialog.getByRole("button", { name: "evaluations" }).click();
   assert.match(await spots.first().getAttribute("aria-label"), /evaluations|failed/);
   assert.ok((await dialog.getByRole("listitem").count()) >= 3, "sentences and classes");
-  const wanted = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[2].method);
+  const wanted = await read(
+    page,
+    (data) => data.studies["work-precision"].document.methods[0].points[2].method,
+  );
   await dialog.locator('.scatter [data-m="0"][data-spot="2"]').click({ force: true });
   await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(wanted)}`);
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Enter");
-  const next = await read(page, (data) => data.studies["work-precision"].document.methods[0].points[3].method);
+  const next = await read(
+    page,
+    (data) => data.studies["work-precision"].document.methods[0].points[3].method,
+  );
   await until(page, `(data) => data.methods[0].spelling === ${JSON.stringify(next)}`);
   await dialog.getByText("on the page now").waitFor();
   await page.keyboard.press("Escape");
@@ -167,7 +196,10 @@ test("a study that is stopped shows what was done, and says so", async (t) => {
   await until(page, (data) => data.studies["work-precision"].progress > 0.1, LONG);
   await page.getByRole("button", { name: "Stop" }).click();
   await until(page, (data) => data.studies["work-precision"].state === "stopped", LONG);
-  await page.locator(".study-run").getByText(/stopped on request/).waitFor();
+  await page
+    .locator(".study-run")
+    .getByText(/stopped on request/)
+    .waitFor();
   assert.ok((await page.locator(".scatter .spot").count()) > 0);
 });
 
@@ -183,7 +215,10 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
     const { x, y } = data.studies.stability.document;
     return [x.values[3], y.values[2]].map((value) => Number(value.toPrecision(4)));
   });
-  await until(page, `(data) => data.methods[1].spelling.startsWith("baumgarte:alpha=${axes[0]},beta=${axes[1]}@")`);
+  await until(
+    page,
+    `(data) => data.methods[1].spelling.startsWith("baumgarte:alpha=${axes[0]},beta=${axes[1]}@")`,
+  );
   await page.locator(".maps .here").waitFor();
   await page.keyboard.press("ArrowUp");
   assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
@@ -196,7 +231,10 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
 test("E shows the parts of each method's error, that add up to it", async (t) => {
   const page = await open(t, { hash: "#scene=pendulum&method=index1@rk4:h=0.05&study=budget" });
   await until(page, hasEnded("budget"), LONG);
-  const { value, parts } = await read(page, (data) => data.studies.budget.document.methods[0].error);
+  const { value, parts } = await read(
+    page,
+    (data) => data.studies.budget.document.methods[0].error,
+  );
   const sum = Object.values(parts).reduce((total, part) => total + (part ?? 0), 0);
   assert.ok(Math.abs(sum - value) <= 0.02 * Math.abs(value), "to first order");
   assert.ok((await page.locator(".account .part").count()) > 0);
@@ -209,7 +247,10 @@ test("what a study chooses itself makes no other study of it", () => {
   const same = (kind, a, b, preset) => of(kind, a, preset) === of(kind, b, preset);
   assert.ok(same("work-precision", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
   assert.ok(!same("budget", "index1@rk4:h=1e-3", "index1@rk4:h=1e-2"));
-  const [low, high] = ["baumgarte:alpha=5,beta=5@rk4:h=1e-3", "baumgarte:alpha=9,beta=7@rk4:h=1e-3"];
+  const [low, high] = [
+    "baumgarte:alpha=5,beta=5@rk4:h=1e-3",
+    "baumgarte:alpha=9,beta=7@rk4:h=1e-3",
+  ];
   assert.ok(same("stability", low, high, "baumgarte"));
   assert.ok(!same("stability", low, high, "limits"));
   assert.ok(!same("stability", low, low.replace("1e-3", "1e-2"), "baumgarte"));
@@ -218,7 +259,10 @@ test("what a study chooses itself makes no other study of it", () => {
 test("a link opens its study, and other methods ask for it anew", async (t) => {
   const page = await open(t, { hash: `${SHORT}&study=work-precision` });
   await until(page, hasEnded("work-precision"), LONG);
-  await page.locator(".study-run").getByText(/^done in|left something out$/).waitFor();
+  await page
+    .locator(".study-run")
+    .getByText(/^done in|left something out$/)
+    .waitFor();
   await page.evaluate(() => (location.hash = "#scene=pendulum&method=reduced@rk4:h=0.01"));
   await until(page, (data) => data.methods.length === 1 && data.view.study === "");
   assert.equal(await page.getByRole("dialog").count(), 0);
@@ -237,7 +281,11 @@ test("the dialog fits 360 pixels in both themes, and the page does not scroll si
       const dialog = document.querySelector("dialog[open]");
       return [dialog.scrollWidth - dialog.clientWidth, document.body.scrollWidth - innerWidth];
     });
-    assert.deepEqual(wide.map((extra) => extra <= 0), [true, true], String(wide));
+    assert.deepEqual(
+      wide.map((extra) => extra <= 0),
+      [true, true],
+      String(wide),
+    );
     await screenshot(page, `studies-360-${colorScheme}`);
   }
 });

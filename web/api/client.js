@@ -7,7 +7,8 @@ const BASE = "/api/v1";
 export class Problem extends Error {
   /**
    * @param {number} status HTTP status, 0 when the server did not answer
-   * @param {{title?: string, detail?: string, errors?: {detail: string, pointer?: string, hint?: string}[]}} body
+   * @param {{title?: string, detail?: string, errors?: {detail: string, pointer?: string, hint?:
+   *   string}[]}} body
    */
   constructor(status, body) {
     super(body.detail || body.title || `the server answered ${status}`);
@@ -27,7 +28,9 @@ export class Problem extends Error {
 
 /** What to tell of whatever was thrown. @param {unknown} error */
 export function sentenceOf(error) {
-  return error instanceof Problem ? error.sentence : String(error instanceof Error ? error.message : error);
+  return error instanceof Problem
+    ? error.sentence
+    : String(error instanceof Error ? error.message : error);
 }
 
 /**
@@ -76,7 +79,12 @@ export const api = {
   look: () => request("GET", `${BASE}/look`),
   /** @param {string} id */
   scene: (id) => request("GET", `${BASE}/scenes/${id}`),
-  /** @param {string} id @param {Record<string, number>} settings @param {number} every [s] @param {boolean} compute */
+  /**
+   * @param {string} id
+   * @param {Record<string, number>} settings
+   * @param {number} every [s]
+   * @param {boolean} compute
+   */
   reference: (id, settings, every, compute) => {
     const query = new URLSearchParams({ every: String(every) });
     Object.entries(settings).forEach(([name, value]) => query.append("set", `${name}:${value}`));

@@ -1,6 +1,7 @@
 // @ts-check
-// The event stream of one comparison. One connection carries all methods; the id of the last event seen is kept, so
-// that a drop, or a page that was hidden for a while, resumes without gap or repeat.
+// The event stream of one comparison. One connection carries all methods; the id of the last event
+// seen is kept, so that a drop, or a page that was hidden for a while, resumes without gap or
+// repeat.
 import { api } from "./client.js";
 
 const EVENTS = ["hello", "frame", "incident", "reset", "state", "gap", "end"];
@@ -58,7 +59,8 @@ export function createStream(id, onEvent, onState) {
     onEvent(name, JSON.parse(event.data), lastId);
   }
 
-  // the browser's own retry would send the id of its own connection only; ours also survives a closed source
+  // the browser's own retry would send the id of its own connection only; ours also survives a
+  // closed source
   function onError() {
     drop();
     tell("reconnecting");

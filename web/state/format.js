@@ -16,7 +16,8 @@ const SHOWN = [
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /**
- * Below this a gap [m] is rounding: some hundred roundings of coordinates of a metre or so. What a stabilised method holds
+ * Below this a gap [m] is rounding: some hundred roundings of coordinates of a metre or so. What a
+ * stabilised method holds
  * above it is truncation, however small, and is not called closed.
  */
 export const ROUNDING = 1e-13;
@@ -30,21 +31,30 @@ export function powerOfTen(n) {
   return `10${n < 0 ? "⁻" : ""}${digits}`;
 }
 
-const RAISED = { ...SUPERSCRIPT, p: "ᵖ", k: "ᵏ", n: "ⁿ", "-": "⁻", "+": "" };
+const RAISED = { ...[...SUPERSCRIPT], p: "ᵖ", k: "ᵏ", n: "ⁿ", "-": "⁻", "+": "" };
 
-/** Powers that were typed, as they are printed: h^p t^2 becomes hᵖ t², and 1e-04 becomes 10⁻⁴. @param {string} text */
+/**
+ * Powers that were typed, as they are printed: h^p t^2 becomes hᵖ t², and 1e-04 becomes 10⁻⁴.
+ * @param {string} text
+ */
 export function withPowers(text) {
   return text
     .replace(/\^(-?\d+|[pkn]\b)/g, (_, power) => [...power].map((c) => RAISED[c]).join(""))
     .replace(/(?<![=\w.])1e([-+]\d\d)\b/g, (_, power) => powerOfTen(Number(power)));
 }
 
-/** A bound, as the next 1, 2 or 5 times a power of ten: 20 pm, 10⁻¹³ m. @param {number} value above 0 @param {string} unit */
+/**
+ * A bound, as the next 1, 2 or 5 times a power of ten: 20 pm, 10⁻¹³ m.
+ * @param {number} value above 0
+ * @param {string} unit
+ */
 export function bound(value, unit) {
   const [digit, power] = niceAbove(value).toExponential(0).split("e").map(Number);
   const prefixed = value > SMALLEST_PREFIXED / 2;
   const factor = digit === 1 ? "" : `${digit}×`;
-  return prefixed ? quantity(digit * 10 ** power, unit, 1) : `${factor}${powerOfTen(power)} ${unit}`;
+  return prefixed
+    ? quantity(digit * 10 ** power, unit, 1)
+    : `${factor}${powerOfTen(power)} ${unit}`;
 }
 
 /** Two digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value */
@@ -57,7 +67,8 @@ export function scientific(value) {
 }
 
 /**
- * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-12 as a power of ten.
+ * With an SI prefix so that one to three digits stand before the point: 4.2 mm. Below 1e-12 as a
+ * power of ten.
  * @param {number | null | undefined} value
  * @param {string} unit
  * @param {number} [digits] significant
@@ -91,7 +102,10 @@ export function plain(value) {
     : text;
 }
 
-/** @param {number} t [s] @param {number} [span] [s] of the whole run: the shorter, the more decimals */
+/**
+ * @param {number} t [s]
+ * @param {number} [span] [s] of the whole run: the shorter, the more decimals
+ */
 export function seconds(t, span = 10) {
   const more = span > 0 && span < 2 ? Math.max(0, Math.ceil(0.5 - Math.log10(span))) : 0;
   return `${t.toFixed(2 + more)} s`;

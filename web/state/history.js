@@ -1,7 +1,7 @@
 // @ts-check
-// What was received, in columns, bounded. When the columns are full every second frame is dropped: the whole span stays,
-// at half the resolution. A failed method has its last good values at its end,
-// NaN in its curves from then on, and keeps its last good points.
+// What was received, in columns, bounded. When the columns are full every second frame is dropped:
+// the whole span stays, at half the resolution. A failed method has its last good values at its
+// end, NaN in its curves from then on, and keeps its last good points.
 
 const BYTES = 32e6;
 const MOST_FRAMES = 8192;
@@ -81,7 +81,12 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     keep(states[m], 2 * nCoordinates, [...(method.q ?? []), ...(method.v ?? [])]);
   }
 
-  /** What came, or what was there before; NaN where nothing ever came. @param {Float64Array} rows @param {number} width @param {number[] | undefined} values */
+  /**
+   * What came, or what was there before; NaN where nothing ever came.
+   * @param {Float64Array} rows
+   * @param {number} width
+   * @param {number[] | undefined} values
+   */
   function keep(rows, width, values) {
     const from = count * width;
     if (values?.length === width) {
@@ -108,7 +113,10 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
     get lastFrame() {
       return lastFrame;
     },
-    /** Takes a frame once; repeats and frames out of order are told by `false`. @param {import("./store.js").Frame} frame */
+    /**
+     * Takes a frame once; repeats and frames out of order are told by `false`.
+     * @param {import("./store.js").Frame} frame
+     */
     push(frame) {
       if (frame.frame <= lastFrame) {
         return false;
@@ -129,13 +137,21 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
       count++;
       return true;
     },
-    /** Points of a method in the i-th kept frame (a view, not a copy). @param {number} m @param {number} i */
+    /**
+     * Points of a method in the i-th kept frame (a view, not a copy).
+     * @param {number} m
+     * @param {number} i
+     */
     pointsAt(m, i) {
       return points[m].subarray(i * 3 * nPoints, (i + 1) * 3 * nPoints);
     },
     /** Which frame of the clock the i-th kept one is. @param {number} i */
     frameAt: (i) => frames[i],
-    /** Coordinates and rates of a method in the i-th kept frame (views). @param {number} m @param {number} i */
+    /**
+     * Coordinates and rates of a method in the i-th kept frame (views).
+     * @param {number} m
+     * @param {number} i
+     */
     stateAt(m, i) {
       const from = 2 * nCoordinates * i;
       return {
@@ -157,7 +173,13 @@ export function createHistory(nMethods, nPoints, nCoordinates = 0) {
       }
       return low > 0 && time - t[low - 1] < t[low] - time ? low - 1 : low;
     },
-    /** Largest magnitude of a quantity up to and including index i. @param {number} m @param {string} name @param {number} from @param {number} to */
+    /**
+     * Largest magnitude of a quantity up to and including index i.
+     * @param {number} m
+     * @param {string} name
+     * @param {number} from
+     * @param {number} to
+     */
     worst(m, name, from, to) {
       let worst = NaN;
       const column = columns[m][name];

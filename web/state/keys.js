@@ -1,8 +1,10 @@
 // @ts-check
-// The keys of the page, as data. `key` is KeyboardEvent.key; a letter (or any single printable character) can be switched off.
+// The keys of the page, as data. `key` is KeyboardEvent.key; a letter (or any single printable
+// character) can be switched off.
 
 /**
- * @typedef {{key: string, shift?: boolean, context: "page" | "drawing", action: string, argument?: number | string, means: string, shown?: string}} Key
+ * @typedef {{key: string, shift?: boolean, context: "page" | "drawing", action: string, argument?:
+ *   number | string, means: string, shown?: string}} Key
  * @type {Key[]}
  */
 export const KEYS = [
@@ -96,7 +98,8 @@ export function bindingOf(key) {
 }
 
 /**
- * @param {{key: string, shiftKey: boolean, ctrlKey: boolean, altKey: boolean, metaKey: boolean}} event
+ * @param {{key: string, shiftKey: boolean, ctrlKey: boolean, altKey: boolean, metaKey: boolean}}
+ *   event
  * @param {boolean} letters are single-character keys on
  */
 export function findKey(event, letters) {

@@ -1,14 +1,16 @@
 // @ts-check
-// What a link to the page holds, in its fragment (which never reaches a server's log): scene, parameters, methods, the frame of the clock, and what is shown.
-// A bare fragment is the id of a scene.
-import { KINDS } from "./studies.js";
+// What a link to the page holds, in its fragment (which never reaches a server's log): scene,
+// parameters, methods, the frame of the clock, and what is shown. A bare fragment is the id of a
+// scene.
+import { KINDS } from "./catalogue.js";
 
 const SHOWN = ["labels", "traces", "reference", "arrows", "reactions"];
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
 const LONGEST = 4000; // [characters] that every mail program and browser takes
 
 /**
- * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number, selected: number, hidden: number[],
+ * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
+ *   selected: number, hidden: number[],
  *   show: string[], study: string, build: string}} Linked study: the one that is open, or ""
  */
 
@@ -16,7 +18,17 @@ const LONGEST = 4000; // [characters] that every mail program and browser takes
 const escape = (text) => encodeURIComponent(text).replace(/%(3A|2C|40|3D|2F)/g, decodeURIComponent);
 
 /** @param {Linked} what @returns {string} */
-export function encodeLink({ scene, settings, methods, frame, selected, hidden, show, study, build }) {
+export function encodeLink({
+  scene,
+  settings,
+  methods,
+  frame,
+  selected,
+  hidden,
+  show,
+  study,
+  build,
+}) {
   const pairs = [
     ["scene", scene],
     ...Object.entries(settings).map(([name, value]) => [`set.${name}`, String(value)]),
@@ -46,7 +58,10 @@ const EMPTY = () => ({
   build: "",
 });
 
-/** @type {Record<string, (out: Linked, value: string) => string>} each puts a value and says what is wrong with it */
+/**
+ * @type {Record<string, (out: Linked, value: string) => string>} each puts a value and says what is
+ *   wrong with it
+ */
 const FIELDS = {
   scene: (out, value) => {
     out.scene = value;
@@ -101,7 +116,12 @@ export function decodeLink(fragment) {
     if (key === null || value === null) {
       faults.push(`'${item.slice(0, 40)}' is cut off`);
     } else if (key.startsWith("set.")) {
-      const fault = putNumber(value, (number) => (link.settings[key.slice(4)] = number), -1e12, 1e12);
+      const fault = putNumber(
+        value,
+        (number) => (link.settings[key.slice(4)] = number),
+        -1e12,
+        1e12,
+      );
       faults.push(...(fault ? [`${key.slice(4)} ${fault}`] : []));
     } else if (!Object.hasOwn(FIELDS, key)) {
       faults.push(`no field is called '${key.slice(0, 40)}'`);

@@ -1,5 +1,6 @@
 // @ts-check
-// Where one looks from: the front for plane mechanisms (x right, y up), any direction for those in space.
+// Where one looks from: the front for plane mechanisms (x right, y up), any direction for those in
+// space.
 
 /**
  * Unit vectors in the world.
@@ -14,10 +15,15 @@ export function lookOf(data) {
 }
 
 /** With z upwards x stays to the right, and y goes away from the viewer. @param {number[]} v */
-const zUp = ([x, y, z]) => [x, -z, y];
-const yUp = ([x, y, z]) => [x, z, -y];
+const zUp = (v) => [v[0], -v[2], v[1]];
+/** @param {number[]} v */
+const yUp = (v) => [v[0], v[2], -v[1]];
 
-/** The viewer stands `azimuth` round the vertical from the front towards x, `elevation` above the horizontal [rad]. @returns {Look} */
+/**
+ * The viewer stands `azimuth` round the vertical from the front towards x, `elevation` above the
+ * horizontal [rad].
+ * @returns {Look}
+ */
 export function lookFrom(azimuth, elevation, vertical = "y") {
   const [ca, sa] = [Math.cos(azimuth), Math.sin(azimuth)];
   const [ce, se] = [Math.cos(elevation), Math.sin(elevation)];

@@ -17,7 +17,11 @@ const wordsOf = (form) => FORMS[form] ?? form;
 
 /** @typedef {{formulations: any[], integrators: any[]}} Catalogue */
 
-/** The integrators that serve a formulation, in the order of the catalogue. @param {Catalogue} catalogue @param {string} formulation */
+/**
+ * The integrators that serve a formulation, in the order of the catalogue.
+ * @param {Catalogue} catalogue
+ * @param {string} formulation
+ */
 export function partnersOf(catalogue, formulation) {
   const names = cardOf(catalogue, "formulation", formulation)?.integrators ?? [];
   return catalogue.integrators.filter(({ name }) => names.includes(name));
@@ -25,7 +29,9 @@ export function partnersOf(catalogue, formulation) {
 
 /** One and another and a third. @param {string[]} list */
 function enumerate(list) {
-  return list.length < 2 ? list.join("") : `${list.slice(0, -1).join(", ")} or ${list[list.length - 1]}`;
+  return list.length < 2
+    ? list.join("")
+    : `${list.slice(0, -1).join(", ")} or ${list[list.length - 1]}`;
 }
 
 /**
@@ -63,14 +69,22 @@ export function misfitsOf(catalogue, formulation) {
   return [...groups].map(([takes, titles]) => ({ takes, titles }));
 }
 
-/** What a formulation hands over, in words. @param {Catalogue} catalogue @param {string} formulation */
+/**
+ * What a formulation hands over, in words.
+ * @param {Catalogue} catalogue
+ * @param {string} formulation
+ */
 export const handsOver = (catalogue, formulation) =>
   wordsOf(cardOf(catalogue, "formulation", formulation)?.form ?? "");
 
 /**
- * The integrator for a formulation just chosen: the one at hand, else one that another method of the comparison has, else the one of highest
+ * The integrator for a formulation just chosen: the one at hand, else one that another method of
+ * the comparison has, else the one of highest
  * order that steps as the one at hand did.
- * @param {Catalogue} catalogue @param {string} formulation @param {string} before @param {string[]} shared
+ * @param {Catalogue} catalogue
+ * @param {string} formulation
+ * @param {string} before
+ * @param {string[]} shared
  */
 export function choosePartner(catalogue, formulation, before, shared) {
   const fitting = partnersOf(catalogue, formulation);
@@ -84,12 +98,17 @@ export function choosePartner(catalogue, formulation, before, shared) {
   return alike.length ? best(alike) : fitting.length ? best(fitting) : "";
 }
 
-/** What is wrong with a value written for a setting; "" when nothing. @param {any} setting of a card @param {string} text */
+/**
+ * What is wrong with a value written for a setting; "" when nothing.
+ * @param {any} setting of a card
+ * @param {string} text
+ */
 export function faultOf(setting, text) {
   if (setting.choices?.length) {
     return setting.choices.includes(text) ? "" : `one of ${setting.choices.join(", ")}`;
   }
   const value = parseQuantity(text, prettyUnit(setting.unit ?? ""));
-  const range = `${plain(setting.min)} to ${plain(setting.max)} ${prettyUnit(setting.unit ?? "")}`.trim();
+  const range =
+    `${plain(setting.min)} to ${plain(setting.max)} ${prettyUnit(setting.unit ?? "")}`.trim();
   return value >= setting.min && value <= setting.max ? "" : `a number from ${range} is needed`;
 }

@@ -1,5 +1,6 @@
 // @ts-check
-// Asks the server what the joints carry, while somebody looks: one question at a time, for the selected method at the time shown.
+// Asks the server what the joints carry, while somebody looks: one question at a time, for the
+// selected method at the time shown.
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { namedState, pointAt } from "./reactions.js";
 
@@ -41,7 +42,14 @@ export function createReactionFeed(store) {
         ...item,
         point: pointAt(points, item.place, scene.length),
       }));
-      return { method: m, t, list, efforts: answer.efforts, mark: answer.lambda_mark ?? "", reason: answer.reason ?? "" };
+      return {
+        method: m,
+        t,
+        list,
+        efforts: answer.efforts,
+        mark: answer.lambda_mark ?? "",
+        reason: answer.reason ?? "",
+      };
     } catch (error) {
       if (error instanceof Problem && error.status === 422) {
         refusedFor = run;

@@ -1,6 +1,7 @@
 // @ts-check
-// The reference solution of the scene shown: asked for once per scene, parameters and clock. One is stored for every scene with its own
-// parameters; for others it is computed when somebody asks for that.
+// The reference solution of the scene shown: asked for once per scene, parameters and clock. One is
+// stored for every scene with its own parameters; for others it is computed when somebody asks for
+// that.
 import { api, sentenceOf } from "../api/client.js";
 
 const MOST_SAMPLES = 1200;
@@ -8,12 +9,19 @@ const MOST_NUMBERS = 300000; // the server's bound is a little above
 const PAUSE = 150; // [ms] after the last change, before it is asked for
 
 /**
- * `own`: what the reference itself may be off [m]; `points[k]` belong to frame k * stride of the clock.
- * @typedef {{state: "asked" | "none" | "failed" | "ready", key: string, reason: string, time: number, digits: number, own: number,
+ * `own`: what the reference itself may be off [m]; `points[k]` belong to frame k * stride of the
+ * clock.
+ * @typedef {{state: "asked" | "none" | "failed" | "ready", key: string, reason: string, time:
+ *   number, digits: number, own: number,
  *   means: string[], stride: number, points: Float64Array[], energy: number[]}} Reference
  */
 
-/** @param {string} key @param {Reference["state"]} state @param {string} reason @returns {Reference} */
+/**
+ * @param {string} key
+ * @param {Reference["state"]} state
+ * @param {string} reason
+ * @returns {Reference}
+ */
 const without = (key, state, reason) => ({
   state,
   key,
@@ -27,7 +35,11 @@ const without = (key, state, reason) => ({
   energy: [],
 });
 
-/** The parameters that are not as the scene has them. @param {any} data @returns {Record<string, number>} */
+/**
+ * The parameters that are not as the scene has them.
+ * @param {any} data
+ * @returns {Record<string, number>}
+ */
 function changedSettings({ scene, settings }) {
   const initial = new Map(scene.parameters.map((one) => [one.name, one.initial]));
   return Object.fromEntries(
@@ -120,7 +132,8 @@ export function createReferenceFeed(store) {
   };
 }
 
-/** Where the drawn points are at a frame, between samples on a straight line; null where the reference says nothing.
+/**
+ * The drawn points at a frame, between samples on a straight line; null past its end.
  * @param {Reference | null} reference @param {number} frame @returns {ArrayLike<number> | null} */
 export function referenceAt(reference, frame) {
   if (reference?.state !== "ready" || frame < 0) {
@@ -135,7 +148,9 @@ export function referenceAt(reference, frame) {
   return b ? a.map((x, i) => x + (at - low) * (b[i] - x)) : null;
 }
 
-/** How far the drawn point that is off most is from the reference [m], never less than the reference's own error; NaN where it is not known.
+/**
+ * Distance of the drawn point that is farthest from the reference [m], never less than the
+ * reference's own error; NaN where it is not known.
  * @param {Reference | null} reference @param {number} frame @param {ArrayLike<number>} points */
 export function offReference(reference, frame, points) {
   const known =
@@ -158,7 +173,8 @@ export function offReference(reference, frame, points) {
 }
 
 /**
- * Columns over a history that only ever grow: what was worked out is kept until the run, or the reference, is another.
+ * Columns over a history that only ever grow: what was worked out is kept until the run, or the
+ * reference, is another.
  * @param {(m: number, i: number) => number} valueAt
  */
 export function createGrowing(valueAt) {

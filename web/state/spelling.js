@@ -1,6 +1,6 @@
 // @ts-check
-// The one spelling of a method: FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]. The server checks it; the page only takes it
-// apart to change a setting.
+// The one spelling of a method: FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]. The server
+// checks it; the page only takes it apart to change a setting.
 
 /**
  * @typedef {{name: string, settings: [string, string][]}} Part
@@ -45,14 +45,21 @@ export function formatSpelling(spelling) {
   return `${formatPart(spelling.formulation)}@${formatPart(spelling.integrator)}`;
 }
 
-/** @param {{formulations: any[], integrators: any[]}} catalogue @param {"formulation" | "integrator"} kind @param {string} name */
+/**
+ * @param {{formulations: any[], integrators: any[]}} catalogue
+ * @param {"formulation" | "integrator"} kind
+ * @param {string} name
+ */
 export function cardOf(catalogue, kind, name) {
   return (kind === "formulation" ? catalogue.formulations : catalogue.integrators).find(
     (card) => card.name === name,
   );
 }
 
-/** What the catalogue says of a setting that this method has; undefined when it has none of that key. */
+/**
+ * What the catalogue says of a setting that this method has; undefined when it has none of that
+ * key.
+ */
 export function settingOf(catalogue, spelling, key) {
   const parsed = parseSpelling(spelling);
   for (const kind of /** @type {const} */ (["formulation", "integrator"])) {

@@ -1,27 +1,23 @@
 // @ts-check
-// Data and named events. Views read `store.data`, listen, and never write; actions of state/session.js write.
-import { KINDS, noStudy } from "./studies.js";
+// Data and named events. Views read `store.data` and listen; only the actions of session/ write.
+import { KINDS } from "./catalogue.js";
+import { noStudy } from "./studies.js";
 
 /**
- * @typedef {{name: string, unit: string, about: string, value: number, initial: number, min: number, max: number, integer: boolean}} Parameter
- * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
- * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: {p: number, q: number, name: string}[]}} Drawing
- * @typedef {{id: string, title: string, about: string, look_for: string, caption: string, parameters: Parameter[], n: number, m: number,
- *   rank: number, freedoms: number, length: number, drawing: Drawing, coordinates: {name: string, rate: string}[], points: number[], ground_points: number[], envelope: number[], extremes?: number[],
- *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]}, methods: string[],
- *   duration: number, step: number}} Scene
- * @typedef {{slot: number, short: string, label: string, rule: string, drift: string, model_error: boolean, keeps_gap: boolean, order: number,
- *   spelling: string, formulation: string, integrator: string, title: string}} Method
- * @typedef {{state: string, status: string, reason: string, t: number, points?: number[], q?: number[], v?: number[], gap?: number, velocity_gap?: number,
- *   energy_change?: number, steps: number, rejected: number, evals: number, ops: number, cpu: number, worst_gap: number,
- *   worst_velocity_gap: number, worst_energy_change: number}} MethodFrame
- * @typedef {{generation: number, frame: number, t: number, finished: boolean, methods: MethodFrame[]}} Frame
- * @typedef {{spelling: string, reason: string}} Refused a method that the scene cannot serve
- * @typedef {{id: string, title: string, scenes: string[]}} Lesson
- * @typedef {{method: number, code: string, t: number, quantity: string, value: number, limit: number, message: string, remedies: string[]}} Incident
+ * @typedef {import("./types.js").Parameter} Parameter
+ * @typedef {import("./types.js").Shape} Shape
+ * @typedef {import("./types.js").Drawing} Drawing
+ * @typedef {import("./types.js").Scene} Scene
+ * @typedef {import("./types.js").Method} Method
+ * @typedef {import("./types.js").MethodFrame} MethodFrame
+ * @typedef {import("./types.js").Frame} Frame
+ * @typedef {import("./types.js").Refused} Refused
+ * @typedef {import("./types.js").Lesson} Lesson
+ * @typedef {import("./types.js").Incident} Incident
+ * @typedef {import("./history.js").History} History
  */
 
-/** Names of the events, told so that a misspelt one fails at once. */
+/** Names of the events. An event with another name throws, so a misspelt one fails at once. */
 export const EVENTS = [
   "ready", // look, catalogue and scenes are here
   "scene", // another scene, or another parameter of it
@@ -31,26 +27,45 @@ export const EVENTS = [
   "incident",
   "state", // running, paused, finished, speed
   "stream",
-  "reactions", // what the joints carry, as last asked for
+  "reactions", // the forces in the joints, as last asked for
   "reference", // the reference solution of the scene, or why there is none
   "study", // a study goes on or has ended; the detail is its kind
   "notice", // a sentence for the status line
   "theme",
 ];
 
+/** What is shown, and how. */
+function initialView() {
+  return {
+    selected: 0,
+    /** @type {Set<number>} */ hidden: new Set(),
+    /** index into the history, or -1: the latest */ shown: -1,
+    labels: true,
+    traces: false,
+    /** the reference solution is drawn */ reference: true,
+    /** the table of forces is open */ reactions: false,
+    /** forces are drawn */ arrows: false,
+    /** direction of view; null: the best one for the scene */
+    look: /** @type {{right: number[], up: number[]} | null} */ (null),
+    /** the study that is open, or "" */ study: "",
+    /** axes of the stability map; "": the ones that fit the methods */ map: "",
+    letters: true,
+    stepped: false,
+    /** the method whose card is open, or -1 */ why: -1,
+  };
+}
+
 function initialData() {
   return {
     build: "",
     /** @type {any} */ look: null,
-    /** @type {{formulations: any[], integrators: any[]}} */ catalogue: {
-      formulations: [],
-      integrators: [],
-    },
+    /** @type {{formulations: any[], integrators: any[]}} */
+    catalogue: { formulations: [], integrators: [] },
     /** @type {{id: string, title: string, duration: number}[]} */ scenes: [],
     /** @type {Lesson[]} */ lessons: [],
     id: "",
     generation: -1,
-    /** counts the starts: no two runs, of whatever comparison, have the same */ run: 0,
+    /** counts the starts: no two runs, of whatever comparison, have the same number */ run: 0,
     /** null until the first comparison is there */
     scene: /** @type {Scene} */ (/** @type {any} */ (null)),
     /** @type {Method[]} */ methods: [],
@@ -61,39 +76,26 @@ function initialData() {
     state: "paused",
     speed: 1,
     /** @type {Frame | null} */ latest: null,
-    history: /** @type {import("./history.js").History} */ (/** @type {any} */ (null)), // likewise
-    /** The run before the last change, for "before and after". @type {{methods: Method[], history: import("./history.js").History} | null} */
+    /** null until the first comparison is there */
+    history: /** @type {History} */ (/** @type {any} */ (null)),
+    /** the run before the last change @type {{methods: Method[], history: History} | null} */
     before: null,
     /** @type {Incident[]} */ incidents: [],
-    /** Forces in the joints of a method at a time; `point`: the drawn point at the joint, or -1; null until they are asked for.
-     * @type {{method: number, t: number, list: (import("./reactions.js").Reaction & {point: number})[], mark: string, reason: string} | null} */
+    /** null until they are asked for @type {import("./reactions.js").Reactions | null} */
     reactions: null,
-    /** null until it is asked for @type {import("./reference.js").Reference | null} */ reference: null,
+    /** null until it is asked for @type {import("./reference.js").Reference | null} */
+    reference: null,
     /** by kind @type {Record<string, import("./studies.js").Study>} */
     studies: Object.fromEntries(KINDS.map((kind) => [kind, noStudy()])),
     stream: { state: "connecting", id: "" },
     notice: "",
     /** @type {"light" | "dark"} */ theme: "light",
-    view: {
-      selected: 0,
-      /** @type {Set<number>} */ hidden: new Set(),
-      /** index into the history, or -1: the latest */ shown: -1,
-      labels: true,
-      traces: false,
-      /** the reference solution is drawn */ reference: true,
-      /** the table of forces is open */ reactions: false,
-      /** forces are drawn */ arrows: false,
-      /** where one looks from; null: as the scene is best seen @type {{right: number[], up: number[]} | null} */ look: null,
-      /** the study that is open, or "" */ study: "",
-      /** what the map of stability is over; "": as the methods suggest */ map: "",
-      letters: true,
-      stepped: false,
-      /** the method whose card is open, or -1 */ why: -1,
-    },
+    view: initialView(),
   };
 }
 
 /** @typedef {ReturnType<typeof createStore>} Store */
+/** @typedef {ReturnType<typeof initialData>} Data */
 
 export function createStore() {
   /** @type {Map<string, Set<(detail?: any) => void>>} */
@@ -110,7 +112,11 @@ export function createStore() {
 
   return {
     data: initialData(),
-    /** @param {string} name @param {(detail?: any) => void} listener @returns {() => void} removes the listener */
+    /**
+     * @param {string} name
+     * @param {(detail?: any) => void} listener
+     * @returns {() => void} removes the listener
+     */
     on(name, listener) {
       listenersOf(name).add(listener);
       return () => listenersOf(name).delete(listener);
@@ -124,7 +130,21 @@ export function createStore() {
   };
 }
 
-/** Listens to several events; returns what removes all of it. @param {Store} store @param {Record<string, (detail?: any) => void>} table */
+/**
+ * Index of the frame that is shown; -1 when there is none.
+ * @param {Data} data
+ */
+export function shownIndex({ history, view }) {
+  const last = (history?.count ?? 0) - 1;
+  return view.shown < 0 ? last : Math.min(view.shown, last);
+}
+
+/**
+ * Listens to several events.
+ * @param {Store} store
+ * @param {Record<string, (detail?: any) => void>} table
+ * @returns {() => void} removes all the listeners
+ */
 export function listen(store, table) {
   const off = Object.entries(table).map(([name, listener]) => store.on(name, listener));
   return () => off.forEach((remove) => remove());

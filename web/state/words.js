@@ -3,7 +3,10 @@
 import { ROUNDING, quantity, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 
-/** A gap that more than doubles from the first half of the motion to the second grows: t to t^2 do, an oscillation does not. */
+/**
+ * A gap that more than doubles from the first half of the motion to the second grows: t to t^2 do,
+ * an oscillation does not.
+ */
 const GROWTH = 1.5;
 const EARLIEST = 6; // [frames] before it there is nothing to tell
 
@@ -82,13 +85,17 @@ const PASSED = ["near-singular", "rank-loss"];
 /** @param {import("./store.js").Store["data"]} data @param {number} now [s] */
 function passedAt({ incidents, view, duration }, now) {
   const last = incidents
-    .filter(({ code, method, t }) => PASSED.includes(code) && t > 0 && t <= now && !view.hidden.has(method))
+    .filter(
+      ({ code, method, t }) =>
+        PASSED.includes(code) && t > 0 && t <= now && !view.hidden.has(method),
+    )
     .reduce((latest, { t }) => Math.max(latest, t), -Infinity);
   return now - last < SAID_AFTER ? `a singular pose was passed at ${seconds(last, duration)}` : "";
 }
 
 /**
- * What the engine sees coming at the time shown: "J loses rank in 0.31 s (index-1, projection)", "" when nothing is.
+ * What the engine sees coming at the time shown: "J loses rank in 0.31 s (index-1, projection)", ""
+ * when nothing is.
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
  */
@@ -118,7 +125,8 @@ export function predictionAt(data, shown) {
 }
 
 /**
- * "until 5 s Baumgarte: worst gap 0.42 m before, 0.66 mm now; energy change 1 J before, 0.7 J now", over the time both runs cover.
+ * "until 5 s Baumgarte: worst gap 0.42 m before, 0.66 mm now; energy change 1 J before, 0.7 J now",
+ * over the time both runs cover.
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
  */
@@ -151,7 +159,8 @@ export function beforeAndAfter(data, shown) {
 }
 
 /**
- * Things to try per formulation. `set` names a control and its value as a share of the present one (`times`) or outright (`to`);
+ * Things to try per formulation. `set` names a control and its value as a share of the present one
+ * (`times`) or outright (`to`);
  * `method` is a spelling in which {integrator} stands for the present one.
  */
 const TRIES = {
@@ -197,7 +206,11 @@ function triesOf(data, m) {
   });
 }
 
-/** A remedy as the engine words it: a spelling and "key=value" can be clicked, anything else is read. @returns {Try} */
+/**
+ * A remedy as the engine words it: a spelling and "key=value" can be clicked, anything else is
+ * read.
+ * @returns {Try}
+ */
 export function tryOfRemedy(text) {
   const setting = /^(\w+)\s*=\s*([-+.\deE]+)$/.exec(text.trim());
   if (setting) {

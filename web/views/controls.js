@@ -1,5 +1,6 @@
 // @ts-check
-// Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some method has; and the scene's parameters.
+// Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some
+// method has; and the scene's parameters.
 import { sentenceOf } from "../api/client.js";
 import { niceAbove, niceBelow, parseQuantity, plain, prettyUnit } from "../state/format.js";
 import { settingOf } from "../state/spelling.js";
@@ -61,7 +62,7 @@ const WIDE = 1000; // a range over so many times its least value is better told 
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createControls(el, store, actions) {
   const data = store.data;

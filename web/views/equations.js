@@ -7,7 +7,8 @@ import { h } from "../widgets/dom.js";
 import { createReduced } from "./reduced.js";
 
 const MOST_ENTRIES = 40; // beyond it a large scene would only fill the page
-const LONGEST = 600; // [characters of TeX] nobody reads a longer formula, and setting it takes a browser seconds
+/** [characters of TeX] Nobody reads a longer formula, and setting it takes a browser seconds. */
+const LONGEST = 600;
 
 const SYSTEM = String.raw`\begin{bmatrix} M & J^{\mathsf T} \\ J & 0 \end{bmatrix}\begin{bmatrix} a \\ -\lambda \end{bmatrix} = \begin{bmatrix} f \\ -\gamma \end{bmatrix}, \qquad \varphi(q, t) = 0`;
 const FREE = String.raw`M\,a = f`;
@@ -19,7 +20,7 @@ const PRINTED = {
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createEquations(el, store, actions) {
   const data = store.data;

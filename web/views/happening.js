@@ -1,9 +1,15 @@
 // @ts-check
 // What is happening, in sentences that a screen reader may follow, and the cards that say why.
 import { seconds } from "../state/format.js";
-import { INCIDENTS } from "../state/incidents.js";
+import { incidentOf } from "../state/catalogue.js";
 import { listen } from "../state/store.js";
-import { beforeAndAfter, cardOfMethod, predictionAt, sentences, tryOfRemedy } from "../state/words.js";
+import {
+  beforeAndAfter,
+  cardOfMethod,
+  predictionAt,
+  sentences,
+  tryOfRemedy,
+} from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
 
 const PAUSE = 2000; // [ms] between two things said
@@ -13,7 +19,7 @@ const MOST_SHOWN = 40;
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createHappening(el, store, actions) {
   const data = store.data;
@@ -50,7 +56,8 @@ export function createHappening(el, store, actions) {
       return;
     }
     const ahead = predictionAt(data, now);
-    const state = now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
+    const state =
+      now === 0 ? ["all methods start from the same closed pose"] : sentences(data, now);
     const lines = ahead ? [ahead, ...state] : state;
     const changes = beforeAndAfter(data, now);
     const text = [...changes, ...lines];
@@ -134,7 +141,7 @@ export function createHappening(el, store, actions) {
   /** @param {import("../state/store.js").Incident} incident */
   function incidentItem(incident) {
     const method = data.methods[incident.method];
-    const words = INCIDENTS[incident.code];
+    const words = incidentOf(incident.code);
     return h(
       "li",
       { class: method ? `slot-${method.slot}` : "", "data-key": keyOf(incident) },

@@ -7,7 +7,7 @@ import { h } from "../widgets/dom.js";
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  * @param {{toggleTheme: () => void, openKeys: () => void}} open
  */
 export function createHeader(el, store, actions, open) {
@@ -50,7 +50,11 @@ export function createHeader(el, store, actions, open) {
   function fill() {
     const option = ({ id, title }) => h("option", { value: id }, title);
     const groups = data.lessons.map(({ title, scenes }) =>
-      h("optgroup", { label: title }, ...data.scenes.filter(({ id }) => scenes.includes(id)).map(option)),
+      h(
+        "optgroup",
+        { label: title },
+        ...data.scenes.filter(({ id }) => scenes.includes(id)).map(option),
+      ),
     );
     const placed = new Set(data.lessons.flatMap(({ scenes }) => scenes));
     const others = data.scenes.filter(({ id }) => !placed.has(id)).map(option);

@@ -6,7 +6,7 @@ import { h } from "../widgets/dom.js";
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createKeysDialog(el, store, actions) {
   const letters = h("input", {

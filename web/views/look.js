@@ -1,6 +1,6 @@
 // @ts-check
-// Buttons that say where a mechanism in space is seen from, turning by dragging the drawing, and a triad of the world's axes.
-// Plane mechanisms have no use for any of it.
+// Buttons that say where a mechanism in space is seen from, turning by dragging the drawing, and a
+// triad of the world's axes. Plane mechanisms have no use for any of it.
 import { FRONT, anglesOf, lookFrom, lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
 import { h, s, set } from "../widgets/dom.js";
@@ -18,7 +18,7 @@ const NAMED = [
 /**
  * @param {HTMLElement} el with a drawing: `.stage` is what is dragged, `.under` takes the buttons
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createLook(el, store, actions) {
   const data = store.data;
@@ -70,11 +70,7 @@ export function createLook(el, store, actions) {
       const elevation = drag.angles[1] + TURN * (event.clientY - drag.y);
       const steepest = Math.PI / 2;
       actions.setView({
-        look: lookFrom(
-          azimuth,
-          Math.max(-steepest, Math.min(steepest, elevation)),
-          vertical(),
-        ),
+        look: lookFrom(azimuth, Math.max(-steepest, Math.min(steepest, elevation)), vertical()),
       });
     }
   }

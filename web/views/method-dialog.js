@@ -1,8 +1,16 @@
 // @ts-check
-// Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the server checks.
+// Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the
+// server checks.
 import { sentenceOf } from "../api/client.js";
 import { parseQuantity, plain, prettyUnit, withPowers } from "../state/format.js";
-import { choosePartner, faultOf, handsOver, misfit, misfitsOf, partnersOf } from "../state/pairs.js";
+import {
+  choosePartner,
+  faultOf,
+  handsOver,
+  misfit,
+  misfitsOf,
+  partnersOf,
+} from "../state/pairs.js";
 import { cardOf, formatSpelling, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
@@ -10,7 +18,7 @@ import { h, say, set } from "../widgets/dom.js";
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createMethodDialog(el, store, actions) {
   const data = store.data;
@@ -77,8 +85,14 @@ export function createMethodDialog(el, store, actions) {
       cards.length ? [h("optgroup", { label }, ...cards.map(option))] : [];
     const chosen = integrator.value;
     integrator.replaceChildren(
-      ...group("steps as set", fitting.filter((card) => !card.adaptive)),
-      ...group("steps chosen from a tolerance", fitting.filter((card) => card.adaptive)),
+      ...group(
+        "steps as set",
+        fitting.filter((card) => !card.adaptive),
+      ),
+      ...group(
+        "steps chosen from a tolerance",
+        fitting.filter((card) => card.adaptive),
+      ),
     );
     integrator.value = fitting.some(({ name }) => name === chosen) ? chosen : fitting[0]?.name;
     const unfit = misfitsOf(data.catalogue, formulation.value);
@@ -109,7 +123,9 @@ export function createMethodDialog(el, store, actions) {
         kept.delete("h"); // it chooses its step, unless it is told one
       }
       const list = (card?.settings ?? [])
-        .filter((setting) => keeps(setting, kept) || setting.default === null || isStep(card, setting))
+        .filter(
+          (setting) => keeps(setting, kept) || setting.default === null || isStep(card, setting),
+        )
         .map(
           (setting) =>
             /** @type {[string, string]} */ ([

@@ -1,8 +1,9 @@
 // @ts-check
-// The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state in words.
+// The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state
+// in words.
 import { bound, quantity, withPowers } from "../state/format.js";
 import { offReference } from "../state/reference.js";
-import { MOST_METHODS } from "../state/session.js";
+import { limits } from "../state/catalogue.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
 import { listen } from "../state/store.js";
 import { trendOf } from "../state/words.js";
@@ -14,7 +15,7 @@ const REDRAW = 120; // [ms] numbers that change faster cannot be read
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  * @param {(m: number) => void} openDialog edits method m, or adds one (m = -1)
  * @param {(kind: string) => void} openStudy
  */
@@ -204,8 +205,8 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     rows = data.methods.map(makeRow);
     refusals = data.refused;
     body.replaceChildren(...rows.map(({ row }) => row), ...refusals.map(refusedRow));
-    add.disabled = data.methods.length >= MOST_METHODS;
-    add.title = add.disabled ? `${MOST_METHODS} methods at most` : "";
+    add.disabled = data.methods.length >= limits().methods;
+    add.title = add.disabled ? `${limits().methods} methods at most` : "";
     showView();
   }
 
@@ -224,7 +225,11 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     paint();
   }
 
-  /** A failed method keeps the numbers of its last good frame. @param {Float64Array} column @param {number} now */
+  /**
+   * A failed method keeps the numbers of its last good frame.
+   * @param {Float64Array} column
+   * @param {number} now
+   */
   function lastGood(column, now) {
     let i = now;
     while (i > 0 && Number.isNaN(column[i])) {
@@ -233,7 +238,11 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     return i;
   }
 
-  /** Between samples, and past the reference's end, there is nothing to say. @param {number} m @param {number} i */
+  /**
+   * Between samples, and past the reference's end, there is nothing to say.
+   * @param {number} m
+   * @param {number} i
+   */
   function offWords(m, i) {
     const { history, reference } = data;
     const off = offReference(reference, history.frameAt(i), history.pointsAt(m, i));

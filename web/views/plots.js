@@ -1,6 +1,7 @@
 // @ts-check
-// Four curves over one clock: loop gap, speed gap or distance from the reference, energy change, cost; each with a table as its
-// twin. What the reference solution does, or may itself be off, is grey.
+// Four curves over one clock: loop gap, speed gap or distance from the reference, energy change,
+// cost; each with a table as its twin. What the reference solution does, or may itself be off, is
+// grey.
 import { niceAbove, quantity } from "../state/format.js";
 import { thin } from "../state/history.js";
 import { createGrowing, offReference } from "../state/reference.js";
@@ -56,7 +57,7 @@ const PLOTS = [
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createPlots(el, store, actions) {
   const data = store.data;
@@ -164,23 +165,22 @@ export function createPlots(el, store, actions) {
 
   /** The reference among the methods' curves: its energy, or what it may itself be off. */
   function hasGrey(kind) {
-    return (
-      data.reference?.state === "ready" && ["energy_change", "off"].includes(kind.column)
-    );
+    return data.reference?.state === "ready" && ["energy_change", "off"].includes(kind.column);
   }
 
   function greySeries(kind) {
     const { dash } = data.look.reference;
     const colour = data.look.reference[data.theme];
     const label = kind.column === "off" ? "its own error" : "reference";
-    return hasGrey(kind)
-      ? [{ label, colour, dash, width: 1.5, ended: NaN, present: false }]
-      : [];
+    return hasGrey(kind) ? [{ label, colour, dash, width: 1.5, ended: NaN, present: false }] : [];
   }
 
   /** Its values over the kept frames; none past its end, and none where it is not drawn. */
   function greyColumn(kind) {
     const { history, reference } = data;
+    if (!reference) {
+      return new Float64Array(history.count).fill(NaN);
+    }
     return Float64Array.from({ length: history.count }, (_, i) => {
       const k = history.frameAt(i) / reference.stride;
       const known = Number.isInteger(k) && k < reference.points.length;
@@ -305,9 +305,7 @@ export function createPlots(el, store, actions) {
               "tr",
               {},
               h("th", { scope: "row" }, history.t[i].toFixed(2)),
-              ...visible.map(({ m }) =>
-                h("td", {}, quantity(columns[m][i], kind.unit)),
-              ),
+              ...visible.map(({ m }) => h("td", {}, quantity(columns[m][i], kind.unit))),
             ),
           ),
         ),

@@ -1,6 +1,6 @@
 // @ts-check
-// What every joint carries in the selected method at the time shown: a table that is asked for while it is open, and the choice to draw
-// the forces as arrows.
+// What every joint carries in the selected method at the time shown: a table that is asked for
+// while it is open, and the choice to draw the forces as arrows.
 import { quantity, seconds } from "../state/format.js";
 import { sizeOf, zeroOf } from "../state/reactions.js";
 import { listen } from "../state/store.js";
@@ -22,7 +22,7 @@ const LOST =
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createReactions(el, store, actions) {
   const data = store.data;
@@ -46,7 +46,12 @@ export function createReactions(el, store, actions) {
   const along = h("table", { class: "numbers" });
   const scroll = h(
     "div",
-    { class: "reaction-table", tabindex: "0", role: "region", "aria-labelledby": "reactions-title" },
+    {
+      class: "reaction-table",
+      tabindex: "0",
+      role: "region",
+      "aria-labelledby": "reactions-title",
+    },
     table,
     along,
   );
@@ -108,7 +113,10 @@ export function createReactions(el, store, actions) {
     );
   }
 
-  /** What acts along coordinates and at no place: formulas, gears. @param {import("../state/reactions.js").Effort[]} efforts */
+  /**
+   * What acts along coordinates and at no place: formulas, gears.
+   * @param {import("../state/reactions.js").Effort[]} efforts
+   */
   function showEfforts(efforts) {
     const cell = (text) => h("th", { scope: "col" }, text);
     const rows = efforts.map(({ name, kind, coordinate, unit, value, determined }) =>
@@ -156,7 +164,10 @@ export function createReactions(el, store, actions) {
     const when = `${method.label} at ${seconds(answer.t, data.duration)}.${answer.mark === "no digit left" ? LOST : ""}`;
     showEfforts(answer.efforts);
     if (answer.list.length === 0) {
-      say(whose, `Formulas have no joints; what each constraint does along each coordinate: ${when}`);
+      say(
+        whose,
+        `Formulas have no joints; what each constraint does along each coordinate: ${when}`,
+      );
       table.replaceChildren();
       return;
     }

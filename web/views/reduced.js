@@ -1,6 +1,7 @@
 // @ts-check
-// The equations left on the free motion, inside the panel of equations: which coordinates are independent, how the pose follows from
-// them, and the reduced terms in numbers for the selected method at the time shown. Asked for while it is unfolded, one question at a time.
+// The equations left on the free motion, inside the panel of equations: which coordinates are
+// independent, how the pose follows from them, and the reduced terms in numbers for the selected
+// method at the time shown. Asked for while it is unfolded, one question at a time.
 import { sentenceOf } from "../api/client.js";
 import { seconds } from "../state/format.js";
 import { namedState } from "../state/reactions.js";
@@ -21,28 +22,22 @@ const number = (x) => Number(x.toPrecision(DIGITS)).toString().replace("-", "−
 const term = (letter, meaning) => h("span", {}, letter, h("sub", {}, "r"), ` ${meaning}`);
 
 /**
- * @param {Node | string} caption @param {string[]} columns @param {(Node | string)[]} rows @param {number[][]} values
+ * @param {Node | string} caption
+ * @param {string[]} columns
+ * @param {(Node | string)[]} rows
+ * @param {number[][]} values
  */
 function table(caption, columns, rows, values) {
   return h(
     "table",
     { class: "numbers" },
     h("caption", {}, caption),
-    h(
-      "thead",
-      {},
-      h("tr", {}, h("td"), ...columns.map((name) => h("th", { scope: "col" }, name))),
-    ),
+    h("thead", {}, h("tr", {}, h("td"), ...columns.map((name) => h("th", { scope: "col" }, name)))),
     h(
       "tbody",
       {},
       ...values.map((row, i) =>
-        h(
-          "tr",
-          {},
-          h("th", { scope: "row" }, rows[i]),
-          ...row.map((x) => h("td", {}, number(x))),
-        ),
+        h("tr", {}, h("th", { scope: "row" }, rows[i]), ...row.map((x) => h("td", {}, number(x)))),
       ),
     ),
   );
@@ -82,8 +77,9 @@ function tables(reduced, names) {
 
 /**
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
- * @param {{formula: (latex: string, display: boolean) => HTMLElement, line: (entry: any) => HTMLElement}} set
+ * @param {import("../session/session.js").Session} actions
+ * @param {{formula: (latex: string, display: boolean) => HTMLElement, line: (entry: any) =>
+ *   HTMLElement}} set
  */
 export function createReduced(store, actions, set) {
   const data = store.data;

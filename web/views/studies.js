@@ -1,7 +1,8 @@
 // @ts-check
-// The studies of what is on the page, in one dialog: a tab each, how far it is, and what comes of it.
+// The studies of what is on the page, in one dialog: a tab each, how far it is, and what comes of
+// it.
 import { sentenceOf } from "../api/client.js";
-import { KINDS } from "../state/studies.js";
+import { KINDS } from "../state/catalogue.js";
 import { listen } from "../state/store.js";
 import { h, say, set } from "../widgets/dom.js";
 import { createStudyBudget } from "./study-budget.js";
@@ -16,12 +17,13 @@ const TABS = {
 const TOLD_EVERY = 2000; // [ms] for those who listen
 
 /** "12 s", "2 min" @param {number} seconds */
-const span = (seconds) => (seconds < 90 ? `${Math.max(1, Math.ceil(seconds))} s` : `${Math.ceil(seconds / 60)} min`);
+const span = (seconds) =>
+  seconds < 90 ? `${Math.max(1, Math.ceil(seconds))} s` : `${Math.ceil(seconds / 60)} min`;
 
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createStudies(el, store, actions) {
   const data = store.data;
@@ -70,19 +72,62 @@ export function createStudies(el, store, actions) {
   const state = h("span", { class: "number" });
   const spoken = h("p", { class: "hidden", role: "status" });
   const note = h("p", { class: "study-note", role: "alert" });
-  const stop = h("button", { type: "button", class: "plain", onclick: () => studies.stop(data.view.study) }, "Stop");
-  const again = h("button", { type: "button", class: "plain", onclick: () => studies.start(data.view.study) }, "Run again");
+  const stop = h(
+    "button",
+    { type: "button", class: "plain", onclick: () => studies.stop(data.view.study) },
+    "Stop",
+  );
+  const again = h(
+    "button",
+    { type: "button", class: "plain", onclick: () => studies.start(data.view.study) },
+    "Run again",
+  );
   const report = h("a", { class: "study-link", download: "" }, "Save as a report");
-  const link = h("button", { type: "button", class: "quiet", title: "copy a link that opens this study", onclick: () => actions.share().then(tellNotice) }, "link");
-  const close = h("button", { type: "button", class: "tool", "aria-label": "Close", onclick: () => dialog.close() }, "×");
+  const link = h(
+    "button",
+    {
+      type: "button",
+      class: "quiet",
+      title: "copy a link that opens this study",
+      onclick: () => actions.share().then(tellNotice),
+    },
+    "link",
+  );
+  const close = h(
+    "button",
+    { type: "button", class: "tool", "aria-label": "Close", onclick: () => dialog.close() },
+    "×",
+  );
   const panels = KINDS.map((kind) =>
-    h("div", { role: "tabpanel", id: `study-${kind}`, "aria-labelledby": `tab-${kind}`, class: "study-panel" }, views[kind].el),
+    h(
+      "div",
+      {
+        role: "tabpanel",
+        id: `study-${kind}`,
+        "aria-labelledby": `tab-${kind}`,
+        class: "study-panel",
+      },
+      views[kind].el,
+    ),
   );
   const dialog = h(
     "dialog",
-    { class: "dialog study", "aria-labelledby": "studies-title", onclose: () => actions.setView({ study: "" }) },
+    {
+      class: "dialog study",
+      "aria-labelledby": "studies-title",
+      onclose: () => actions.setView({ study: "" }),
+    },
     h("div", { class: "study-head" }, title, link, close),
-    h("div", { class: "study-tabs", role: "tablist", "aria-labelledby": "studies-title", onkeydown: onTabKey }, ...tabs),
+    h(
+      "div",
+      {
+        class: "study-tabs",
+        role: "tablist",
+        "aria-labelledby": "studies-title",
+        onkeydown: onTabKey,
+      },
+      ...tabs,
+    ),
     h("div", { class: "study-run" }, bar, state, stop, again, report),
     note,
     spoken,
@@ -128,10 +173,19 @@ export function createStudies(el, store, actions) {
       tabs[KINDS.findIndex((one) => one === kind)].focus();
     }
     say(title, `Studies: ${data.scene.title}`);
-    tabs.forEach((tab, i) => set(tab, { "aria-selected": String(KINDS[i] === kind), "aria-pressed": String(KINDS[i] === kind), tabindex: KINDS[i] === kind ? 0 : -1 }));
+    tabs.forEach((tab, i) =>
+      set(tab, {
+        "aria-selected": String(KINDS[i] === kind),
+        "aria-pressed": String(KINDS[i] === kind),
+        tabindex: KINDS[i] === kind ? 0 : -1,
+      }),
+    );
     panels.forEach((panel, i) => (panel.hidden = KINDS[i] !== kind));
     say(note, "");
-    if (data.studies[kind].state === "none" || (data.studies[kind].state !== "running" && !studies.isPresent(kind))) {
+    if (
+      data.studies[kind].state === "none" ||
+      (data.studies[kind].state !== "running" && !studies.isPresent(kind))
+    ) {
       studies.start(kind);
     }
     show();
@@ -157,7 +211,10 @@ export function createStudies(el, store, actions) {
     again.hidden = runs;
     report.hidden = !study.report;
     set(report, { href: study.report || null });
-    const old = !runs && study.document && !studies.isPresent(kind) ? " – of the methods and parameters before the last change" : "";
+    const old =
+      !runs && study.document && !studies.isPresent(kind)
+        ? " – of the methods and parameters before the last change"
+        : "";
     say(state, words + old);
     state.dataset.kind = study.state === "failed" ? "error" : "";
     if (!runs || Date.now() - told > TOLD_EVERY) {

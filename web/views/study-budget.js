@@ -1,7 +1,8 @@
 // @ts-check
-// Where the error at the end comes from, and who put energy in: the parts of each method as a bar that adds up, and as numbers.
+// Where the error at the end comes from, and who put energy in: the parts of each method as a bar
+// that adds up, and as numbers.
 import { quantity, scientific } from "../state/format.js";
-import { BILL, CAUSES, barsOf } from "../state/studies.js";
+import { BILL, CAUSES, barsOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
 const HEIGHT = 30;
@@ -16,7 +17,11 @@ const ADDS_UP = 0.05; // relative: beyond it the error is too large for a sum of
 
 /** @param {number | null} value @param {string} unit */
 const numberOf = (value, unit) =>
-  value === null ? "–" : Math.abs(value) < 1e-12 && value !== 0 ? `${scientific(value)} ${unit}` : quantity(value, unit);
+  value === null
+    ? "–"
+    : Math.abs(value) < 1e-12 && value !== 0
+      ? `${scientific(value)} ${unit}`
+      : quantity(value, unit);
 
 /** @param {import("../state/store.js").Store} store */
 export function createStudyBudget(store) {
@@ -40,7 +45,15 @@ export function createStudyBudget(store) {
   const list = h("div", { class: "accounts" });
   const legend = h("ul", { class: "legend" });
   const table = h("div", { class: "twin-table" });
-  const el = h("div", {}, h("div", { class: "study-bar" }, h("div", { class: "choices" }, ...choices)), about, list, legend, table);
+  const el = h(
+    "div",
+    {},
+    h("div", { class: "study-bar" }, h("div", { class: "choices" }, ...choices)),
+    about,
+    list,
+    legend,
+    table,
+  );
 
   const study = () => data.studies.budget.document;
   const labelOf = (m) => data.methods[m]?.label ?? study().methods[m].method;
@@ -50,23 +63,50 @@ export function createStudyBudget(store) {
     const account = method[shown.name];
     return account
       ? shown.name === "error"
-        ? { total: account.value, unit: account.unit, parts: account.parts, sum: account.sum, what: `${account.coordinate} at the end is off by` }
-        : { total: account.change, unit: "J", parts: account.parts, sum: account.change, what: "energy at the end has changed by" }
+        ? {
+            total: account.value,
+            unit: account.unit,
+            parts: account.parts,
+            sum: account.sum,
+            what: `${account.coordinate} at the end is off by`,
+          }
+        : {
+            total: account.change,
+            unit: "J",
+            parts: account.parts,
+            sum: account.change,
+            what: "energy at the end has changed by",
+          }
       : null;
   }
 
   function bar(m, parts, unit, label) {
     const width = Math.max(240, list.clientWidth);
     const middle = width / 2;
-    const picture = s("svg", { class: `account slot-${data.methods[m]?.slot ?? 0}`, viewBox: `0 0 ${width} ${HEIGHT}`, role: "img", "aria-label": label });
+    const picture = s("svg", {
+      class: `account slot-${data.methods[m]?.slot ?? 0}`,
+      viewBox: `0 0 ${width} ${HEIGHT}`,
+      role: "img",
+      "aria-label": label,
+    });
     for (const { name, value, from, to } of barsOf(parts, shown.order)) {
       const i = shown.order.findIndex((one) => one.name === name);
       const [x0, x1] = [middle + from * (middle - 4), middle + to * (middle - 4)];
       picture.append(
-        s("rect", { x: x0, y: 4, width: Math.max(0, x1 - x0), height: HEIGHT - 8, class: `part part-${i}` }, s("title", {}, `${shown.order[i].about}: ${numberOf(value, unit)}`)),
+        s(
+          "rect",
+          { x: x0, y: 4, width: Math.max(0, x1 - x0), height: HEIGHT - 8, class: `part part-${i}` },
+          s("title", {}, `${shown.order[i].about}: ${numberOf(value, unit)}`),
+        ),
       );
       if (x1 - x0 >= LETTERED) {
-        picture.append(s("text", { x: (x0 + x1) / 2, y: HEIGHT / 2 + 4.5, class: "letter" }, shown.order[i].letter));
+        picture.append(
+          s(
+            "text",
+            { x: (x0 + x1) / 2, y: HEIGHT / 2 + 4.5, class: "letter" },
+            shown.order[i].letter,
+          ),
+        );
       }
     }
     picture.append(s("path", { d: `M${middle} 0V${HEIGHT}`, class: "zero" }));
@@ -75,9 +115,11 @@ export function createStudyBudget(store) {
 
   function row(method, m) {
     const account = accountOf(method);
-    const why = method.state === "done" ? "there is no reference solution to be off from" : method.reason;
+    const why =
+      method.state === "done" ? "there is no reference solution to be off from" : method.reason;
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
-    const differs = account && Math.abs(account.sum - account.total) > ADDS_UP * Math.abs(account.total);
+    const differs =
+      account && Math.abs(account.sum - account.total) > ADDS_UP * Math.abs(account.total);
     const warning = differs
       ? `; its parts add up to ${numberOf(account.sum, account.unit)}: so large an error is no sum of small ones`
       : "";
@@ -88,7 +130,16 @@ export function createStudyBudget(store) {
       "figure",
       {},
       h("figcaption", {}, h("b", {}, labelOf(m)), ` ${words}`),
-      ...(account ? [bar(m, account.parts, account.unit, `${labelOf(m)}: ${words}; the parts are in the table below`)] : []),
+      ...(account
+        ? [
+            bar(
+              m,
+              account.parts,
+              account.unit,
+              `${labelOf(m)}: ${words}; the parts are in the table below`,
+            ),
+          ]
+        : []),
     );
   }
 
@@ -97,7 +148,17 @@ export function createStudyBudget(store) {
       h(
         "table",
         { class: "numbers" },
-        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "method"), h("th", { scope: "col" }, "all"), ...shown.order.map(({ word, about: title }) => h("th", { scope: "col", title }, word)))),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("th", { scope: "col" }, "method"),
+            h("th", { scope: "col" }, "all"),
+            ...shown.order.map(({ word, about: title }) => h("th", { scope: "col", title }, word)),
+          ),
+        ),
         h(
           "tbody",
           {},
@@ -108,7 +169,9 @@ export function createStudyBudget(store) {
               {},
               h("th", { scope: "row" }, labelOf(m)),
               ...(account
-                ? [account.total, ...shown.order.map(({ name }) => account.parts[name])].map((value) => h("td", {}, numberOf(value, account.unit)))
+                ? [account.total, ...shown.order.map(({ name }) => account.parts[name])].map(
+                    (value) => h("td", {}, numberOf(value, account.unit)),
+                  )
                 : [h("td", { colspan: shown.order.length + 1 }, method.reason || "–")]),
             );
           }),
@@ -129,7 +192,17 @@ export function createStudyBudget(store) {
     list.replaceChildren(...study().methods.map(row));
     legend.replaceChildren(
       ...shown.order.map(({ letter, about: words }, i) =>
-        h("li", {}, s("svg", { class: "account key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("rect", { width: 18, height: 18, class: `part part-${i}` }), s("text", { x: 9, y: 13, class: "letter" }, letter)), words),
+        h(
+          "li",
+          {},
+          s(
+            "svg",
+            { class: "account key", viewBox: "0 0 18 18", "aria-hidden": "true" },
+            s("rect", { width: 18, height: 18, class: `part part-${i}` }),
+            s("text", { x: 9, y: 13, class: "letter" }, letter),
+          ),
+          words,
+        ),
       ),
     );
     fillTable();

@@ -1,7 +1,16 @@
 // @ts-check
-// What accuracy costs: error against cost, both by decades; a point can be pointed at, and clicked to give its method this step.
+// What accuracy costs: error against cost, both by decades; a point can be pointed at, and clicked
+// to give its method this step.
 import { plain, powerOfTen, quantity, scientific } from "../state/format.js";
-import { COSTS, ERRORS, dotsOf, floorOf, frameOf, sentencesOf } from "../state/studies.js";
+import {
+  COSTS,
+  ERRORS,
+  byName,
+  dotsOf,
+  floorOf,
+  frameOf,
+  sentencesOf,
+} from "../state/study-documents.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
 
@@ -23,7 +32,7 @@ const NARROW = 560; // [px] below which there is less room for names
 
 /** "8.2 Mop", "1.2 ms", "32 k" @param {string} kind @param {number} value */
 export function costText(kind, value) {
-  const { unit } = COSTS.find(({ name }) => name === kind);
+  const { unit } = byName(COSTS, kind);
   return kind === "operations"
     ? `${quantity(value, "", 2)} operations`.replace(/ ([kMG]) operations/, " $1op")
     : kind === "evaluations"
@@ -31,9 +40,11 @@ export function costText(kind, value) {
       : quantity(value, unit);
 }
 
-/** @param {import("../state/studies.js").Dot} dot */
+/** @param {import("../state/study-documents.js").Dot} dot */
 const sizeText = (dot) =>
-  dot.sizeName === "h" ? `h = ${quantity(dot.size, "s")}` : `rtol = ${plain(Number(dot.size.toPrecision(2)))}`;
+  dot.sizeName === "h"
+    ? `h = ${quantity(dot.size, "s")}`
+    : `rtol = ${plain(Number(dot.size.toPrecision(2)))}`;
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -70,7 +81,12 @@ export function createStudyCost(store, onPick) {
         ),
       ),
     );
-  const bar = h("div", { class: "study-bar" }, choice(ERRORS, "error", "error of"), choice(COSTS, "cost", "cost in"));
+  const bar = h(
+    "div",
+    { class: "study-bar" },
+    choice(ERRORS, "error", "error of"),
+    choice(COSTS, "cost", "cost in"),
+  );
   const el = h(
     "div",
     {},
@@ -84,27 +100,37 @@ export function createStudyCost(store, onPick) {
     h("details", { class: "fold" }, h("summary", {}, "All points as a table"), table),
   );
   const rover = rove(picture, { move, act, tell });
-  /** @type {import("../state/studies.js").Dot[][]} */
+  /** @type {import("../state/study-documents.js").Dot[][]} */
   let dots = [];
 
   const study = () => data.studies["work-precision"].document;
   const labelOf = (m) => data.methods[m]?.label ?? study().methods[m].method;
   const slotOf = (m) => data.methods[m]?.slot ?? study().methods[m].slot;
-  const dotOf = (node) => dots[Number(node.getAttribute("data-m"))]?.find(({ k }) => k === Number(node.getAttribute("data-spot")));
+  const dotOf = (node) =>
+    dots[Number(node.getAttribute("data-m"))]?.find(
+      ({ k }) => k === Number(node.getAttribute("data-spot")),
+    );
 
-  /** @param {import("../state/studies.js").Dot} dot */
+  /** @param {import("../state/study-documents.js").Dot} dot */
   function wordsOf(dot) {
     const name = `${labelOf(dot.m)}, ${sizeText(dot)}`;
     if (dot.error === Infinity) {
       return `${name}: ${dot.state}: ${dot.reason}`;
     }
-    const value = dot.bound ? `at most ${scientific(floorOf(study(), view.error))}, which the reference cannot tell from 0` : scientific(dot.error);
+    const value = dot.bound
+      ? `at most ${scientific(floorOf(study(), view.error))}, which the reference cannot tell from 0`
+      : scientific(dot.error);
     return `${name}: error ${value}, ${costText(view.cost, dot.cost)}`;
   }
 
   function tell(node) {
     const dot = node && dotOf(node);
-    say(told, dot ? `${wordsOf(dot)}. Click or Enter: run the method so.` : "Point at a mark, or reach it with the arrow keys; a click runs the method with this step.");
+    say(
+      told,
+      dot
+        ? `${wordsOf(dot)}. Click or Enter: run the method so.`
+        : "Point at a mark, or reach it with the arrow keys; a click runs the method with this step.",
+    );
   }
 
   function act(node) {
@@ -118,7 +144,11 @@ export function createStudyCost(store, onPick) {
     const m = Number(node.getAttribute("data-m"));
     const k = Number(node.getAttribute("data-spot"));
     const spots = [...picture.querySelectorAll("[data-spot]")];
-    const at = (mm, kk) => spots.find((one) => Number(one.getAttribute("data-m")) === mm && Number(one.getAttribute("data-spot")) === kk);
+    const at = (mm, kk) =>
+      spots.find(
+        (one) =>
+          Number(one.getAttribute("data-m")) === mm && Number(one.getAttribute("data-spot")) === kk,
+      );
     if (key === "ArrowRight" || key === "ArrowLeft") {
       const list = dots[m].map((dot) => dot.k);
       return at(m, list[list.indexOf(k) + (key === "ArrowRight" ? 1 : -1)]);
@@ -157,15 +187,20 @@ export function createStudyCost(store, onPick) {
   function draw() {
     const width = Math.max(280, frame.clientWidth);
     const right = width < NARROW ? 92 : 168;
-    const error = ERRORS.find(({ name }) => name === view.error);
-    const cost = COSTS.find(({ name }) => name === view.cost);
+    const error = byName(ERRORS, view.error);
+    const cost = byName(COSTS, view.cost);
     dots = dotsOf(study(), view.error, view.cost);
     const floor = floorOf(study(), view.error);
     const box = frameOf(dots, floor);
     picture.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
-    picture.setAttribute("aria-label", `Error of ${error.word} against ${cost.word}, by method; arrow keys go from point to point`);
+    picture.setAttribute(
+      "aria-label",
+      `Error of ${error.word} against ${cost.word}, by method; arrow keys go from point to point`,
+    );
     if (!box) {
-      picture.replaceChildren(s("text", { x: 12, y: 40, class: "note" }, "no point has come to its end"));
+      picture.replaceChildren(
+        s("text", { x: 12, y: 40, class: "note" }, "no point has come to its end"),
+      );
       return;
     }
     const inner = { w: width - ROOM.left - right, h: HEIGHT - ROOM.top - ROOM.bottom };
@@ -173,13 +208,25 @@ export function createStudyCost(store, onPick) {
     const y = (value) =>
       value === Infinity
         ? ROOM.top - 13
-        : ROOM.top + (inner.h * Math.min(box.y1 - box.y0, Math.max(0, box.y1 - Math.log10(value)))) / (box.y1 - box.y0);
+        : ROOM.top +
+          (inner.h * Math.min(box.y1 - box.y0, Math.max(0, box.y1 - Math.log10(value)))) /
+            (box.y1 - box.y0);
     const bottom = ROOM.top + inner.h;
     const parts = [];
     if (floor > 0 && Math.log10(floor) > box.y0) {
       parts.push(
-        s("rect", { x: ROOM.left, y: y(floor), width: inner.w, height: bottom - y(floor), class: "band" }),
-        s("text", { x: ROOM.left + 6, y: Math.min(bottom - 5, y(floor) + 14), class: "note" }, "what the reference itself may be off"),
+        s("rect", {
+          x: ROOM.left,
+          y: y(floor),
+          width: inner.w,
+          height: bottom - y(floor),
+          class: "band",
+        }),
+        s(
+          "text",
+          { x: ROOM.left + 6, y: Math.min(bottom - 5, y(floor) + 14), class: "note" },
+          "what the reference itself may be off",
+        ),
       );
     }
     for (const e of decadesOf(box.y0, box.y1, 9)) {
@@ -205,16 +252,26 @@ export function createStudyCost(store, onPick) {
     const groups = dots.map((list, m) => {
       const look = data.look.slots[slotOf(m)];
       const sound = list.filter((dot) => dot.error !== Infinity);
-      const group = s("g", { class: `slot-${slotOf(m)} dots`, role: "group", "aria-label": labelOf(m) });
-      const path = sound.map((dot, i) => `${i ? "L" : "M"}${x(dot.cost).toFixed(1)} ${y(dot.error).toFixed(1)}`).join("");
+      const group = s("g", {
+        class: `slot-${slotOf(m)} dots`,
+        role: "group",
+        "aria-label": labelOf(m),
+      });
+      const path = sound
+        .map((dot, i) => `${i ? "L" : "M"}${x(dot.cost).toFixed(1)} ${y(dot.error).toFixed(1)}`)
+        .join("");
       if (path) {
-        group.append(s("path", { d: path, class: "curve", "stroke-dasharray": look.dash.join(" ") || null }));
+        group.append(
+          s("path", { d: path, class: "curve", "stroke-dasharray": look.dash.join(" ") || null }),
+        );
         const last = sound[sound.length - 1];
         ends.push({ m, x: x(last.cost), y: y(last.error), from: y(last.error) });
       }
       for (const dot of list) {
         const failed = dot.error === Infinity;
-        const px = Number.isFinite(dot.cost) ? Math.min(ROOM.left + inner.w, Math.max(ROOM.left, x(dot.cost))) : ROOM.left + inner.w;
+        const px = Number.isFinite(dot.cost)
+          ? Math.min(ROOM.left + inner.w, Math.max(ROOM.left, x(dot.cost)))
+          : ROOM.left + inner.w;
         const open = failed || dot.bound || OPEN.includes(look.marker);
         group.append(
           s(
@@ -229,7 +286,11 @@ export function createStudyCost(store, onPick) {
               "aria-label": wordsOf(dot),
             },
             s("circle", { r: 12, class: "target" }),
-            s("path", { d: failed ? FAILED : MARKERS[look.marker], transform: "scale(4.4)", class: open ? "open" : "solid" }),
+            s("path", {
+              d: failed ? FAILED : MARKERS[look.marker],
+              transform: "scale(4.4)",
+              class: open ? "open" : "solid",
+            }),
           ),
         );
       }
@@ -238,7 +299,10 @@ export function createStudyCost(store, onPick) {
     const names = namesAt(ends, ROOM.top + 6, bottom - 4).flatMap((end) => {
       const at = ROOM.left + inner.w + 10;
       return [
-        s("path", { d: `M${(end.x + 7).toFixed(1)} ${end.from.toFixed(1)}L${at - 3} ${end.y.toFixed(1)}`, class: "leader" }),
+        s("path", {
+          d: `M${(end.x + 7).toFixed(1)} ${end.from.toFixed(1)}L${at - 3} ${end.y.toFixed(1)}`,
+          class: "leader",
+        }),
         s("text", { x: at, y: end.y + 4, class: "name" }, labelOf(end.m)),
       ];
     });
@@ -256,17 +320,25 @@ export function createStudyCost(store, onPick) {
         h(
           "tbody",
           {},
-          ...dots.flat().map((dot) =>
-            h(
-              "tr",
-              {},
-              h("th", { scope: "row" }, labelOf(dot.m)),
-              h("td", {}, sizeText(dot)),
-              h("td", {}, dot.error === Infinity ? "–" : `${dot.bound ? "≤ " : ""}${scientific(dot.bound ? floorOf(study(), view.error) : dot.error)}`),
-              h("td", {}, dot.error === Infinity ? "–" : costText(view.cost, dot.cost)),
-              h("td", {}, dot.error === Infinity ? `${dot.state}: ${dot.reason}` : "done"),
+          ...dots
+            .flat()
+            .map((dot) =>
+              h(
+                "tr",
+                {},
+                h("th", { scope: "row" }, labelOf(dot.m)),
+                h("td", {}, sizeText(dot)),
+                h(
+                  "td",
+                  {},
+                  dot.error === Infinity
+                    ? "–"
+                    : `${dot.bound ? "≤ " : ""}${scientific(dot.bound ? floorOf(study(), view.error) : dot.error)}`,
+                ),
+                h("td", {}, dot.error === Infinity ? "–" : costText(view.cost, dot.cost)),
+                h("td", {}, dot.error === Infinity ? `${dot.state}: ${dot.reason}` : "done"),
+              ),
             ),
-          ),
         ),
       ),
     );
@@ -284,11 +356,17 @@ export function createStudyCost(store, onPick) {
     fillTable();
     const lines = sentencesOf(study(), view.error, view.cost);
     sentences.replaceChildren(
-      ...(lines.length ? lines : ["Accuracies are ranked for position, speed and reactions."]).map((line) => h("li", {}, line)),
+      ...(lines.length ? lines : ["Accuracies are ranked for position, speed and reactions."]).map(
+        (line) => h("li", {}, line),
+      ),
     );
     classes.replaceChildren(
       ...study().methods.map((method, m) =>
-        h("li", { class: method.class.kind === "elsewhere" ? "wrong" : "" }, `${labelOf(m)}: ${method.class.text}`),
+        h(
+          "li",
+          { class: method.class.kind === "elsewhere" ? "wrong" : "" },
+          `${labelOf(m)}: ${method.class.text}`,
+        ),
       ),
     );
     tell(null);

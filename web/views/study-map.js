@@ -1,8 +1,9 @@
 // @ts-check
-// Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that was predicted. A cell can be
-// pointed at, and clicked to set what its axes stand for.
+// Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
+// was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
 import { plain, prettyUnit, quantity } from "../state/format.js";
-import { CLASSES, boundaryOf, presetsOf } from "../state/studies.js";
+import { presetsOf } from "../state/studies.js";
+import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
@@ -13,14 +14,16 @@ const HEIGHT = 360;
 const TICKS = 6;
 
 /** @param {{name: string, unit: string}} axis */
-const titleOf = (axis) => `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
+const titleOf = (axis) =>
+  `${GREEK[axis.name] ?? axis.name}${axis.unit ? `, ${prettyUnit(axis.unit)}` : ""}`;
 /** @param {{name: string, unit: string}} axis @param {number} value */
 const valueOf = (axis, value) =>
   `${GREEK[axis.name] ?? axis.name} = ${axis.unit === "s" ? quantity(value, "s") : `${plain(Number(value.toPrecision(3)))}${axis.unit ? ` ${prettyUnit(axis.unit)}` : ""}`}`;
 
 /**
  * @param {import("../state/store.js").Store} store
- * @param {{changePreset: (preset: string) => void, onPick: (change: {m: number, spelling: string, parameters: Record<string, number>, words: string}) => void, preset: () => string}} actions
+ * @param {{changePreset: (preset: string) => void, onPick: (change: {m: number, spelling: string,
+ *   parameters: Record<string, number>, words: string}) => void, preset: () => string}} actions
  */
 export function createStudyMap(store, actions) {
   const data = store.data;
@@ -37,14 +40,20 @@ export function createStudyMap(store, actions) {
     legend,
   );
 
-  /** @type {{method: any, picture: SVGElement, px: (i: number) => number, py: (j: number) => number}[]} */
+  /**
+   * @type {{method: any, picture: SVGElement, px: (i: number) => number, py: (j: number) =>
+   *   number}[]}
+   */
   let drawn = [];
   const map = () => data.studies.stability.document;
   const placeOf = (spelling) => {
     const wanted = parseSpelling(spelling);
     return data.methods.findIndex(({ spelling: own }) => {
       const mine = parseSpelling(own);
-      return mine.formulation.name === wanted.formulation.name && mine.integrator.name === wanted.integrator.name;
+      return (
+        mine.formulation.name === wanted.formulation.name &&
+        mine.integrator.name === wanted.integrator.name
+      );
     });
   };
   const labelOf = (method) => data.methods[placeOf(method.method)]?.label ?? method.method;
@@ -52,7 +61,9 @@ export function createStudyMap(store, actions) {
   function wordsOf(method, i, j) {
     const cell = method.rows[j][i];
     const { x, y } = map();
-    const where = [x && valueOf(x, x.values[i]), valueOf(y, y.values[j])].filter(Boolean).join(", ");
+    const where = [x && valueOf(x, x.values[i]), valueOf(y, y.values[j])]
+      .filter(Boolean)
+      .join(", ");
     const outcome = `${CLASSES[cell.class]?.word ?? cell.class}${cell.reason ? `: ${cell.reason}` : ""}`;
     const margin = Number.isFinite(cell.margin ?? NaN)
       ? `; the step is ${plain(Number(cell.margin.toPrecision(2)))} of the predicted limit`
@@ -79,7 +90,9 @@ export function createStudyMap(store, actions) {
         spelling = withSetting(data.catalogue, spelling, axis.name, String(value));
       }
     }
-    const words = axes.map(([axis, at]) => valueOf(axis, Number(axis.values[at].toPrecision(4)))).join(", ");
+    const words = axes
+      .map(([axis, at]) => valueOf(axis, Number(axis.values[at].toPrecision(4))))
+      .join(", ");
     return { m, spelling, parameters, words: `${labelOf(method)}: ${words}` };
   }
 
@@ -88,7 +101,8 @@ export function createStudyMap(store, actions) {
     return axis.values.map((value, i) => ({ value, i })).filter(({ i }) => i % every === 0);
   }
 
-  const short = (axis, value) => (axis.unit === "s" ? quantity(value, "s", 2) : quantity(value, "", 2).trim());
+  const short = (axis, value) =>
+    axis.unit === "s" ? quantity(value, "s", 2) : quantity(value, "", 2).trim();
 
   /** Where the method stands now, in cells; null: off the map. */
   function presentPlace(method) {
@@ -103,7 +117,8 @@ export function createStudyMap(store, actions) {
           : settingOf(data.catalogue, data.methods[m]?.spelling ?? "", axis.name)?.value;
       const f = (v) => (axis.scale === "log" ? Math.log(v) : v);
       const n = axis.values.length;
-      const share = (f(Number(value)) - f(axis.values[0])) / (f(axis.values[n - 1]) - f(axis.values[0]));
+      const share =
+        (f(Number(value)) - f(axis.values[0])) / (f(axis.values[n - 1]) - f(axis.values[0]));
       const place = 0.5 + share * (n - 1);
       return value !== undefined && place >= 0 && place <= n ? place : NaN;
     };
@@ -134,32 +149,78 @@ export function createStudyMap(store, actions) {
         picture.append(
           s(
             "g",
-            { class: `cell ${cell.class}`, role: "button", tabindex: -1, "data-spot": `${i} ${j}`, "aria-label": wordsOf(method, column, j) },
+            {
+              class: `cell ${cell.class}`,
+              role: "button",
+              tabindex: -1,
+              "data-spot": `${i} ${j}`,
+              "aria-label": wordsOf(method, column, j),
+            },
             s("rect", { x: px(i), y: py(j + 1), width: w, height: hgt }),
-            s("text", { x: px(i) + w / 2, y: py(j) - hgt / 2 + 4, class: "letter" }, CLASSES[cell.class]?.letter ?? ""),
+            s(
+              "text",
+              { x: px(i) + w / 2, y: py(j) - hgt / 2 + 4, class: "letter" },
+              CLASSES[cell.class]?.letter ?? "",
+            ),
           ),
         );
       }
     }
     methods.forEach((method, k) => {
       for (const line of boundaryOf(map(), method)) {
-        const d = line.map(([i, j], n) => `${n ? "L" : "M"}${px(k + i).toFixed(1)} ${py(j).toFixed(1)}`).join("");
-        picture.append(s("path", { d, class: "boundary under" }), s("path", { d, class: "boundary" }));
+        const d = line
+          .map(([i, j], n) => `${n ? "L" : "M"}${px(k + i).toFixed(1)} ${py(j).toFixed(1)}`)
+          .join("");
+        picture.append(
+          s("path", { d, class: "boundary under" }),
+          s("path", { d, class: "boundary" }),
+        );
       }
       drawn.push({ method, picture, px: (i) => px(k + i), py });
     });
-    const ticks = tickList(y).map(({ value, i }) => s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)));
+    const ticks = tickList(y).map(({ value, i }) =>
+      s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)),
+    );
     if (x) {
-      ticks.push(...tickList(x).map(({ value, i }) => s("text", { x: px(i + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "tick middle" }, short(x, value))));
-      ticks.push(s("text", { x: (ROOM.left + width - ROOM.right) / 2, y: HEIGHT - 8, class: "title middle" }, titleOf(x)));
+      ticks.push(
+        ...tickList(x).map(({ value, i }) =>
+          s(
+            "text",
+            { x: px(i + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "tick middle" },
+            short(x, value),
+          ),
+        ),
+      );
+      ticks.push(
+        s(
+          "text",
+          { x: (ROOM.left + width - ROOM.right) / 2, y: HEIGHT - 8, class: "title middle" },
+          titleOf(x),
+        ),
+      );
     } else {
-      ticks.push(...methods.map((method, k) => s("text", { x: px(k + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "middle" }, labelOf(method))));
+      ticks.push(
+        ...methods.map((method, k) =>
+          s(
+            "text",
+            { x: px(k + 0.5), y: HEIGHT - ROOM.bottom + 16, class: "middle" },
+            labelOf(method),
+          ),
+        ),
+      );
     }
     const middle = (ROOM.top + HEIGHT - ROOM.bottom) / 2;
-    ticks.push(s("text", { x: 13, y: middle, class: "title middle", transform: `rotate(-90 13 ${middle})` }, titleOf(y)));
+    ticks.push(
+      s(
+        "text",
+        { x: 13, y: middle, class: "title middle", transform: `rotate(-90 13 ${middle})` },
+        titleOf(y),
+      ),
+    );
     picture.append(...ticks);
     const cellAt = (i, j) => picture.querySelector(`[data-spot="${i} ${j}"]`) ?? undefined;
-    const placed = (node) => /** @type {string} */ (node.getAttribute("data-spot")).split(" ").map(Number);
+    const placed = (node) =>
+      /** @type {string} */ (node.getAttribute("data-spot")).split(" ").map(Number);
     const STEPS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     const rover = rove(picture, {
       move: (node, key) => {
@@ -172,14 +233,19 @@ export function createStudyMap(store, actions) {
       },
       tell: (node) => {
         const [i, j] = node ? placed(node) : [0, 0];
-        say(told, node ? `${wordsOf(at(i).method, at(i).column, j)}. Click or Enter: run it so.` : IDLE);
+        say(
+          told,
+          node ? `${wordsOf(at(i).method, at(i).column, j)}. Click or Enter: run it so.` : IDLE,
+        );
       },
     });
     rover.start(cellAt(0, 0));
     return h(
       "figure",
       {},
-      ...methods.map((method) => h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`)),
+      ...methods.map((method) =>
+        h("figcaption", {}, h("b", {}, labelOf(method)), ` ${method.agreement.text}`),
+      ),
       picture,
     );
   }
@@ -187,7 +253,9 @@ export function createStudyMap(store, actions) {
   const IDLE = "Point at a cell, or reach it with the arrow keys; a click runs the method so.";
 
   function fillLegend() {
-    const used = new Set(map().methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)));
+    const used = new Set(
+      map().methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)),
+    );
     legend.replaceChildren(
       ...Object.entries(CLASSES)
         .filter(([name]) => used.has(name))
@@ -195,25 +263,58 @@ export function createStudyMap(store, actions) {
           h(
             "li",
             {},
-            s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("g", { class: `cell ${name}` }, s("rect", { width: 18, height: 18 }), s("text", { x: 9, y: 13, class: "letter" }, letter))),
+            s(
+              "svg",
+              { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
+              s(
+                "g",
+                { class: `cell ${name}` },
+                s("rect", { width: 18, height: 18 }),
+                s("text", { x: 9, y: 13, class: "letter" }, letter),
+              ),
+            ),
             word,
           ),
         ),
-      h("li", {}, s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("path", { d: "M0 9H18", class: "boundary" })), "predicted boundary"),
+      h(
+        "li",
+        {},
+        s(
+          "svg",
+          { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
+          s("path", { d: "M0 9H18", class: "boundary" }),
+        ),
+        "predicted boundary",
+      ),
       ...(fields.querySelector(".here")
-        ? [h("li", {}, s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, s("circle", { cx: 9, cy: 9, r: 6, class: "here" })), "as it runs now")]
+        ? [
+            h(
+              "li",
+              {},
+              s(
+                "svg",
+                { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
+                s("circle", { cx: 9, cy: 9, r: 6, class: "here" }),
+              ),
+              "as it runs now",
+            ),
+          ]
         : []),
     );
   }
 
   function paint() {
     const presets = presetsOf(data.methods);
-    menu.replaceChildren(...presets.map(({ preset, word }) => h("option", { value: preset }, word)));
+    menu.replaceChildren(
+      ...presets.map(({ preset, word }) => h("option", { value: preset }, word)),
+    );
     menu.value = actions.preset();
     fields.hidden = legend.hidden = told.hidden = !map();
     if (map()) {
       drawn = [];
-      fields.replaceChildren(...(map().x ? map().methods.map((method) => drawOne([method])) : [drawOne(map().methods)]));
+      fields.replaceChildren(
+        ...(map().x ? map().methods.map((method) => drawOne([method])) : [drawOne(map().methods)]),
+      );
       mark();
       say(told, IDLE);
     }

@@ -1,5 +1,6 @@
 // @ts-check
-// The cut joint under a magnifying glass: its two halves, and the gap between them in red with its true size.
+// The cut joint under a magnifying glass: its two halves, and the gap between them in red with its
+// true size.
 import { ROUNDING, magnification, niceBelow, quantity } from "../state/format.js";
 import { lookOf } from "../state/look.js";
 import { listen } from "../state/store.js";
@@ -51,7 +52,10 @@ export function createTear(el, store) {
     return best;
   }
 
-  /** 1, 2, 5 times a power of ten, changed only when the picture would no longer be good. @param {number} gap */
+  /**
+   * 1, 2, 5 times a power of ten, changed only when the picture would no longer be good.
+   * @param {number} gap
+   */
   function choosePower(gap) {
     const drawn = gap * METRE * glassPower;
     if (drawn > FULL || drawn < LEAST) {

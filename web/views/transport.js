@@ -1,14 +1,14 @@
 // @ts-check
 // Play, pause, step, back to the start, speed, and the time with its scrubber.
 import { plain, seconds } from "../state/format.js";
-import { stepSeconds } from "../state/session.js";
+import { stepSeconds } from "../session/speeds.js";
 import { listen } from "../state/store.js";
 import { h, icon, say, set } from "../widgets/dom.js";
 
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
- * @param {import("../state/session.js").Session} actions
+ * @param {import("../session/session.js").Session} actions
  */
 export function createTransport(el, store, actions) {
   const data = store.data;

@@ -1,16 +1,22 @@
 // @ts-check
-// From metres to pixels (y down): a parallel view, fitted once to the envelope of the motion; it moves only when it is turned.
+// From metres to pixels (y down): a parallel view, fitted once to the envelope of the motion; it
+// moves only when it is turned.
 import { niceBelow } from "../state/format.js";
 import { FRONT } from "../state/look.js";
 
 /** @typedef {import("../state/look.js").Look} Look */
 
-const MARGIN = { left: 36, right: 36, top: 40, bottom: 56 }; // [px] room for hatching, labels and the scale bar
+/** [px] room for hatching, labels and the scale bar */
+const MARGIN = { left: 36, right: 36, top: 40, bottom: 56 };
 const SCALE_BAR = 150; // [px] at most
 
 const dot = (a, x, y, z) => a[0] * x + a[1] * y + a[2] * z;
 
-/** Box [left, bottom, right, top] around points (flat x, y, z) as they are seen. @param {number[]} points @param {Look} look */
+/**
+ * Box [left, bottom, right, top] around points (flat x, y, z) as they are seen.
+ * @param {number[]} points
+ * @param {Look} look
+ */
 export function seenBox(points, look) {
   const out = [Infinity, Infinity, -Infinity, -Infinity];
   for (let i = 0; i + 2 < points.length; i += 3) {
@@ -46,22 +52,26 @@ export function createCamera(box, width, height, look = FRONT) {
     look,
     /** unit vector to the viewer */
     toward: [0, 1, 2].map(
-      (k) =>
-        right[(k + 1) % 3] * up[(k + 2) % 3] - right[(k + 2) % 3] * up[(k + 1) % 3],
+      (k) => right[(k + 1) % 3] * up[(k + 2) % 3] - right[(k + 2) % 3] * up[(k + 1) % 3],
     ),
     scaleBar: { metres: length, pixels: length * scale },
-    /** @param {ArrayLike<number>} points flat x, y, z @param {number} i @returns {[number, number]} */
+    /**
+     * @param {ArrayLike<number>} points flat x, y, z
+     * @param {number} i
+     * @returns {[number, number]}
+     */
     point: (points, i) => {
       const [x, y, z] = [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
-      return [
-        cx + (dot(right, x, y, z) - mx) * scale,
-        cy - (dot(up, x, y, z) - my) * scale,
-      ];
+      return [cx + (dot(right, x, y, z) - mx) * scale, cy - (dot(up, x, y, z) - my) * scale];
     },
   };
 }
 
-/** The box itself, or one around the points when a scene has no motion to look at. @param {number[] | undefined} box @param {ArrayLike<number>} points */
+/**
+ * The box itself, or one around the points when a scene has no motion to look at.
+ * @param {number[] | undefined} box
+ * @param {ArrayLike<number>} points
+ */
 export function boxAround(box, points) {
   if (box && box.length === 4 && box.every(Number.isFinite)) {
     return box;

@@ -44,7 +44,11 @@ export function s(tag, attributes = {}, ...children) {
   return node;
 }
 
-/** Text that changes often: touched only when it really changed. @param {Element} node @param {string} text */
+/**
+ * Text that changes often: touched only when it really changed.
+ * @param {Element} node
+ * @param {string} text
+ */
 export function say(node, text) {
   if (node.textContent !== text) {
     node.textContent = text;

@@ -1,6 +1,7 @@
 // @ts-check
-// Where a name stands beside its point: of twelve places near it and twelve farther off the one with the most room, kept until another is clearly better, so that names
-// neither cover the parts nor jump.
+// Where a name stands beside its point: of twelve places near it and twelve farther off the one
+// with the most room, kept until another is clearly better, so that names neither cover the parts
+// nor jump.
 
 const PLACES = 12;
 const ENOUGH = 5; // [px] of room; more is no better
@@ -32,13 +33,12 @@ export function createNamePlaces(size) {
   function placeAt([x, y], width, k) {
     const half = width / 2;
     const { angle, more } = SPOTS[k];
-    return [
-      x + Math.cos(angle) * (OFF - 3 + half + more),
-      y - Math.sin(angle) * (OFF + more),
-    ];
+    return [x + Math.cos(angle) * (OFF - 3 + half + more), y - Math.sin(angle) * (OFF + more)];
   }
 
-  function score([x, y], width, lines) {
+  /** @param {number[]} middle @param {number} width @param {number[][]} lines */
+  function score(middle, width, lines) {
+    const [x, y] = middle;
     const half = width / 2;
     const outside =
       x - half < 2 || x + half > size.width - 2 || y < 10 || y > size.height - 10 ? 40 : 0;
@@ -57,11 +57,12 @@ export function createNamePlaces(size) {
      * @returns {{text: string, x: number, y: number}[]} middles of the names, as far as they fit
      */
     place(names, obstacles) {
+      /** @type {[number, number][]} */
       const taken = [];
       const lines = [...obstacles];
       const cheap = names.length * obstacles.length > MOST_WORK;
       return names.flatMap(({ i, text, at }) => {
-        if (taken.some(([x, y]) => Math.hypot(x - at[0], y - at[1]) < CLOSE)) {
+        if (taken.some((other) => Math.hypot(other[0] - at[0], other[1] - at[1]) < CLOSE)) {
           return [];
         }
         taken.push(at);

@@ -1,6 +1,6 @@
 // @ts-check
-// A mechanism in pieces: which shapes share an outline, and what covers what. In the plane kinds lie one over the other; in
-// space what is nearer covers what is farther.
+// A mechanism in pieces: which shapes share an outline, and what covers what. In the plane kinds
+// lie one over the other; in space what is nearer covers what is farther.
 import * as shapes from "./shapes.js";
 
 const CROWDED = 60; // shapes: a long chain is drawn with thinner bars
@@ -49,7 +49,8 @@ export function baseOf(scene) {
 }
 
 /**
- * The moving shapes, in pieces from the lowest to the topmost of a plane mechanism; in space and in crowds see `alone` and `together`.
+ * The moving shapes, in pieces from the lowest to the topmost of a plane mechanism; in space and in
+ * crowds see `alone` and `together`.
  * @param {Scene} scene
  * @param {"alone" | "bodies" | "together"} how each shape, each body, or each layer is a piece
  * @returns {Piece[]}
@@ -71,6 +72,7 @@ export function piecesOf(scene, how) {
         : how === "alone" || own
           ? String(i)
           : `${kind.order} ${kind.layer === "outline" ? shape.body : kind.layer}`;
+    /** @type {Piece & {order: number}} */
     const piece = pieces.get(key) ?? { layer: kind.layer, order: kind.order, shapes: [] };
     piece.shapes.push(shape);
     pieces.set(key, piece);
@@ -78,7 +80,11 @@ export function piecesOf(scene, how) {
   return [...pieces.values()].sort((a, b) => a.order - b.order);
 }
 
-/** Regular polygons of many corners stand for circles. @param {ArrayLike<number>} points @param {Shape} shape */
+/**
+ * Regular polygons of many corners stand for circles.
+ * @param {ArrayLike<number>} points
+ * @param {Shape} shape
+ */
 function isDisc(points, { kind, p, n }) {
   if (kind !== "polygon" || n < LEAST_DISC) {
     return false;
@@ -112,7 +118,9 @@ export function createPen(scene, camera, size) {
     return Math.min(11, Math.max(crowded ? 1.5 : 4.5, 0.5 * width * camera.scale));
   }
 
-  /** How far along d from p something may be: the picture, and in space no farther than the motion. */
+  /**
+   * How far along d from p something may be: the picture, and in space no farther than the motion.
+   */
   function reachOf(p, d) {
     const within = (component, low, high, from) =>
       Math.abs(component) < 1e-9
@@ -146,7 +154,11 @@ export function createPen(scene, camera, size) {
     return [place(a), place(b)];
   }
 
-  /** @param {Shape} shape @param {ArrayLike<number>} points @returns {string} path data, "" where a point is not known */
+  /**
+   * @param {Shape} shape
+   * @param {ArrayLike<number>} points
+   * @returns {string} path data, "" where a point is not known
+   */
   function outline(shape, points) {
     if (Number.isNaN(points[3 * shape.p])) {
       return "";
@@ -191,16 +203,26 @@ export function createPen(scene, camera, size) {
   const bars = scene.drawing.shapes.filter(({ kind }) => kind === "bar");
   const near = 1e-3 * camera.scaleBar.metres;
 
-  /** A pin is seen before every bar that it holds. @param {Shape} pin @param {ArrayLike<number>} points */
+  /**
+   * A pin is seen before every bar that it holds.
+   * @param {Shape} pin
+   * @param {ArrayLike<number>} points
+   */
   function pinDepth(pin, points) {
     const same = (i) =>
       [0, 1, 2].every((k) => Math.abs(points[3 * i + k] - points[3 * pin.p + k]) < near);
-    return bars
-      .filter(({ p, q }) => same(p) || same(q))
-      .reduce((most, bar) => Math.max(most, middleDepth(bar, points)), depthAt(points, pin.p)) + near;
+    return (
+      bars
+        .filter(({ p, q }) => same(p) || same(q))
+        .reduce((most, bar) => Math.max(most, middleDepth(bar, points)), depthAt(points, pin.p)) +
+      near
+    );
   }
 
-  /** Lines of the picture that a name should keep clear of: [x, y, x, y, half a width]. @returns {number[][]} */
+  /**
+   * Lines of the picture that a name should keep clear of: [x, y, x, y, half a width].
+   * @returns {number[][]}
+   */
   function obstacles(points) {
     return scene.drawing.shapes.flatMap((shape) => {
       const place = (i) => camera.point(points, i);
@@ -233,7 +255,10 @@ export function createPen(scene, camera, size) {
     /** Towards the viewer. @param {Piece} piece of one shape @param {ArrayLike<number>} points */
     depth: ({ layer, shapes: [shape] }, points) =>
       layer === "pins" ? pinDepth(shape, points) : middleDepth(shape, points),
-    /** @param {Shape} shape what stands on the ground and is a mark @param {ArrayLike<number>} points */
+    /**
+     * @param {Shape} shape what stands on the ground and is a mark
+     * @param {ArrayLike<number>} points
+     */
     mark: (shape, points) =>
       shape.kind === "ground"
         ? shapes.ground(camera.point(points, shape.p), crowded ? 4 : 11)

@@ -1,5 +1,6 @@
 // @ts-check
-// One plot: uPlot for curves and axes, drawn over it the time cursor, the names at the curves' ends and where a run ended.
+// One plot: uPlot for curves and axes, drawn over it the time cursor, the names at the curves' ends
+// and where a run ended.
 import uPlot from "uplot";
 import { niceAbove, powerOfTen, quantity } from "../state/format.js";
 
@@ -44,7 +45,10 @@ function linearTicks(max) {
 export function createPlot(el, options) {
   /** @type {uPlot | null} */
   let plot = null;
-  /** @type {{label: string, colour: string, dash: number[], width: number, ended: number, present: boolean}[]} */
+  /**
+   * @type {{label: string, colour: string, dash: number[], width: number, ended: number, present:
+   *   boolean}[]}
+   */
   let series = [];
   let ink = { text: "#000", muted: "#888", hairline: "#ddd", paper: "#fff" };
   let now = 0;
@@ -126,7 +130,10 @@ export function createPlot(el, options) {
     });
   }
 
-  /** Names beside the last point of each curve, pushed apart where they would touch. @param {uPlot} u */
+  /**
+   * Names beside the last point of each curve, pushed apart where they would touch.
+   * @param {uPlot} u
+   */
   function endLabels(u) {
     const ratio = devicePixelRatio;
     const list = series.flatMap((one, k) => {
@@ -247,7 +254,11 @@ export function createPlot(el, options) {
     });
   }
 
-  /** Ranges only grow while a run lasts, so that a curve does not breathe. @param {(number | null)[][]} columns @param {number} last */
+  /**
+   * Ranges only grow while a run lasts, so that a curve does not breathe.
+   * @param {(number | null)[][]} columns
+   * @param {number} last
+   */
   function stretch(columns, last) {
     let low = Infinity;
     let high = 0;
@@ -283,7 +294,13 @@ export function createPlot(el, options) {
   return {
     /** The smallest value that is plotted. */
     floor: FLOOR,
-    /** New curves: a new comparison, another selection, another theme. @param {typeof series} wanted @param {typeof ink} inks @param {boolean} anew @param {number} first [s] that the axis of time has at least */
+    /**
+     * New curves: a new comparison, another selection, another theme.
+     * @param {typeof series} wanted
+     * @param {typeof ink} inks
+     * @param {boolean} anew
+     * @param {number} first [s] that the axis of time has at least
+     */
     setSeries(wanted, inks, anew, first) {
       series = wanted;
       ink = inks;
@@ -292,14 +309,21 @@ export function createPlot(el, options) {
       }
       build();
     },
-    /** @param {number[]} ended per method, NaN while it runs @param {boolean[]} present has a curve here */
+    /**
+     * @param {number[]} ended per method, NaN while it runs
+     * @param {boolean[]} present has a curve here
+     */
     setEnded(ended, present) {
       series.forEach((one, k) => {
         one.ended = ended[k];
         one.present = present[k];
       });
     },
-    /** @param {(number | null)[][]} columns @param {number} last time received @param {number} t time shown */
+    /**
+     * @param {(number | null)[][]} columns
+     * @param {number} last time received
+     * @param {number} t time shown
+     */
     draw(columns, last, t) {
       now = t;
       stretch(columns, last);

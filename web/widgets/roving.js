@@ -1,10 +1,13 @@
 // @ts-check
-// Many small things of which one can be reached with Tab, and the others from there with the arrow keys.
+// Many small things of which one can be reached with Tab, and the others from there with the arrow
+// keys.
 
 /**
  * @param {SVGElement | HTMLElement} root
- * @param {{move: (from: Element, key: string) => Element | undefined, act: (node: Element) => void, tell: (node: Element | null) => void}} how
- *   `move` finds the neighbour, `act` is a click or Enter, `tell` is told what is pointed at or focused
+ * @param {{move: (from: Element, key: string) => Element | undefined, act: (node: Element) => void,
+ *   tell: (node: Element | null) => void}} how
+ * `move` finds the neighbour, `act` is a click or Enter, `tell` is told what is pointed at or
+ * focused
  */
 export function rove(root, { move, act, tell }) {
   /** @type {Element | null} */

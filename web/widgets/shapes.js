@@ -7,7 +7,11 @@ const f = (x) => x.toFixed(2);
 /** @param {Point} p */
 const at = ([x, y]) => `${f(x)} ${f(y)}`;
 
-/** Unit direction from p to q and its left normal; along x when they coincide. @param {Point} p @param {Point} q */
+/**
+ * Unit direction from p to q and its left normal; along x when they coincide.
+ * @param {Point} p
+ * @param {Point} q
+ */
 function frame(p, q) {
   const dx = q[0] - p[0];
   const dy = q[1] - p[1];
@@ -54,7 +58,12 @@ export function slider(p, q, r) {
   return `M${at(offset(p, d, -a, n, -r))}L${at(offset(p, d, a, n, -r))}L${at(offset(p, d, a, n, r))}L${at(offset(p, d, -a, n, r))}Z`;
 }
 
-/** Two rails from p to q, the lower one hatched. @param {Point} p @param {Point} q @param {number} r half their distance */
+/**
+ * Two rails from p to q, the lower one hatched.
+ * @param {Point} p
+ * @param {Point} q
+ * @param {number} r half their distance
+ */
 export function guide(p, q, r) {
   const { d, n, length } = frame(p, q);
   const below = n[1] >= 0 ? 1 : -1;
@@ -79,7 +88,12 @@ export function spring(p, q, r) {
   return `${path}L${at(offset(q, d, -lead, n, 0))}L${at(q)}`;
 }
 
-/** A pot with its piston, from p to q. @param {Point} p @param {Point} q @param {number} r half its width */
+/**
+ * A pot with its piston, from p to q.
+ * @param {Point} p
+ * @param {Point} q
+ * @param {number} r half its width
+ */
 export function damper(p, q, r) {
   const { d, n, length } = frame(p, q);
   const a = 0.35 * length;
@@ -105,12 +119,16 @@ export function polyline(points, closed) {
 /** @param {Point[]} points */
 export const polygon = (points) => polyline(points, true);
 
-/** The circle through the corners of a regular polygon, or the ellipse as which it is seen. @param {Point[]} points */
+/**
+ * The circle through the corners of a regular polygon, or the ellipse as which it is seen.
+ * @param {Point[]} points
+ */
 export function disc(points) {
   const n = points.length;
   const corner = (i) => points[(i + n) % n];
   const turn = (2 * Math.PI) / n;
-  // the cubic's handle on a circle, as a part of the chord between the neighbours: the same from wherever one looks
+  // the cubic's handle on a circle, as a part of the chord between the neighbours: the same from
+  // wherever one looks
   const share = ((4 / 3) * Math.tan(turn / 4)) / (2 * Math.sin(turn));
   const handle = (i, sign) => {
     const [[x, y], [ax, ay], [bx, by]] = [corner(i), corner(i - 1), corner(i + 1)];

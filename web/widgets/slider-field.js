@@ -1,5 +1,6 @@
 // @ts-check
-// A slider with a number field beside it: the field takes what people type ("0,02", "2e-2 s"), the slider keeps to round values.
+// A slider with a number field beside it: the field takes what people type ("0,02", "2e-2 s"), the
+// slider keeps to round values.
 import { sentenceOf } from "../api/client.js";
 import { plain } from "../state/format.js";
 import { h, say, set } from "./dom.js";
@@ -41,7 +42,8 @@ function linearScale(min, max, step) {
 }
 
 /**
- * @param {{id: string, label: string, unit: string, hint: string, scale?: "log" | "linear", min: number, max: number, step?: number,
+ * @param {{id: string, label: string, unit: string, hint: string, scale?: "log" | "linear", min:
+ *   number, max: number, step?: number,
  *   read: (text: string) => number, check: (value: number) => {error?: string, warning?: string},
  *   commit: (value: number) => Promise<void>}} options `read` gives NaN for what is no number
  */
@@ -82,7 +84,10 @@ export function createSliderField(options) {
   );
   let value = NaN;
   let timer = 0;
-  /** while the server has not answered, the widget shows what was asked, and only the latest wish is kept */
+  /**
+   * while the server has not answered, the widget shows what was asked, and only the latest wish is
+   * kept
+   */
   let pending = false;
   let next = NaN;
 

@@ -1,5 +1,6 @@
 // @ts-check
-// Light or dark: as the system says, or as chosen; the methods' colours follow from the look table of the server.
+// Light or dark: as the system says, or as chosen; the methods' colours follow from the look table
+// of the server.
 import { h } from "./dom.js";
 
 const KEY = "holonom-theme";

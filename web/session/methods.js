@@ -1,0 +1,86 @@
+// @ts-check
+// Actions on the methods, their options and the scene's parameters.
+import { sentenceOf } from "../api/client.js";
+import { limits } from "../state/catalogue.js";
+import { parseSpelling, withSetting } from "../state/spelling.js";
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {import("./exchange.js").Exchange} exchange
+ * @param {(text: string) => void} notice
+ */
+export function createMethodActions(store, exchange, notice) {
+  const data = store.data;
+  const spellings = () => data.methods.map(({ spelling }) => spelling);
+
+  const actions = {
+    /** @param {string[]} wanted */
+    async setMethods(wanted) {
+      await exchange.restart({ methods: wanted });
+      const there = spellings();
+      actions.setRefused(data.refused.filter(({ spelling }) => !there.includes(spelling)));
+    },
+    /** @param {import("../state/store.js").Refused[]} refused */
+    setRefused(refused) {
+      data.refused = refused;
+      store.emit("view");
+    },
+    /**
+     * Changes one option of every method that has it.
+     * @param {string} key
+     * @param {number} value
+     * @param {string} [and] another key that gets the same value
+     */
+    setSetting(key, value, and) {
+      const change = (spelling) => withSetting(data.catalogue, spelling, key, String(value));
+      const changeBoth = (spelling) =>
+        and ? withSetting(data.catalogue, change(spelling), and, String(value)) : change(spelling);
+      return actions.setMethods(spellings().map(changeBoth));
+    },
+    /** @param {string} name @param {number} value */
+    setParameter: (name, value) =>
+      exchange.restart({ settings: { ...data.settings, [name]: value } }),
+    resetParameters: () => exchange.restart({ settings: {} }),
+    /**
+     * Carries out a suggestion of a card: an option, or a method in place of its kind.
+     * @param {import("../state/words.js").Try} item
+     */
+    async attempt(item) {
+      if (item.key) {
+        await actions
+          .setSetting(item.key, Number(item.value), item.and)
+          .catch((error) => notice(sentenceOf(error)));
+        return;
+      }
+      if (item.method) {
+        const wanted = parseSpelling(item.method).formulation.name;
+        const list = spellings();
+        const same = data.methods.findIndex(({ formulation }) => formulation === wanted);
+        const place = same >= 0 ? same : Math.min(list.length, limits().methods - 1);
+        list[place] = item.method;
+        await actions.setMethods(list).catch((error) => notice(sentenceOf(error)));
+        actions.select(place);
+      }
+    },
+    /** @param {number} m */
+    select(m) {
+      if (m < data.methods.length) {
+        data.view.selected = m;
+        data.view.hidden.delete(m);
+        store.emit("view");
+      }
+    },
+    cycle: () => actions.select((data.view.selected + 1) % data.methods.length),
+    /** @param {number} m @param {boolean} visible */
+    setVisible(m, visible) {
+      data.view.hidden[visible ? "delete" : "add"](m);
+      store.emit("view");
+    },
+    /** @param {Partial<typeof data.view>} change */
+    setView(change) {
+      Object.assign(data.view, change);
+      store.emit("view");
+    },
+  };
+  return actions;
+}

@@ -1,0 +1,163 @@
+// @ts-check
+// Actions that open a scene: at the start, from the menu, from a link. Makes the link to what is
+// shown.
+import { api, sentenceOf } from "../api/client.js";
+import { limits, readIndex } from "../state/catalogue.js";
+import { decodeLink, encodeLink, fits } from "../state/link.js";
+import { cardOf, parseSpelling } from "../state/spelling.js";
+import { SHORT, firstSpeed } from "./speeds.js";
+
+const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows", "reactions"]);
+
+const FIRST_SCENE = "four-bar";
+const FIRST_METHODS = [
+  "index1@rk4:h=1e-3",
+  "baumgarte:alpha=5,beta=5@rk4:h=1e-3",
+  "projection@rk4:h=1e-3",
+  "nullspace@rk4:h=1e-3",
+  "reduced@rk4:h=1e-3",
+];
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {import("./exchange.js").Exchange} exchange
+ * @param {(text: string) => void} notice
+ */
+export function createSceneActions(store, exchange, notice) {
+  const data = store.data;
+
+  /** The methods that the scene suggests, else the first ones that this server knows. */
+  function chooseMethods(scene) {
+    const known = FIRST_METHODS.filter((spelling) => {
+      const parsed = parseSpelling(spelling);
+      return (
+        cardOf(data.catalogue, "formulation", parsed.formulation.name) &&
+        cardOf(data.catalogue, "integrator", parsed.integrator.name)
+      );
+    });
+    return scene?.methods?.length ? scene.methods : known;
+  }
+
+  /** @param {import("../state/link.js").Linked} link */
+  async function showLinked({ frame, selected, hidden, study }) {
+    const most = limits().frames;
+    for (let left = frame; left > 0; left -= most) {
+      await exchange.change({ step: Math.min(left, most) });
+      if (data.state === "finished") {
+        break;
+      }
+    }
+    const n = data.methods.length;
+    data.view.hidden = new Set(hidden.filter((m) => m < n));
+    data.view.selected = Math.min(selected, n - 1);
+    data.view.study = study;
+  }
+
+  /** The link to what is shown, without the address. */
+  function fragmentOf() {
+    const { view, history } = data;
+    const last = (history?.count ?? 0) - 1;
+    const live = data.latest?.frame ?? 0;
+    return encodeLink({
+      scene: data.scene.id,
+      settings: data.settings,
+      methods: data.methods.map(({ spelling }) => spelling),
+      frame: view.shown < 0 ? live : history.frameAt(Math.min(view.shown, last)),
+      selected: view.selected,
+      hidden: [...view.hidden],
+      show: PANELS.filter((name) => view[name]),
+      study: view.study,
+      build: data.build,
+    });
+  }
+
+  const actions = {
+    /**
+     * Loads everything that the page needs before it can draw.
+     * @param {string} fragment of the address: a scene, or a link
+     */
+    async start(fragment) {
+      const [index, look, catalogue, list, lessons] = await Promise.all([
+        api.index(),
+        api.look(),
+        api.methods(),
+        api.scenes(),
+        api.lessons(),
+      ]);
+      readIndex(index);
+      data.build = index.version ?? index.build ?? "";
+      data.look = look;
+      data.catalogue = catalogue;
+      data.scenes = list.scenes.filter((scene) => !scene.errors);
+      data.lessons = lessons.lessons;
+      store.emit("ready");
+      await actions.openLink(fragment);
+    },
+    /**
+     * Opens a link. What it says wrongly is named in the status line and stays as the scene has it.
+     * @param {string} fragment
+     */
+    async openLink(fragment) {
+      const { link, faults } = decodeLink(fragment);
+      const ids = data.scenes.map(({ id }) => id);
+      const id = [link.scene, FIRST_SCENE, ids[0]].find((one) => ids.includes(one)) ?? FIRST_SCENE;
+      if (link.scene && id !== link.scene) {
+        faults.unshift(`no scene is called '${link.scene}'`);
+      }
+      if (link.build && link.build !== data.build) {
+        faults.push(
+          `it was made by build ${link.build}, this is ${data.build}: last digits may differ`,
+        );
+      }
+      const shown = PANELS.map((name) => [name, link.show.includes(name)]);
+      Object.assign(data.view, Object.fromEntries(shown));
+      try {
+        await actions.loadScene(id, id === link.scene ? link : undefined);
+      } catch (error) {
+        faults.unshift(sentenceOf(error));
+        await actions.loadScene(id);
+      }
+      if (id === link.scene) {
+        await showLinked(link);
+      }
+      if (faults.length) {
+        notice(`the link: ${faults.join("; ")}`);
+      }
+      store.emit("view");
+    },
+    /** Copies the link to what is shown, and puts it into the address line. */
+    async share() {
+      const fragment = fragmentOf();
+      if (!fits(fragment)) {
+        notice("this comparison is too long for a link: take fewer methods or parameters");
+        return;
+      }
+      window.history.replaceState(null, "", `#${fragment}`);
+      await navigator.clipboard.writeText(location.href).then(
+        () => notice("link copied"),
+        () => notice("the browser did not let the link be copied: it stands in the address line"),
+      );
+    },
+    /**
+     * @param {string} id
+     * @param {{settings: Record<string, number>, methods: string[]}} [link] in place of what the
+     *   scene suggests
+     */
+    async loadScene(id, link) {
+      data.view.hidden.clear();
+      data.view.selected = 0;
+      const suggested = () =>
+        id === FIRST_SCENE ? chooseMethods(null) : api.scene(id).then(chooseMethods);
+      const methods = link?.methods.length
+        ? link.methods.slice(0, limits().methods)
+        : await suggested();
+      const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
+      const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
+      await exchange.create({ scene: id, methods, speed, settings: link?.settings ?? {} });
+    },
+    equations: () => api.equations(data.scene?.id ?? "", data.settings),
+    /** Every term of the equations at one state. @param {{t: number, state: object}} at */
+    terms: (at) => api.terms({ scene: data.scene?.id ?? "", settings: data.settings, ...at }),
+  };
+  return actions;
+}

@@ -1,0 +1,43 @@
+// @ts-check
+// What the page can do. Every action asks the server and puts its answer into the store; a change
+// that the server refuses changes nothing here either, and rejects with a Problem for the field
+// that asked.
+import { createReactionFeed } from "../state/reaction-feed.js";
+import { createReferenceFeed } from "../state/reference.js";
+import { createStudyFeed } from "../state/studies.js";
+import { createExchange } from "./exchange.js";
+import { createMethodActions } from "./methods.js";
+import { createPlayback } from "./playback.js";
+import { createSceneActions } from "./scenes.js";
+
+/** @param {import("../state/store.js").Store} store */
+export function createSession(store) {
+  /** @param {string} text for the status line */
+  function notice(text) {
+    store.data.notice = text;
+    store.emit("notice");
+  }
+
+  const exchange = createExchange(store, notice);
+  const endReactions = createReactionFeed(store);
+  const reference = createReferenceFeed(store);
+  const studies = createStudyFeed(store);
+
+  return {
+    ...createSceneActions(store, exchange, notice),
+    ...createPlayback(store, exchange),
+    ...createMethodActions(store, exchange, notice),
+    studies,
+    /** Computes a reference solution for parameters that have none stored. */
+    computeReference: () => reference.compute(),
+    notice,
+    dispose() {
+      endReactions();
+      reference.dispose();
+      studies.dispose();
+      exchange.dispose();
+    },
+  };
+}
+
+/** @typedef {ReturnType<typeof createSession>} Session */

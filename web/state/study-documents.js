@@ -1,0 +1,266 @@
+// @ts-check
+// Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
+import { withPowers } from "./format.js";
+
+export const ERRORS = [
+  { name: "q", word: "position", about: "largest error of a coordinate, angles in rad" },
+  { name: "v", word: "speed", about: "largest error of a speed, over the fastest of the motion" },
+  {
+    name: "reaction",
+    word: "reactions",
+    about: "largest error of a loop's force, over the largest of the motion",
+  },
+  { name: "gap", word: "gap", about: "largest loop gap" },
+  { name: "velocity_gap", word: "speed gap", about: "how fast the loops come apart, at most" },
+  { name: "energy", word: "energy", about: "largest error of the energy, over its swing" },
+];
+
+export const COSTS = [
+  { name: "operations", word: "operations", unit: "op", of: (p) => p.operations },
+  { name: "evaluations", word: "evaluations", unit: "", of: (p) => p.evaluations },
+  { name: "time", word: "time", unit: "s", of: (p) => p.cpu?.median },
+];
+
+/**
+ * The entry of a list that has a name.
+ * @template {{name: string}} T
+ * @param {T[]} list
+ * @param {string} wanted one of the names
+ * @returns {T}
+ */
+export function byName(list, wanted) {
+  const found = list.find(({ name }) => name === wanted);
+  if (!found) {
+    throw new Error(`no entry is called ${wanted}`);
+  }
+  return found;
+}
+
+/** Nothing below ten times what the reference itself may be off is more than a bound. */
+const ABOVE_REFERENCE = 10;
+const LEAST = 1e-17;
+
+/**
+ * @typedef {{m: number, k: number, spelling: string, size: number, sizeName: string, cost: number,
+ *   error: number, state: string,
+ *   reason: string, bound: boolean}} Dot
+ */
+
+/** What a point that failed would have cost: as its neighbour, by the ratio of the sizes. */
+function costOfFailed(points, k, costOf) {
+  const done = points.filter((p) => p.state === "done" && costOf(p) > 0);
+  const near = done.sort(
+    (a, b) =>
+      Math.abs(Math.log(a.size / points[k].size)) - Math.abs(Math.log(b.size / points[k].size)),
+  )[0];
+  return near ? costOf(near) * (near.size / points[k].size) : NaN;
+}
+
+/**
+ * The points of a study as they are drawn; those that failed have the error Infinity: they stand on
+ * the upper edge.
+ * @param {any} study
+ * @param {string} error
+ * @param {string} cost
+ * @returns {Dot[][]} by method
+ */
+export function dotsOf(study, error, cost) {
+  const costOf = byName(COSTS, cost).of;
+  return study.methods.map((method, m) =>
+    method.points.flatMap((p, k) => {
+      const shared = {
+        m,
+        k,
+        spelling: p.method,
+        size: p.size,
+        sizeName: method.size,
+        state: p.state,
+      };
+      if (p.state === "done") {
+        const value = p.worst[error];
+        const known = value !== null && costOf(p) > 0;
+        return known
+          ? [
+              {
+                ...shared,
+                cost: costOf(p),
+                error: Math.max(value, LEAST),
+                reason: "",
+                bound: p.bounds.includes(error),
+              },
+            ]
+          : [];
+      }
+      return [
+        {
+          ...shared,
+          cost: costOfFailed(method.points, k, costOf),
+          error: Infinity,
+          reason: p.reason,
+          bound: false,
+        },
+      ];
+    }),
+  );
+}
+
+/** Below it an error is no more than a bound; 0: the quantity needs no reference. */
+export const floorOf = (study, error) => ABOVE_REFERENCE * (study.reference.error[error] ?? 0);
+
+/** Sentences on who reaches which accuracy for the least. @returns {string[]} */
+export function sentencesOf(study, error, cost) {
+  const found = study.pareto.find((one) => one.error === error && one.cost === cost);
+  return found ? withPowers(found.sentences).split("\n").filter(Boolean) : [];
+}
+
+/**
+ * Whole decades that hold all finite errors and the floor, at least two.
+ * @param {Dot[][]} dots
+ * @param {number} floor
+ */
+export function frameOf(dots, floor) {
+  const all = dots.flat();
+  const errors = all.map(({ error }) => error).filter(Number.isFinite);
+  const costs = all.map(({ cost }) => cost).filter((cost) => cost > 0);
+  if (errors.length === 0 || costs.length === 0) {
+    return null;
+  }
+  const low = Math.floor(Math.log10(Math.min(...errors)) + 1e-9);
+  const high = Math.max(low + 2, Math.min(2, Math.ceil(Math.log10(Math.max(...errors)) - 1e-9)));
+  const near = floor > 0 && Math.log10(floor) > low - 2;
+  const x0 = Math.log10(Math.min(...costs));
+  const x1 = Math.log10(Math.max(...costs));
+  const margin = 0.04 * (x1 - x0) + 0.08;
+  return {
+    x0: x0 - margin,
+    x1: x1 + margin,
+    y0: near ? Math.min(low, Math.floor(Math.log10(floor))) : low,
+    y1: high,
+  };
+}
+
+export const CAUSES = [
+  { name: "truncation", word: "steps", letter: "T", about: "steps of the integrator" },
+  {
+    name: "formulation",
+    word: "formulation",
+    letter: "F",
+    about: "terms that the formulation adds to the equations",
+  },
+  {
+    name: "projection",
+    word: "projection",
+    letter: "P",
+    about: "moves of the projection along the motion",
+  },
+  { name: "drift", word: "drift", letter: "D", about: "what leads off the loops and stays there" },
+  { name: "solve", word: "solve", letter: "L", about: "rounding of the linear solve" },
+  { name: "rounding", word: "rounding", letter: "R", about: "rounding of the sums" },
+];
+
+export const BILL = [
+  { name: "truncation", word: "steps", letter: "T", about: "steps of the integrator" },
+  {
+    name: "formulation",
+    word: "formulation",
+    letter: "F",
+    about: "terms that the formulation adds",
+  },
+  { name: "projection", word: "projection", letter: "P", about: "work of the projection" },
+  {
+    name: "loops",
+    word: "loops",
+    letter: "O",
+    about: "loop forces, where the loops are not closed in speed",
+  },
+  {
+    name: "outside",
+    word: "loads",
+    letter: "W",
+    about: "dampers, drives and loads: work that is meant",
+  },
+];
+
+/**
+ * Where the parts of a sum stand on a line: negative ones to the left of 0, positive ones to the
+ * right, in shares of the longer side.
+ * @param {Record<string, number | null>} parts
+ * @param {{name: string}[]} order
+ * @returns {{name: string, value: number, from: number, to: number}[]} -1 .. 1
+ */
+export function barsOf(parts, order) {
+  const known = order.filter(
+    ({ name }) => Number.isFinite(parts[name] ?? NaN) && parts[name] !== 0,
+  );
+  const side = (sign) =>
+    known.reduce((sum, { name }) => sum + Math.max(0, sign * Number(parts[name])), 0);
+  const longest = Math.max(side(1), side(-1)) || 1;
+  let right = 0;
+  let left = 0;
+  return known.map(({ name }) => {
+    const value = Number(parts[name]);
+    const length = value / longest;
+    const from = value > 0 ? right : left + length;
+    const to = value > 0 ? right + length : left;
+    right += Math.max(0, length);
+    left += Math.min(0, length);
+    return { name, value, from, to };
+  });
+}
+
+/** How the outcome of a trial is shown: a letter as well as a colour. */
+export const CLASSES = {
+  stable: { letter: "s", word: "stable, error below 1 %" },
+  inaccurate: { letter: "i", word: "stable, inaccurate" },
+  grew: { letter: "g", word: "grew" },
+  stopped: { letter: "x", word: "stopped with a reason" },
+  refused: { letter: "r", word: "refused" },
+  skipped: { letter: "?", word: "out of time" },
+  pending: { letter: "", word: "not tried" },
+};
+
+/**
+ * Where the predicted boundary runs, in cells from the lower left corner: lines of points.
+ * @param {any} map document @param {any} method of it
+ * @returns {[number, number][][]}
+ */
+export function boundaryOf(map, method) {
+  const { values, scale } = map.y;
+  const height = (value) => {
+    const at = (v) => (scale === "log" ? Math.log(v) : v);
+    const share = (at(value) - at(values[0])) / (at(values[values.length - 1]) - at(values[0]));
+    return Math.min(values.length, Math.max(0, 0.5 + share * (values.length - 1)));
+  };
+  if (map.y.kind === "step") {
+    const line = /** @type {[number, number][]} */ ([]);
+    method.columns.forEach(({ predicted }, i) => {
+      if (predicted[0] > 0) {
+        line.push([i, height(predicted[0])], [i + 1, height(predicted[0])]);
+      }
+    });
+    return line.length ? [line] : [];
+  }
+  const beyond = (i, j) => {
+    const margin = method.rows[j]?.[i]?.margin;
+    return Number.isFinite(margin ?? NaN) ? margin > 1 : null;
+  };
+  const lines = /** @type {[number, number][][]} */ ([]);
+  const differ = (a, b) => a !== null && b !== null && a !== b;
+  method.rows.forEach((row, j) =>
+    row.forEach((_, i) => {
+      if (differ(beyond(i, j), beyond(i + 1, j))) {
+        lines.push([
+          [i + 1, j],
+          [i + 1, j + 1],
+        ]);
+      }
+      if (differ(beyond(i, j), beyond(i, j + 1))) {
+        lines.push([
+          [i, j + 1],
+          [i + 1, j + 1],
+        ]);
+      }
+    }),
+  );
+  return lines;
+}

@@ -1,0 +1,64 @@
+// @ts-check
+// Shapes of the server's answers, as far as the page reads them. Types only, no code.
+
+/**
+ * A number of the scene that can be changed.
+ * @typedef {{
+ *   name: string, unit: string, about: string, value: number, initial: number,
+ *   min: number, max: number, integer: boolean,
+ * }} Parameter
+ */
+
+/**
+ * What is drawn: `p`, `q` are indices of points, `n` a number of corners, `body` an index or -1.
+ * @typedef {{kind: string, p: number, q: number, n: number, width: number, body: number}} Shape
+ * @typedef {{p: number, q: number, name: string}} Tear the two halves of a cut joint
+ * @typedef {{points: number, labels: (string | null)[], shapes: Shape[], tears: Tear[]}} Drawing
+ */
+
+/**
+ * `n` coordinates, `m` constraints of rank `rank`, `freedoms` degrees of freedom; `length`, `points`
+ * and `envelope` in m; `duration` and `step` in s.
+ * @typedef {{
+ *   id: string, title: string, about: string, look_for: string, caption: string,
+ *   parameters: Parameter[], n: number, m: number, rank: number, freedoms: number, length: number,
+ *   drawing: Drawing, coordinates: {name: string, rate: string}[],
+ *   points: number[], ground_points: number[], envelope: number[], extremes?: number[],
+ *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]},
+ *   methods: string[], duration: number, step: number,
+ * }} Scene
+ */
+
+/**
+ * A method of the comparison; `slot` gives colour, dash and marker, `label` is unique.
+ * @typedef {{
+ *   slot: number, short: string, label: string, rule: string, drift: string,
+ *   model_error: boolean, keeps_gap: boolean, order: number,
+ *   spelling: string, formulation: string, integrator: string, title: string,
+ * }} Method
+ */
+
+/**
+ * One method in one frame. `worst_` are the largest values since the start.
+ * @typedef {{
+ *   state: string, status: string, reason: string, t: number,
+ *   points?: number[], q?: number[], v?: number[],
+ *   gap?: number, velocity_gap?: number, energy_change?: number,
+ *   steps: number, rejected: number, evals: number, ops: number, cpu: number,
+ *   worst_gap: number, worst_velocity_gap: number, worst_energy_change: number,
+ * }} MethodFrame
+ * @typedef {{
+ *   generation: number, frame: number, t: number, finished: boolean, methods: MethodFrame[],
+ * }} Frame
+ */
+
+/**
+ * @typedef {{spelling: string, reason: string}} Refused a method that the scene cannot serve
+ * @typedef {{id: string, title: string, scenes: string[]}} Lesson
+ * @typedef {{
+ *   method: number, code: string, t: number, quantity: string, value: number, limit: number,
+ *   message: string, remedies: string[],
+ * }} Incident
+ */
+
+export {};

@@ -1,0 +1,150 @@
+// @ts-check
+// The mechanism: supports once, one ghost per method, the selected method opaque and on top, with
+// the buttons that say what else is drawn.
+import { lookOf } from "../../state/look.js";
+import { listen, shownIndex } from "../../state/store.js";
+import { h, s, say, set } from "../../widgets/dom.js";
+import { createGhosts } from "./ghosts.js";
+import { createMarks } from "./marks.js";
+import { createNotices } from "./notices.js";
+import { createStage } from "./stage.js";
+
+/** Groups of the picture, from the lowest to the topmost. */
+const LAYERS = /** @type {const} */ ([
+  "fixed",
+  "traces",
+  "truth",
+  "ghosts",
+  "tears",
+  "arrows",
+  "labels",
+  "scale",
+]);
+/** What can be drawn or left out, and the word on its button. */
+const TOGGLES = { labels: "labels", traces: "paths", reference: "reference" };
+
+/**
+ * @param {HTMLElement} el
+ * @param {import("../../state/store.js").Store} store
+ * @param {import("../../session/session.js").Session} actions
+ */
+export function createDrawing(el, store, actions) {
+  const data = store.data;
+  /** @type {Record<typeof LAYERS[number], any>} */
+  const layers = /** @type {any} */ (
+    Object.fromEntries(LAYERS.map((name) => [name, s("g", { class: name })]))
+  );
+  const svg = s(
+    "svg",
+    { role: "img", "aria-labelledby": "drawing-title", tabindex: "-1", class: "picture" },
+    ...Object.values(layers),
+  );
+  const stage = createStage(svg, layers, data);
+  const ghosts = createGhosts(layers, data, stage);
+  const marks = createMarks(layers, data, stage);
+  const notices = createNotices(data);
+
+  const toggles = Object.fromEntries(
+    Object.entries(TOGGLES).map(([key, word]) => [key, makeToggle(key, word)]),
+  );
+  const describe = h(
+    "button",
+    { type: "button", class: "quiet", onclick: () => notices.describe(true) },
+    "describe",
+  );
+  const caption = h("p", { class: "caption" });
+  const frame = h("div", { class: "stage" }, svg, notices.ahead, notices.banner);
+  const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
+  el.replaceChildren(
+    frame,
+    notices.title,
+    h("div", { class: "under" }, caption, choices),
+    notices.spoken,
+  );
+
+  /** @param {string} key of the view @param {string} word */
+  function makeToggle(key, word) {
+    const onclick = () => actions.setView({ [key]: !data.view[key] });
+    const pressed = String(data.view[key]);
+    return h("button", { type: "button", class: "quiet", "aria-pressed": pressed, onclick }, word);
+  }
+
+  function update() {
+    const now = shownIndex(data);
+    if (!data.scene || !data.history || now < 0 || !ghosts.isReady()) {
+      return;
+    }
+    ghosts.draw(now);
+    marks.draw(now);
+    notices.update(now);
+  }
+
+  function fit() {
+    stage.fit();
+    update();
+  }
+
+  function makeGhosts() {
+    say(caption, data.scene?.caption ?? "");
+    caption.title = data.scene?.caption ?? "";
+    if (data.scene) {
+      ghosts.make();
+      update();
+    }
+  }
+
+  /** Says on the button what the reference solution is, or why there is none. */
+  function makeReference() {
+    const { reference: known } = data;
+    const ready = known?.state === "ready";
+    ghosts.makeReference();
+    const digits = ready ? `${known.digits.toFixed(1)} digits to ${known.time} s` : "";
+    toggles.reference.title = ready
+      ? `the reference solution, grey: ${known.means.join(" and ")} agree to ${digits}`
+      : (known?.reason ?? "");
+    set(toggles.reference, { "aria-disabled": ready ? null : "true" });
+    update();
+  }
+
+  function showView() {
+    for (const [key, button] of Object.entries(toggles)) {
+      set(button, { "aria-pressed": String(data.view[key]) });
+    }
+    if (stage.camera.look !== lookOf(data)) {
+      fit();
+    }
+    if (ghosts.isStale()) {
+      makeGhosts();
+    } else {
+      update();
+    }
+  }
+
+  const observer = new ResizeObserver(fit);
+  observer.observe(frame);
+  const stop = listen(store, {
+    scene: () => {
+      ghosts.clear();
+      fit();
+      notices.clear();
+    },
+    methods: makeGhosts,
+    reactions: update,
+    reference: makeReference,
+    view: showView,
+    state: () => {
+      if (data.state !== "running") {
+        notices.describe();
+      }
+    },
+  });
+
+  return {
+    update,
+    dispose() {
+      stop();
+      observer.disconnect();
+      el.replaceChildren();
+    },
+  };
+}
