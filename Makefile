@@ -226,7 +226,7 @@ help:
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
-	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format'
+	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format, types of the page'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
@@ -333,12 +333,13 @@ run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-house check-layers check-width check-names check-circles check-licence check-headers check-format format
+.PHONY: check check-house check-layers check-width check-names check-circles check-licence check-headers check-format check-web format
 check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=clang programs
 	@$(MAKE) -s --no-print-directory check-format
+	@$(MAKE) -s --no-print-directory check-web
 	@echo 'check: all good'
 
 # what the tree promises about itself; tests/house/test_checks.sh runs it inside `make test`
@@ -374,6 +375,10 @@ check-headers:
 	@for h in $(HEADERS); do \
 	    echo 'extern int not_empty;' | $(CC) $(CFLAGS) -Werror -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -Icore -Iserver -Itests \
 	        -fsyntax-only -include $$h -x c - || { echo "$$h does not compile alone"; exit 1; }; done
+
+# the page and its tests: one format, types as the comments say, no module too long
+check-web: $(WEB_READY) $(BROWSER_READY)
+	@npm --prefix tests/browser run --silent check
 
 check-format:
 	@clang-format --dry-run --Werror $(ALL_C) $(HEADERS)

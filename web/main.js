@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Puts the page together: one store, one session, the views, the keys, one drawing per animation
 // frame.

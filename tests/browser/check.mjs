@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Checks what neither the formatter nor the compiler looks at: no comment wider than 100 columns,
 // no module of the page longer than 400 lines. Ends with status 1 and a line per fault.
 import { readFileSync, readdirSync } from "node:fs";

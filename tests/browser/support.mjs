@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Starts the real server and a real browser, and keeps what a page must not do: errors on its
 // console, requests to other hosts.
 import assert from "node:assert/strict";

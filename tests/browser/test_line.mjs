@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The line between page and server: cut and mended, hidden, late, and after the end of a run.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The page's own modules, without a browser: keys, numbers, spellings, history, words.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The main journey on the real server: play, pause, step, change the step size, read the gap.
 import assert from "node:assert/strict";
 import { test } from "node:test";

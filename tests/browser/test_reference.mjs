@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The reference solution on the page: a grey ghost, grey curves, and how far each method is off it.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report as a file in a browser: no network, no error, from the keyboard, on a narrow screen,
 // and on paper without scripts.
 import assert from "node:assert/strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Studies on the page: what accuracy costs, where steps are stable, where the error comes from.
 import assert from "node:assert/strict";
 import { test } from "node:test";

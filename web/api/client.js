@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The one place that speaks to the server: requests, and problem documents turned into errors.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The event stream of one comparison. One connection carries all methods; the id of the last event
 // seen is kept, so that a drop, or a page that was hidden for a while, resumes without gap or

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Asks the server to make or change the comparison, one request after the other, and keeps the
 // event stream open. A request that the server refuses changes nothing; its caller gets the

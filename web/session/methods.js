@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Actions on the methods, their options and the scene's parameters.
 import { sentenceOf } from "../api/client.js";

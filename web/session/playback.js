@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Actions of the clock: play, pause, step, scrub, speed.
 import { SPEEDS, stepSeconds } from "./speeds.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Puts into the store what the server reports: descriptions, states, frames, incidents.
 import { createHistory } from "../state/history.js";

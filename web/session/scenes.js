@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Actions that open a scene: at the start, from the menu, from a link. Makes the link to what is
 // shown.

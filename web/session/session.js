@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What the page can do. Every action asks the server and puts its answer into the store; a change
 // that the server refuses changes nothing here either, and rejects with a Problem for the field

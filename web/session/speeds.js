@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Constants of the session that views need as well.
 import { niceBelow } from "../state/format.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What the server's index tells of itself: limits, incidents and kinds of studies. This is the only
 // module that knows them; everything else asks here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What was received, in columns, bounded. When the columns are full every second frame is dropped:
 // the whole span stays, at half the resolution. A failed method has its last good values at its

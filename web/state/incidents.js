@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What each kind of incident is called, and the rule behind it; the codes are the engine's.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The keys of the page, as data. `key` is KeyboardEvent.key; a letter (or any single printable
 // character) can be switched off.

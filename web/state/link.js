@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What a link to the page holds, in its fragment (which never reaches a server's log): scene,
 // parameters, methods, the frame of the clock, and what is shown. A bare fragment is the id of a

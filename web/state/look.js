@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Where one looks from: the front for plane mechanisms (x right, y up), any direction for those in
 // space.

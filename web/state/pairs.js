@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Which formulation and integrator fit, from their cards, and why others do not.
 import { parseQuantity, plain, prettyUnit } from "./format.js";

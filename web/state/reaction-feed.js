@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Asks the server what the joints carry, while somebody looks: one question at a time, for the
 // selected method at the time shown.

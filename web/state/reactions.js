@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What joints carry: the forces and moments that the server works out from a state, and what of
 // them is drawn.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The reference solution of the scene shown: asked for once per scene, parameters and clock. One is
 // stored for every scene with its own parameters; for others it is computed when somebody asks for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The one spelling of a method: FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]. The server
 // checks it; the page only takes it apart to change a setting.

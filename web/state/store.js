@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Data and named events. Views read `store.data` and listen; only the actions of session/ write.
 import { KINDS } from "./catalogue.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Studies of what is on the page: what accuracy costs, where steps are stable, where the error
 // comes from. A study is asked for, looked at while it lasts, and read when it is done; its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Reads the documents of studies: points, frames, bars, boundaries, as the views draw them.
 import { withPowers } from "./format.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Shapes of the server's answers, as far as the page reads them. Types only, no code.
 

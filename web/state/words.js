@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What is happening, in words: the state of a method, sentences, and the card that says why.
 import { ROUNDING, quantity, seconds, withPowers } from "./format.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Step size, tolerance and Baumgarte's constants: a slider and a field for each setting that some
 // method has; and the scene's parameters.

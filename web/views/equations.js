@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The equations that this scene runs, as the engine prints them. Fetched when the panel is opened.
 import { sentenceOf } from "../api/client.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What is happening, in sentences that a screen reader may follow, and the cards that say why.
 import { seconds } from "../state/format.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The name, the scene menu, the switch of the theme, and the keys.
 import { sentenceOf } from "../api/client.js";

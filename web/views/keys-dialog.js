@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The table of keys, and the switch for those that are a single character.
 import { KEYS, isCharacter, keyName } from "../state/keys.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Buttons that say where a mechanism in space is seen from, turning by dragging the drawing, and a
 // triad of the world's axes. Plane mechanisms have no use for any of it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Adds, changes or removes a method: chosen from the catalogue, or typed as a spelling that the
 // server checks.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state
 // in words.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Four curves over one clock: loop gap, speed gap or distance from the reference, energy change,
 // cost; each with a table as its twin. What the reference solution does, or may itself be off, is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What every joint carries in the selected method at the time shown: a table that is asked for
 // while it is open, and the choice to draw the forces as arrows.

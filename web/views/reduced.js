@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The equations left on the free motion, inside the panel of equations: which coordinates are
 // independent, how the pose follows from them, and the reduced terms in numbers for the selected

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The last line: what runs, how the scene counts, how the stream fares.
 import { listen } from "../state/store.js";

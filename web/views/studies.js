@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The studies of what is on the page, in one dialog: a tab each, how far it is, and what comes of
 // it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Where the error at the end comes from, and who put energy in: the parts of each method as a bar
 // that adds up, and as numbers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What accuracy costs: error against cost, both by decades; a point can be pointed at, and clicked
 // to give its method this step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The cut joint under a magnifying glass: its two halves, and the gap between them in red with its
 // true size.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Play, pause, step, back to the start, speed, and the time with its scrubber.
 import { plain, seconds } from "../state/format.js";

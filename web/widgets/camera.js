@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // From metres to pixels (y down): a parallel view, fitted once to the envelope of the motion; it
 // moves only when it is turned.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Where a name stands beside its point: of twelve places near it and twelve farther off the one
 // with the most room, kept until another is clearly better, so that names neither cover the parts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // A mechanism in pieces: which shapes share an outline, and what covers what. In the plane kinds
 // lie one over the other; in space what is nearer covers what is farther.

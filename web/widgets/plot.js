@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // One plot: uPlot for curves and axes, drawn over it the time cursor, the names at the curves' ends
 // and where a run ended.

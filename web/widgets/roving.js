@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Many small things of which one can be reached with Tab, and the others from there with the arrow
 // keys.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Outlines of what a mechanism is made of, as SVG path data in pixels (y down). Points are [x, y].
 

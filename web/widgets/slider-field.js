@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // A slider with a number field beside it: the field takes what people type ("0,02", "2e-2 s"), the
 // slider keeps to round values.

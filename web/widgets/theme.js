@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Light or dark: as the system says, or as chosen; the methods' colours follow from the look table
 // of the server.

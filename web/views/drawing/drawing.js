@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The mechanism: supports once, one ghost per method, the selected method opaque and on top, with
 // the buttons that say what else is drawn.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The moving mechanism: one ghost per method, the selected one opaque and on top, and the reference
 // solution in grey beneath them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // What is drawn over the mechanism: open cut joints, arrows of forces, names of points, paths.
 import { quantity } from "../../state/format.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Sentences over the drawing: methods that have stopped, and a singular configuration ahead.
 import { shownIndex } from "../../state/store.js";

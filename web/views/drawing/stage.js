@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // The frame of the drawing: camera, pen, and what changes only with the scene and the size.
 import { quantity } from "../../state/format.js";
