@@ -44,6 +44,13 @@ ROOMS_session      := store: model:store compare:store,model references:store,mo
                       stability:store,model,references,precision \
                       extreme:store,model,compare,references,precision \
                       report:store,model,compare,references,precision,accounts,stability,extreme
+# the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
+ROOMS_server       := grade: \
+                      http/ground: http/request:http/ground http/live:http/ground,http/request \
+                      http/studies:http/ground,http/request \
+                      http/routes:grade,http/ground,http/request,http/live,http/studies \
+                      cli/shell: cli/commands:grade,cli/shell,http/ground,http/routes \
+                      cli/study:cli/shell cli:cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
 VARIANT ?= release
@@ -73,12 +80,12 @@ PROGRAM := $(if $(filter release,$(VARIANT)),build/holonom,$(OUT)/holonom)
 
 # ---- sources, found by folder ---------------------------------------------------------------------------------
 CORE_LAYERS    := $(filter-out server,$(LAYERS))
-SERVER_SOURCES := $(sort $(wildcard server/*.c server/*/*.c))
+SERVER_SOURCES := $(sort $(wildcard server/*.c server/*/*.c server/*/*/*.c))
 MAIN_SOURCE    := server/main.c
 $(foreach l,$(CORE_LAYERS),$(eval SOURCES_$(l) := $(sort $(wildcard core/$(l)/*.c core/$(l)/*/*.c))))
 SOURCES_server := $(filter-out $(MAIN_SOURCE),$(SERVER_SOURCES))
 SUPPORT        := $(sort $(wildcard tests/support/*.c))
-HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/*.h tests/support/*.h))
+HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/*.h server/*/*/*.h tests/support/*.h))
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))

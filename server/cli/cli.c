@@ -1,6 +1,9 @@
 #include "cli/cli.h"
 
 #include "build.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/print.h"
 #include "session/report/report.h"
 
 #include <stdio.h>

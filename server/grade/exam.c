@@ -1,8 +1,6 @@
 // The exam of a problem: phi read and differentiated, states drawn.
-
-#include "grade/problem.h"
-
 #include "base/hash.h"
+#include "grade/exercise.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +9,7 @@ enum { MAX_DRAWS = 10000 }; // states are drawn again until the loop closes with
 
 static int lookup(void *user, const char *name, hn_ex *out) {
     hn_exam *exam = user;
-    const hn_problem *p = exam->problem;
+    const hn_exercise *p = exam->problem;
     for (int i = 0; i < p->n_aliases; i++) {
         if (strcmp(name, p->aliases[i].key) == 0) {
             name = p->aliases[i].text;
@@ -28,7 +26,7 @@ static int lookup(void *user, const char *name, hn_ex *out) {
 }
 
 hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *diag) {
-    const hn_problem *p = exam->problem;
+    const hn_exercise *p = exam->problem;
     const char *known[HN_GRADE_MAX_NAMES];
     for (int i = 0; i < p->n_names; i++) {
         known[i] = p->names[i].name;
@@ -60,7 +58,7 @@ static double draw(uint64_t seed, uint64_t k) {
 /// One state; 1 if every derived value lies in its range.
 static int draw_state(hn_exam *exam, uint64_t seed, uint64_t *k, int closed, const hn_ex *derived,
                       int index) {
-    const hn_problem *p = exam->problem;
+    const hn_exercise *p = exam->problem;
     double *x = exam->state[index];
     int fits = 1;
     for (int i = 0; i < p->n_names; i++) {
@@ -78,7 +76,7 @@ static int draw_state(hn_exam *exam, uint64_t seed, uint64_t *k, int closed, con
 }
 
 static hn_status draw_states(hn_exam *exam, uint64_t seed, hn_diag *diag) {
-    const hn_problem *p = exam->problem;
+    const hn_exercise *p = exam->problem;
     hn_ex derived[HN_GRADE_MAX_NAMES];
     for (int i = 0; i < p->n_names; i++) {
         hn_status status = p->names[i].formula
@@ -104,7 +102,7 @@ static hn_status draw_states(hn_exam *exam, uint64_t seed, hn_diag *diag) {
 }
 
 static hn_status build(hn_exam *exam, hn_diag *diag) {
-    const hn_problem *p = exam->problem;
+    const hn_exercise *p = exam->problem;
     int by[HN_GRADE_MAX_COLUMNS];
     for (int i = 0; i < p->n_names; i++) {
         hn_ex e = hn_symbol(exam->graph, p->names[i].name, NULL);
@@ -131,7 +129,7 @@ static hn_status build(hn_exam *exam, hn_diag *diag) {
     return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : HN_OK;
 }
 
-hn_status hn_exam_init(hn_exam *exam, const hn_problem *problem, uint64_t seed, hn_diag *diag) {
+hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed, hn_diag *diag) {
     memset(exam, 0, sizeof *exam);
     exam->problem = problem;
     exam->graph = hn_graph_create();

@@ -2,7 +2,7 @@
 
 #include "base/json_text.h"
 #include "expr/print.h"
-#include "grade/problem.h"
+#include "grade/exercise.h"
 
 #include <errno.h>
 #include <math.h>
@@ -39,7 +39,7 @@ static const char *kind_of(const cJSON *node) {
 
 /// Fields that were not read are told, a near miss of the answer's name is suggested, another problem's file is refused.
 static int check_fields(hn_verdict *v, const cJSON *root) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
     for (const cJSON *m = root->child; m; m = m->next) {
         int known = 0;
@@ -72,7 +72,7 @@ static int check_fields(hn_verdict *v, const cJSON *root) {
 
 /// Rows and columns of the answer; a matrix of the transposed shape is let through.
 static int check_shape(hn_verdict *v, const cJSON *answer, int *transposed) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     int rows = cJSON_GetArraySize(answer), columns = -1;
     if (!cJSON_IsArray(answer)) {
         return refuse(v, NULL, "'%s' is %s, expected a list of %d rows", p->answer, kind_of(answer),
@@ -111,7 +111,7 @@ static int check_shape(hn_verdict *v, const cJSON *answer, int *transposed) {
 
 // one entry -------------------------------------------------------------------------------------------
 
-static double partial_share(const hn_problem *p, const char *mistake) {
+static double partial_share(const hn_exercise *p, const char *mistake) {
     for (int i = 0; i < p->n_partial; i++) {
         if (strcmp(p->partial[i].key, mistake) == 0) {
             return p->partial[i].value;
@@ -229,7 +229,7 @@ static int column_has_sign(const hn_verdict *v, int j) {
 }
 
 static void summarise(hn_verdict *v) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     int wrong = v->n_entries - v->n_right, columns = 0;
     const char *common = NULL;
     char list[64] = "";
@@ -279,7 +279,7 @@ static void mark_transposed(hn_verdict *v) {
 }
 
 static void show_state(hn_verdict *v, const hn_exam *exam) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     v->shown_entry = -1;
     v->n_names = p->n_names;
     v->n_params = p->n_params;
@@ -293,7 +293,7 @@ static void show_state(hn_verdict *v, const hn_exam *exam) {
 }
 
 static void begin_entry(hn_verdict *v, const hn_exam *exam, int k) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     hn_entry_verdict *e = &v->entry[k];
     *e = (hn_entry_verdict){.row = k / p->n_columns,
                             .column = k % p->n_columns,
@@ -309,7 +309,7 @@ static void begin_entry(hn_verdict *v, const hn_exam *exam, int k) {
 }
 
 static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer, int transposed) {
-    const hn_problem *p = v->problem;
+    const hn_exercise *p = v->problem;
     v->n_entries = p->n_rows * p->n_columns;
     v->n_states = p->n_closed;
     for (int k = 0; k < v->n_entries; k++) {
@@ -359,15 +359,15 @@ static hn_status grade_tree(hn_verdict *v, const cJSON *root) {
     return status;
 }
 
-static void begin(hn_verdict *v, const hn_problem *problem, uint64_t seed) {
+static void begin(hn_verdict *v, const hn_exercise *problem, uint64_t seed) {
     memset(v, 0, sizeof *v);
     v->problem = problem;
     v->seed = seed ? seed : problem->seed;
-    v->max_score = hn_problem_points(problem);
+    v->max_score = hn_exercise_points(problem);
     v->shown_entry = -1;
 }
 
-hn_status hn_grade_json(const hn_problem *problem, const char *text, size_t n, uint64_t seed,
+hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, uint64_t seed,
                         hn_verdict *out) {
     HN_ASSERT(problem && out && (text || n == 0));
     begin(out, problem, seed);
@@ -386,7 +386,7 @@ hn_status hn_grade_json(const hn_problem *problem, const char *text, size_t n, u
     return status;
 }
 
-hn_status hn_grade_file(const hn_problem *problem, const char *path, uint64_t seed,
+hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t seed,
                         hn_verdict *out) {
     HN_ASSERT(problem && path && out);
     begin(out, problem, seed);

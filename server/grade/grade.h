@@ -23,22 +23,22 @@ enum {
     HN_GRADE_TEXT = 400
 };
 
-typedef struct hn_problem hn_problem;
+typedef struct hn_exercise hn_exercise;
 
 /// Reads a problem (lessons/NN-topic/problems/ID.json). Returns owned. Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_MEMORY, told in diags.
-HN_MUST_CHECK hn_status hn_problem_load_file(const char *path, hn_problem **out, hn_diags *diags);
-HN_MUST_CHECK hn_status hn_problem_load_json(const char *text, size_t n, hn_problem **out,
-                                             hn_diags *diags);
-void hn_problem_free(hn_problem *problem); ///< NULL is legal
-const char *hn_problem_id(const hn_problem *problem);
-const char *hn_problem_title(const hn_problem *problem);
-const char *hn_problem_scene(
-    const hn_problem *problem); ///< id of the scene that draws a state of it; "" if none
-double hn_problem_points(const hn_problem *problem);
+HN_MUST_CHECK hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out,
+                                              hn_diags *diags);
+void hn_exercise_free(hn_exercise *problem); ///< NULL is legal
+const char *hn_exercise_id(const hn_exercise *problem);
+const char *hn_exercise_title(const hn_exercise *problem);
+const char *hn_exercise_scene(
+    const hn_exercise *problem); ///< id of the scene that draws a state of it; "" if none
+double hn_exercise_points(const hn_exercise *problem);
 /// The statement for a person: what is given, what is asked, how to hand it in.
-void hn_problem_text(hn_strbuf *b, const hn_problem *problem);
+void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem);
 /// {"id","title","statement","points","entries":[..],"given":[..],"submission":{..}}
-void hn_problem_json(hn_strbuf *b, const hn_problem *problem);
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem);
 
 /// What became of one entry.
 typedef struct hn_entry_verdict {
@@ -75,15 +75,15 @@ typedef struct hn_verdict {
     double values[HN_GRADE_MAX_NAMES];     ///< [m], [rad]
     int n_states;                          ///< states at which entries were compared
     uint64_t seed;
-    const hn_problem *problem; ///< borrowed
+    const hn_exercise *problem; ///< borrowed
 } hn_verdict;
 
 /// Grades n bytes of a submission. `seed` chooses the states (0: the problem's own). HN_OK for graded and ungradable
 /// alike; otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time and memory are bounded.
-HN_MUST_CHECK hn_status hn_grade_json(const hn_problem *problem, const char *text, size_t n,
+HN_MUST_CHECK hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n,
                                       uint64_t seed, hn_verdict *out);
 /// The same from a file; one that cannot be opened or is too large is ungradable. At most HN_GRADE_MAX_BYTES + 1 are read.
-HN_MUST_CHECK hn_status hn_grade_file(const hn_problem *problem, const char *path, uint64_t seed,
+HN_MUST_CHECK hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t seed,
                                       hn_verdict *out);
 
 /// For a person: one line an entry, and under a wrong one given, expected, allowed difference and the kind of mistake.

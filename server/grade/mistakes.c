@@ -1,7 +1,6 @@
 // Known mistakes: each row makes the formulas that a wrong entry would show. The first row one of whose formulas agrees
 // with the entry at every state, closed or open, names the mistake; so more special rows stand first.
-
-#include "grade/problem.h"
+#include "grade/exercise.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,7 +63,7 @@ static void make_sign(const place *at, variants *v) {
 /// Angles taken in degrees, or turned into degrees; with and without the factor that differentiation brings.
 static void make_degrees(const place *at, variants *v) {
     const double factor = acos(-1) / 180;
-    const hn_problem *p = at->exam->problem;
+    const hn_exercise *p = at->exam->problem;
     for (int inverse = 0; inverse < 2; inverse++) {
         double k = inverse ? 1 / factor : factor;
         hn_ex e = replace_names(at, at->reference, p->n_params, p->n_names, 0, k);
@@ -88,7 +87,7 @@ static void make_row(const place *at, variants *v) {
 
 /// sin for cos and cos for sin: every coordinate x becomes pi/2 - x.
 static void make_swapped(const place *at, variants *v) {
-    const hn_problem *p = at->exam->problem;
+    const hn_exercise *p = at->exam->problem;
     hn_ex e = replace_names(at, at->reference, p->n_params, p->n_names, acos(-1) / 2, -1);
     add(v, e, "");
     add(v, hn_neg(e), "");
@@ -107,7 +106,7 @@ static void make_column(const place *at, variants *v) {
 
 /// One parameter, or all of them, left out.
 static void make_length(const place *at, variants *v) {
-    const hn_problem *p = at->exam->problem;
+    const hn_exercise *p = at->exam->problem;
     for (int i = 0; i <= p->n_params; i++) {
         hn_ex e = i < p->n_params ? replace_names(at, at->reference, i, i + 1, 1, 0)
                                   : replace_names(at, at->reference, 0, p->n_params, 1, 0);
@@ -118,7 +117,7 @@ static void make_length(const place *at, variants *v) {
 
 /// One name in place of another of its kind.
 static void make_variable(const place *at, variants *v) {
-    const hn_problem *p = at->exam->problem;
+    const hn_exercise *p = at->exam->problem;
     hn_graph *g = at->exam->graph;
     for (int i = 0; i < p->n_names; i++) {
         if (!hn_depends_on(g, at->reference, at->exam->symbol[i])) {

@@ -1,9 +1,7 @@
 // One verdict, told to a person, to a program, and to Gradescope.
-
-#include "grade/grade.h"
-#include "grade/problem.h"
-
 #include "base/hash.h"
+#include "grade/exercise.h"
+#include "grade/grade.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include "support/near.h"
+#include "cli/shell/args.h"
 
 #include <math.h>
 #include <stdio.h>

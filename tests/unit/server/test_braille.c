@@ -1,6 +1,6 @@
 #include "support/near.h"
 
-#include "cli/braille.h"
+#include "cli/shell/braille.h"
 
 #include <string.h>
 

@@ -17,10 +17,10 @@ static const char *const RIGHT[8] = {"-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3
                                      "l4*sin(th4)",  "l1*cos(th1)",  "l2*cos(th2)",
                                      "-l3*cos(th3)", "-l4*cos(th4)"};
 
-static hn_problem *load_p3(void) {
-    hn_problem *p = NULL;
+static hn_exercise *load_p3(void) {
+    hn_exercise *p = NULL;
     hn_diags diags = {0};
-    if (hn_problem_load_file(P3, &p, &diags) != HN_OK) {
+    if (hn_exercise_load_file(P3, &p, &diags) != HN_OK) {
         fail_msg("%s: %s", diags.item[0].pointer, diags.item[0].message);
     }
     return p;
@@ -32,17 +32,17 @@ static int setup(void **state) {
 }
 
 static int teardown(void **state) {
-    hn_problem_free(*state);
+    hn_exercise_free(*state);
     return 0;
 }
 
-static void grade(const hn_problem *p, const char *text, hn_verdict *v) {
+static void grade(const hn_exercise *p, const char *text, hn_verdict *v) {
     memset(v, 0x5A, sizeof *v);
     assert_int_equal(hn_grade_json(p, text, strlen(text), 0, v), HN_OK);
 }
 
 /// Grades the right answer with entry `k` (0..7) replaced.
-static void grade_with(const hn_problem *p, int k, const char *formula, hn_verdict *v) {
+static void grade_with(const hn_exercise *p, int k, const char *formula, hn_verdict *v) {
     char text[8192];
     size_t at = 0;
     for (int i = 0; i < 8; i++) {
@@ -434,12 +434,12 @@ static void json_and_text_tell_the_same_verdict(void **state) {
 static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void **state) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_problem_text(&b, *state);
+    hn_exercise_text(&b, *state);
     assert_non_null(strstr(hn_strbuf_text(&b), "two freedoms"));
     assert_non_null(
         strstr(hn_strbuf_text(&b), "{\"J\": [[\"...\", \"...\", \"...\", \"...\"], [\"...\""));
     hn_strbuf_clear(&b);
-    hn_problem_json(&b, *state);
+    hn_exercise_json(&b, *state);
     cJSON *root = parse(&b);
     assert_near(number_of(root, "points"), 8, 0);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(root, "entries")), 8);
@@ -450,9 +450,9 @@ static void a_faulty_problem_is_told(void **state) {
     static const char *const bad[] = {"", "[]", "{}", "{\"id\":\"x\",\"phi\":[\"l1*(\"]}"};
     (void)state;
     for (size_t i = 0; i < 4; i++) {
-        hn_problem *p;
+        hn_exercise *p;
         hn_diags diags = {0};
-        assert_int_equal(hn_problem_load_json(bad[i], strlen(bad[i]), &p, &diags), HN_ERR_INPUT);
+        assert_int_equal(hn_exercise_load_json(bad[i], strlen(bad[i]), &p, &diags), HN_ERR_INPUT);
         assert_null(p);
         assert_true(diags.n > 0);
     }
@@ -463,7 +463,7 @@ static void memory_that_runs_out_is_the_graders_failure_and_nothing_leaks(void *
     const char *text = "{\"J\": "
                        "[[\"-l1*sin(th1)\",\"l2*sin(th2)\",\"x\",0],[\"l1*cos(th1)\",\"\",\"-l3*"
                        "cos(th3)\",\"th1^2.5\"]]}";
-    hn_problem *p = load_p3();
+    hn_exercise *p = load_p3();
     (void)state;
     cJSON_InitHooks(&hooks);
     long live = hn_alloc_live(), n = 0;
@@ -480,7 +480,7 @@ static void memory_that_runs_out_is_the_graders_failure_and_nothing_leaks(void *
         n += n > 300 ? n / 10 : 0; // the many evaluations are alike
     } while (failed);
     cJSON_InitHooks(NULL);
-    hn_problem_free(p);
+    hn_exercise_free(p);
 }
 
 int main(void) {

@@ -1,4 +1,4 @@
-#include "http/guard.h"
+#include "http/request/guard.h"
 
 #include "support/near.h"
 

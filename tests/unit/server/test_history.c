@@ -1,4 +1,4 @@
-#include "http/history.h"
+#include "http/live/history.h"
 
 #include "support/near.h"
 

@@ -1,7 +1,7 @@
 #include "support/near.h"
 
-#include "cli/braille.h"
-#include "cli/plain.h"
+#include "cli/shell/braille.h"
+#include "cli/shell/plain.h"
 #include "render/look.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "http/sha256.h"
+#include "http/ground/sha256.h"
 
 #include "support/near.h"
 

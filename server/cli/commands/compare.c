@@ -1,0 +1,166 @@
+// holonom compare: several methods on one clock, and a table of where they part.
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/document.h"
+#include "cli/shell/print.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/scene_word.h"
+#include "session/compare/comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_INCIDENTS = 3 };
+static const double LONGEST_FRAME = 0.1; // [s]
+
+static hn_status create(const hn_args *args, const hn_model *model, hn_comparison **out,
+                        hn_diags *diags) {
+    const hn_scene *scene = hn_model_scene(model);
+    hn_comparison_opts opts = hn_comparison_opts_default();
+    const char *const *methods = args->methods.n > 0 ? args->methods.word : scene->methods;
+    int n = args->methods.n > 0 ? args->methods.n : scene->n_methods;
+    if (!isnan(args->time) && !(args->time > 0)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
+                            "the end time is %g s; it must be above 0", args->time);
+    }
+    opts.duration = isnan(args->time) ? scene->duration : args->time;
+    // whole frames up to the end, so that the clock stops exactly there
+    opts.frame_dt = isnan(args->frame_dt) ? opts.duration / ceil(opts.duration / LONGEST_FRAME)
+                                          : args->frame_dt;
+    return hn_comparison_create(model, methods, n, &opts, out, diags);
+}
+
+/// The frame in which the clock arrives at the end.
+static void run_to_the_end(hn_comparison *c) {
+    hn_progress progress = {0};
+    while (!hn_comparison_finished(c)) {
+        hn_comparison_next(c);
+        double t = (double)hn_comparison_frame(c) * hn_comparison_frame_dt(c);
+        hn_progress_tell(&progress, "comparing", fmin(1, t / hn_comparison_duration(c)));
+    }
+    hn_progress_end(&progress);
+}
+
+/// "m" when every row of the loops is a length; a mixture has no unit.
+static const char *gap_unit(const hn_model *model) {
+    const hn_system *sys = hn_model_system(model);
+    for (int i = 0; i < hn_system_get_info(sys).nc; i++) {
+        if (!hn_system_row_is_length(sys, i)) {
+            return "";
+        }
+    }
+    return "m";
+}
+
+static int has_failed(const cJSON *method) {
+    return strcmp(hn_document_text(method, "state"), "failed") == 0;
+}
+
+static void put_row(hn_table *t, const cJSON *m, const char *unit) {
+    double steps = hn_document_number(m, "steps");
+    char rate[8];
+    snprintf(rate, sizeof rate, "%s%s", unit, unit[0] ? "/s" : "");
+    hn_table_cell(t, "%s", hn_document_text(m, "method"));
+    hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : "ok");
+    hn_table_quantity(t, hn_document_number(m, "t_reached"), "s");
+    hn_table_quantity(t, hn_document_number(m, "worst_gap"), unit);
+    hn_table_quantity(t, hn_document_number(m, "worst_velocity_gap"), rate);
+    hn_table_quantity(t, hn_document_number(m, "worst_energy_change"), "J");
+    hn_table_cell(t, "%.0f", steps);
+    hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
+    hn_table_quantity(t, hn_document_number(m, "ops"), "op");
+    hn_table_quantity(t, steps > 0 ? hn_document_number(m, "cpu") / steps : (double)NAN, "s");
+}
+
+/// What a spelling deserves to be told, and the first few incidents of each method; all of them are in the JSON.
+static void put_incidents(hn_strbuf *b, const cJSON *summary) {
+    const cJSON *incident, *m;
+    int i = 0;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        int n = 0;
+        if (hn_document_text(m, "warning")[0]) {
+            hn_strbuf_printf(b, "! %s: %s\n", hn_document_text(m, "method"),
+                             hn_document_text(m, "warning"));
+        }
+        cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
+            if ((int)hn_document_number(incident, "method") == i && n++ < MAX_INCIDENTS) {
+                hn_strbuf_printf(b, "! %s at t = %.4g s: %s\n", hn_document_text(m, "method"),
+                                 hn_document_number(incident, "t"),
+                                 hn_document_text(incident, "message"));
+            }
+        }
+        if (n > MAX_INCIDENTS) {
+            hn_strbuf_printf(b, "! %s: %d incidents more (--json lists them all)\n",
+                             hn_document_text(m, "method"), n - MAX_INCIDENTS);
+        }
+        i++;
+    }
+}
+
+static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary) {
+    static const char *const heads[] = {"method",       "status",        "t",     "worst gap",
+                                        "velocity gap", "energy change", "steps", "evals",
+                                        "ops",          "CPU/step"};
+    const hn_scene *scene = hn_model_scene(model);
+    hn_table t;
+    hn_table_init(&t);
+    for (int c = 0; c < 10; c++) {
+        hn_table_column(&t, heads[c], c > 1);
+    }
+    const cJSON *m;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        put_row(&t, m, gap_unit(model));
+    }
+    hn_strbuf_printf(b, "%s to t = %g s\n", scene->title ? scene->title : scene->id,
+                     hn_document_number(summary, "t"));
+    hn_table_write(b, &t);
+    put_incidents(b, summary);
+    hn_table_reset(&t);
+}
+
+/// Says which methods ended early and why; 1 if any did.
+static int tell_failures(const cJSON *summary, int aloud) {
+    int failed = 0;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {
+        if (has_failed(m)) {
+            failed = 1;
+            if (aloud) {
+                fprintf(stderr, "holonom: %s ended early at t = %.6g s: %s\n",
+                        hn_document_text(m, "method"), hn_document_number(m, "t_reached"),
+                        hn_document_text(m, "reason"));
+            }
+        }
+    }
+    return failed;
+}
+
+hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_comparison *c = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
+    if (status == HN_OK) {
+        status = create(args, model, &c, &diags);
+    }
+    if (status != HN_OK) {
+        hn_model_free(model);
+        return hn_report_diags(args, status, &diags);
+    }
+    run_to_the_end(c);
+    hn_comparison_summary_json(&b, c);
+    cJSON *summary = cJSON_Parse(hn_strbuf_text(&b));
+    if (!args->json) {
+        hn_strbuf_clear(&b);
+        put_table(&b, model, summary);
+    }
+    hn_exit result = args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
+    int failed = tell_failures(summary, !args->json);
+    cJSON_Delete(summary);
+    hn_comparison_free(c);
+    hn_model_free(model);
+    return result == HN_EXIT_DONE && failed ? HN_EXIT_ENDED : result;
+}

@@ -1,0 +1,266 @@
+// holonom import: a mechanism written for another program, as a scene; what of it is not in the scene is told.
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
+#include "cli/shell/print.h"
+#include "import/import.h"
+#include "session/model/model.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Adds a file's bytes, at most one more than `most`. 0 where it cannot be read, with errno.
+static int add_bytes(FILE *f, size_t most, hn_strbuf *text) {
+    char piece[1 << 14];
+    size_t left = most + 1, n = 1;
+    while (f && left > 0 && n > 0) {
+        n = fread(piece, 1, left < sizeof piece ? left : sizeof piece, f);
+        hn_strbuf_add_n(text, piece, n);
+        left -= n;
+    }
+    return f && !ferror(f);
+}
+
+/// A file, or "-".
+static hn_status read_file(const char *path, hn_strbuf *text, hn_diags *diags) {
+    FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
+    const int ok = add_bytes(f, HN_IMPORT_MAX_BYTES, text);
+    hn_status status = text->failed ? HN_ERR_MEMORY : HN_OK;
+    if (!ok) {
+        status = hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s': %s", path,
+                              strerror(errno));
+    } else if (text->n > HN_IMPORT_MAX_BYTES) {
+        status = hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL, "'%.200s' has more than %d bytes",
+                              path, HN_IMPORT_MAX_BYTES);
+    }
+    if (f && f != stdin) {
+        (void)fclose(f);
+    }
+    return status;
+}
+
+/// A file below the folder `user` (as realpath tells it): a link that leads out of it is not followed.
+static hn_status read_included(void *user, const char *name, size_t most, hn_strbuf *text,
+                               hn_diag *diag) {
+    const char *folder = user;
+    const size_t n = strlen(folder);
+    hn_strbuf path;
+    hn_strbuf_init(&path);
+    hn_strbuf_printf(&path, "%s/%s", folder, name);
+    char *real = path.failed ? NULL : realpath(hn_strbuf_text(&path), NULL);
+    hn_status status = path.failed ? HN_ERR_MEMORY : HN_OK;
+    const int below = real && strncmp(real, folder, n) == 0 && (real[n] == '/' || n == 1);
+    FILE *f = below ? fopen(real, "rb") : NULL;
+    if (status == HN_OK && real && !below) {
+        status = hn_diag_set(diag, HN_ERR_IO, NULL, "copy it beside the model",
+                             "'%.100s' is a link out of the model's folder, and files there are "
+                             "not read",
+                             name);
+    } else if (status == HN_OK && !add_bytes(f, most, text)) {
+        status = hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot read '%.100s': %s", name,
+                             strerror(errno));
+    }
+    if (f) {
+        (void)fclose(f);
+    }
+    free(real);
+    hn_strbuf_reset(&path);
+    return status;
+}
+
+/// The folder of a file, as realpath tells it; owned. NULL: standard input, or it cannot be told.
+static char *folder_of(const char *path) {
+    char *real = strcmp(path, "-") == 0 ? NULL : realpath(path, NULL);
+    char *slash = real ? strrchr(real, '/') : NULL;
+    if (slash) {
+        slash[slash == real] = '\0';
+    }
+    return real;
+}
+
+static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *diags) {
+    const char *path = args->words.word[0], *slash = strrchr(path, '/');
+    hn_strbuf text, loops;
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&loops);
+    hn_status status = read_file(path, &text, diags);
+    if (status == HN_OK && args->loops) {
+        status = read_file(args->loops, &loops, diags);
+    }
+    if (status == HN_OK) {
+        char *folder = folder_of(path);
+        hn_import_source source = {.text = hn_strbuf_text(&text),
+                                   .n = text.n,
+                                   .loops = args->loops ? hn_strbuf_text(&loops) : NULL,
+                                   .n_loops = loops.n,
+                                   .key = args->key,
+                                   .file = folder ? (slash ? slash + 1 : path) : NULL,
+                                   .read = folder ? read_included : NULL,
+                                   .user = folder};
+        status = hn_import_read(&source, out, diags);
+        free(folder);
+    }
+    hn_strbuf_reset(&text);
+    hn_strbuf_reset(&loops);
+    return status;
+}
+
+/// Where the scene stands when its loops are closed; told, not demanded: what assembly misses is a fact about the model.
+static hn_status assemble(const hn_library *lib, const hn_import *im, hn_model **out,
+                          hn_diags *diags) {
+    hn_model_source source = {.allow_open = 1};
+    source.text = hn_import_scene(im, &source.n_text);
+    return hn_model_load(lib, &source, out, diags);
+}
+
+static void put_assembly(hn_strbuf *b, const hn_model *model, const hn_diags *why) {
+    hn_json_key(b, "assembly");
+    hn_json_object(b);
+    if (!model) {
+        hn_json_put_bool(b, "ok", 0);
+        hn_json_put_string(b, "reason", why->item[0].message);
+        hn_json_end_object(b);
+        return;
+    }
+    const hn_assembly *a = hn_model_assembly(model);
+    hn_model_closed_put(b, model);
+    hn_json_put_number(b, "gap", a->gap);
+    hn_json_put_number(b, "moved", a->moved);
+    hn_json_put_int(b, "rank", a->rank);
+    hn_json_put_int(b, "redundant", a->redundant);
+    hn_json_put_int(b, "vanished", hn_system_get_info(hn_model_system(model)).rows_dropped);
+    hn_json_put_int(b, "freedoms", a->freedoms);
+    hn_json_end_object(b);
+}
+
+static void put_counts(hn_strbuf *b, const hn_import *im) {
+    hn_import_info info = hn_import_get_info(im);
+    hn_json_put_int(b, "bodies", info.n_bodies);
+    hn_json_put_int(b, "carriers", info.n_carriers);
+    hn_json_put_int(b, "joints", info.n_joints);
+    hn_json_put_int(b, "closing", info.n_closing);
+    hn_json_put_int(b, "constraints", info.n_constraints);
+    hn_json_put_int(b, "loads", info.n_loads);
+    hn_json_put_int(b, "parameters", info.n_params);
+    hn_json_put_number(b, "mass", info.mass);
+    hn_json_put_numbers(b, "com", info.com, 3);
+}
+
+static void put_notes(hn_strbuf *b, const hn_import *im) {
+    hn_json_key(b, "notes");
+    hn_json_array(b);
+    for (int i = 0; i < hn_import_note_count(im); i++) {
+        const hn_import_note *note = hn_import_note_at(im, i);
+        hn_json_object(b);
+        hn_json_put_string(b, "outcome", hn_import_outcome_name(note->outcome));
+        if (note->file) {
+            hn_json_put_string(b, "file", note->file);
+        }
+        hn_json_put_int(b, "line", note->line);
+        hn_json_put_string(b, "where", note->where);
+        hn_json_put_string(b, "what", note->what);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+/// With --json: everything in one object; the scene itself unless it went into a file.
+static hn_exit print_json(const hn_args *args, const hn_import *im, const hn_model *model,
+                          const hn_diags *why) {
+    hn_strbuf b;
+    size_t n;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_string(&b, "format", hn_import_format(im));
+    put_counts(&b, im);
+    put_assembly(&b, model, why);
+    put_notes(&b, im);
+    if (args->out) {
+        hn_json_put_string(&b, "written", args->out);
+    } else {
+        hn_json_key(&b, "scene");
+        hn_json_raw(&b, hn_import_scene(im, &n));
+    }
+    hn_json_end_object(&b);
+    return hn_cli_print(&b);
+}
+
+static void tell_notes(const hn_import *im) {
+    for (int i = 0; i < hn_import_note_count(im); i++) {
+        const hn_import_note *note = hn_import_note_at(im, i);
+        fprintf(stderr, "%s%sline %d: %s: %s (%s)\n", note->file ? note->file : "",
+                note->file ? ", " : "", note->line, hn_import_outcome_name(note->outcome),
+                note->what, note->where);
+    }
+}
+
+static void tell_assembly(const hn_model *model, const hn_diags *why) {
+    if (!model) {
+        fprintf(stderr, "holonom: the scene was written, but not compiled: %s\n",
+                why->item[0].message);
+        return;
+    }
+    const hn_assembly *a = hn_model_assembly(model);
+    const hn_diag *open = hn_model_open(model);
+    if (open) {
+        fprintf(stderr,
+                "holonom: the scene was written, but cannot be assembled: %s\n         %s\n",
+                open->message, open->hint);
+        return;
+    }
+    fprintf(
+        stderr,
+        "holonom: assembled with a gap of %.2g: %d freedoms; of the rows that close loops %d are "
+        "redundant, and %d are 0 whatever the pose\n",
+        a->gap, a->freedoms, a->redundant, hn_system_get_info(hn_model_system(model)).rows_dropped);
+}
+
+static void tell_summary(const hn_import *im) {
+    hn_import_info info = hn_import_get_info(im);
+    fprintf(stderr,
+            "holonom: %s with %d bodies%s, %d joints, %d of its joints and constraints closing "
+            "loops; %.6g kg\n",
+            hn_import_format(im), info.n_bodies - info.n_carriers,
+            info.n_carriers ? " (and carriers without mass between joints of one body)" : "",
+            info.n_joints, info.n_closing, info.mass);
+    fprintf(stderr, "holonom: not in the scene: %d ignored, %d approximated, %d refused\n",
+            hn_import_count(im, HN_IMPORT_IGNORED), hn_import_count(im, HN_IMPORT_APPROXIMATED),
+            hn_import_count(im, HN_IMPORT_REFUSED));
+}
+
+static hn_exit write_scene(const hn_args *args, const hn_import *im) {
+    hn_strbuf b;
+    size_t n;
+    hn_strbuf_init(&b);
+    const char *text = hn_import_scene(im, &n);
+    hn_strbuf_add_n(&b, text, n);
+    return hn_cli_write_file(args, args->out, &b);
+}
+
+hn_exit hn_command_import(const hn_library *lib, const hn_args *args) {
+    hn_import *im = NULL;
+    hn_model *model = NULL;
+    hn_diags diags = {0}, why = {0};
+    hn_status status = read_source(args, &im, &diags);
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, &diags);
+    }
+    status = assemble(lib, im, &model, &why);
+    if (status == HN_ERR_MEMORY) {
+        hn_import_free(im);
+        return hn_report_diags(args, status, &why);
+    }
+    hn_exit result = args->out || !args->json ? write_scene(args, im) : HN_EXIT_DONE;
+    if (result == HN_EXIT_DONE && args->json) {
+        result = print_json(args, im, model, &why);
+    } else if (result == HN_EXIT_DONE) {
+        tell_notes(im);
+        tell_summary(im);
+        tell_assembly(model, &why);
+    }
+    hn_model_free(model);
+    hn_import_free(im);
+    return result;
+}

@@ -1,0 +1,153 @@
+// holonom list scenes|methods|lessons|problems
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/document.h"
+#include "cli/shell/print.h"
+#include "grade/exercise_shelf.h"
+#include "integrators/method/method_spec.h"
+#include "session/model/lists.h"
+#include "session/model/model.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void methods_json(hn_strbuf *b, const hn_library *lib) {
+    (void)lib;
+    hn_methods_json(b);
+}
+
+enum { MAX_TABLES = 2, MAX_COLUMNS = 5 };
+
+/// What a card says below its title: the word in front, and the member it is read from.
+static const struct {
+    const char *head, *key;
+} CARD[] = {
+    {"idea", "rule"},   {"about", "about"},       {"index", "index"},   {"needs", "needs"},
+    {"order", "order"}, {"order", "order_note"},  {"the gap", "drift"}, {"limits", "limits"},
+    {"when", "when"},   {"when not", "when_not"}, {"source", "source"},
+};
+enum { N_CARD = sizeof CARD / sizeof *CARD };
+
+/// One thing that can be listed: its document, and the tables a person sees of it.
+static const struct {
+    const char *name;
+    void (*write)(hn_strbuf *b, const hn_library *lib);
+    struct {
+        const char *member;
+        int n;
+        hn_list_column columns[MAX_COLUMNS];
+    } tables[MAX_TABLES];
+} LISTS[] = {
+    {"scenes",
+     hn_scenes_json,
+     {{"scenes",
+       4,
+       {{"scene", "id", NULL},
+        {"title", "title", NULL},
+        {"kind", "kind", NULL},
+        {"what it is", "caption", NULL}}}}},
+    {"methods",
+     methods_json,
+     {{"formulations",
+       5,
+       {{"formulation", "name", NULL},
+        {"title", "title", NULL},
+        {"index", "index", ""},
+        {"the gap", "drift", NULL},
+        {"needs", "needs", NULL}}},
+      {"integrators",
+       4,
+       {{"integrator", "name", NULL},
+        {"title", "title", NULL},
+        {"order", "order", ""},
+        {"adaptive", "adaptive", NULL}}}}},
+    {"lessons",
+     hn_lessons_json,
+     {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}}}},
+    {"problems",
+     hn_shelf_exercises_json,
+     {{"problems",
+       3,
+       {{"problem", "id", NULL}, {"title", "title", NULL}, {"points", "points", ""}}}}},
+};
+enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
+
+static void put_card(hn_strbuf *b, const cJSON *item) {
+    hn_strbuf_printf(b, "\n%s: %s\n", hn_document_text(item, "name"),
+                     hn_document_text(item, "title"));
+    for (int i = 0; i < N_CARD; i++) {
+        const cJSON *said = hn_document_get(item, CARD[i].key);
+        if (cJSON_IsNumber(said)) {
+            hn_strbuf_printf(b, "  %-9s ", CARD[i].head);
+            hn_document_put_number(b, said);
+            hn_strbuf_add(b, "\n");
+        } else if (*hn_document_text(item, CARD[i].key)) {
+            hn_strbuf_printf(b, "  %-9s %s\n", CARD[i].head, hn_document_text(item, CARD[i].key));
+        }
+    }
+}
+
+/// A card for each thing that has one, below the tables.
+static void put_cards(hn_strbuf *b, const cJSON *array) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, array) {
+        if (hn_document_get(item, "source")) {
+            put_card(b, item);
+        }
+    }
+}
+
+static hn_exit tell_unknown(const hn_args *args, const char *name) {
+    const char *names[N_LISTS];
+    for (int i = 0; i < N_LISTS; i++) {
+        names[i] = LISTS[i].name;
+    }
+    const char *near = hn_nearest_name(name, names, N_LISTS);
+    char hint[HN_DIAG_HINT];
+    snprintf(hint, sizeof hint,
+             near ? "did you mean '%s'?" : "scenes, methods, lessons, problems%s",
+             near ? near : "");
+    hn_diag diag;
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, hint, "'%.60s' cannot be listed", name);
+    return hn_report_diag(args, &diag);
+}
+
+/// A thing that could not be read stands in the list with its faults; they are told below it.
+static void put_faults(hn_strbuf *b, const cJSON *array) {
+    const cJSON *item, *fault;
+    cJSON_ArrayForEach(item, array) {
+        cJSON_ArrayForEach(fault, hn_document_get(item, "errors")) {
+            hn_strbuf_printf(b, "  %s: %s (at %s)\n", hn_document_text(item, "id"),
+                             hn_document_text(fault, "detail"), hn_document_text(fault, "pointer"));
+        }
+    }
+}
+
+hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
+    int which = 0;
+    while (which < N_LISTS && strcmp(LISTS[which].name, args->words.word[0]) != 0) {
+        which++;
+    }
+    if (which == N_LISTS) {
+        return tell_unknown(args, args->words.word[0]);
+    }
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    LISTS[which].write(&text, lib);
+    if (args->json) {
+        return hn_cli_print(&text);
+    }
+    cJSON *document = hn_document_parse(&text);
+    for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
+        const cJSON *array = hn_document_get(document, LISTS[which].tables[i].member);
+        hn_strbuf_add(&text, i ? "\n" : "");
+        hn_document_list(&text, array, LISTS[which].tables[i].columns, LISTS[which].tables[i].n);
+        put_faults(&text, array);
+    }
+    for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
+        put_cards(&text, hn_document_get(document, LISTS[which].tables[i].member));
+    }
+    text.failed |= document == NULL;
+    cJSON_Delete(document);
+    return hn_cli_print_text(&text);
+}

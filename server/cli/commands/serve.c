@@ -1,0 +1,130 @@
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/print.h"
+#include "http/routes/server.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/// Puts the value given on the command line, or leaves the default.
+static void choose_int(int *field, double given) {
+    if (!isnan(given)) {
+        *field = (int)fmin(given, 1e9);
+    }
+}
+
+static void choose_seconds(double *field, double given) {
+    if (!isnan(given)) {
+        *field = given;
+    }
+}
+
+static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *diag) {
+    *opts = hn_http_opts_default();
+    if (args->host) {
+        opts->host = args->host;
+    }
+    choose_int(&opts->port, args->port);
+    choose_int(&opts->max_events, args->history);
+    choose_int(&opts->max_comparisons, args->max_comparisons);
+    choose_int(&opts->max_streams, args->max_streams);
+    choose_seconds(&opts->max_run_cpu, args->run_cpu);
+    choose_seconds(&opts->idle_pause, args->idle_pause);
+    choose_seconds(&opts->expiry, args->expiry);
+    choose_seconds(&opts->keep_alive, args->keep_alive);
+    opts->allow_hosts = args->allow_hosts.word;
+    opts->n_allow_hosts = args->allow_hosts.n;
+    const struct {
+        const char *option;
+        double value, min, max;
+    } bounds[] = {{"--port", opts->port, 0, 65535},
+                  {"--history", opts->max_events, 1, 1e6},
+                  {"--max-comparisons", opts->max_comparisons, 1, 1000},
+                  {"--max-streams", opts->max_streams, 1, 200},
+                  {"--run-cpu", opts->max_run_cpu, 0.01, 3600},
+                  {"--idle-pause", opts->idle_pause, 0.1, 1e6},
+                  {"--expiry", opts->expiry, 0.1, 1e6},
+                  {"--keep-alive", opts->keep_alive, 0.1, 20},
+                  {"number of --allow-host", opts->n_allow_hosts, 0, HN_MAX_HOSTS}};
+    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
+        if (!(bounds[i].value >= bounds[i].min && bounds[i].value <= bounds[i].max)) {
+            return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s is %g; %g to %g are allowed",
+                               bounds[i].option, bounds[i].value, bounds[i].min, bounds[i].max);
+        }
+    }
+    return HN_OK;
+}
+
+static void announce(const hn_server *server, const hn_args *args, const hn_http_opts *opts) {
+    int port = hn_server_port(server);
+    if (opts->port != 0 && port != opts->port) {
+        fprintf(stderr, "holonom: port %d is taken; port %d is used\n", opts->port, port);
+    }
+    if (args->json) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_json_object(&b);
+        hn_json_put_string(&b, "address", hn_server_address(server));
+        hn_json_put_int(&b, "port", port);
+        hn_json_put_int(&b, "process", getpid());
+        hn_json_end_object(&b);
+        hn_cli_print(&b);
+        return;
+    }
+    printf("holonom is at %s/\n", hn_server_address(server));
+    printf(
+        "Space play and pause   arrows step   - = speed   Backspace reset   Ctrl+C here ends it\n");
+    fflush(stdout);
+}
+
+/// Hands the address to the desktop, in a process of its own.
+static void open_browser(const char *address) {
+    pid_t pid = fork();
+    if (pid == 0) {
+        sigset_t none;
+        sigemptyset(&none);
+        sigprocmask(SIG_SETMASK, &none, NULL);
+        execlp("xdg-open", "xdg-open", address, (char *)NULL);
+        fprintf(stderr, "holonom: xdg-open is not there; open %s by hand\n", address);
+        _exit(1);
+    }
+    if (pid < 0) {
+        fprintf(stderr, "holonom: no browser could be opened; open %s by hand\n", address);
+    }
+}
+
+hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
+    hn_http_opts opts;
+    hn_server *server = NULL;
+    hn_diag diag = {0};
+    sigset_t stop;
+    if (read_opts(args, &opts, &diag) != HN_OK) {
+        return hn_report_diag(args, &diag);
+    }
+    // blocked before any thread starts, so that only the wait below takes them
+    sigemptyset(&stop);
+    sigaddset(&stop, SIGINT);
+    sigaddset(&stop, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &stop, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    if (args->open) {
+        signal(SIGCHLD, SIG_IGN);
+    }
+    if (hn_server_start(lib, &opts, &server, &diag) != HN_OK) {
+        return hn_report_diag(args, &diag);
+    }
+    announce(server, args, &opts);
+    if (args->open) {
+        open_browser(hn_server_address(server));
+    }
+    int which;
+    sigwait(&stop, &which);
+    // asked a second time, it ends at once
+    pthread_sigmask(SIG_UNBLOCK, &stop, NULL);
+    hn_server_stop(server);
+    return HN_EXIT_DONE;
+}

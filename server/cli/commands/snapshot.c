@@ -1,0 +1,80 @@
+// holonom snapshot: a picture of where several methods have taken a scene.
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
+#include "cli/shell/print.h"
+#include "cli/shell/scene_word.h"
+#include "session/compare/picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_diags *diags) {
+    if (!isnan(args->width)) {
+        request->width = (int)fmin(fmax(1, args->width), 1e6);
+    }
+    if (!isnan(args->height)) {
+        request->height = (int)fmin(fmax(1, args->height), 1e6);
+    }
+    if (args->theme && strcmp(args->theme, "dark") == 0) {
+        request->theme = HN_THEME_DARK;
+    } else if (args->theme && strcmp(args->theme, "light") != 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "light or dark", "'%.40s' is not a theme",
+                            args->theme);
+    }
+    request->view = args->view;
+    if (!args->out) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
+                            "where should the picture go?");
+    }
+    return HN_OK;
+}
+
+/// The methods asked for, or the scene's own.
+static void choose_methods(const hn_args *args, const hn_scene *scene,
+                           hn_picture_request *request) {
+    if (args->method) {
+        request->methods = &args->method;
+        request->n_methods = 1;
+    } else {
+        request->methods = args->methods.n > 0 ? args->methods.word : scene->methods;
+        request->n_methods = args->methods.n > 0 ? args->methods.n : scene->n_methods;
+    }
+    request->time = isnan(args->time) ? 0 : args->time;
+}
+
+hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_picture_request request = {0};
+    hn_status ended = HN_OK;
+    hn_strbuf png, description;
+    hn_strbuf_init(&png);
+    hn_strbuf_init(&description);
+    hn_status status = read_opts(args, &request, &diags);
+    if (status == HN_OK) {
+        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
+    }
+    if (status == HN_OK) {
+        choose_methods(args, hn_model_scene(model), &request);
+        status = hn_model_picture(&png, &description, model, &request, &ended, &diags);
+    }
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&png);
+        hn_strbuf_reset(&description);
+        return hn_report_diags(args, status, &diags);
+    }
+    hn_exit result = hn_cli_write_file(args, args->out, &png);
+    if (result == HN_EXIT_DONE && args->json && strcmp(args->out, "-") != 0) {
+        result = hn_cli_print(&description);
+    }
+    hn_strbuf_reset(&description);
+    if (result == HN_EXIT_DONE && ended != HN_OK) {
+        fprintf(stderr, "holonom: a method ended early (%s); the picture says which and where\n",
+                hn_status_text(ended));
+        result = HN_EXIT_ENDED;
+    }
+    return result;
+}

@@ -1,0 +1,326 @@
+#include "cli/shell/args.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef enum option_kind {
+    OPTION_FLAG,
+    OPTION_TEXT,
+    OPTION_NUMBER,
+    OPTION_COUNT,   ///< a whole number from 0
+    OPTION_NUMBERS, ///< separated by commas
+    OPTION_WORD,    ///< may be repeated
+    OPTION_WORDS    ///< all words up to the next option
+} option_kind;
+
+typedef struct option {
+    const char *name, *argument;
+    option_kind kind;
+    size_t place; ///< in hn_args
+    const char *about;
+} option;
+
+#define AT(field) offsetof(hn_args, field)
+
+static const option OPTIONS[] = {
+    {"--json", NULL, OPTION_FLAG, AT(json), "one JSON object on standard output"},
+    {"--help", NULL, OPTION_FLAG, AT(help), "this help"},
+    {"--set", "NAME=VALUE", OPTION_WORD, AT(set),
+     "a parameter that differs from the scene's; may be repeated"},
+    {"--method", "METHOD", OPTION_TEXT, AT(method),
+     "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
+    {"--methods", "METHOD...", OPTION_WORDS, AT(methods),
+     "several of them; the scene's own when left out"},
+    {"--time", "T", OPTION_NUMBER, AT(time), "end of the run [s]; the scene's when left out"},
+    {"--at", "T1,T2,...", OPTION_NUMBERS, AT(at), "output times, ascending [s]"},
+    {"--every", "DT", OPTION_NUMBER, AT(every),
+     "output interval [s]; 200 samples when neither is given"},
+    {"--reactions", NULL, OPTION_FLAG, AT(reactions),
+     "what every joint and constraint carries too: forces [N] and moments [N m], world axes, and "
+     "efforts along coordinates"},
+    {"--raw-lambda", NULL, OPTION_FLAG, AT(raw_lambda),
+     "a column raw_lambda too: the multipliers the scheme itself found, where it has some"},
+    {"--format", "FORMAT", OPTION_TEXT, AT(format), "form of the output"},
+    {"--t", "T", OPTION_NUMBER, AT(t), "time [s]"},
+    {"--q", "NAME=VALUE...", OPTION_WORDS, AT(state_q),
+     "coordinates that differ from the assembled start"},
+    {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
+     "rates that differ from the assembled start"},
+    {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
+    {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
+    {"--loops", "FILE", OPTION_TEXT, AT(loops),
+     "joints that close the loops of a URDF: JSON (see the README)"},
+    {"--key", "NAME", OPTION_TEXT, AT(key),
+     "MJCF: the keyframe to start from; the first when left out, qpos0 for none"},
+    {"--frame", "DT", OPTION_NUMBER, AT(frame_dt),
+     "time between looks at the states [s]; chosen when left out"},
+    {"--budget", "S", OPTION_NUMBER, AT(budget),
+     "wall time of the study [s]; 60 when left out, 0: none"},
+    {"--levels", "N", OPTION_COUNT, AT(levels), "steps or tolerances per method; 7 when left out"},
+    {"--samples", "N", OPTION_COUNT, AT(samples),
+     "samples of time per point; 10 when left out, 0: counts alone"},
+    {"--again", NULL, OPTION_FLAG, AT(again), "computed anew, whatever is shipped or kept"},
+    {"--hold", NULL, OPTION_FLAG, AT(hold),
+     "end it where fewer than 6 digits are sure, if that is earlier"},
+    {"--shard", "I/N", OPTION_TEXT, AT(shard),
+     "part I of N of the study, for 'holonom merge' to put together"},
+    {"--over", "AXES", OPTION_TEXT, AT(over),
+     "one or two axes of a map, as in h=1e-4..1e-1,k=1e2..1e8 (:lin or :log behind one)"},
+    {"--preset", "NAME", OPTION_TEXT, AT(preset),
+     "axes by name: stiffness, mass-ratio, baumgarte or limits"},
+    {"--grid", "NxM", OPTION_TEXT, AT(grid), "columns and rows of a map; 24x24 when left out"},
+    {"--plots", "DIR", OPTION_TEXT, AT(plots),
+     "a folder for every plot of the report, as SVG and PNG"},
+    {"--csv", NULL, OPTION_FLAG, AT(csv), "one row a point on standard output"},
+    {"--long", NULL, OPTION_FLAG, AT(run_long), "what takes minutes too"},
+    {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
+    {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
+    {"--theme", "light|dark", OPTION_TEXT, AT(theme), "paper or slate"},
+    {"--view", "VIEW", OPTION_TEXT, AT(view),
+     "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
+    {"--seed", "N", OPTION_COUNT, AT(seed), "chooses the states at which answers are compared"},
+    {"--host", "ADDRESS", OPTION_TEXT, AT(host), "where to listen; 127.0.0.1 when left out"},
+    {"--port", "N", OPTION_COUNT, AT(port), "8080 when left out; 0: any free one"},
+    {"--allow-host", "NAME", OPTION_WORD, AT(allow_hosts),
+     "a further name this server answers to; may be repeated"},
+    {"--open", NULL, OPTION_FLAG, AT(open), "open the page in a browser"},
+    {"--history", "N", OPTION_COUNT, AT(history), "events kept per comparison"},
+    {"--max-comparisons", "N", OPTION_COUNT, AT(max_comparisons), "comparisons at once"},
+    {"--max-streams", "N", OPTION_COUNT, AT(max_streams), "open event streams at once"},
+    {"--run-cpu", "S", OPTION_NUMBER, AT(run_cpu), "computing time of one long request [s]"},
+    {"--idle-pause", "S", OPTION_NUMBER, AT(idle_pause),
+     "a comparison without a reader pauses after this long [s]"},
+    {"--expiry", "S", OPTION_NUMBER, AT(expiry),
+     "a comparison nobody touched is deleted after this long [s]"},
+    {"--keep-alive", "S", OPTION_NUMBER, AT(keep_alive), "comment line on a quiet stream [s]"},
+};
+enum { N_OPTIONS = sizeof OPTIONS / sizeof *OPTIONS };
+
+/// 1 when `name` is one of the words of `list`.
+static int lists(const char *list, const char *name) {
+    size_t n = strlen(name);
+    for (const char *p = list; *p;) {
+        size_t length = strcspn(p, " ");
+        if (length == n && memcmp(p, name, n) == 0) {
+            return 1;
+        }
+        p += length;
+        p += strspn(p, " ");
+    }
+    return 0;
+}
+
+static int is_offered(const hn_command *command, const option *o) {
+    return strcmp(o->name, "--json") == 0 || strcmp(o->name, "--help") == 0 ||
+           lists(command->options, o->name);
+}
+
+static const option *find_option(const hn_command *command, const char *name, size_t n) {
+    for (int i = 0; i < N_OPTIONS; i++) {
+        if (strlen(OPTIONS[i].name) == n && memcmp(OPTIONS[i].name, name, n) == 0 &&
+            is_offered(command, &OPTIONS[i])) {
+            return &OPTIONS[i];
+        }
+    }
+    return NULL;
+}
+
+static hn_status tell_unknown(const hn_command *command, const char *name, hn_diag *diag) {
+    const char *names[N_OPTIONS];
+    char hint[HN_DIAG_HINT];
+    int n = 0;
+    for (int i = 0; i < N_OPTIONS; i++) {
+        if (is_offered(command, &OPTIONS[i])) {
+            names[n++] = OPTIONS[i].name;
+        }
+    }
+    const char *near = hn_nearest_name(name, names, n);
+    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help %s' lists its options",
+             near ? near : command->name);
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%s' has no option '%.60s'", command->name,
+                       name);
+}
+
+int hn_number_parse(const char *text, double *out) {
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !isfinite(value)) {
+        return 0;
+    }
+    *out = value;
+    return 1;
+}
+
+static hn_status add_word(hn_words *words, const char *word, hn_diag *diag) {
+    if (words->n == HN_CLI_MAX_WORDS) {
+        return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "more than %d words were given",
+                           HN_CLI_MAX_WORDS);
+    }
+    words->word[words->n++] = word;
+    return HN_OK;
+}
+
+static hn_status bad_number(const option *o, const char *text, hn_diag *diag) {
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes %s, not '%.60s'", o->name,
+                       o->kind == OPTION_COUNT     ? "a whole number from 0"
+                       : o->kind == OPTION_NUMBERS ? "finite numbers separated by commas"
+                                                   : "a finite number",
+                       text);
+}
+
+static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *text,
+                              hn_diag *diag) {
+    free(numbers->value);
+    numbers->value = calloc(strlen(text) / 2 + 1, sizeof(double));
+    numbers->n = 0;
+    if (!numbers->value) {
+        return HN_ERR_MEMORY;
+    }
+    for (const char *p = text;; p++) {
+        char *end;
+        double value = strtod(p, &end);
+        if (end == p || (*end && *end != ',') || !isfinite(value)) {
+            return bad_number(o, text, diag);
+        }
+        numbers->value[numbers->n++] = value;
+        p = end;
+        if (!*p) {
+            return HN_OK;
+        }
+    }
+}
+
+static hn_status read_value(hn_args *args, const option *o, const char *text, hn_diag *diag) {
+    void *place = (char *)args + o->place;
+    double value;
+    switch (o->kind) {
+    case OPTION_TEXT:
+        *(const char **)place = text;
+        return HN_OK;
+    case OPTION_NUMBERS:
+        return read_numbers(place, o, text, diag);
+    case OPTION_WORD:
+    case OPTION_WORDS:
+        return add_word(place, text, diag);
+    case OPTION_NUMBER:
+    case OPTION_COUNT:
+        if (!hn_number_parse(text, &value) ||
+            (o->kind == OPTION_COUNT && (value < 0 || value != floor(value) || value > 1e15))) {
+            return bad_number(o, text, diag);
+        }
+        *(double *)place = value;
+        return HN_OK;
+    case OPTION_FLAG:
+        break;
+    }
+    *(int *)place = 1;
+    return HN_OK;
+}
+
+/// A word that begins with '-' and is no number ends a list of words; "-" alone is standard input.
+static int looks_like_option(const char *word) {
+    double number;
+    return word[0] == '-' && word[1] && !hn_number_parse(word, &number);
+}
+
+/// One option with what belongs to it; *i is left at its last word.
+static hn_status take_option(hn_args *args, const hn_command *command, int argc, char **argv,
+                             int *i, hn_diag *diag) {
+    const char *word = argv[*i], *inline_value = strchr(word, '=');
+    size_t n = inline_value && word[1] == '-' ? (size_t)(inline_value - word) : strlen(word);
+    const option *o = find_option(command, word, n);
+    if (!o) {
+        return tell_unknown(command, word, diag);
+    }
+    if (add_word(&args->given, o->name, diag) != HN_OK) {
+        return HN_ERR_LIMIT;
+    }
+    if (o->kind == OPTION_FLAG) {
+        return word[n] ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes no value", o->name)
+                       : read_value(args, o, "", diag);
+    }
+    if (word[n]) {
+        return read_value(args, o, inline_value + 1, diag);
+    }
+    if (*i + 1 >= argc || (o->kind != OPTION_TEXT && looks_like_option(argv[*i + 1]))) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs %s", o->name, o->argument);
+    }
+    hn_status status = read_value(args, o, argv[++*i], diag);
+    while (status == HN_OK && o->kind == OPTION_WORDS && *i + 1 < argc &&
+           !looks_like_option(argv[*i + 1])) {
+        status = read_value(args, o, argv[++*i], diag);
+    }
+    return status;
+}
+
+static void set_defaults(hn_args *args) {
+    *args = (hn_args){0};
+    for (int i = 0; i < N_OPTIONS; i++) {
+        if (OPTIONS[i].kind == OPTION_NUMBER || OPTIONS[i].kind == OPTION_COUNT) {
+            *(double *)((char *)args + OPTIONS[i].place) = (double)NAN;
+        }
+    }
+}
+
+hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc, char **argv,
+                        hn_diag *diag) {
+    set_defaults(args);
+    int only_words = 0;
+    for (int i = 0; i < argc; i++) {
+        hn_status status;
+        if (!only_words && strcmp(argv[i], "--") == 0) {
+            only_words = 1;
+            continue;
+        }
+        if (!only_words && argv[i][0] == '-' && argv[i][1]) {
+            status = take_option(args, command, argc, argv, &i, diag);
+        } else {
+            status = add_word(&args->words, argv[i], diag);
+        }
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    if (args->help) {
+        return HN_OK;
+    }
+    if (args->words.n < command->min_words || args->words.n > command->max_words) {
+        char usage[HN_DIAG_HINT];
+        snprintf(usage, sizeof usage, "holonom %s %s", command->name, command->words);
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, usage,
+                           args->words.n < command->min_words ? "'%s' needs %s"
+                                                              : "too many words for '%s' %s",
+                           command->name, command->words);
+    }
+    return HN_OK;
+}
+
+hn_status hn_args_allow_only(const hn_args *args, const char *options, const char *whose,
+                             hn_diags *diags) {
+    for (int i = 0; i < args->given.n; i++) {
+        const char *name = args->given.word[i];
+        if (strcmp(name, "--json") != 0 && !lists(options, name)) {
+            return hn_diags_add(diags, HN_ERR_INPUT, NULL, options, "%s does not read %s", whose,
+                                name);
+        }
+    }
+    return HN_OK;
+}
+
+void hn_args_reset(hn_args *args) {
+    free(args->at.value);
+    args->at = (hn_numbers){0};
+}
+
+void hn_args_describe(hn_strbuf *b, const hn_command *command) {
+    for (int i = 0; i < N_OPTIONS; i++) {
+        const option *o = &OPTIONS[i];
+        if (is_offered(command, o)) {
+            char head[64];
+            snprintf(head, sizeof head, "%s %s", o->name, o->argument ? o->argument : "");
+            hn_strbuf_printf(b, "  %-26s %s\n", head, o->about);
+        }
+    }
+}

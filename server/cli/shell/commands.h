@@ -1,0 +1,23 @@
+#ifndef HN_CLI_COMMANDS_H
+#define HN_CLI_COMMANDS_H
+// The functions behind the commands; each file of commands/ and study/ defines one or a few of them.
+
+#include "cli/shell/args.h"
+
+hn_exit hn_command_list(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_terms(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_equations(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_run(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_compare(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_reference(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_report(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_merge(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_study(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_import(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_serve(const hn_library *lib, const hn_args *args);
+#endif

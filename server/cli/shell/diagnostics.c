@@ -1,0 +1,60 @@
+#include "cli/shell/diagnostics.h"
+
+#include "cli/shell/args.h"
+#include "cli/shell/print.h"
+
+#include <stdio.h>
+
+static hn_exit exit_of(hn_status status) {
+    switch (status) {
+    case HN_ERR_MEMORY:
+    case HN_ERR_INTERNAL:
+        return HN_EXIT_PROGRAM;
+    default:
+        return HN_EXIT_INPUT;
+    }
+}
+
+static void tell(const hn_diag *d) {
+    fprintf(stderr, "holonom: %s", d->message);
+    if (d->pointer[0]) {
+        fprintf(stderr, " (at %s", d->pointer);
+        if (d->column > 0) {
+            fprintf(stderr, ", column %d", d->column);
+        }
+        fputc(')', stderr);
+    }
+    fputc('\n', stderr);
+    if (d->hint[0]) {
+        fprintf(stderr, "         %s\n", d->hint);
+    }
+}
+
+hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *diags) {
+    if (args && args->json) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_json_object(&b);
+        hn_json_put_string(&b, "status", hn_status_name(status));
+        hn_json_key(&b, "errors");
+        hn_json_diags(&b, diags);
+        hn_json_end_object(&b);
+        hn_cli_print(&b);
+        return exit_of(status);
+    }
+    for (int i = 0; i < diags->n; i++) {
+        tell(&diags->item[i]);
+    }
+    if (diags->n == 0) {
+        fprintf(stderr, "holonom: %s\n", hn_status_text(status));
+    }
+    if (diags->found > diags->n) {
+        fprintf(stderr, "holonom: and %d more\n", diags->found - diags->n);
+    }
+    return exit_of(status);
+}
+
+hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag) {
+    hn_diags diags = {.n = 1, .found = 1, .item = {*diag}};
+    return hn_report_diags(args, diag->status, &diags);
+}

@@ -1,0 +1,70 @@
+#include "cli/shell/forms.h"
+
+#include "cli/shell/output_file.h"
+#include "cli/shell/print.h"
+
+#include <stdio.h>
+#include <string.h>
+
+int hn_path_ends_in(const char *path, const char *suffix) {
+    const size_t n = strlen(path), m = strlen(suffix);
+    return n > m && strcmp(path + n - m, suffix) == 0;
+}
+
+static int count(const hn_forms *forms) {
+    int n = 0;
+    while (n < HN_FORMS && forms->form[n].suffix) {
+        n++;
+    }
+    return n;
+}
+
+/// The form of a file of this name, or with this suffix; -1: there is none.
+static int find(const hn_forms *forms, const char *path) {
+    for (int i = 0; i < count(forms); i++) {
+        if (hn_path_ends_in(path, forms->form[i].suffix)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *diags) {
+    char hint[HN_DIAG_HINT] = "end it in ";
+    const int n = count(forms);
+    if (args->out && find(forms, args->out) < 0) {
+        for (int i = 0; i < n; i++) {
+            const size_t used = strlen(hint);
+            snprintf(hint + used, sizeof hint - used, "%s%s",
+                     i == 0       ? ""
+                     : i == n - 1 ? " or "
+                                  : ", ",
+                     forms->form[i].suffix);
+        }
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", hint,
+                            "what to write into '%.200s' cannot be told from its name", args->out);
+    }
+    if (args->json && args->csv) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/csv", "take --out FILE.csv beside --json",
+                            "standard output cannot be JSON and CSV at once");
+    }
+    return hn_cli_check_folder(args->out, diags);
+}
+
+hn_exit hn_forms_write(const hn_forms *forms, const hn_args *args, const void *work) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->out) {
+        forms->form[find(forms, args->out)].put(&b, work);
+        const hn_exit written = hn_cli_write_file(args, args->out, &b);
+        if (written != HN_EXIT_DONE) {
+            return written;
+        }
+    }
+    if (args->json || args->csv) {
+        forms->form[find(forms, args->json ? "-.json" : "-.csv")].put(&b, work);
+        return hn_cli_print(&b);
+    }
+    forms->text(&b, work);
+    return hn_cli_print_text(&b);
+}

@@ -1,0 +1,99 @@
+#include "cli/shell/plain.h"
+
+#include <string.h>
+#include <strings.h>
+
+// a braille cell by its rows of dots, top to bottom, whatever column they are in
+enum { BRAILLE = 0x2800, BRAILLE_END = 0x28ff };
+
+static const struct {
+    const char *utf8;
+    char ascii;
+} LIKENESSES[] = {
+    {"●", 'o'},  {"■", '#'}, {"▲", '^'}, {"▼", 'v'}, {"◆", '%'}, {"✕", '*'}, {"╳", 'X'},
+    {"━", '='},  {"○", '0'}, {"□", '='}, {"△", 'A'}, {"▽", 'V'}, {"◇", '&'}, {"★", '*'},
+    {"☆", '*'},  {"×", 'x'}, {"·", '.'}, {"−", '-'}, {"–", '-'}, {"—", '-'}, {"µ", 'u'},
+    {"μ", 'u'},  {"°", 'd'}, {"…", '~'}, {"→", '>'}, {"←", '<'}, {"↑", '^'}, {"↓", 'v'},
+    {"≤", '<'},  {"≥", '>'}, {"≈", '~'}, {"±", '~'}, {"“", '"'}, {"”", '"'}, {"‘", '\''},
+    {"’", '\''}, {"│", '|'}, {"┤", '|'}, {"├", '|'}, {"─", '-'}, {"┬", '-'}, {"┴", '-'},
+    {"┼", '+'},  {"┌", '+'}, {"┐", '+'}, {"└", '+'}, {"┘", '+'}, {"█", '#'}, {"▓", '#'},
+    {"▒", ':'},  {"░", '.'}, {"σ", 's'}, {"λ", 'l'}, {"α", 'a'}, {"β", 'b'}, {"ω", 'w'},
+    {"Φ", 'P'},
+};
+enum { N_LIKENESSES = sizeof LIKENESSES / sizeof *LIKENESSES };
+
+static int names_utf8(const char *locale) {
+    for (; *locale; locale++) {
+        if (strncasecmp(locale, "utf-8", 5) == 0 || strncasecmp(locale, "utf8", 4) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang) {
+    const char *const said[] = {lc_all, lc_ctype, lang};
+    for (int i = 0; i < 3; i++) {
+        if (said[i] && said[i][0]) {
+            return !names_utf8(said[i]);
+        }
+    }
+    return 0;
+}
+
+/// Rows of the dots that are set, a bit each, top row first: bits 0..2 of a column are its upper three dots, 6 and 7 the lowest.
+static unsigned rows_of(unsigned dots) {
+    return ((dots | dots >> 3) & 7u) | ((dots >> 6 | dots >> 7) & 1u) << 3;
+}
+
+static char like_braille(unsigned dots) {
+    // by rows: none, then '\'' for the upper half, '.' for the lower, '-' for the middle, '|' where three rows or more are set
+    static const char by_rows[16] = {' ', '\'', '-', '\'', '-', ':', '-', '|',
+                                     '.', ':',  ':', '|',  '.', '|', '|', '|'};
+    return by_rows[rows_of(dots)];
+}
+
+/// Bytes of the character that begins here, 1 where it is not well formed.
+static size_t length_of(const char *text) {
+    const unsigned char first = (unsigned char)text[0];
+    const size_t n = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
+    for (size_t i = 1; i < n; i++) {
+        if (((unsigned char)text[i] & 0xc0) != 0x80) {
+            return 1;
+        }
+    }
+    return n;
+}
+
+static char like(const char *text, size_t n) {
+    const unsigned char *byte = (const unsigned char *)text;
+    if (n == 3) {
+        const unsigned code = (byte[0] & 0x0fu) << 12 | (byte[1] & 0x3fu) << 6 | (byte[2] & 0x3fu);
+        if (code >= BRAILLE && code <= BRAILLE_END) {
+            return like_braille(code - BRAILLE);
+        }
+    }
+    for (int i = 0; i < N_LIKENESSES; i++) {
+        if (strlen(LIKENESSES[i].utf8) == n && memcmp(LIKENESSES[i].utf8, text, n) == 0) {
+            return LIKENESSES[i].ascii;
+        }
+    }
+    return '?';
+}
+
+void hn_plain_add(hn_strbuf *b, const char *utf8) {
+    while (*utf8) {
+        size_t n = 0;
+        while (utf8[n] && (unsigned char)utf8[n] < 0x80) {
+            n++;
+        }
+        hn_strbuf_add_n(b, utf8, n);
+        utf8 += n;
+        if (*utf8) {
+            n = length_of(utf8);
+            const char ascii = like(utf8, n);
+            hn_strbuf_add_n(b, &ascii, 1);
+            utf8 += n;
+        }
+    }
+}

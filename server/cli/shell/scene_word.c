@@ -1,0 +1,93 @@
+#include "cli/shell/scene_word.h"
+
+#include "cli/shell/args.h"
+
+// From words of the command line to a model.
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/// Standard input to its end, at most one byte beyond what a scene may have.
+static hn_status read_stdin(hn_strbuf *text, hn_diags *diags) {
+    char piece[1 << 14];
+    size_t n;
+    while ((n = fread(piece, 1, sizeof piece, stdin)) > 0) {
+        hn_strbuf_add_n(text, piece, n);
+        if (text->n > HN_SCENE_MAX_BYTES) {
+            return hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
+                                "standard input has more than %d bytes", HN_SCENE_MAX_BYTES);
+        }
+    }
+    return text->failed ? HN_ERR_MEMORY : HN_OK;
+}
+
+hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_assignment see,
+                              void *user, hn_diags *diags) {
+    for (int i = 0; i < words->n; i++) {
+        char copy[256], *rest = copy;
+        int n = snprintf(copy, sizeof copy, "%s", words->word[i]);
+        for (char *part = strsep(&rest, ","); part; part = strsep(&rest, ",")) {
+            char *equals = strchr(part, '=');
+            double value;
+            if (n >= (int)sizeof copy || !equals || equals == part ||
+                !hn_number_parse(equals + 1, &value)) {
+                return hn_diags_add(diags, HN_ERR_INPUT, NULL, "NAME=VALUE, as in l1=1.2",
+                                    "%s takes a name and a finite number, not '%.80s'", option,
+                                    words->word[i]);
+            }
+            *equals = 0;
+            hn_status status = see(user, part, value);
+            if (status != HN_OK) {
+                return status;
+            }
+        }
+    }
+    return HN_OK;
+}
+
+typedef struct settings {
+    int n;
+    hn_setting item[HN_SCENE_MAX_PARAMS];
+    char names[HN_SCENE_MAX_PARAMS][64];
+} settings;
+
+static hn_status see_setting(void *user, const char *name, double value) {
+    settings *s = user;
+    if (s->n == HN_SCENE_MAX_PARAMS) {
+        return HN_ERR_LIMIT;
+    }
+    snprintf(s->names[s->n], sizeof s->names[s->n], "%s", name);
+    s->item[s->n] = (hn_setting){.name = s->names[s->n], .value = value};
+    s->n++;
+    return HN_OK;
+}
+
+hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const char *word,
+                             int allow_open, hn_model **out, hn_diags *diags) {
+    settings *s = calloc(1, sizeof *s);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status =
+        s ? hn_assignments_read(&args->set, "--set", see_setting, s, diags) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        hn_model_source source = {
+            .settings = s->item, .n_settings = s->n, .allow_open = allow_open};
+        if (strcmp(word, "-") == 0) {
+            status = read_stdin(&text, diags);
+            source.text = hn_strbuf_text(&text);
+            source.n_text = text.n;
+        } else if (!hn_library_scene_path(lib, word) &&
+                   (strchr(word, '/') || access(word, F_OK) == 0)) {
+            source.path = word;
+        } else {
+            source.name = word;
+        }
+        if (status == HN_OK) {
+            status = hn_model_load(lib, &source, out, diags);
+        }
+    }
+    hn_strbuf_reset(&text);
+    free(s);
+    return status;
+}

@@ -1,0 +1,361 @@
+#include "cli/study/study_text.h"
+
+#include "base/units.h"
+#include "cli/shell/args.h"
+#include "cli/shell/braille.h"
+#include "cli/shell/table.h"
+#include "render/look.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PLOT_COLUMNS = 68, PLOT_ROWS = 20, AXIS_WIDTH = 7 };
+static const char FAILED_MARK[] = "\xe2\x95\xb3"; // a large cross
+
+static const char *glyph_of(int m) {
+    return hn_look_get(hn_look_slot(m))->glyph;
+}
+
+/// Of a point as it may be claimed: "< 1e-12" where the reference is no better.
+static void put_error(hn_table *t, const hn_wp *wp, hn_error_kind kind, double error) {
+    const double bound = HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
+    if (!isfinite(error)) {
+        hn_table_cell(t, "-");
+    } else if (error < bound) {
+        hn_table_cell(t, "< %.0e", bound);
+    } else {
+        hn_table_cell(t, "%.1e", error);
+    }
+}
+
+static double claimed(const hn_wp *wp, const hn_wp_point *p) {
+    const hn_error_kind kind = hn_wp_ranked_error(wp);
+    return fmax(p->worst[kind], HN_WP_ABOVE_REFERENCE * wp->ref->error[kind]);
+}
+
+/// The coarsest point with the smallest ranked error that can be claimed, or -1.
+static int best_point(const hn_wp *wp, int m) {
+    int best = -1;
+    for (int k = 0; k < wp->n_levels; k++) {
+        const hn_wp_point *p = &wp->methods[m].point[k];
+        if (p->state == HN_WP_DONE &&
+            (best < 0 || claimed(wp, p) < claimed(wp, &wp->methods[m].point[best]))) {
+            best = k;
+        }
+    }
+    return best;
+}
+
+static void put_best(hn_table *t, const hn_wp *wp, int m) {
+    const int k = best_point(wp, m);
+    if (k < 0) {
+        for (int i = 0; i < 7; i++) {
+            hn_table_cell(t, "-");
+        }
+        return;
+    }
+    const hn_wp_point *p = &wp->methods[m].point[k];
+    hn_table_cell(t, "%s=%.3g", wp->methods[m].adaptive ? "rtol" : "h", p->size);
+    put_error(t, wp, HN_ERROR_Q, p->worst[HN_ERROR_Q]);
+    put_error(t, wp, HN_ERROR_REACTION, p->worst[HN_ERROR_REACTION]);
+    put_error(t, wp, HN_ERROR_GAP, p->worst[HN_ERROR_GAP]);
+    put_error(t, wp, HN_ERROR_ENERGY, p->worst[HN_ERROR_ENERGY]);
+    hn_table_quantity(t, p->median, "s");
+    hn_table_quantity(t, p->cost.ops, "op");
+}
+
+static int count(const hn_wp *wp, int m, hn_wp_state state) {
+    int n = 0;
+    for (int k = 0; k < wp->n_levels; k++) {
+        n += wp->methods[m].point[k].state == state;
+    }
+    return n;
+}
+
+static void put_methods(hn_strbuf *b, const hn_wp *wp) {
+    static const char *const heads[] = {"",         "method", "done",   "most accurate", "error q",
+                                        "reaction", "gap",    "energy", "CPU",           "ops"};
+    hn_table t;
+    hn_table_init(&t);
+    for (int i = 0; i < 10; i++) {
+        hn_table_column(&t, heads[i], i > 1);
+    }
+    for (int m = 0; m < wp->n_methods; m++) {
+        hn_table_cell(&t, "%s", glyph_of(m));
+        hn_table_cell(&t, "%s", wp->methods[m].spelling);
+        hn_table_cell(&t, "%d/%d", count(wp, m, HN_WP_DONE), wp->n_levels);
+        put_best(&t, wp, m);
+    }
+    hn_table_write(b, &t);
+    hn_table_reset(&t);
+}
+
+static void put_verdicts(hn_strbuf *b, const hn_study *study) {
+    const hn_wp *wp = hn_study_wp(study);
+    hn_strbuf_add(b, "\nWhat the ladder of sizes says of each\n");
+    for (int m = 0; m < wp->n_methods; m++) {
+        hn_strbuf_printf(b, "  %s %-28s %s\n", glyph_of(m), wp->methods[m].spelling,
+                         hn_study_classes(study)[m].text);
+    }
+}
+
+// the plot -------------------------------------------------------------------------------------------------------
+
+/// Logarithmic ranges over all finished points, whole decades for the error.
+typedef struct range {
+    double cost_low, cost_high, error_low, error_high; ///< powers of ten
+    hn_cost_kind cost;
+} range;
+
+static double plotted_error(const hn_wp *wp, const hn_wp_point *p) {
+    const double e = fmax(p->worst[HN_ERROR_Q], HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q]);
+    return log10(fmin(1, fmax(e, 1e-16)));
+}
+
+static int is_plotted(const hn_wp_point *p, hn_cost_kind cost) {
+    return p->state == HN_WP_DONE && hn_wp_cost(p, cost) > 0;
+}
+
+static int has_times(const hn_wp *wp) {
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            if (wp->methods[m].point[k].n_samples > 0) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static int find_range(const hn_wp *wp, range *r) {
+    *r = (range){HUGE_VAL, -HUGE_VAL, 0, 0, has_times(wp) ? HN_COST_TIME : HN_COST_OPS};
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            const hn_wp_point *p = &wp->methods[m].point[k];
+            if (is_plotted(p, r->cost)) {
+                r->cost_low = fmin(r->cost_low, log10(hn_wp_cost(p, r->cost)));
+                r->cost_high = fmax(r->cost_high, log10(hn_wp_cost(p, r->cost)));
+                r->error_low = fmin(r->error_low, floor(plotted_error(wp, p)));
+            }
+        }
+    }
+    const double margin = 0.03 * (r->cost_high - r->cost_low) + 0.02;
+    r->cost_low -= margin;
+    r->cost_high += margin;
+    return r->cost_high > r->cost_low && r->error_low < r->error_high;
+}
+
+static double across(const range *r, double cost) {
+    return (log10(cost) - r->cost_low) / (r->cost_high - r->cost_low);
+}
+
+static double down(const range *r, double error) {
+    return (r->error_high - error) / (r->error_high - r->error_low);
+}
+
+static void draw_method(hn_braille *c, const hn_wp *wp, const range *r, int m) {
+    const hn_wp_point *before = NULL;
+    for (int k = 0; k < wp->n_levels; k++) {
+        const hn_wp_point *p = &wp->methods[m].point[k];
+        if (is_plotted(p, r->cost)) {
+            const double x = across(r, hn_wp_cost(p, r->cost)), y = down(r, plotted_error(wp, p));
+            hn_braille_put(c, x, y, glyph_of(m));
+            if (before) {
+                hn_braille_line(c, across(r, hn_wp_cost(before, r->cost)),
+                                down(r, plotted_error(wp, before)), x, y);
+            }
+            before = p;
+        } else if (p->state == HN_WP_FAILED && p->first_cpu > 0) {
+            // where it ended is on the upper edge, at what it had cost by then
+            const double cost = r->cost == HN_COST_TIME ? p->first_cpu : p->cost.ops;
+            hn_braille_put(c, cost > 0 ? fmin(1, fmax(0, across(r, cost))) : 0, 0, FAILED_MARK);
+        }
+    }
+}
+
+static void put_plot(hn_strbuf *b, const hn_wp *wp) {
+    hn_braille c;
+    range r;
+    char low[HN_SI_TEXT], high[HN_SI_TEXT];
+    if (!find_range(wp, &r)) {
+        return;
+    }
+    const char *unit = r.cost == HN_COST_TIME ? "s" : "op";
+    hn_braille_init(&c, PLOT_COLUMNS, PLOT_ROWS);
+    for (int m = 0; m < wp->n_methods; m++) {
+        draw_method(&c, wp, &r, m);
+    }
+    hn_strbuf_printf(b,
+                     "\nError of the coordinates against %s (both logarithmic; %s: ended early)\n",
+                     r.cost == HN_COST_TIME ? "CPU time" : "operations", FAILED_MARK);
+    int told = 1;
+    for (int row = 0; row < PLOT_ROWS; row++) {
+        // a label where a whole decade begins
+        const double top = r.error_high - (r.error_high - r.error_low) * row / PLOT_ROWS;
+        const int decade = (int)floor(top);
+        if (decade < told) {
+            hn_strbuf_printf(b, "%*s%-3d \xe2\x94\xa4", AXIS_WIDTH - 4, "1e", decade);
+            told = decade;
+        } else {
+            hn_strbuf_printf(b, "%*s\xe2\x94\x82", AXIS_WIDTH, "");
+        }
+        hn_braille_row(b, &c, row);
+        hn_strbuf_add(b, "\n");
+    }
+    hn_si_format(pow(10, r.cost_low), unit, 2, low);
+    hn_si_format(pow(10, r.cost_high), unit, 2, high);
+    hn_strbuf_printf(b, "%*s%-*s%*s\n", AXIS_WIDTH + 1, "", PLOT_COLUMNS / 2, low, PLOT_COLUMNS / 2,
+                     high);
+}
+
+// answers --------------------------------------------------------------------------------------------------------
+
+static void put_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
+    const size_t before = b->n;
+    hn_pareto_sentences(b, wp, p);
+    if (b->n == before) {
+        hn_strbuf_add(b, "Nothing to rank: no run came to an error of 0.1 or less.\n");
+    }
+}
+
+static void put_front(hn_strbuf *b, const hn_study *study) {
+    const hn_wp *wp = hn_study_wp(study);
+    hn_pareto p;
+    const hn_error_kind error = hn_wp_ranked_error(wp);
+    for (int cost = has_times(wp) ? HN_COST_TIME : HN_COST_OPS; cost <= HN_COST_OPS; cost++) {
+        hn_wp_pareto(wp, hn_study_classes(study), error, (hn_cost_kind)cost, &p);
+        hn_strbuf_printf(b, "\nCheapest by %s%s\n", hn_cost_name((hn_cost_kind)cost),
+                         error == HN_ERROR_Q ? "" : ", for the error of the energy");
+        put_sentences(b, wp, &p);
+    }
+    if (error != HN_ERROR_Q) {
+        hn_wp_pareto(wp, hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &p);
+        hn_strbuf_add(b, "\nFor the error of the coordinates\n");
+        put_sentences(b, wp, &p);
+    }
+}
+
+static void put_race(hn_strbuf *b, const hn_study *study) {
+    const hn_wp *wp = hn_study_wp(study);
+    static const char *const heads[HN_RACE_COSTS] = {"error", "error", "error"};
+    const hn_error_kind kind = hn_wp_ranked_error(wp);
+    hn_race race;
+    hn_table t;
+    hn_wp_race(wp, hn_study_classes(study), kind, &race);
+    if (race.n == 0) {
+        return;
+    }
+    hn_table_init(&t);
+    hn_table_column(&t, "", 0);
+    hn_table_column(&t, "for as many operations", 0);
+    for (int i = 0; i < race.n; i++) {
+        hn_table_column(&t, heads[i], 1);
+    }
+    hn_table_cell(&t, "%s", "");
+    hn_table_cell(&t, "%s", "");
+    for (int i = 0; i < race.n; i++) {
+        hn_table_quantity(&t, race.cost[i], "op");
+    }
+    for (int m = 0; m < wp->n_methods; m++) {
+        hn_table_cell(&t, "%s", glyph_of(m));
+        hn_table_cell(&t, "%s", wp->methods[m].spelling);
+        for (int i = 0; i < race.n; i++) {
+            if (race.is_bound[i][m]) {
+                hn_table_cell(&t, "\xe2\x89\xa4 %.1e", race.error[i][m]);
+            } else {
+                put_error(&t, wp, kind, race.error[i][m]);
+            }
+        }
+    }
+    hn_strbuf_printf(b,
+                     "\nWhat equal cost buys: the error of the %s (between measured points; "
+                     "\xe2\x89\xa4: with fewer already; -: no point is as cheap)\n",
+                     hn_error_title(kind));
+    hn_table_write(b, &t);
+    hn_table_reset(&t);
+}
+
+static int is_alike(const hn_wp_point *a, const hn_wp_point *b) {
+    return a->state == b->state && a->t_reached == b->t_reached &&
+           strcmp(a->reason, b->reason) == 0;
+}
+
+static int count_alike(const hn_wp *wp, int m, int k) {
+    const hn_wp_point *point = wp->methods[m].point;
+    int n = 0;
+    for (int i = 0; i < wp->n_levels; i++) {
+        n += is_alike(&point[i], &point[k]);
+    }
+    return n;
+}
+
+static int told_before(const hn_wp *wp, int m, int k) {
+    const hn_wp_point *point = wp->methods[m].point;
+    int told = 0;
+    for (int i = 0; i < k; i++) {
+        told |= is_alike(&point[i], &point[k]);
+    }
+    return told;
+}
+
+/// "...h=0.003955696202531646": the size that ends a spelling, in as many digits as are read.
+static void shorten_size(char spelling[HN_SPEC_MAX]) {
+    char *size = strrchr(spelling, '=');
+    double value;
+    if (size && hn_number_parse(size + 1, &value)) {
+        const size_t room = HN_SPEC_MAX - (size_t)(size + 1 - spelling);
+        snprintf(size + 1, room, "%.4g", value);
+    }
+}
+
+/// Everything that did not come to the end, with why; what never began for the same reason once per method.
+static void put_failures(hn_strbuf *b, const hn_wp *wp) {
+    int any = 0;
+    for (int m = 0; m < wp->n_methods; m++) {
+        for (int k = 0; k < wp->n_levels; k++) {
+            const hn_wp_point *p = &wp->methods[m].point[k];
+            if (p->state != HN_WP_FAILED && p->state != HN_WP_SKIPPED) {
+                continue;
+            }
+            if (p->t_reached == 0 && told_before(wp, m, k)) {
+                continue;
+            }
+            char spelling[HN_SPEC_MAX];
+            hn_wp_spelling(wp, m, k, spelling);
+            shorten_size(spelling);
+            hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", glyph_of(m),
+                             spelling);
+            if (p->t_reached > 0) {
+                hn_strbuf_printf(b, " ended at t = %.4g s", p->t_reached);
+            }
+            const int others = p->t_reached == 0 ? count_alike(wp, m, k) - 1 : 0;
+            if (others > 0) {
+                hn_strbuf_printf(b, " and %d other size%s", others, others == 1 ? "" : "s");
+            }
+            hn_strbuf_printf(b, ": %s\n", p->reason);
+        }
+    }
+}
+
+static void put_head(hn_strbuf *b, const hn_study *study) {
+    const hn_scene *scene = hn_model_scene(hn_study_model(study));
+    const hn_ref *ref = hn_study_wp(study)->ref;
+    hn_strbuf_printf(b, "%s, to t = %g s\n", scene->title ? scene->title : scene->id, ref->T);
+    hn_strbuf_printf(
+        b, "Reference: %s and %s agree to %.1f digits; errors below %.0e are not claimed.\n",
+        ref->means[0], ref->means[1], hn_ref_digits(ref),
+        HN_WP_ABOVE_REFERENCE * ref->error[HN_ERROR_Q]);
+    hn_strbuf_printf(b, "Chaos: %s.\n\n", hn_study_chaos(study)->why);
+}
+
+void hn_study_text(hn_strbuf *b, const hn_study *study) {
+    const hn_wp *wp = hn_study_wp(study);
+    put_head(b, study);
+    put_methods(b, wp);
+    put_verdicts(b, study);
+    put_plot(b, wp);
+    put_front(b, study);
+    put_race(b, study);
+    put_failures(b, wp);
+}

@@ -1,0 +1,335 @@
+#include "grade/exercise.h"
+
+#include "base/hash.h"
+#include "base/json_text.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// What reading needs: where to put things and whom to tell.
+typedef struct reader {
+    hn_exercise *p;
+    hn_diags *diags;
+    hn_status status;
+} reader;
+
+static void fault(reader *r, const char *pointer, const char *what) {
+    r->status = hn_diags_add(r->diags, HN_ERR_INPUT, pointer, NULL, "%s", what);
+}
+
+static const char *keep(reader *r, const char *text) {
+    const char *copy = hn_arena_strdup(r->p->arena, text);
+    r->status = copy ? r->status : HN_ERR_MEMORY;
+    return copy ? copy : "";
+}
+
+static const char *read_text(reader *r, const cJSON *node, const char *key, const char *pointer) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
+    if (!cJSON_IsString(m)) {
+        fault(r, pointer, "expected a text");
+        return "";
+    }
+    return keep(r, m->valuestring);
+}
+
+static double read_number(reader *r, const cJSON *node, const char *key, const char *pointer,
+                          double low, double high) {
+    const cJSON *m = cJSON_GetObjectItemCaseSensitive(node, key);
+    if (!cJSON_IsNumber(m) || !(m->valuedouble >= low && m->valuedouble <= high)) {
+        hn_diags_add(r->diags, HN_ERR_INPUT, pointer, NULL, "expected a number from %g to %g", low,
+                     high);
+        r->status = HN_ERR_INPUT;
+        return low;
+    }
+    return m->valuedouble;
+}
+
+static void read_range(reader *r, const cJSON *node, hn_grade_name *name) {
+    const cJSON *low = node ? node->child : NULL, *high = low ? low->next : NULL;
+    if (!cJSON_IsArray(node) || !cJSON_IsNumber(low) || !cJSON_IsNumber(high) || high->next ||
+        !(low->valuedouble < high->valuedouble)) {
+        fault(r, "/parameters", "expected [low, high] for every name");
+        return;
+    }
+    name->low = low->valuedouble;
+    name->high = high->valuedouble;
+}
+
+/// {"l1": [low, high], "l3": {"formula": .., "open": [low, high]}}
+static void read_names(reader *r, const cJSON *node) {
+    hn_exercise *p = r->p;
+    for (const cJSON *m = cJSON_IsObject(node) ? node->child : NULL; m; m = m->next) {
+        if (p->n_names == HN_GRADE_MAX_NAMES) {
+            fault(r, "/parameters", "too many names");
+            return;
+        }
+        hn_grade_name *name = &p->names[p->n_names++];
+        name->name = keep(r, m->string);
+        if (cJSON_IsObject(m)) {
+            name->formula = read_text(r, m, "formula", "/parameters");
+            read_range(r, cJSON_GetObjectItemCaseSensitive(m, "open"), name);
+        } else {
+            read_range(r, m, name);
+        }
+    }
+}
+
+static int read_texts(reader *r, const cJSON *node, const char *pointer, const char **out,
+                      int room) {
+    int n = 0;
+    for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m; m = m->next) {
+        if (!cJSON_IsString(m) || n == room) {
+            fault(r, pointer, "expected a short list of texts");
+            return n;
+        }
+        out[n++] = keep(r, m->valuestring);
+    }
+    if (n == 0) {
+        fault(r, pointer, "expected a list of texts");
+    }
+    return n;
+}
+
+static int read_pairs(reader *r, const cJSON *node, const char *pointer, hn_grade_pair *out,
+                      int texts) {
+    int n = 0;
+    for (const cJSON *m = cJSON_IsObject(node) ? node->child : NULL; m; m = m->next) {
+        if (n == HN_GRADE_MAX_NAMES ||
+            (texts ? !cJSON_IsString(m)
+                   : !(cJSON_IsNumber(m) && m->valuedouble >= 0 && m->valuedouble <= 1))) {
+            fault(r, pointer, texts ? "expected names" : "expected shares from 0 to 1");
+            return n;
+        }
+        if (!texts && !hn_grade_is_mistake(m->string)) {
+            fault(r, pointer, "a share for a mistake that is not known");
+        }
+        out[n].key = keep(r, m->string);
+        out[n].text = texts ? keep(r, m->valuestring) : NULL;
+        out[n++].value = texts ? 0 : m->valuedouble;
+    }
+    return n;
+}
+
+static void read_statement(reader *r, const cJSON *node) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m; m = m->next) {
+        hn_strbuf_printf(&b, "%s%s", b.n ? "\n" : "", cJSON_IsString(m) ? m->valuestring : "");
+    }
+    if (b.failed) {
+        r->status = HN_ERR_MEMORY;
+    } else if (b.n == 0) {
+        fault(r, "/statement", "expected a list of lines");
+    }
+    r->p->statement = keep(r, hn_strbuf_text(&b));
+    hn_strbuf_reset(&b);
+}
+
+static void read_problem(reader *r, const cJSON *root) {
+    hn_exercise *p = r->p;
+    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(root, "answer"),
+                *states = cJSON_GetObjectItemCaseSensitive(root, "states"),
+                *tolerance = cJSON_GetObjectItemCaseSensitive(root, "tolerance");
+    p->id = read_text(r, root, "id", "/id");
+    p->title = read_text(r, root, "title", "/title");
+    p->lesson = read_text(r, root, "lesson", "/lesson");
+    p->section = read_text(r, root, "section", "/section");
+    p->scene = cJSON_GetObjectItemCaseSensitive(root, "scene")
+                   ? read_text(r, root, "scene", "/scene")
+                   : "";
+    read_statement(r, cJSON_GetObjectItemCaseSensitive(root, "statement"));
+    read_names(r, cJSON_GetObjectItemCaseSensitive(root, "parameters"));
+    p->n_params = p->n_names;
+    read_names(r, cJSON_GetObjectItemCaseSensitive(root, "coordinates"));
+    p->n_aliases =
+        read_pairs(r, cJSON_GetObjectItemCaseSensitive(root, "aliases"), "/aliases", p->aliases, 1);
+    p->n_partial =
+        read_pairs(r, cJSON_GetObjectItemCaseSensitive(root, "partial"), "/partial", p->partial, 0);
+    p->n_rows = read_texts(r, cJSON_GetObjectItemCaseSensitive(root, "phi"), "/phi", p->phi,
+                           HN_GRADE_MAX_ROWS);
+    p->answer = read_text(r, answer, "name", "/answer/name");
+    p->n_columns = read_texts(r, cJSON_GetObjectItemCaseSensitive(answer, "by"), "/answer/by",
+                              p->by, HN_GRADE_MAX_COLUMNS);
+    p->points = read_number(r, answer, "points", "/answer/points", 0, 1e6);
+    p->seed = (uint64_t)read_number(r, states, "seed", "/states/seed", 1, 9e15);
+    p->n_closed =
+        (int)read_number(r, states, "closed", "/states/closed", 20, HN_GRADE_MAX_STATES / 2);
+    p->n_open = (int)read_number(r, states, "open", "/states/open", 0, HN_GRADE_MAX_STATES / 2);
+    p->relative = read_number(r, tolerance, "relative", "/tolerance/relative", 1e-12, 1e-2);
+    p->absolute = read_number(r, tolerance, "absolute", "/tolerance/absolute", 1e-14, 1e-2);
+    p->why = read_text(r, tolerance, "why", "/tolerance/why");
+}
+
+/// The problem must be able to grade: its formulas read, its answer exists.
+static hn_status check_problem(const hn_exercise *p, hn_diags *diags) {
+    hn_exam *exam = malloc(sizeof *exam);
+    hn_diag diag = {0};
+    if (!exam) {
+        return HN_ERR_MEMORY;
+    }
+    hn_status status = hn_exam_init(exam, p, 0, &diag);
+    if (status == HN_ERR_INPUT) {
+        hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
+    }
+    hn_exam_reset(exam);
+    free(exam);
+    return status;
+}
+
+hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, hn_diags *diags) {
+    HN_ASSERT(out && (text || n == 0));
+    *out = NULL;
+    hn_diag diag = {0};
+    hn_status status = hn_json_text_check(text, n, 16, &diag);
+    if (status != HN_OK) {
+        return hn_diags_add(diags, status, "", diag.hint, "%s", diag.message);
+    }
+    cJSON *root = cJSON_ParseWithLength(text, n);
+    hn_arena *arena = root ? hn_arena_create(0) : NULL;
+    hn_exercise *p = arena ? hn_arena_get(arena, sizeof *p) : NULL;
+    status = p ? HN_OK : HN_ERR_MEMORY;
+    if (p) {
+        p->arena = arena;
+        p->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, n));
+        reader r = {.p = p, .diags = diags, .status = HN_OK};
+        if (!cJSON_IsObject(root)) {
+            fault(&r, "", "expected an object");
+        } else {
+            read_problem(&r, root);
+        }
+        status = r.status == HN_OK ? check_problem(p, diags) : r.status;
+    }
+    cJSON_Delete(root);
+    if (status != HN_OK) {
+        hn_arena_free(arena);
+        return status;
+    }
+    *out = p;
+    return HN_OK;
+}
+
+hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *diags) {
+    HN_ASSERT(path && out);
+    *out = NULL;
+    FILE *file = fopen(path, "rb");
+    char *text = file ? malloc(HN_GRADE_MAX_BYTES + 1) : NULL;
+    hn_status status = HN_ERR_MEMORY;
+    if (!file) {
+        status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path,
+                              strerror(errno));
+    } else if (text) {
+        size_t n = fread(text, 1, HN_GRADE_MAX_BYTES + 1, file);
+        status = ferror(file) ? hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s",
+                                             path, strerror(errno))
+                 : n > HN_GRADE_MAX_BYTES
+                     ? hn_diags_add(diags, HN_ERR_LIMIT, "", NULL,
+                                    "the problem '%.200s' has more than %d bytes", path,
+                                    HN_GRADE_MAX_BYTES)
+                     : hn_exercise_load_json(text, n, out, diags);
+    }
+    if (file) {
+        fclose(file);
+    }
+    free(text);
+    return status;
+}
+
+void hn_exercise_free(hn_exercise *problem) {
+    if (problem) {
+        hn_arena_free(problem->arena); // the problem itself lives in it
+    }
+}
+
+const char *hn_exercise_id(const hn_exercise *problem) {
+    return problem->id;
+}
+
+const char *hn_exercise_title(const hn_exercise *problem) {
+    return problem->title;
+}
+
+const char *hn_exercise_scene(const hn_exercise *problem) {
+    return problem->scene;
+}
+
+double hn_exercise_points(const hn_exercise *problem) {
+    return problem->points * problem->n_rows * problem->n_columns;
+}
+
+// telling -------------------------------------------------------------------------------------------
+
+/// The shape of a submission with dots for the formulas.
+static void submission_form(hn_strbuf *b, const hn_exercise *p) {
+    hn_strbuf_printf(b, "{\"%s\": [", p->answer);
+    for (int i = 0; i < p->n_rows; i++) {
+        hn_strbuf_add(b, i ? ", [" : "[");
+        for (int j = 0; j < p->n_columns; j++) {
+            hn_strbuf_printf(b, "%s\"...\"", j ? ", " : "");
+        }
+        hn_strbuf_add(b, "]");
+    }
+    hn_strbuf_add(b, "]}");
+}
+
+void hn_exercise_text(hn_strbuf *b, const hn_exercise *p) {
+    hn_strbuf_printf(b, "Problem %s: %s (lesson %s, %s; %g points)\n\n%s\n\nHand in a JSON file: ",
+                     p->id, p->title, p->lesson, p->section, hn_exercise_points(p), p->statement);
+    submission_form(b, p);
+    hn_strbuf_add(b, "\nEach entry is a formula in quotes; names:");
+    for (int i = 0; i < p->n_names; i++) {
+        hn_strbuf_printf(b, "%s %s", i ? "," : "", p->names[i].name);
+    }
+    hn_strbuf_printf(b,
+                     "; angles in radians; * for products, ^ for powers, sin(..), cos(..), pi.\n%g "
+                     "point%s for each entry; compared at %d random states.\n",
+                     p->points, p->points == 1 ? "" : "s", p->n_closed);
+}
+
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *p) {
+    char name[32], hash[17];
+    hn_hash_hex(p->hash, hash);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", p->id);
+    hn_json_put_string(b, "title", p->title);
+    hn_json_put_string(b, "lesson", p->lesson);
+    hn_json_put_string(b, "section", p->section);
+    hn_json_put_string(b, "scene", p->scene);
+    hn_json_put_string(b, "statement", p->statement);
+    hn_json_put_number(b, "points", hn_exercise_points(p));
+    hn_json_put_string(b, "hash", hash);
+    hn_json_key(b, "entries");
+    hn_json_array(b);
+    for (int i = 0; i < p->n_rows * p->n_columns; i++) {
+        snprintf(name, sizeof name, "%.8s%d%d", p->answer, i / p->n_columns + 1,
+                 i % p->n_columns + 1);
+        hn_json_object(b);
+        hn_json_put_string(b, "name", name);
+        hn_json_put_number(b, "points", p->points);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "names");
+    hn_json_array(b);
+    for (int i = 0; i < p->n_names; i++) {
+        hn_json_string(b, p->names[i].name);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "phi");
+    hn_json_strings(b, p->phi, (size_t)p->n_rows);
+    hn_json_key(b, "tolerance");
+    hn_json_object(b);
+    hn_json_put_number(b, "relative", p->relative);
+    hn_json_put_number(b, "absolute", p->absolute);
+    hn_json_put_string(b, "why", p->why);
+    hn_json_end_object(b);
+    hn_strbuf form;
+    hn_strbuf_init(&form);
+    submission_form(&form, p);
+    hn_json_put_string(b, "submission", hn_strbuf_text(&form));
+    b->failed |= form.failed;
+    hn_strbuf_reset(&form);
+    hn_json_end_object(b);
+}

@@ -1,0 +1,213 @@
+#include "http/ground/body.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_FIELDS = 24 };
+
+static int n_fields(const hn_field *fields) {
+    int n = 0;
+    while (fields[n].name) {
+        n++;
+    }
+    return n;
+}
+
+static const hn_field *find_field(const hn_field *fields, const char *name) {
+    for (; fields->name; fields++) {
+        if (strcmp(fields->name, name) == 0) {
+            return fields;
+        }
+    }
+    return NULL;
+}
+
+/// JSON pointer of a member; '~' and '/' of the name are escaped as RFC 6901 has it.
+static void member_pointer(char out[HN_DIAG_POINTER], const char *parent, const char *name) {
+    int n = snprintf(out, HN_DIAG_POINTER, "%s/", parent);
+    size_t at = n > 0 && n < HN_DIAG_POINTER ? (size_t)n : HN_DIAG_POINTER - 1;
+    for (; *name && at + 3 < HN_DIAG_POINTER; name++) {
+        if (*name == '~' || *name == '/') {
+            out[at++] = '~';
+            out[at++] = *name == '~' ? '0' : '1';
+        } else {
+            out[at++] = *name;
+        }
+    }
+    out[at] = 0;
+}
+
+static const char *type_words(const hn_field *f) {
+    switch (f->type) {
+    case HN_FIELD_SCENE:
+        return "the id of a shipped scene or a scene object";
+    case HN_FIELD_BY_NAME:
+        return "an object of numbers";
+    case HN_FIELD_NUMBER:
+        return "a number";
+    case HN_FIELD_INTEGER:
+        return "a whole number";
+    case HN_FIELD_BOOL:
+        return "true or false";
+    case HN_FIELD_TEXT:
+    case HN_FIELD_CHOICE:
+        return "a string";
+    case HN_FIELD_TEXTS:
+        return "an array of strings";
+    case HN_FIELD_NUMBERS:
+        return "an array of numbers";
+    case HN_FIELD_RECORD:
+        return "an object";
+    case HN_FIELD_ANY:
+        break;
+    }
+    return "any value";
+}
+
+/// 1 if every member is a number (or string).
+static int all_are(const cJSON *list, int (*is)(const cJSON *)) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, list) {
+        if (!is(item)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int is_number(const cJSON *item) {
+    return cJSON_IsNumber(item);
+}
+
+static int is_text(const cJSON *item) {
+    return cJSON_IsString(item);
+}
+
+static int has_type(const cJSON *value, const hn_field *f) {
+    switch (f->type) {
+    case HN_FIELD_SCENE:
+        return cJSON_IsString(value) || cJSON_IsObject(value);
+    case HN_FIELD_BY_NAME:
+        return cJSON_IsObject(value) && all_are(value, is_number);
+    case HN_FIELD_NUMBER:
+        return cJSON_IsNumber(value);
+    case HN_FIELD_INTEGER:
+        return cJSON_IsNumber(value) && value->valuedouble == floor(value->valuedouble);
+    case HN_FIELD_BOOL:
+        return cJSON_IsBool(value);
+    case HN_FIELD_TEXT:
+    case HN_FIELD_CHOICE:
+        return cJSON_IsString(value);
+    case HN_FIELD_TEXTS:
+        return cJSON_IsArray(value) && all_are(value, is_text);
+    case HN_FIELD_NUMBERS:
+        return cJSON_IsArray(value) && all_are(value, is_number);
+    case HN_FIELD_RECORD:
+        return cJSON_IsObject(value);
+    case HN_FIELD_ANY:
+        break;
+    }
+    return 1;
+}
+
+static hn_status check_choice(const char *text, const hn_field *f, const char *pointer,
+                              hn_diags *diags) {
+    int n = 0;
+    char offered[HN_DIAG_HINT] = "";
+    for (; f->choices[n]; n++) {
+        if (strcmp(f->choices[n], text) == 0) {
+            return HN_OK;
+        }
+        size_t used = strlen(offered);
+        snprintf(offered + used, sizeof offered - used, "%s%s", n ? ", " : "", f->choices[n]);
+    }
+    const char *near = hn_nearest_name(text, f->choices, n);
+    char hint[HN_DIAG_HINT];
+    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "one of: %s", near ? near : offered);
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "'%.60s' is not offered for '%s'", text,
+                        f->name);
+}
+
+static hn_status check_range(const cJSON *value, const hn_field *f, const char *pointer,
+                             hn_diags *diags) {
+    int counted = cJSON_IsArray(value);
+    double x = counted ? cJSON_GetArraySize(value) : value->valuedouble;
+    if ((f->min == 0 && f->max == 0) || (x >= f->min && x <= f->max)) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                        counted ? "'%s' has %g entries; %g to %g are allowed"
+                                : "'%s' is %g; %g to %g are allowed",
+                        f->name, x, f->min, f->max);
+}
+
+static hn_status check_member(const cJSON *value, const hn_field *f, const char *pointer,
+                              hn_diags *diags) {
+    if (!has_type(value, f)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' must be %s", f->name,
+                            type_words(f));
+    }
+    if (cJSON_IsNumber(value) || cJSON_IsArray(value)) {
+        return check_range(value, f, pointer, diags);
+    }
+    if (f->type == HN_FIELD_CHOICE) {
+        return check_choice(value->valuestring, f, pointer, diags);
+    }
+    return f->type == HN_FIELD_RECORD ? hn_body_check(value, f->record, pointer, diags) : HN_OK;
+}
+
+static hn_status tell_unknown(const char *name, const hn_field *fields, const char *pointer,
+                              hn_diags *diags) {
+    const char *names[MAX_FIELDS];
+    int n = n_fields(fields);
+    HN_ASSERT(n <= MAX_FIELDS);
+    char hint[HN_DIAG_HINT] = "fields: ";
+    for (int i = 0; i < n; i++) {
+        names[i] = fields[i].name;
+        size_t used = strlen(hint);
+        snprintf(hint + used, sizeof hint - used, "%s%s", i ? ", " : "", names[i]);
+    }
+    const char *near = hn_nearest_name(name, names, n);
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "there is no field '%.60s' here", name);
+}
+
+hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char *parent,
+                        hn_diags *diags) {
+    hn_status status = HN_OK, one;
+    char pointer[HN_DIAG_POINTER];
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object) {
+        const hn_field *f = find_field(fields, item->string);
+        member_pointer(pointer, parent, item->string);
+        if (!f) {
+            one = tell_unknown(item->string, fields, pointer, diags);
+        } else if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item) {
+            one =
+                hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
+        } else {
+            one = check_member(item, f, pointer, diags);
+        }
+        status = one != HN_OK ? one : status;
+    }
+    for (const hn_field *f = fields; f->name; f++) {
+        if (f->required && !cJSON_GetObjectItemCaseSensitive(object, f->name)) {
+            member_pointer(pointer, parent, f->name);
+            status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is missing: %s",
+                                  f->name, f->about);
+        }
+    }
+    return status;
+}
+
+double hn_body_number(const cJSON *body, const char *name, double otherwise) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(body, name);
+    return cJSON_IsNumber(item) ? item->valuedouble : otherwise;
+}
+
+const char *hn_body_text(const cJSON *body, const char *name) {
+    return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(body, name));
+}

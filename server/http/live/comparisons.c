@@ -1,0 +1,299 @@
+#include "http/live/comparisons.h"
+
+#include "http/ground/body.h"
+#include "http/live/session.h"
+#include "http/live/stream.h"
+#include "http/request/context.h"
+#include "http/request/request.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+enum { MAX_LINGERING = 8 };
+
+struct hn_comparisons {
+    pthread_mutex_t lock;
+    pthread_cond_t changed; ///< the keeper should end, or a comparison's thread has ended
+    const hn_http_opts *opts;
+    const hn_library *lib;
+    hn_session **lives; ///< one reference each
+    int n, n_reserved;  ///< there, and being made
+    int n_threads, stopping;
+    _Atomic int n_streams;
+    pthread_t keeper;
+    int has_keeper;
+};
+
+// ---- the table --------------------------------------------------------------------------------------------------
+
+/// Takes the i-th out; its reference passes to the caller. With the lock held.
+static hn_session *take_out(hn_comparisons *all, int i) {
+    hn_session *live = all->lives[i];
+    all->lives[i] = all->lives[--all->n];
+    return live;
+}
+
+/// Ends what nobody touched for long; wakes streams for their comment lines.
+static void tick(hn_comparisons *all) {
+    for (int i = all->n - 1; i >= 0; i--) {
+        if (hn_session_tick(all->lives[i])) {
+            hn_session *live = take_out(all, i);
+            hn_session_end(live, 1);
+            hn_session_release(live);
+        }
+    }
+}
+
+static void *keep(void *arg) {
+    hn_comparisons *all = arg;
+    // a look per second, oftener when the bounds are tighter than that
+    double every = all->opts->keep_alive < 2 || all->opts->expiry < 2 ? 0.1 : 1;
+    pthread_mutex_lock(&all->lock);
+    while (!all->stopping) {
+        struct timespec ts;
+        clock_gettime(CLOCK_MONOTONIC, &ts);
+        long ns = ts.tv_nsec + (long)(every * 1e9);
+        ts.tv_sec += ns / 1000000000;
+        ts.tv_nsec = ns % 1000000000;
+        pthread_cond_timedwait(&all->changed, &all->lock, &ts);
+        tick(all);
+    }
+    pthread_mutex_unlock(&all->lock);
+    return NULL;
+}
+
+hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library *lib) {
+    hn_comparisons *all = calloc(1, sizeof *all);
+    if (!all) {
+        return NULL;
+    }
+    pthread_condattr_t attr;
+    pthread_condattr_init(&attr);
+    pthread_condattr_setclock(&attr, CLOCK_MONOTONIC);
+    pthread_cond_init(&all->changed, &attr);
+    pthread_condattr_destroy(&attr);
+    pthread_mutex_init(&all->lock, NULL);
+    all->opts = opts;
+    all->lib = lib;
+    all->lives = calloc((size_t)opts->max_comparisons, sizeof(hn_session *));
+    all->has_keeper = all->lives && pthread_create(&all->keeper, NULL, keep, all) == 0;
+    if (!all->has_keeper) {
+        hn_comparisons_free(all);
+        return NULL;
+    }
+    return all;
+}
+
+void hn_comparisons_stop(hn_comparisons *all) {
+    if (!all) {
+        return;
+    }
+    pthread_mutex_lock(&all->lock);
+    all->stopping = 1;
+    while (all->n > 0) {
+        hn_session *live = take_out(all, all->n - 1);
+        hn_session_end(live, 0);
+        hn_session_release(live);
+    }
+    pthread_cond_broadcast(&all->changed);
+    while (all->n_threads > 0) {
+        pthread_cond_wait(&all->changed, &all->lock);
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (all->has_keeper) {
+        pthread_join(all->keeper, NULL);
+        all->has_keeper = 0;
+    }
+}
+
+void hn_comparisons_free(hn_comparisons *all) {
+    if (all) {
+        hn_comparisons_stop(all);
+        pthread_cond_destroy(&all->changed);
+        pthread_mutex_destroy(&all->lock);
+        free(all->lives);
+        free(all);
+    }
+}
+
+static void thread_gone(void *user) {
+    hn_comparisons *all = user;
+    pthread_mutex_lock(&all->lock);
+    all->n_threads--;
+    pthread_cond_broadcast(&all->changed);
+    pthread_mutex_unlock(&all->lock);
+}
+
+/// The comparison of the request's path, retained; NULL with a problem as reply.
+static hn_session *find_live(hn_request *r) {
+    hn_comparisons *all = r->context->comparisons;
+    hn_session *found = NULL;
+    pthread_mutex_lock(&all->lock);
+    for (int i = 0; i < all->n && !found; i++) {
+        if (strcmp(hn_session_id(all->lives[i]), r->parts[0]) == 0) {
+            found = hn_session_retain(all->lives[i]);
+        }
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (!found) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "POST /api/v1/comparisons makes one",
+                         "there is no comparison '%.40s' (any more)", r->parts[0]);
+    }
+    return found;
+}
+
+/// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its last frame: only so many
+/// may linger.
+static int reserve(hn_comparisons *all, hn_request *r) {
+    pthread_mutex_lock(&all->lock);
+    int stopping = all->stopping;
+    int full = all->n + all->n_reserved >= all->opts->max_comparisons ||
+               all->n_threads >= all->opts->max_comparisons + MAX_LINGERING;
+    if (!stopping && !full) {
+        all->n_reserved++;
+        all->n_threads++; // the thread it will have
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (stopping) {
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+    } else if (full) {
+        hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed",
+                         "there are %d comparisons already", all->opts->max_comparisons);
+        hn_reply_header_add(r, "Retry-After", "5");
+    }
+    return !stopping && !full;
+}
+
+/// Fills the reserved place, or gives it back when `live` is NULL. A server that stops in between keeps nothing.
+static void settle(hn_comparisons *all, hn_session *live) {
+    pthread_mutex_lock(&all->lock);
+    all->n_reserved--;
+    if (!live) {
+        all->n_threads--;
+        pthread_cond_broadcast(&all->changed);
+    } else if (all->stopping) {
+        hn_session_end(live, 0);
+    } else {
+        all->lives[all->n++] = hn_session_retain(live);
+    }
+    pthread_mutex_unlock(&all->lock);
+}
+
+// ---- handlers ---------------------------------------------------------------------------------------------------
+
+void hn_handle_comparisons_list(hn_request *r) {
+    hn_comparisons *all = r->context->comparisons;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_key(&b, "comparisons");
+    hn_json_array(&b);
+    pthread_mutex_lock(&all->lock);
+    for (int i = 0; i < all->n; i++) {
+        hn_json_string(&b, hn_session_id(all->lives[i]));
+    }
+    pthread_mutex_unlock(&all->lock);
+    hn_json_end_array(&b);
+    hn_json_end_object(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+/// The spellings of "methods", at most HN_COMPARISON_MAX_METHODS (the field table bounds them).
+static int read_methods(const cJSON *body, const char **methods) {
+    int n = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(body, "methods")) {
+        methods[n++] = item->valuestring;
+    }
+    return n;
+}
+
+static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **live,
+                        hn_diags *diags) {
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    hn_scene_request scene = {0};
+    hn_session_request order = {
+        .scene = &scene,
+        .methods = methods,
+        .n_methods = read_methods(body, methods),
+        .frame_dt = hn_body_number(body, "frame_dt", 0),
+        .duration = hn_body_number(body, "duration", 0),
+        .speed = hn_body_number(body, "speed", 1),
+        .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
+    };
+    hn_status status = hn_scene_request_read(&scene, body, diags);
+    if (status == HN_OK) {
+        status = hn_session_create(all->opts, all->lib, &order, thread_gone, all, live, diags);
+    }
+    hn_scene_request_reset(&scene);
+    return status;
+}
+
+void hn_handle_comparisons_create(hn_request *r) {
+    hn_comparisons *all = r->context->comparisons;
+    hn_session *live = NULL;
+    hn_diags diags = {0};
+    if (!reserve(all, r)) {
+        return;
+    }
+    hn_status status = create(all, r->json, &live, &diags);
+    settle(all, live);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_session_json(&b, live);
+    hn_reply_json(r, MHD_HTTP_CREATED, &b);
+    hn_reply_header_add(r, "Location", "/api/v1/comparisons/%s", hn_session_id(live));
+    hn_session_release(live);
+}
+
+void hn_handle_comparison_get(hn_request *r) {
+    hn_session *live = find_live(r);
+    if (live) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_session_json(&b, live);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+        hn_session_release(live);
+    }
+}
+
+void hn_handle_comparison_patch(hn_request *r) {
+    hn_session *live = find_live(r);
+    if (!live) {
+        hn_request_finish(r);
+        return;
+    }
+    hn_session_patch(live, r);
+    hn_session_release(live);
+}
+
+void hn_handle_comparison_delete(hn_request *r) {
+    hn_comparisons *all = r->context->comparisons;
+    hn_session *live = find_live(r);
+    if (!live) {
+        return;
+    }
+    pthread_mutex_lock(&all->lock);
+    for (int i = 0; i < all->n; i++) {
+        if (all->lives[i] == live) {
+            hn_session_release(take_out(all, i));
+        }
+    }
+    pthread_mutex_unlock(&all->lock);
+    hn_session_end(live, 1);
+    hn_session_release(live);
+    hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
+}
+
+void hn_handle_comparison_events(hn_request *r) {
+    hn_session *live = find_live(r);
+    if (live) {
+        hn_stream_open(live, r, &r->context->comparisons->n_streams);
+        hn_session_release(live);
+    }
+}

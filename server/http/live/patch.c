@@ -1,0 +1,203 @@
+// What PATCH can change. Everything that can fail is tried before anything is changed, so that a request at fault
+// leaves the comparison as it was.
+#include "http/ground/body.h"
+#include "http/live/session_internal.h"
+
+#include <string.h>
+
+/// The body, read.
+typedef struct change {
+    const cJSON *methods, *settings, *set;
+    int wants_state, run, reset, step;
+    double speed; ///< 0: as it is
+} change;
+
+static change read_change(const cJSON *body) {
+    const char *state = hn_body_text(body, "state");
+    return (change){
+        .methods = cJSON_GetObjectItemCaseSensitive(body, "methods"),
+        .settings = cJSON_GetObjectItemCaseSensitive(body, "settings"),
+        .set = cJSON_GetObjectItemCaseSensitive(body, "set"),
+        .wants_state = state != NULL,
+        .run = state && strcmp(state, "running") == 0,
+        .reset = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(body, "reset")),
+        .step = (int)hn_body_number(body, "step", 0),
+        .speed = hn_body_number(body, "speed", 0),
+    };
+}
+
+/// 1 when the change fits the state; otherwise the reply is a problem.
+static int fits_state(const hn_session *live, const change *c, hn_request *r) {
+    int restart = c->methods || c->settings || c->reset;
+    int running = c->wants_state ? c->run : live->state == HN_SESSION_RUNNING;
+    if (c->step > 0 && running) {
+        hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"state\": \"paused\" as well",
+                         "a running comparison cannot be stepped");
+        return 0;
+    }
+    if (live->state == HN_SESSION_FINISHED && !restart &&
+        (c->step > 0 || (c->wants_state && c->run))) {
+        hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"reset\": true as well",
+                         "the comparison has finished");
+        return 0;
+    }
+    return 1;
+}
+
+/// The spellings the new runs are made from: those asked, or the present ones with what was changed while running.
+static int choose_methods(const hn_session *live, const cJSON *asked, char (*kept)[HN_SPEC_MAX],
+                          const char **methods) {
+    int n = 0;
+    const cJSON *item;
+    if (asked) {
+        cJSON_ArrayForEach(item, asked) {
+            methods[n++] = item->valuestring;
+        }
+        return n;
+    }
+    for (; n < hn_comparison_n_methods(live->bench.comparison); n++) {
+        hn_method_format(hn_run_spec(hn_comparison_run(live->bench.comparison, n)), kept[n]);
+        methods[n] = kept[n];
+    }
+    return n;
+}
+
+static hn_status build(hn_session *live, const change *c, hn_subject *fresh, hn_diags *diags) {
+    char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    int n = choose_methods(live, c->methods, kept, methods);
+    hn_scene_request scene = {0};
+    hn_status status = hn_scene_request_copy(&scene, &live->bench.scene);
+    if (status == HN_OK && c->settings) {
+        status = hn_scene_request_read_settings(&scene, c->settings, diags);
+    }
+    if (status == HN_OK) {
+        status = hn_subject_create(live, &scene, methods, n, fresh, diags);
+    }
+    hn_scene_request_reset(&scene);
+    return status;
+}
+
+/// {"method":1,"key":"alpha","value":20}
+static hn_status set_running(hn_subject *bench, const cJSON *set, hn_diags *diags) {
+    hn_diag diag = {0};
+    hn_status status =
+        hn_comparison_set(bench->comparison, (int)hn_body_number(set, "method", -1),
+                          hn_body_text(set, "key"), hn_body_number(set, "value", 0), &diag);
+    if (status != HN_OK) {
+        const char *pointer = strncmp(diag.pointer, "/set", 4) == 0 ? diag.pointer : "/set/value";
+        hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
+    }
+    return status;
+}
+
+/// A new start: the clock back to 0, a new generation, the event `reset` with the whole description, frame 0.
+static hn_status restart(hn_session *live) {
+    pthread_mutex_lock(&live->lock);
+    live->generation++;
+    live->frame = 0;
+    live->lag = 0;
+    if (live->state == HN_SESSION_FINISHED) {
+        live->state = HN_SESSION_PAUSED;
+    }
+    hn_session_set_anchor(live);
+    hn_strbuf_clear(&live->latest);
+    pthread_mutex_unlock(&live->lock);
+    hn_status status = hn_session_publish_setup(live);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    pthread_mutex_lock(&live->lock);
+    hn_json_object(&b);
+    hn_json_put_int(&b, "generation", live->generation);
+    hn_json_key(&b, "description");
+    hn_session_put_json(&b, live);
+    hn_json_end_object(&b);
+    hn_history_add(&live->history, HN_EVENT_RESET, &b);
+    pthread_mutex_unlock(&live->lock);
+    hn_session_publish_frame(live);
+    return status;
+}
+
+static hn_status publish_set(hn_session *live, const cJSON *set) {
+    hn_status status = hn_session_publish_setup(live);
+    char *text = cJSON_PrintUnformatted(set);
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    pthread_mutex_lock(&live->lock);
+    hn_json_object(&b);
+    hn_session_put_state(&b, live);
+    hn_json_key(&b, "set");
+    hn_json_raw(&b, text ? text : "null");
+    hn_json_key(&b, "comparison");
+    hn_json_raw(&b, hn_strbuf_text(&live->comparison_json));
+    hn_json_end_object(&b);
+    hn_history_add(&live->history, HN_EVENT_STATE, &b);
+    hn_session_wake_streams(live);
+    pthread_mutex_unlock(&live->lock);
+    cJSON_free(text);
+    return status;
+}
+
+/// Nothing here can be at fault any more.
+static hn_status carry_out(hn_session *live, const change *c, hn_subject *fresh) {
+    hn_status status = HN_OK;
+    if (fresh->comparison) {
+        hn_subject_reset(&live->bench);
+        live->bench = *fresh;
+        *fresh = (hn_subject){0};
+    } else if (c->reset) {
+        hn_comparison_reset(live->bench.comparison);
+        memset(live->bench.told, 0, sizeof live->bench.told);
+    }
+    if (c->methods || c->settings || c->reset) {
+        status = restart(live);
+    }
+    if (c->set && status == HN_OK) {
+        status = publish_set(live, c->set);
+    }
+    int run = c->wants_state ? c->run : live->state == HN_SESSION_RUNNING;
+    int changes_state = c->wants_state && live->state != HN_SESSION_FINISHED &&
+                        c->run != (live->state == HN_SESSION_RUNNING);
+    if (changes_state || c->speed > 0) {
+        pthread_mutex_lock(&live->lock);
+        live->speed = c->speed > 0 ? c->speed : live->speed;
+        pthread_mutex_unlock(&live->lock);
+        hn_session_set_state(live,
+                             live->state == HN_SESSION_FINISHED ? HN_SESSION_FINISHED
+                             : run                              ? HN_SESSION_RUNNING
+                                                                : HN_SESSION_PAUSED,
+                             NULL);
+    }
+    for (int k = 0; k < c->step && live->state != HN_SESSION_FINISHED; k++) {
+        hn_session_advance(live);
+    }
+    return status;
+}
+
+void hn_session_apply(hn_session *live, hn_request *r) {
+    change c = read_change(r->json);
+    hn_subject fresh = {0};
+    hn_diags diags = {0};
+    hn_status status = HN_OK;
+    if (!fits_state(live, &c, r)) {
+        return;
+    }
+    if (c.methods || c.settings) {
+        status = build(live, &c, &fresh, &diags);
+    }
+    if (status == HN_OK && c.set) {
+        status = set_running(fresh.comparison ? &fresh : &live->bench, c.set, &diags);
+    }
+    if (status == HN_OK) {
+        status = carry_out(live, &c, &fresh);
+    }
+    hn_subject_reset(&fresh);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_session_json(&b, live);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}

@@ -1,0 +1,76 @@
+#ifndef HN_HTTP_LIVE_INTERNAL_H
+#define HN_HTTP_LIVE_INTERNAL_H
+// Shared by live.c (thread and publishing), patch.c (changes) and stream.c (readers).
+
+#include "http/live/session.h"
+#include "http/request/request.h"
+
+#include <pthread.h>
+
+/// What is being compared; replaced as a whole.
+typedef struct hn_subject {
+    hn_scene_request scene;
+    hn_model *model;
+    hn_comparison *comparison;
+    int told[HN_COMPARISON_MAX_METHODS]; ///< incidents told already, per method
+    size_t told_length
+        [HN_COMPARISON_MAX_METHODS]
+        [HN_RUN_MAX_INCIDENTS]; ///< of their messages then: one that has grown since is told again
+} hn_subject;
+
+struct hn_session {
+    pthread_mutex_t lock;
+    pthread_cond_t wake; ///< of the thread
+    int refs;
+    char id[17];
+    const hn_http_opts *opts;
+    const hn_library *lib;
+    void (*gone)(void *user);
+    void *user;
+
+    // the thread's own
+    hn_subject bench;
+    double asked_frame_dt, asked_duration;
+
+    // published: written by the thread under the lock, read by all under the lock
+    hn_session_state state;
+    double speed;
+    long long frame, generation;
+    double lag;         ///< real time by which the frames came too late, in all [s]
+    double anchor_time; ///< pacing: frame `anchor_frame` was due then
+    long long anchor_frame;
+    double frame_dt, duration;
+    hn_strbuf scene_json, comparison_json, settings_json, latest;
+    hn_history history;
+
+    // under the lock, by anybody
+    hn_request *patches, **patches_end; ///< queue
+    struct hn_stream *streams;          ///< list
+    int n_streams;
+    double touched; ///< last look by anybody [s, monotonic]
+    int ending, deleted, thread_ended;
+};
+
+/// A model and its runs. On failure nothing is left in *bench.
+HN_MUST_CHECK hn_status hn_subject_create(const hn_session *live, const hn_scene_request *scene,
+                                          const char *const *methods, int n_methods,
+                                          hn_subject *bench, hn_diags *diags);
+void hn_subject_reset(hn_subject *bench);
+
+// for the thread; none may be called with the lock held
+/// Writes out what does not change from frame to frame. HN_ERR_MEMORY leaves the old texts.
+HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *live);
+/// The present frame as an event, then its incidents, then the end if it is reached.
+void hn_session_publish_frame(hn_session *live);
+/// One frame further.
+void hn_session_advance(hn_session *live);
+void hn_session_set_state(hn_session *live, hn_session_state state, const char *reason);
+/// Carries out the body of a PATCH and fills in the reply.
+void hn_session_apply(hn_session *live, hn_request *r);
+
+// with the lock held
+void hn_session_put_json(hn_strbuf *b, const hn_session *live);
+void hn_session_put_state(hn_strbuf *b, const hn_session *live); ///< members "state" and "speed"
+void hn_session_wake_streams(hn_session *live);
+void hn_session_set_anchor(hn_session *live);
+#endif

@@ -1,0 +1,263 @@
+#include "http/live/stream.h"
+
+#include "build.h"
+#include "http/live/session_internal.h"
+#include "study/run/timing.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { CHUNK = 1 << 16, SCHEMA = 1 };
+
+struct hn_stream {
+    hn_session *live;
+    struct MHD_Connection *connection;
+    _Atomic int *n_open;
+    hn_stream *next;
+    uint64_t cursor; ///< id of the event that comes next
+    int skips;       ///< mode=live: frames may be left out
+    int waiting;     ///< the connection is suspended
+    int said_hello, said_end;
+    double last_sent;
+    hn_strbuf text; ///< what is being sent, from `at` on; only the connection's thread touches it
+    size_t at;
+};
+
+hn_stream *hn_stream_next(const hn_stream *s) {
+    return s->next;
+}
+
+void hn_stream_wake(hn_stream *s) {
+    if (s->waiting) {
+        s->waiting = 0;
+        MHD_resume_connection(s->connection);
+    }
+}
+
+void hn_stream_tick(hn_stream *s, double now) {
+    if (now - s->last_sent >= s->live->opts->keep_alive) {
+        hn_stream_wake(s);
+    }
+}
+
+// ---- writing, with the lock held --------------------------------------------------------------------------------
+
+static void put_hello(hn_stream *s) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_int(&b, "schema", SCHEMA);
+    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_key(&b, "description");
+    hn_session_put_json(&b, s->live);
+    hn_json_end_object(&b);
+    hn_strbuf_add(&s->text, "retry: 1000\nevent: hello\ndata: ");
+    hn_strbuf_add_n(&s->text, hn_strbuf_text(&b), b.n);
+    hn_strbuf_add(&s->text, "\n\n");
+    s->text.failed |= b.failed;
+    hn_strbuf_reset(&b);
+    s->said_hello = 1;
+}
+
+static void put_gap(hn_stream *s, uint64_t from, uint64_t to) {
+    hn_strbuf_printf(&s->text, "event: gap\ndata: {\"from\":%llu,\"to\":%llu}\n\n",
+                     (unsigned long long)from, (unsigned long long)to);
+}
+
+static void put_event(hn_stream *s, const hn_event *e) {
+    if (!e->data) {
+        put_gap(s, e->id, e->id);
+        return;
+    }
+    hn_strbuf_printf(&s->text, "id: %llu\nevent: %s\ndata: ", (unsigned long long)e->id,
+                     hn_event_name(e->kind));
+    hn_strbuf_add_n(&s->text, e->data, e->n);
+    hn_strbuf_add(&s->text, "\n\n");
+}
+
+/// What has come since the last look, up to a chunk's size.
+static void put_new_events(hn_stream *s) {
+    const hn_history *h = &s->live->history;
+    uint64_t first = hn_history_first_id(h);
+    if (s->cursor < first) {
+        put_gap(s, s->cursor, first - 1);
+        s->cursor = first;
+    }
+    for (; s->cursor <= h->last_id && s->text.n < CHUNK; s->cursor++) {
+        const hn_event *e = hn_history_find(h, s->cursor);
+        if (!s->skips || e->kind != HN_EVENT_FRAME || e->id == h->last_frame_id) {
+            put_event(s, e);
+        }
+    }
+}
+
+/// 1 when the reader has seen all there will be (until somebody resets the comparison).
+static int is_at_end(const hn_stream *s) {
+    return s->live->ending ||
+           (s->live->state == HN_SESSION_FINISHED && s->cursor > s->live->history.last_id);
+}
+
+static void fill(hn_stream *s) {
+    hn_strbuf_clear(&s->text);
+    s->at = 0;
+    if (!s->said_hello) {
+        put_hello(s);
+    }
+    put_new_events(s);
+    if (s->text.n == 0 && s->live->deleted && !s->said_end) {
+        hn_strbuf_add(&s->text, "event: end\ndata: {\"deleted\":true}\n\n");
+        s->said_end = 1;
+    }
+    if (s->text.n == 0 && !is_at_end(s) &&
+        hn_wall_seconds() - s->last_sent >= s->live->opts->keep_alive) {
+        hn_strbuf_add(&s->text, ": still here\n\n");
+    }
+}
+
+// ---- callbacks of the HTTP library ------------------------------------------------------------------------------
+
+static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
+    hn_stream *s = cls;
+    (void)pos;
+    if (s->at == s->text.n) {
+        hn_session *live = s->live;
+        pthread_mutex_lock(&live->lock);
+        fill(s);
+        int ended = s->text.n == 0 && is_at_end(s);
+        if (s->text.n == 0 && !ended) {
+            // under the lock: whoever has news wakes a connection that is already suspended
+            s->waiting = 1;
+            MHD_suspend_connection(s->connection);
+        } else {
+            s->last_sent = hn_wall_seconds();
+        }
+        pthread_mutex_unlock(&live->lock);
+        if (ended) {
+            return MHD_CONTENT_READER_END_OF_STREAM;
+        }
+    }
+    if (s->text.failed) {
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    }
+    size_t n = s->text.n - s->at < size ? s->text.n - s->at : size;
+    memcpy(out, hn_strbuf_text(&s->text) + s->at, n);
+    s->at += n;
+    return (ssize_t)n;
+}
+
+static void close_stream(void *cls) {
+    hn_stream *s = cls;
+    hn_session *live = s->live;
+    pthread_mutex_lock(&live->lock);
+    hn_stream **place = &live->streams;
+    while (*place != s) {
+        place = &(*place)->next;
+    }
+    *place = s->next;
+    live->n_streams--;
+    live->touched = hn_wall_seconds();
+    pthread_mutex_unlock(&live->lock);
+    atomic_fetch_sub(s->n_open, 1);
+    hn_strbuf_reset(&s->text);
+    free(s);
+    hn_session_release(live);
+}
+
+// ---- opening ----------------------------------------------------------------------------------------------------
+
+/// Last-Event-ID (a header, or last_event_id in the query); -1 when not given, -2 when it is no number.
+static long long read_last_id(const hn_request *r) {
+    const char *text = hn_request_header(r, "Last-Event-ID");
+    if (!text || !*text) {
+        text = hn_request_query(r, "last_event_id");
+    }
+    if (!text || !*text) {
+        return -1;
+    }
+    size_t n = strlen(text);
+    return n <= 18 && strspn(text, "0123456789") == n ? strtoll(text, NULL, 10) : -2;
+}
+
+/// Where to begin. With the lock held; 0 when the reply is made here.
+static int choose_cursor(hn_stream *s, hn_request *r, long long last) {
+    const hn_history *h = &s->live->history;
+    if (last == -2 || (last >= 0 && (uint64_t)last > h->last_id)) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
+                         "the last event id must be a number up to %llu, the newest event here",
+                         (unsigned long long)h->last_id);
+        return 0;
+    }
+    s->cursor = last >= 0  ? (uint64_t)last + 1
+                : s->skips ? h->last_frame_id
+                           : hn_history_first_id(h);
+    if (last >= 0 && is_at_end(s)) {
+        hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
+        return 0;
+    }
+    return 1;
+}
+
+static void reply_stream(hn_stream *s, hn_request *r) {
+    struct MHD_Response *response =
+        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, CHUNK, read_stream, s, close_stream);
+    if (!response) {
+        close_stream(s);
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return;
+    }
+    hn_reply_response(r, MHD_HTTP_OK, response);
+    hn_reply_header_add(r, "Content-Type", "text/event-stream");
+    hn_reply_header_add(r, "Cache-Control", "no-cache");
+    hn_reply_header_add(r, "X-Accel-Buffering", "no");
+}
+
+/// Puts the stream on the comparison's list; 0 when the reply is made here.
+static int attach(hn_stream *s, hn_request *r) {
+    hn_session *live = s->live;
+    pthread_mutex_lock(&live->lock);
+    live->touched = hn_wall_seconds();
+    int open = choose_cursor(s, r, read_last_id(r));
+    if (open) {
+        live->refs++;
+        live->n_streams++;
+        s->next = live->streams;
+        live->streams = s;
+    }
+    pthread_mutex_unlock(&live->lock);
+    return open;
+}
+
+void hn_stream_open(hn_session *live, hn_request *r, _Atomic int *n_open) {
+    const char *mode = hn_request_query(r, "mode");
+    if (mode && strcmp(mode, "live") != 0 && strcmp(mode, "complete") != 0) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "mode=complete or mode=live",
+                         "the mode '%.40s' is unknown", mode);
+        return;
+    }
+    if (r->is_head) {
+        hn_reply_empty(r, MHD_HTTP_OK);
+        hn_reply_header_add(r, "Content-Type", "text/event-stream");
+        return;
+    }
+    int open = atomic_fetch_add(n_open, 1);
+    hn_stream *s = open < live->opts->max_streams ? calloc(1, sizeof *s) : NULL;
+    if (!s) {
+        atomic_fetch_sub(n_open, 1);
+        hn_reply_problem(r, HN_PROBLEM_BUSY, "close a stream", "%d streams are open already",
+                         live->opts->max_streams);
+        hn_reply_header_add(r, "Retry-After", "5");
+        return;
+    }
+    *s = (hn_stream){.live = live,
+                     .connection = r->connection,
+                     .n_open = n_open,
+                     .skips = mode && strcmp(mode, "live") == 0,
+                     .last_sent = hn_wall_seconds()};
+    if (attach(s, r)) {
+        reply_stream(s, r);
+    } else {
+        atomic_fetch_sub(n_open, 1);
+        free(s);
+    }
+}

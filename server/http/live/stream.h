@@ -1,0 +1,17 @@
+#ifndef HN_HTTP_STREAM_H
+#define HN_HTTP_STREAM_H
+// A reader of a comparison's events (server-sent events). Its connection is suspended while there is nothing to say.
+
+#include "http/live/session.h"
+
+typedef struct hn_stream hn_stream;
+
+/// Answers GET .../events. Takes nothing; the stream holds its own reference of `live`. `n_open` is the server's count of streams.
+void hn_stream_open(hn_session *live, struct hn_request *r, _Atomic int *n_open);
+
+// for the comparison, with its lock held
+hn_stream *hn_stream_next(const hn_stream *s);
+void hn_stream_wake(hn_stream *s);
+void hn_stream_tick(hn_stream *s,
+                    double now); ///< wakes it when its reader should hear a comment line
+#endif

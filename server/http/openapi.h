@@ -1,8 +1,0 @@
-#ifndef HN_HTTP_OPENAPI_H
-#define HN_HTTP_OPENAPI_H
-// The OpenAPI 3.1 document, written from the table of routes and their fields.
-
-struct hn_request;
-
-void hn_handle_openapi(struct hn_request *r);
-#endif

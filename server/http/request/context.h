@@ -1,0 +1,30 @@
+#ifndef HN_HTTP_CONTEXT_H
+#define HN_HTTP_CONTEXT_H
+// The parts of the server that handlers use. The server owns them; each part locks itself.
+
+#include "http/ground/hosts.h"
+#include "http/ground/http_opts.h"
+#include "http/request/route.h"
+#include "session/model/library.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/// A document that is costly to make and never changes: made on the first question.
+typedef struct hn_kept_text {
+    pthread_mutex_t lock;
+    char *text;
+} hn_kept_text;
+
+typedef struct hn_context {
+    const hn_library *lib;
+    hn_http_opts opts;
+    hn_hosts hosts;
+    hn_route_table routes;
+    struct hn_static_files *files;
+    struct hn_comparisons *comparisons;
+    struct hn_studies *studies;
+    hn_kept_text scenes; ///< the list of shipped scenes, as JSON
+    atomic_int stopping; ///< 1: the server ends; nothing new is started
+} hn_context;
+#endif

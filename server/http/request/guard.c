@@ -1,0 +1,101 @@
+#include "http/request/guard.h"
+
+#include "http/request/context.h"
+
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
+    const char *host = hn_request_header(r, "Host");
+    if (!host || !*host) {
+        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL, "the Host header is missing");
+        return 0;
+    }
+    if (!hn_host_is_ours(hosts, host)) {
+        hn_reply_problem(r, HN_PROBLEM_HOST, "start the server with --allow-host NAME",
+                         "'%.100s' is not a name of this server", host);
+        return 0;
+    }
+    const char *origin = hn_request_header(r, "Origin");
+    if (!origin) {
+        return 1;
+    }
+    const char *scheme_end = strstr(origin, "://");
+    if (!scheme_end || !hn_host_is_ours(hosts, scheme_end + 3)) {
+        hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
+                         "the origin '%.100s' is not served here", origin);
+        return 0;
+    }
+    return 1;
+}
+
+/// 1 when the range (n bytes, "application/*") covers the type.
+static int range_covers(const char *range, size_t n, const char *media_type) {
+    if (n == 3 && memcmp(range, "*/*", 3) == 0) {
+        return 1;
+    }
+    if (n > 2 && memcmp(range + n - 2, "/*", 2) == 0) {
+        return strncasecmp(range, media_type, n - 1) == 0;
+    }
+    return strlen(media_type) == n && strncasecmp(range, media_type, n) == 0;
+}
+
+/// 1 when the parameters of a range say q=0.
+static int is_refused(const char *params, size_t n) {
+    char copy[64];
+    snprintf(copy, sizeof copy, "%.*s", (int)(n < 63 ? n : 63), params);
+    const char *q = strstr(copy, "q=");
+    return q && strspn(q + 2, "0.") > 0 && !strpbrk(q + 2, "123456789");
+}
+
+int hn_accepts(const char *accept, const char *media_type) {
+    int allowed = 0;
+    if (!accept) {
+        return 1;
+    }
+    while (*accept) {
+        accept += strspn(accept, " \t,");
+        size_t whole = strcspn(accept, ","), range = strcspn(accept, " \t;,");
+        if (range > 0 && range_covers(accept, range, media_type)) {
+            int exact = strlen(media_type) == range && accept[0] != '*';
+            int refused = is_refused(accept + range, whole - range);
+            if (exact) {
+                return !refused;
+            }
+            allowed |= !refused;
+        }
+        accept += whole;
+    }
+    return allowed;
+}
+
+int hn_guard_accept(hn_request *r) {
+    const char *accept = hn_request_header(r, "Accept");
+    if (!r->route->schema || hn_accepts(accept, r->route->media_type)) {
+        return 1;
+    }
+    hn_reply_problem(r, HN_PROBLEM_NOT_ACCEPTABLE, NULL, "this address offers %s",
+                     r->route->media_type);
+    return 0;
+}
+
+int hn_is_json_type(const char *content_type) {
+    static const char json[] = "application/json";
+    size_t n = sizeof json - 1;
+    return content_type && strncasecmp(content_type, json, n) == 0 &&
+           (content_type[n] == 0 || strchr("; \t", content_type[n]));
+}
+
+int hn_guard_body_type(hn_request *r) {
+    const char *type = hn_request_header(r, "Content-Type");
+    if (!r->route->fields || hn_is_json_type(type)) {
+        return 1;
+    }
+    hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "Content-Type: application/json",
+                     type ? "the body is said to be '%.100s'"
+                          : "the Content-Type header is missing%s",
+                     type ? type : "");
+    return 0;
+}

@@ -1,0 +1,17 @@
+#ifndef HN_HTTP_GUARD_H
+#define HN_HTTP_GUARD_H
+// What is checked before a handler sees a request: who asks, for whom, and in which media types.
+
+#include "http/ground/hosts.h"
+#include "http/request/request.h"
+
+/// 1 when an Accept header (NULL: none) lets `media_type` through.
+int hn_accepts(const char *accept, const char *media_type);
+/// 1 for application/json, with or without parameters.
+int hn_is_json_type(const char *content_type);
+
+/// Each returns 1 when all is well; otherwise the reply is a problem.
+int hn_guard_host(hn_request *r, const hn_hosts *hosts);
+int hn_guard_accept(hn_request *r);
+int hn_guard_body_type(hn_request *r);
+#endif

@@ -1,0 +1,136 @@
+#include "http/request/request.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *hn_request_query(const hn_request *r, const char *name) {
+    return MHD_lookup_connection_value(r->connection, MHD_GET_ARGUMENT_KIND, name);
+}
+
+const char *hn_request_header(const hn_request *r, const char *name) {
+    return MHD_lookup_connection_value(r->connection, MHD_HEADER_KIND, name);
+}
+
+typedef struct query_walk {
+    const char *name;
+    hn_status (*see)(void *user, const char *value);
+    void *user;
+    hn_status status;
+} query_walk;
+
+static enum MHD_Result see_query(void *cls, enum MHD_ValueKind kind, const char *key,
+                                 const char *value) {
+    query_walk *walk = cls;
+    (void)kind;
+    if (strcmp(key, walk->name) == 0) {
+        walk->status = walk->see(walk->user, value ? value : "");
+    }
+    return walk->status == HN_OK ? MHD_YES : MHD_NO;
+}
+
+hn_status hn_request_each_query(const hn_request *r, const char *name,
+                                hn_status (*see)(void *user, const char *value), void *user) {
+    query_walk walk = {.name = name, .see = see, .user = user, .status = HN_OK};
+    MHD_get_connection_values(r->connection, MHD_GET_ARGUMENT_KIND, see_query, &walk);
+    return walk.status;
+}
+
+void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) {
+    HN_ASSERT(r->n_headers < HN_MAX_REPLY_HEADERS);
+    hn_reply_header *h = &r->headers[r->n_headers++];
+    h->name = name;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(h->value, sizeof h->value, format, args);
+    va_end(args);
+}
+
+void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_strbuf *bytes) {
+    if (bytes->failed) {
+        hn_strbuf_reset(bytes);
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return;
+    }
+    hn_strbuf_reset(&r->text);
+    r->text = *bytes;
+    hn_strbuf_init(bytes);
+    r->status = status;
+    r->media_type = media_type;
+    r->stage = HN_STAGE_ANSWERED;
+}
+
+void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text) {
+    hn_reply_bytes(r, status, "application/json", text);
+}
+
+void hn_reply_empty(hn_request *r, unsigned status) {
+    hn_strbuf_reset(&r->text);
+    r->status = status;
+    r->media_type = NULL;
+    r->stage = HN_STAGE_ANSWERED;
+}
+
+void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response) {
+    r->response = response;
+    r->status = status;
+    r->stage = HN_STAGE_ANSWERED;
+}
+
+/// Writes the document; when even that has no memory, the status stands alone.
+static void reply_document(hn_request *r, hn_http_problem kind, const char *detail,
+                           const char *hint, long long offset, const hn_diags *diags) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_http_problem_json(&b, kind, detail, hint, r->path, offset, diags);
+    unsigned status = hn_http_problem_get_info(kind)->status;
+    if (b.failed) {
+        hn_strbuf_reset(&b);
+        hn_reply_empty(r, status);
+        return;
+    }
+    hn_reply_bytes(r, status, "application/problem+json", &b);
+}
+
+void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
+                      ...) {
+    char detail[HN_DIAG_MESSAGE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(detail, sizeof detail, format, args);
+    va_end(args);
+    reply_document(r, kind, detail, hint, -1, NULL);
+}
+
+void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint) {
+    reply_document(r, HN_PROBLEM_BAD_JSON, what, hint, (long long)offset, NULL);
+}
+
+void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags) {
+    int ours = status == HN_ERR_MEMORY || status == HN_ERR_INTERNAL || status == HN_ERR_IO;
+    hn_http_problem kind = ours ? HN_PROBLEM_INTERNAL : HN_PROBLEM_INPUT;
+    const char *detail = diags->n > 0 ? diags->item[0].message : hn_status_text(status);
+    reply_document(r, kind, detail, diags->n > 0 ? diags->item[0].hint : NULL, -1, diags);
+}
+
+void hn_request_suspend(hn_request *r) {
+    r->stage = HN_STAGE_WAITING;
+    MHD_suspend_connection(r->connection);
+}
+
+void hn_request_finish(hn_request *r) {
+    HN_ASSERT(r->stage == HN_STAGE_ANSWERED);
+    MHD_resume_connection(r->connection);
+}
+
+void hn_request_free(hn_request *r) {
+    if (r) {
+        cJSON_Delete(r->json);
+        hn_strbuf_reset(&r->text);
+        if (r->response) {
+            MHD_destroy_response(r->response);
+        }
+        free(r->body);
+        free(r);
+    }
+}

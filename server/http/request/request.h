@@ -1,0 +1,79 @@
+#ifndef HN_HTTP_REQUEST_H
+#define HN_HTTP_REQUEST_H
+// One HTTP request from its first header to its last byte. The server makes it, a handler fills in the reply, the
+// completed callback alone frees it. A handler sees only this.
+
+#include "base/diag.h"
+#include "base/strbuf.h"
+#include "http/ground/problem_document.h"
+#include "http/request/route.h"
+
+#include <cjson/cJSON.h>
+#include <microhttpd.h>
+
+enum { HN_MAX_REPLY_HEADERS = 6 };
+
+struct hn_context;
+
+typedef struct hn_reply_header {
+    const char *name; ///< static text
+    char value[HN_HEADER_TEXT];
+} hn_reply_header;
+
+typedef enum hn_request_stage {
+    HN_STAGE_BODY,    ///< the body is coming in
+    HN_STAGE_WAITING, ///< suspended: somebody works on it
+    HN_STAGE_ANSWERED ///< the reply is there
+} hn_request_stage;
+
+typedef struct hn_request {
+    struct hn_context *context;
+    struct MHD_Connection *connection;
+    hn_request_stage stage;
+    const hn_route *route;
+    int is_head;
+    char path[HN_HEADER_TEXT];                ///< as asked, cut when longer (for messages)
+    char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
+    char origin_host[HN_HEADER_TEXT];         ///< the Host header
+    char *body;
+    size_t n_body, body_cap, body_dropped;
+    cJSON *json;             ///< the parsed body, when the route takes fields
+    struct hn_request *next; ///< in a queue
+
+    // the reply
+    unsigned status;
+    const char *media_type; ///< static text
+    hn_strbuf text;
+    struct MHD_Response *response; ///< instead of `text`: a stream, a file
+    int n_headers;
+    hn_reply_header headers[HN_MAX_REPLY_HEADERS];
+} hn_request;
+
+/// The query argument, or NULL. Light routes and heavy ones alike.
+const char *hn_request_query(const hn_request *r, const char *name);
+const char *hn_request_header(const hn_request *r, const char *name);
+/// Calls `see` for each argument `name=value` of the query in turn; stops when it returns not HN_OK, and returns that.
+HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *name,
+                                              hn_status (*see)(void *user, const char *value),
+                                              void *user);
+
+void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) HN_PRINTF(3, 4);
+/// Takes the buffer's text (the buffer is empty afterwards). A buffer whose memory ran out becomes a problem.
+void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text);
+void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_strbuf *bytes);
+void hn_reply_empty(hn_request *r, unsigned status);
+/// Takes the response.
+void hn_reply_response(hn_request *r, unsigned status, struct MHD_Response *response);
+void hn_reply_problem(hn_request *r, hn_http_problem kind, const char *hint, const char *format,
+                      ...) HN_PRINTF(4, 5);
+void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const char *hint);
+/// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
+void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
+
+/// Suspends the connection: from here on another thread owns the request, until hn_request_finish().
+void hn_request_suspend(hn_request *r);
+/// Hands an answered request back to the connection's thread, which sends the reply.
+void hn_request_finish(hn_request *r);
+/// Frees the request and everything that it holds.
+void hn_request_free(hn_request *r);
+#endif

@@ -1,0 +1,51 @@
+#ifndef HN_HTTP_ROUTE_H
+#define HN_HTTP_ROUTE_H
+// One row of the table of routes, and the search for the row that an address belongs to.
+
+#include "http/ground/body.h"
+
+enum { HN_MAX_PARTS = 2, HN_HEADER_TEXT = 256 };
+
+struct hn_request;
+
+typedef enum hn_work {
+    HN_WORK_LIGHT, ///< answered at once on the connection's thread: lookups and copies only
+    HN_WORK_HEAVY, ///< done by the pool; full pool: 429
+    HN_WORK_OWN    ///< the handler sees to it that somebody answers later (or answers itself)
+} hn_work;
+
+typedef struct hn_route_query {
+    const char *name, *type, *about; ///< type: JSON Schema type
+} hn_route_query;
+
+typedef struct hn_route {
+    const char *method, *path; ///< "/api/v1/scenes/{id}"
+    hn_work work;
+    void (*handle)(struct hn_request *r);
+    const hn_field *fields; ///< of the JSON body; NULL: no body
+    const char *media_type; ///< of the answer
+    const char *status;     ///< of the answer when all is well
+    const char
+        *schema; ///< name of the answer's schema in the OpenAPI document, NULL when it has no body
+    const char *summary;
+    const hn_route_query *query; ///< ends with a row without a name; may be NULL
+} hn_route;
+
+/// All rows.
+typedef struct hn_route_table {
+    const hn_route *row;
+    int n;
+} hn_route_table;
+
+/// What an address has: the route for the verb (HEAD is served by GET), or why not.
+typedef struct hn_route_match {
+    const hn_route *route; ///< NULL: see `allow`
+    char allow[64];        ///< verbs this address takes; "" when there is no such address
+} hn_route_match;
+
+/// Finds the row of an address. `parts` receives the text in place of each {...} of the path.
+hn_route_match hn_route_find(const hn_route_table *table, const char *method, const char *path,
+                             char (*parts)[HN_HEADER_TEXT]);
+/// Returns the path of the table that is most like this one, or NULL.
+const char *hn_route_nearest(const hn_route_table *table, const char *path);
+#endif

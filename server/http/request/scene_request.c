@@ -1,0 +1,124 @@
+#include "http/request/scene_request.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void forget_settings(hn_scene_request *order) {
+    for (int i = 0; i < order->n; i++) {
+        free(order->names[i]);
+    }
+    order->n = 0;
+}
+
+void hn_scene_request_reset(hn_scene_request *order) {
+    forget_settings(order);
+    free(order->name);
+    cJSON_free(order->text);
+    order->name = order->text = NULL;
+}
+
+hn_status hn_scene_request_add(hn_scene_request *order, const char *name, size_t n_name,
+                               double value, hn_diags *diags) {
+    char pointer[HN_DIAG_POINTER];
+    snprintf(pointer, sizeof pointer, "/settings/%.*s", (int)(n_name < 100 ? n_name : 100), name);
+    if (!isfinite(value)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "the value is not a finite number");
+    }
+    if (order->n == HN_SCENE_MAX_PARAMS) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/settings", NULL,
+                            "more than %d settings were given", HN_SCENE_MAX_PARAMS);
+    }
+    char *copy = strndup(name, n_name);
+    if (!copy) {
+        return HN_ERR_MEMORY;
+    }
+    order->names[order->n] = copy;
+    order->settings[order->n] = (hn_setting){.name = copy, .value = value};
+    order->n++;
+    return HN_OK;
+}
+
+hn_status hn_scene_request_read_settings(hn_scene_request *order, const cJSON *settings,
+                                         hn_diags *diags) {
+    forget_settings(order);
+    const cJSON *item;
+    cJSON_ArrayForEach(item, settings) {
+        hn_status status = hn_scene_request_add(order, item->string, strlen(item->string),
+                                                item->valuedouble, diags);
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    return HN_OK;
+}
+
+hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body, hn_diags *diags) {
+    const cJSON *scene = cJSON_GetObjectItemCaseSensitive(body, "scene");
+    if (cJSON_IsString(scene)) {
+        order->name = strdup(scene->valuestring);
+    } else {
+        order->text = cJSON_PrintUnformatted(scene);
+    }
+    if (!order->name && !order->text) {
+        return HN_ERR_MEMORY;
+    }
+    return hn_scene_request_read_settings(order, cJSON_GetObjectItemCaseSensitive(body, "settings"),
+                                          diags);
+}
+
+hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from) {
+    *to = (hn_scene_request){.name = from->name ? strdup(from->name) : NULL};
+    if (from->text) {
+        size_t n = strlen(from->text) + 1;
+        to->text = cJSON_malloc(n);
+        if (to->text) {
+            memcpy(to->text, from->text, n);
+        }
+    }
+    if (!to->name && !to->text) {
+        return HN_ERR_MEMORY;
+    }
+    for (int i = 0; i < from->n; i++) {
+        const hn_setting *s = &from->settings[i];
+        hn_status status = hn_scene_request_add(to, s->name, strlen(s->name), s->value, NULL);
+        if (status != HN_OK) {
+            return status;
+        }
+    }
+    return HN_OK;
+}
+
+/// Faults inside a scene object are told by their place in the body.
+static void prefix_pointers(hn_diags *diags, int first) {
+    for (int i = first; i < diags->n; i++) {
+        char *p = diags->item[i].pointer;
+        if (strncmp(p, "/settings", 9) != 0 && strncmp(p, "/scene", 6) != 0) {
+            char longer[HN_DIAG_POINTER + 8];
+            snprintf(longer, sizeof longer, "/scene%s", p);
+            snprintf(p, HN_DIAG_POINTER, "%.*s", HN_DIAG_POINTER - 1, longer);
+        }
+    }
+}
+
+hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
+                                int allow_open, hn_model **out, hn_diags *diags) {
+    int first = diags->n;
+    hn_model_source source = {.name = order->name,
+                              .text = order->text,
+                              .n_text = order->text ? strlen(order->text) : 0,
+                              .settings = order->settings,
+                              .n_settings = order->n,
+                              .allow_open = allow_open};
+    hn_status status = hn_model_load(lib, &source, out, diags);
+    prefix_pointers(diags, first);
+    return status;
+}
+
+void hn_scene_request_settings_json(hn_strbuf *b, const hn_scene_request *order) {
+    hn_json_object(b);
+    for (int i = 0; i < order->n; i++) {
+        hn_json_put_number(b, order->settings[i].name, order->settings[i].value);
+    }
+    hn_json_end_object(b);
+}

@@ -1,0 +1,341 @@
+#include "http/routes/catalogue.h"
+
+#include "build.h"
+#include "grade/exercise_shelf.h"
+#include "http/live/comparisons.h"
+#include "http/request/context.h"
+#include "http/request/request.h"
+#include "http/request/scene_request.h"
+#include "http/studies/studies.h"
+#include "integrators/method/method_spec.h"
+#include "render/look.h"
+#include "session/compare/comparison.h"
+#include "session/model/lists.h"
+#include "session/model/model.h"
+#include "session/references/references.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// A bound with what it bounds, for the index.
+static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {{"body_bytes", (double)o->max_body},
+                {"connections", o->max_connections},
+                {"comparisons", o->max_comparisons},
+                {"streams", o->max_streams},
+                {"events_kept", o->max_events},
+                {"event_bytes_kept", (double)o->max_event_bytes},
+                {"methods", HN_COMPARISON_MAX_METHODS},
+                {"comparison_duration_s", o->max_duration},
+                {"run_samples", (double)o->max_samples},
+                {"run_cpu_s", o->max_run_cpu},
+                {"frame_cpu_s", o->frame_cpu},
+                {"studies_at_once", o->max_studies},
+                {"study_methods", HN_STUDIES_METHODS},
+                {"study_levels", HN_STUDIES_LEVELS},
+                {"study_samples", HN_STUDIES_SAMPLES},
+                {"map_methods", HN_STUDIES_MAPS},
+                {"map_side", HN_STUDIES_SIDE},
+                {"studies_kept", HN_STUDIES_KEPT},
+                {"long_requests_at_once", o->pool},
+                {"long_requests_waiting", o->queue},
+                {"pause_without_reader_s", o->idle_pause},
+                {"expiry_untouched_s", o->expiry},
+                {"connection_timeout_s", o->connection_timeout},
+                {"json_depth", 64}};
+    hn_json_key(b, "limits");
+    hn_json_object(b);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        hn_json_put_number(b, rows[i].name, rows[i].value);
+    }
+    hn_json_end_object(b);
+}
+
+static void put_routes(hn_strbuf *b, const hn_route_table *table) {
+    hn_json_key(b, "routes");
+    hn_json_array(b);
+    for (int i = 0; i < table->n; i++) {
+        const hn_route *route = &table->row[i];
+        hn_json_object(b);
+        hn_json_put_string(b, "method", route->method);
+        hn_json_put_string(b, "path", route->path);
+        hn_json_put_string(b, "summary", route->summary);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+}
+
+void hn_handle_index(hn_request *r) {
+    static const char *const links[][2] = {{"self", "/api/v1/"},
+                                           {"openapi", "/api/v1/openapi.json"},
+                                           {"scenes", "/api/v1/scenes"},
+                                           {"methods", "/api/v1/methods"},
+                                           {"lessons", "/api/v1/lessons"},
+                                           {"problems", "/api/v1/problems"},
+                                           {"comparisons", "/api/v1/comparisons"},
+                                           {"studies", "/api/v1/studies"},
+                                           {"errors", "/api/v1/errors"},
+                                           {"page", "/"}};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_string(&b, "name", "holonom");
+    hn_json_put_string(&b, "version", HN_VERSION);
+    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_key(&b, "links");
+    hn_json_object(&b);
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        hn_json_put_string(&b, links[i][0], links[i][1]);
+    }
+    hn_json_end_object(&b);
+    put_limits(&b, &r->context->opts);
+    put_routes(&b, &r->context->routes);
+    hn_json_end_object(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+void hn_handle_health(hn_request *r) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_string(&b, "status", "ok");
+    hn_json_put_string(&b, "version", HN_VERSION);
+    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_end_object(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+void hn_handle_scenes(hn_request *r) {
+    hn_kept_text *kept = &r->context->scenes;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    pthread_mutex_lock(&kept->lock);
+    if (!kept->text) {
+        hn_scenes_json(&b, r->context->lib);
+        kept->text = hn_strbuf_take(&b);
+    }
+    if (kept->text) {
+        hn_strbuf_add(&b, kept->text);
+    } else {
+        b.failed = 1;
+    }
+    pthread_mutex_unlock(&kept->lock);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+typedef struct query_settings {
+    hn_scene_request *order;
+    hn_diags *diags;
+} query_settings;
+
+/// One argument set=l1:1.2 (or l1=1.2).
+static hn_status see_setting(void *user, const char *value) {
+    query_settings *q = user;
+    size_t n = strcspn(value, ":=");
+    char *end;
+    double x = value[n] ? strtod(value + n + 1, &end) : 0;
+    if (!value[n] || n == 0 || end == value + n + 1 || *end) {
+        return hn_diags_add(q->diags, HN_ERR_INPUT, "/settings", "set=l1:1.2",
+                            "'%.80s' is not a parameter and a number", value);
+    }
+    return hn_scene_request_add(q->order, value, n, x, q->diags);
+}
+
+/// The scene in the path with the settings of the query; NULL with a problem as reply.
+static hn_model *load_scene(hn_request *r, int allow_open) {
+    hn_diags diags = {0};
+    hn_scene_request order = {.name = strdup(r->parts[0])};
+    hn_model *model = NULL;
+    query_settings settings = {&order, &diags};
+    if (order.name && !hn_library_scene_path(r->context->lib, order.name)) {
+        const char *near = hn_nearest_name(order.name, hn_library_scene_ids(r->context->lib),
+                                           hn_library_n_scenes(r->context->lib));
+        char hint[HN_DIAG_HINT];
+        snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "GET /api/v1/scenes%s",
+                 near ? near : " lists them");
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, hint, "no scene is called '%.80s'", order.name);
+        hn_scene_request_reset(&order);
+        return NULL;
+    }
+    hn_status status =
+        order.name ? hn_request_each_query(r, "set", see_setting, &settings) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags);
+    }
+    hn_scene_request_reset(&order);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return NULL;
+    }
+    return model;
+}
+
+void hn_handle_scene(hn_request *r) {
+    hn_model *model = load_scene(r, 1);
+    if (model) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_model_json(&b, model);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+        hn_model_free(model);
+    }
+}
+
+// reference solutions ----------------------------------------------------------------------------------------------
+
+/// A number of the query above 0 and at most `most`, NaN when it was not given.
+static hn_status read_number(const hn_request *r, const char *name, double most, double *out,
+                             hn_diags *diags) {
+    const char *text = hn_request_query(r, name);
+    char *end = NULL, pointer[32];
+    *out = text ? strtod(text, &end) : (double)NAN;
+    if (text && (end == text || *end || !(*out > 0) || !(*out <= most))) {
+        snprintf(pointer, sizeof pointer, "/%s", name);
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                            "'%.40s' is not a time above 0 and at most %g s", text, most);
+    }
+    return HN_OK;
+}
+
+static int is_stopping(void *user) {
+    const hn_context *context = user;
+    return atomic_load(&context->stopping);
+}
+
+typedef struct reference_order {
+    hn_ref_request request;
+    double every; ///< NaN: no motion between
+    hn_walk_limits limits;
+} reference_order;
+
+static hn_status read_reference_order(hn_request *r, reference_order *o, hn_diags *diags) {
+    const char *compute = hn_request_query(r, "compute");
+    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu, is_stopping, r->context};
+    o->request = hn_ref_request_default();
+    o->request.opts.limits = o->limits;
+    o->request.only_stored = !compute || strcmp(compute, "true") != 0;
+    if (compute && strcmp(compute, "true") != 0 && strcmp(compute, "false") != 0) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/compute", "compute=true",
+                            "'%.40s' is neither true nor false", compute);
+    }
+    const hn_status status =
+        read_number(r, "time", r->context->opts.max_duration, &o->request.time, diags);
+    return status == HN_OK
+               ? read_number(r, "every", r->context->opts.max_duration, &o->every, diags)
+               : status;
+}
+
+static hn_status write_reference(hn_strbuf *b, const hn_model *model, const reference_order *o,
+                                 hn_diags *diags) {
+    hn_ref *ref = NULL;
+    hn_ref_source source;
+    hn_status status = hn_reference_get(model, &o->request, &ref, &source, diags);
+    if (status == HN_OK && isnan(o->every)) {
+        hn_reference_json(b, model, ref, source);
+    } else if (status == HN_OK) {
+        status = hn_reference_motion_json(b, model, ref, source, o->every, &o->limits, diags);
+    }
+    hn_ref_free(ref);
+    return status;
+}
+
+void hn_handle_reference(hn_request *r) {
+    hn_model *model = load_scene(r, 0);
+    reference_order order;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    if (!model) {
+        return;
+    }
+    hn_strbuf_init(&b);
+    hn_status status = read_reference_order(r, &order, &diags);
+    if (status == HN_OK) {
+        status = write_reference(&b, model, &order, &diags);
+    }
+    hn_model_free(model);
+    if (status == HN_OK) {
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+        return;
+    }
+    hn_strbuf_reset(&b);
+    if (status == HN_ERR_UNSUPPORTED && order.request.only_stored) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "compute=true computes it, within run_cpu_s",
+                         "%s", diags.item[0].message);
+        return;
+    }
+    hn_reply_diags(r, status, &diags);
+}
+
+/// Handlers whose whole work is one document.
+static void reply_document(hn_request *r, void (*write)(hn_strbuf *b)) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    write(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+void hn_handle_methods(hn_request *r) {
+    reply_document(r, hn_methods_json);
+}
+
+void hn_handle_look(hn_request *r) {
+    reply_document(r, hn_look_json);
+}
+
+static void reply_list(hn_request *r, void (*write)(hn_strbuf *b, const hn_library *lib)) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    write(&b, r->context->lib);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+void hn_handle_lessons(hn_request *r) {
+    reply_list(r, hn_lessons_json);
+}
+
+void hn_handle_problems(hn_request *r) {
+    reply_list(r, hn_shelf_exercises_json);
+}
+
+static void put_error(hn_strbuf *b, const hn_http_problem_info *info) {
+    hn_json_object(b);
+    hn_json_put_string(b, "code", info->code);
+    hn_json_put_int(b, "status", info->status);
+    hn_json_put_string(b, "title", info->title);
+    hn_json_put_string(b, "about", info->about);
+    hn_json_end_object(b);
+}
+
+void hn_handle_errors(hn_request *r) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_key(&b, "errors");
+    hn_json_array(&b);
+    for (int i = 0; i < HN_PROBLEM_COUNT; i++) {
+        put_error(&b, hn_http_problem_get_info((hn_http_problem)i));
+    }
+    hn_json_end_array(&b);
+    hn_json_end_object(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}
+
+void hn_handle_error(hn_request *r) {
+    for (int i = 0; i < HN_PROBLEM_COUNT; i++) {
+        const hn_http_problem_info *info = hn_http_problem_get_info((hn_http_problem)i);
+        if (strcmp(info->code, r->parts[0]) == 0) {
+            hn_strbuf b;
+            hn_strbuf_init(&b);
+            put_error(&b, info);
+            hn_reply_json(r, MHD_HTTP_OK, &b);
+            return;
+        }
+    }
+    hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "GET /api/v1/errors lists them",
+                     "no kind of error is called '%.80s'", r->parts[0]);
+}

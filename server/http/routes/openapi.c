@@ -1,0 +1,418 @@
+#include "http/routes/openapi.h"
+
+#include "build.h"
+#include "http/request/context.h"
+#include "http/request/request.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// ---- schemas of requests, from the field tables -----------------------------------------------------------------
+
+static void put_type(hn_strbuf *b, const char *type) {
+    hn_json_put_string(b, "type", type);
+}
+
+static void put_items(hn_strbuf *b, const hn_field *f, const char *type) {
+    put_type(b, "array");
+    hn_json_key(b, "items");
+    hn_json_object(b);
+    put_type(b, type);
+    hn_json_end_object(b);
+    if (f->max > 0) {
+        hn_json_put_number(b, "minItems", f->min);
+        hn_json_put_number(b, "maxItems", f->max);
+    }
+}
+
+static void put_number_field(hn_strbuf *b, const hn_field *f) {
+    put_type(b, f->type == HN_FIELD_INTEGER ? "integer" : "number");
+    if (f->min != 0 || f->max != 0) {
+        hn_json_put_number(b, "minimum", f->min);
+        hn_json_put_number(b, "maximum", f->max);
+    }
+}
+
+static void put_choices(hn_strbuf *b, const hn_field *f) {
+    put_type(b, "string");
+    hn_json_key(b, "enum");
+    hn_json_array(b);
+    for (int i = 0; f->choices[i]; i++) {
+        hn_json_string(b, f->choices[i]);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_field_type(hn_strbuf *b, const hn_field *f) {
+    switch (f->type) {
+    case HN_FIELD_SCENE:
+        hn_json_key(b, "type");
+        hn_json_raw(b, "[\"string\",\"object\"]");
+        break;
+    case HN_FIELD_BY_NAME:
+        put_type(b, "object");
+        hn_json_key(b, "additionalProperties");
+        hn_json_raw(b, "{\"type\":\"number\"}");
+        break;
+    case HN_FIELD_NUMBER:
+    case HN_FIELD_INTEGER:
+        put_number_field(b, f);
+        break;
+    case HN_FIELD_BOOL:
+        put_type(b, "boolean");
+        break;
+    case HN_FIELD_TEXT:
+        put_type(b, "string");
+        break;
+    case HN_FIELD_TEXTS:
+        put_items(b, f, "string");
+        break;
+    case HN_FIELD_NUMBERS:
+        put_items(b, f, "number");
+        break;
+    case HN_FIELD_CHOICE:
+        put_choices(b, f);
+        break;
+    case HN_FIELD_RECORD:
+    case HN_FIELD_ANY:
+        break;
+    }
+}
+
+/// The members of a schema of an object with these fields; the object is open.
+static void put_schema_members(hn_strbuf *b, const hn_field *fields) {
+    put_type(b, "object");
+    hn_json_put_bool(b, "additionalProperties", 0);
+    hn_json_key(b, "properties");
+    hn_json_object(b);
+    for (const hn_field *f = fields; f->name; f++) {
+        hn_json_key(b, f->name);
+        hn_json_object(b);
+        hn_json_put_string(b, "description", f->about);
+        if (f->type == HN_FIELD_RECORD) {
+            put_schema_members(b, f->record);
+        } else {
+            put_field_type(b, f);
+        }
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
+    hn_json_key(b, "required");
+    hn_json_array(b);
+    for (const hn_field *f = fields; f->name; f++) {
+        if (f->required) {
+            hn_json_string(b, f->name);
+        }
+    }
+    hn_json_end_array(b);
+}
+
+void hn_fields_schema_json(hn_strbuf *b, const hn_field *fields) {
+    hn_json_object(b);
+    put_schema_members(b, fields);
+    hn_json_end_object(b);
+}
+
+// ---- schemas of answers -----------------------------------------------------------------------------------------
+
+#define NUMBERS "{\"type\":\"array\",\"items\":{\"type\":\"number\"}}"
+#define MAYBE_NUMBER "{\"type\":[\"number\",\"null\"]}"
+#define TEXTS "{\"type\":\"array\",\"items\":{\"type\":\"string\"}}"
+#define TEXT "{\"type\":\"string\"}"
+#define STATUS_NAME(value, name, text) ",\"" name "\""
+#define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
+#define OBJECTS "{\"type\":\"array\",\"items\":{\"type\":\"object\"}}"
+
+static const struct {
+    const char *name, *schema;
+} SCHEMAS[] = {
+    {"Document", "{\"type\":\"object\"}"},
+    {"Health",
+     "{\"type\":\"object\",\"required\":[\"status\"],\"properties\":{\"status\":{\"const\":\"ok\"},"
+     "\"version\":" TEXT ",\"build\":" TEXT "}}"},
+    {"Index", "{\"type\":\"object\",\"required\":[\"name\",\"version\",\"links\",\"limits\","
+              "\"routes\"],\"properties\":{"
+              "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "},"
+              "\"limits\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},"
+              "\"routes\":" OBJECTS "}}"},
+    {"Scenes",
+     "{\"type\":\"object\",\"required\":[\"scenes\"],\"properties\":{\"scenes\":" OBJECTS "}}"},
+    {"Lessons",
+     "{\"type\":\"object\",\"required\":[\"lessons\"],\"properties\":{\"lessons\":" OBJECTS "}}"},
+    {"Problems",
+     "{\"type\":\"object\",\"required\":[\"problems\"],\"properties\":{\"problems\":" OBJECTS "}}"},
+    {"Scene",
+     "{\"type\":\"object\",\"required\":[\"id\",\"title\",\"parameters\",\"coordinates\","
+     "\"drawing\"],\"properties\":{"
+     "\"id\":" TEXT ",\"title\":" TEXT ",\"parameters\":" OBJECTS ",\"coordinates\":" OBJECTS
+     ",\"drawing\":{\"type\":\"object\"},\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     "},"
+     "\"methods\":" TEXTS ",\"duration\":{\"type\":\"number\"},\"step\":{\"type\":\"number\"}}}"},
+    {"Methods",
+     "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
+     "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
+    {"Equations", "{\"type\":\"object\",\"properties\":{\"format\":" TEXT ",\"text\":" TEXT "}}"},
+    {"Reference",
+     "{\"type\":\"object\",\"required\":[\"scene\",\"scene_hash\",\"source\",\"time\",\"means\","
+     "\"digits\",\"error\",\"coordinates\",\"t\",\"q\",\"v\",\"lambda\",\"energy\"],"
+     "\"properties\":{\"scene\":" TEXT ",\"scene_hash\":" TEXT ",\"source\":" TEXT
+     ",\"means\":" TEXTS
+     ",\"time\":{\"type\":\"number\"},\"digits\":{\"type\":\"number\"},\"error\":{\"type\":"
+     "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS
+     ",\"motion\":{\"type\":\"object\"}}}"},
+    {"Run",
+     "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
+     "reached\",\"coordinates\",\"samples\","
+     "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
+     "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
+     ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
+     "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
+     ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
+     "\"description\":\"what the multipliers of each sample, and reactions that rest on them, "
+     "are worth: an index into lambda_marks\"}"
+     "}},\"incidents\":" OBJECTS ",\"cost\":{\"type\":\"object\"}}}"},
+    {"ComparisonList",
+     "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS
+     "}}"},
+    {"Frame",
+     "{\"type\":\"object\",\"description\":\"data of the event "
+     "frame\",\"required\":[\"generation\",\"frame\",\"t\",\"methods\"],"
+     "\"properties\":{\"generation\":{\"type\":\"integer\"},\"frame\":{\"type\":\"integer\"},\"t\":"
+     "{\"type\":\"number\"},"
+     "\"methods\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"state\","
+     "\"status\"],\"properties\":{"
+     "\"state\":{\"enum\":[\"running\",\"finished\",\"failed\"]},\"status\":" STATUS
+     ",\"t\":{\"type\":\"number\"},"
+     "\"q\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
+     "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
+     ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy_change\":" MAYBE_NUMBER
+     ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
+     "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
+    {"Incident",
+     "{\"type\":\"object\",\"description\":\"data of the event incident; told again with the same "
+     "method, code and t when the run has shown what became of "
+     "it\",\"required\":[\"generation\",\"method\",\"code\",\"t\","
+     "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
+     "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
+     "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
+     ",\"remedies\":" TEXTS "}}"},
+    {"Comparison",
+     "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
+     "\"duration\",\"generation\","
+     "\"scene\",\"comparison\",\"settings\",\"latest\",\"links\"],\"properties\":{\"id\":" TEXT
+     ",\"state\":{\"enum\":[\"paused\",\"running\",\"finished\"]},\"speed\":{\"type\":\"number\"},"
+     "\"frame\":{\"type\":\"integer\"},\"t\":{\"type\":\"number\"},\"frame_dt\":{\"type\":"
+     "\"number\"},"
+     "\"duration\":{\"type\":\"number\"},\"generation\":{\"type\":\"integer\"},\"lag\":{\"type\":"
+     "\"number\"},"
+     "\"last_event\":{\"type\":\"integer\"},\"scene\":{\"$ref\":\"#/components/schemas/Scene\"},"
+     "\"comparison\":{\"type\":\"object\"},\"settings\":{\"type\":\"object\","
+     "\"additionalProperties\":{\"type\":\"number\"}},"
+     "\"latest\":{\"oneOf\":[{\"$ref\":\"#/components/schemas/Frame\"},{\"type\":\"null\"}]},"
+     "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
+    {"Events",
+     "{\"type\":\"string\",\"description\":\"hello (schema, build, description), frame (Frame), "
+     "incident (Incident), "
+     "reset (generation, description), state (state, speed), gap (from, to), end (summary)\"}"},
+    {"StudyList",
+     "{\"type\":\"object\",\"required\":[\"studies\"],\"properties\":{\"studies\":" OBJECTS "}}"},
+    {"Study",
+     "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
+     "until "
+     "there is one\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
+     "\"time_left_s\",\"budget_s\",\"scene\",\"settings\",\"methods\",\"document\",\"links\"],"
+     "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
+     ",\"state\":{\"enum\":[\"running\",\"finished\",\"stopped\",\"failed\"]},\"reason\":" TEXT
+     ",\"hint\":" TEXT ",\"progress\":{\"type\":\"number\"},\"elapsed_s\":{\"type\":\"number\"},"
+     "\"time_left_s\":" MAYBE_NUMBER ",\"budget_s\":{\"type\":\"number\"},\"scene\":{\"type\":["
+     "\"string\",\"null\"]},\"settings\":{\"type\":\"object\",\"additionalProperties\":{\"type\":"
+     "\"number\"}},\"methods\":" TEXTS ",\"document\":{\"type\":[\"object\",\"null\"]},\"links\":{"
+     "\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
+    {"Verdict", "{\"type\":\"object\"}"},
+    {"Report", "{\"type\":\"string\",\"contentMediaType\":\"text/html\"}"},
+    {"Picture", "{\"type\":\"string\",\"contentMediaType\":\"image/png\"}"},
+    {"Problem",
+     "{\"type\":\"object\",\"description\":\"RFC "
+     "9457\",\"required\":[\"type\",\"title\",\"status\",\"detail\"],\"properties\":{"
+     "\"type\":" TEXT ",\"title\":" TEXT ",\"status\":{\"type\":\"integer\"},\"detail\":" TEXT
+     ",\"hint\":" TEXT ",\"instance\":" TEXT ",\"offset\":{\"type\":\"integer\",\"description\":"
+     "\"byte at which the body stops being JSON\"},"
+     "\"errors\":{\"type\":\"array\",\"items\":{\"type\":\"object\",\"required\":[\"detail\","
+     "\"pointer\"],\"properties\":{"
+     "\"detail\":" TEXT ",\"pointer\":" TEXT ",\"hint\":" TEXT
+     ",\"column\":{\"type\":\"integer\"}}}}}}"},
+};
+
+static void put_components(hn_strbuf *b) {
+    hn_json_key(b, "components");
+    hn_json_object(b);
+    hn_json_key(b, "schemas");
+    hn_json_object(b);
+    for (size_t i = 0; i < sizeof SCHEMAS / sizeof *SCHEMAS; i++) {
+        hn_json_key(b, SCHEMAS[i].name);
+        hn_json_raw(b, SCHEMAS[i].schema);
+    }
+    hn_json_end_object(b);
+    hn_json_key(b, "responses");
+    hn_json_raw(b, "{\"Problem\":{\"description\":\"A problem "
+                   "document\",\"content\":{\"application/problem+json\":{\"schema\":"
+                   "{\"$ref\":\"#/components/schemas/Problem\"}}}}}");
+    hn_json_end_object(b);
+}
+
+// ---- paths ------------------------------------------------------------------------------------------------------
+
+static void put_parameter(hn_strbuf *b, const char *name, size_t n_name, const char *in,
+                          const char *type, const char *about) {
+    hn_strbuf copy;
+    hn_strbuf_init(&copy);
+    hn_strbuf_add_n(&copy, name, n_name);
+    hn_json_object(b);
+    hn_json_put_string(b, "name", hn_strbuf_text(&copy));
+    hn_json_put_string(b, "in", in);
+    hn_json_put_bool(b, "required", strcmp(in, "path") == 0);
+    if (about) {
+        hn_json_put_string(b, "description", about);
+    }
+    hn_json_key(b, "schema");
+    hn_json_object(b);
+    put_type(b, type);
+    hn_json_end_object(b);
+    hn_json_end_object(b);
+    hn_strbuf_reset(&copy);
+}
+
+static void put_parameters(hn_strbuf *b, const hn_route *route) {
+    hn_json_key(b, "parameters");
+    hn_json_array(b);
+    for (const char *at = strchr(route->path, '{'); at; at = strchr(at + 1, '{')) {
+        put_parameter(b, at + 1, strcspn(at + 1, "}"), "path", "string", NULL);
+    }
+    for (const hn_route_query *q = route->query; q && q->name; q++) {
+        put_parameter(b, q->name, strlen(q->name), "query", q->type, q->about);
+    }
+    hn_json_end_array(b);
+}
+
+static void put_reference(hn_strbuf *b, const char *schema) {
+    char place[96];
+    snprintf(place, sizeof place, "#/components/schemas/%s", schema);
+    hn_json_object(b);
+    hn_json_put_string(b, "$ref", place);
+    hn_json_end_object(b);
+}
+
+static void put_answers(hn_strbuf *b, const hn_route *route) {
+    hn_json_key(b, "responses");
+    hn_json_object(b);
+    hn_json_key(b, route->status);
+    hn_json_object(b);
+    hn_json_put_string(b, "description", route->summary);
+    if (route->schema) {
+        hn_json_key(b, "content");
+        hn_json_object(b);
+        hn_json_key(b, route->media_type);
+        hn_json_object(b);
+        hn_json_key(b, "schema");
+        put_reference(b, route->schema);
+        hn_json_end_object(b);
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
+    hn_json_key(b, "default");
+    hn_json_raw(b, "{\"$ref\":\"#/components/responses/Problem\"}");
+    hn_json_end_object(b);
+}
+
+/// "post_comparisons_id": the verb and the words of the path.
+static void put_operation_id(hn_strbuf *b, const hn_route *route) {
+    char id[128];
+    size_t n = 0;
+    for (const char *p = route->method; *p; p++) {
+        id[n++] = (char)(*p | 0x20);
+    }
+    for (const char *p = route->path; *p && n + 1 < sizeof id; p++) {
+        int is_word = (*p >= 'a' && *p <= 'z') || (*p >= '0' && *p <= '9');
+        if (is_word || (id[n - 1] != '_')) {
+            id[n++] = is_word ? *p : '_';
+        }
+    }
+    n -= id[n - 1] == '_';
+    id[n] = 0;
+    hn_json_put_string(b, "operationId", id);
+}
+
+static void put_operation(hn_strbuf *b, const hn_route *route) {
+    char verb[8] = "";
+    for (size_t i = 0; route->method[i] && i < sizeof verb - 1; i++) {
+        verb[i] = (char)(route->method[i] | 0x20);
+    }
+    hn_json_key(b, verb);
+    hn_json_object(b);
+    hn_json_put_string(b, "summary", route->summary);
+    put_operation_id(b, route);
+    put_parameters(b, route);
+    if (route->fields) {
+        hn_json_key(b, "requestBody");
+        hn_json_object(b);
+        hn_json_put_bool(b, "required", 1);
+        hn_json_key(b, "content");
+        hn_json_object(b);
+        hn_json_key(b, "application/json");
+        hn_json_object(b);
+        hn_json_key(b, "schema");
+        hn_fields_schema_json(b, route->fields);
+        hn_json_end_object(b);
+        hn_json_end_object(b);
+        hn_json_end_object(b);
+    }
+    put_answers(b, route);
+    hn_json_end_object(b);
+}
+
+/// 1 when an earlier row has the same path: its verbs are written together.
+static int is_written(const hn_route_table *table, int i) {
+    for (int k = 0; k < i; k++) {
+        if (strcmp(table->row[k].path, table->row[i].path) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void put_paths(hn_strbuf *b, const hn_route_table *table) {
+    hn_json_key(b, "paths");
+    hn_json_object(b);
+    for (int i = 0; i < table->n; i++) {
+        if (is_written(table, i)) {
+            continue;
+        }
+        hn_json_key(b, table->row[i].path);
+        hn_json_object(b);
+        for (int k = i; k < table->n; k++) {
+            if (strcmp(table->row[k].path, table->row[i].path) == 0) {
+                put_operation(b, &table->row[k]);
+            }
+        }
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
+}
+
+void hn_handle_openapi(hn_request *r) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_json_object(&b);
+    hn_json_put_string(&b, "openapi", "3.1.0");
+    hn_json_key(&b, "info");
+    hn_json_object(&b);
+    hn_json_put_string(&b, "title", "holonom");
+    hn_json_put_string(&b, "version", HN_VERSION);
+    hn_json_put_string(&b, "summary", "Mechanisms with closed loops, many methods on one clock");
+    hn_json_end_object(&b);
+    put_paths(&b, &r->context->routes);
+    put_components(&b);
+    hn_json_end_object(&b);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
+}

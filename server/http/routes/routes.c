@@ -1,0 +1,353 @@
+#include "http/routes/routes.h"
+
+#include "http/live/comparisons.h"
+#include "http/request/request.h"
+#include "http/routes/catalogue.h"
+#include "http/routes/openapi.h"
+#include "http/routes/stateless.h"
+#include "http/studies/studies.h"
+#include "render/canvas.h"
+#include "session/compare/comparison.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define END_OF_FIELDS \
+    { .name = NULL }
+#define SCENE_FIELDS                                       \
+    {.name = "scene",                                      \
+     .type = HN_FIELD_SCENE,                               \
+     .required = 1,                                        \
+     .about = "a shipped scene's id or a scene object"},   \
+    {                                                      \
+        .name = "settings", .type = HN_FIELD_BY_NAME,      \
+        .about = "parameters that differ from the scene's" \
+    }
+
+enum { MAX_TIMES = 100000 };
+static const double LONGEST_RUN = 1e6; // [s]
+
+static const char *const EQUATION_FORMATS[] = {"text", "latex", "json", NULL};
+static const char *const STATES[] = {"running", "paused", NULL};
+
+static const hn_field SCENE_ONLY[] = {SCENE_FIELDS, END_OF_FIELDS};
+
+static const hn_field TERMS[] = {
+    SCENE_FIELDS,
+    {.name = "t", .type = HN_FIELD_NUMBER, .about = "time [s]"},
+    {.name = "state",
+     .type = HN_FIELD_BY_NAME,
+     .about = "coordinates and rates that differ from the assembled start"},
+    {.name = "reactions",
+     .type = HN_FIELD_BOOL,
+     .about = "what every joint and constraint carries too: forces [N] and moments [N m], and "
+              "efforts along coordinates"},
+    END_OF_FIELDS};
+
+static const hn_field EQUATIONS[] = {SCENE_FIELDS,
+                                     {.name = "format",
+                                      .type = HN_FIELD_CHOICE,
+                                      .choices = EQUATION_FORMATS,
+                                      .about = "text when left out"},
+                                     END_OF_FIELDS};
+
+static const hn_field RUN[] = {SCENE_FIELDS,
+                               {.name = "method",
+                                .type = HN_FIELD_TEXT,
+                                .required = 1,
+                                .about = "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
+                               {.name = "time",
+                                .type = HN_FIELD_NUMBER,
+                                .required = 1,
+                                .min = 1e-9,
+                                .max = LONGEST_RUN,
+                                .about = "end of the run [s]"},
+                               {.name = "at",
+                                .type = HN_FIELD_NUMBERS,
+                                .min = 1,
+                                .max = MAX_TIMES,
+                                .about = "output times, ascending [s]"},
+                               {.name = "every",
+                                .type = HN_FIELD_NUMBER,
+                                .min = 1e-9,
+                                .max = LONGEST_RUN,
+                                .about = "output interval [s]; 200 samples when neither is given"},
+                               {.name = "reactions",
+                                .type = HN_FIELD_BOOL,
+                                .about = "columns reaction_force [N] and reaction_moment [N m] "
+                                         "too, three numbers for each of carriers, and effort, "
+                                         "one for each of efforts"},
+                               {.name = "raw_lambda",
+                                .type = HN_FIELD_BOOL,
+                                .about =
+                                    "a column raw_lambda too: the multipliers the scheme itself "
+                                    "found, where it has some"},
+                               END_OF_FIELDS};
+
+static const hn_field COMPARISON[] = {
+    SCENE_FIELDS,
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .required = 1,
+     .min = 1,
+     .max = HN_COMPARISON_MAX_METHODS,
+     .about = "spellings of methods"},
+    {.name = "frame_dt",
+     .type = HN_FIELD_NUMBER,
+     .min = 1e-6,
+     .max = 10,
+     .about = "time from frame to frame [s]; chosen when left out"},
+    {.name = "duration",
+     .type = HN_FIELD_NUMBER,
+     .min = 1e-6,
+     .max = LONGEST_RUN,
+     .about = "end [s]; the scene's when left out"},
+    {.name = "speed",
+     .type = HN_FIELD_NUMBER,
+     .min = 0.01,
+     .max = 100,
+     .about = "simulated seconds per second"},
+    {.name = "paused", .type = HN_FIELD_BOOL, .about = "true when left out"},
+    END_OF_FIELDS};
+
+static const char *const THEMES[] = {"light", "dark", NULL};
+
+static const hn_field SNAPSHOT[] = {
+    SCENE_FIELDS,
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .required = 1,
+     .min = 1,
+     .max = HN_COMPARISON_MAX_METHODS,
+     .about = "spellings of methods; the first is opaque"},
+    {.name = "time",
+     .type = HN_FIELD_NUMBER,
+     .required = 1,
+     .min = 0,
+     .max = LONGEST_RUN,
+     .about = "time of the picture [s]"},
+    {.name = "width",
+     .type = HN_FIELD_INTEGER,
+     .min = HN_CANVAS_MIN,
+     .max = HN_CANVAS_MAX,
+     .about = "pixels"},
+    {.name = "height",
+     .type = HN_FIELD_INTEGER,
+     .min = HN_CANVAS_MIN,
+     .max = HN_CANVAS_MAX,
+     .about = "pixels"},
+    {.name = "theme", .type = HN_FIELD_CHOICE, .choices = THEMES, .about = "paper or slate"},
+    {.name = "view",
+     .type = HN_FIELD_TEXT,
+     .about = "front, side, top, space, or azimuth and elevation in degrees: 35,22"},
+    END_OF_FIELDS};
+
+static const hn_field GRADE[] = {
+    {.name = "problem", .type = HN_FIELD_TEXT, .required = 1, .about = "id of a problem"},
+    {.name = "submission",
+     .type = HN_FIELD_ANY,
+     .required = 1,
+     .about = "what a submission's file would hold"},
+    {.name = "seed",
+     .type = HN_FIELD_INTEGER,
+     .min = 0,
+     .max = 9007199254740991.0,
+     .about = "chooses the states at which answers are compared"},
+    END_OF_FIELDS};
+
+static const hn_field SET[] = {
+    {.name = "method",
+     .type = HN_FIELD_INTEGER,
+     .min = -1,
+     .max = HN_COMPARISON_MAX_METHODS - 1,
+     .about = "index of the method; -1: all that have the key"},
+    {.name = "key",
+     .type = HN_FIELD_TEXT,
+     .required = 1,
+     .about = "name of a setting, such as alpha"},
+    {.name = "value", .type = HN_FIELD_NUMBER, .required = 1, .about = "the new value"},
+    END_OF_FIELDS};
+
+static const hn_field CHANGE[] = {
+    {.name = "state", .type = HN_FIELD_CHOICE, .choices = STATES, .about = "play or pause"},
+    {.name = "speed",
+     .type = HN_FIELD_NUMBER,
+     .min = 0.01,
+     .max = 100,
+     .about = "simulated seconds per second"},
+    {.name = "step",
+     .type = HN_FIELD_INTEGER,
+     .min = 1,
+     .max = 600,
+     .about = "frames to go forward while paused"},
+    {.name = "reset", .type = HN_FIELD_BOOL, .about = "back to the start"},
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .min = 1,
+     .max = HN_COMPARISON_MAX_METHODS,
+     .about = "new methods; all start anew"},
+    {.name = "settings",
+     .type = HN_FIELD_BY_NAME,
+     .about = "all parameters that differ from the scene's; all methods start anew"},
+    {.name = "set",
+     .type = HN_FIELD_RECORD,
+     .record = SET,
+     .about = "a setting of a formulation, changed while running"},
+    END_OF_FIELDS};
+
+static const char *const STOPPED[] = {"stopped", NULL};
+static const char *const MAP_PRESETS[] = {"stiffness", "mass-ratio", "baumgarte", "limits", NULL};
+
+static const hn_field STUDY[] = {
+    SCENE_FIELDS,
+    {.name = "kind",
+     .type = HN_FIELD_CHOICE,
+     .required = 1,
+     .choices = hn_studies_kind_names,
+     .about = "what is studied"},
+    {.name = "methods",
+     .type = HN_FIELD_TEXTS,
+     .required = 1,
+     .min = 1,
+     .max = HN_STUDIES_METHODS,
+     .about = "spellings of methods; a study chooses steps and tolerances itself"},
+    {.name = "time",
+     .type = HN_FIELD_NUMBER,
+     .min = 1e-9,
+     .max = 1e6,
+     .about = "end [s]; the scene's when left out"},
+    {.name = "budget",
+     .type = HN_FIELD_NUMBER,
+     .min = 0.01,
+     .max = 3600,
+     .about = "wall time [s]; run_cpu_s when left out, and at most"},
+    {.name = "levels",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_LEVELS,
+     .about = "work-precision: steps or tolerances per method"},
+    {.name = "samples",
+     .type = HN_FIELD_INTEGER,
+     .min = 0,
+     .max = HN_STUDIES_SAMPLES,
+     .about = "work-precision: measurements of time per point"},
+    {.name = "preset",
+     .type = HN_FIELD_CHOICE,
+     .choices = MAP_PRESETS,
+     .about = "stability: what the map is over"},
+    {.name = "over",
+     .type = HN_FIELD_TEXT,
+     .about = "stability: the axes in place of a preset: h=1e-4..1e-1,k=1e2..1e8:log"},
+    {.name = "columns",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_SIDE,
+     .about = "stability: of the map"},
+    {.name = "rows",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_STUDIES_SIDE,
+     .about = "stability: of the map"},
+    END_OF_FIELDS};
+
+static const hn_field STUDY_CHANGE[] = {{.name = "state",
+                                         .type = HN_FIELD_CHOICE,
+                                         .required = 1,
+                                         .choices = STOPPED,
+                                         .about = "ends the computing; what was done is kept"},
+                                        END_OF_FIELDS};
+
+static const hn_route_query SCENE_QUERY[] = {{"set", "string", "parameter:value, may be repeated"},
+                                             {NULL, NULL, NULL}};
+static const hn_route_query REFERENCE_QUERY[] = {
+    {"set", "string", "parameter:value, may be repeated"},
+    {"time", "number", "end [s]; that of the stored one when left out"},
+    {"every", "number", "the motion between the stored times too, at this interval [s]"},
+    {"compute", "boolean",
+     "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
+    {NULL, NULL, NULL}};
+static const hn_route_query EVENTS_QUERY[] = {
+    {"mode", "string",
+     "complete (every frame) or live (a slow reader skips frames, never incidents)"},
+    {"last_event_id", "string", "the same as the Last-Event-ID header"},
+    {NULL, NULL, NULL}};
+
+#define JSON "application/json"
+
+static const hn_route ROUTES[] = {
+    {"GET", "/healthz", HN_WORK_LIGHT, hn_handle_health, NULL, JSON, "200", "Health",
+     "Whether the server is up", NULL},
+    {"GET", "/api/v1/healthz", HN_WORK_LIGHT, hn_handle_health, NULL, JSON, "200", "Health",
+     "Whether the server is up", NULL},
+    {"GET", "/api/v1/", HN_WORK_LIGHT, hn_handle_index, NULL, JSON, "200", "Index",
+     "Links, version, limits, routes", NULL},
+    {"GET", "/api/v1/openapi.json", HN_WORK_LIGHT, hn_handle_openapi, NULL, JSON, "200", "Document",
+     "This description", NULL},
+    {"GET", "/api/v1/scenes", HN_WORK_HEAVY, hn_handle_scenes, NULL, JSON, "200", "Scenes",
+     "Every shipped scene", NULL},
+    {"GET", "/api/v1/scenes/{id}", HN_WORK_HEAVY, hn_handle_scene, NULL, JSON, "200", "Scene",
+     "One scene, assembled: what a page needs to draw it", SCENE_QUERY},
+    {"GET", "/api/v1/scenes/{id}/reference", HN_WORK_HEAVY, hn_handle_reference, NULL, JSON, "200",
+     "Reference", "The reference solution of a scene: by two means, with the digits they share",
+     REFERENCE_QUERY},
+    {"GET", "/api/v1/methods", HN_WORK_LIGHT, hn_handle_methods, NULL, JSON, "200", "Methods",
+     "The catalogue of formulations and integrators", NULL},
+    {"GET", "/api/v1/look", HN_WORK_LIGHT, hn_handle_look, NULL, JSON, "200", "Document",
+     "Colours, dashes and markers of the method slots", NULL},
+    {"GET", "/api/v1/lessons", HN_WORK_LIGHT, hn_handle_lessons, NULL, JSON, "200", "Lessons",
+     "Lessons with their scenes and problems", NULL},
+    {"GET", "/api/v1/problems", HN_WORK_LIGHT, hn_handle_problems, NULL, JSON, "200", "Problems",
+     "Problems that can be graded", NULL},
+    {"GET", "/api/v1/errors", HN_WORK_LIGHT, hn_handle_errors, NULL, JSON, "200", "Document",
+     "The kinds of problem documents", NULL},
+    {"GET", "/api/v1/errors/{code}", HN_WORK_LIGHT, hn_handle_error, NULL, JSON, "200", "Document",
+     "What one kind of problem document means", NULL},
+    {"POST", "/api/v1/terms", HN_WORK_HEAVY, hn_handle_terms, TERMS, JSON, "200", "Document",
+     "M, f, J, gamma, K, accelerations and multipliers at one state", NULL},
+    {"POST", "/api/v1/assemble", HN_WORK_HEAVY, hn_handle_assemble, SCENE_ONLY, JSON, "200",
+     "Document", "Consistent starting values", NULL},
+    {"POST", "/api/v1/inspect", HN_WORK_HEAVY, hn_handle_inspect, SCENE_ONLY, JSON, "200",
+     "Document", "Sizes, tree, loops, rank, operations kept and left out", NULL},
+    {"POST", "/api/v1/equations", HN_WORK_HEAVY, hn_handle_equations, EQUATIONS, JSON, "200",
+     "Equations", "The equations of motion with parameters as symbols", NULL},
+    {"POST", "/api/v1/runs", HN_WORK_HEAVY, hn_handle_run, RUN, JSON, "200", "Run",
+     "One run with its samples as columns", NULL},
+    {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
+     "Picture", "A picture of where the methods have taken a scene", NULL},
+    {"GET", "/api/v1/problems/{id}", HN_WORK_LIGHT, hn_handle_problem, NULL, JSON, "200",
+     "Document", "A problem's text and what to hand in", NULL},
+    {"POST", "/api/v1/grade", HN_WORK_HEAVY, hn_handle_grade, GRADE, JSON, "200", "Verdict",
+     "Grades one submission", NULL},
+    {"GET", "/api/v1/comparisons", HN_WORK_LIGHT, hn_handle_comparisons_list, NULL, JSON, "200",
+     "ComparisonList", "Ids of the comparisons there are", NULL},
+    {"POST", "/api/v1/comparisons", HN_WORK_HEAVY, hn_handle_comparisons_create, COMPARISON, JSON,
+     "201", "Comparison", "Makes a comparison", NULL},
+    {"GET", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_get, NULL, JSON, "200",
+     "Comparison", "A comparison and its latest frame", NULL},
+    {"PATCH", "/api/v1/comparisons/{id}", HN_WORK_OWN, hn_handle_comparison_patch, CHANGE, JSON,
+     "200", "Comparison", "Plays, pauses, paces, steps, resets, changes methods and settings",
+     NULL},
+    {"DELETE", "/api/v1/comparisons/{id}", HN_WORK_LIGHT, hn_handle_comparison_delete, NULL, JSON,
+     "204", NULL, "Ends a comparison", NULL},
+    {"GET", "/api/v1/comparisons/{id}/events", HN_WORK_LIGHT, hn_handle_comparison_events, NULL,
+     "text/event-stream", "200", "Events", "Server-sent events: one stream for all methods",
+     EVENTS_QUERY},
+    {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
+     "StudyList", "The studies there are", NULL},
+    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, STUDY, JSON, "202",
+     "Study", "Starts a study; its Location tells the progress, and the document when it is done",
+     NULL},
+    {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
+     "State, progress, time left, and the document when it is done", NULL},
+    {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",
+     "200", "Report", "The study as one HTML file that needs no network", NULL},
+    {"PATCH", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_patch, STUDY_CHANGE, JSON,
+     "200", "Study", "Stops a study and keeps what was done", NULL},
+    {"DELETE", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_delete, NULL, JSON, "204",
+     NULL, "Stops a study and forgets it", NULL},
+};
+enum { N_ROUTES = sizeof ROUTES / sizeof *ROUTES };
+
+hn_route_table hn_routes(void) {
+    return (hn_route_table){.row = ROUTES, .n = N_ROUTES};
+}

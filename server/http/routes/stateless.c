@@ -1,0 +1,239 @@
+#include "http/routes/stateless.h"
+
+#include "grade/exercise_shelf.h"
+#include "http/request/context.h"
+#include "http/request/request.h"
+#include "http/request/scene_request.h"
+#include "session/compare/comparison.h"
+#include "session/compare/picture.h"
+#include "study/run/pace.h"
+
+#include <string.h>
+
+/// Loads the scene that the body names; NULL with a problem as reply.
+static hn_model *load_model(hn_request *r, int allow_open) {
+    hn_scene_request order = {0};
+    hn_diags diags = {0};
+    hn_model *model = NULL;
+    hn_status status = hn_scene_request_read(&order, r->json, &diags);
+    if (status == HN_OK) {
+        status = hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags);
+    }
+    hn_scene_request_reset(&order);
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return NULL;
+    }
+    return model;
+}
+
+/// Sends what was written, or the faults, and frees the model.
+static void conclude(hn_request *r, hn_model *model, hn_status status, hn_strbuf *b,
+                     const hn_diags *diags) {
+    hn_model_free(model);
+    if (status == HN_OK) {
+        hn_reply_json(r, MHD_HTTP_OK, b);
+    } else {
+        hn_strbuf_reset(b);
+        hn_reply_diags(r, status, diags);
+    }
+}
+
+void hn_handle_terms(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    const cJSON *state = cJSON_GetObjectItemCaseSensitive(r->json, "state"), *item;
+    int n = 0;
+    hn_state_entry *entries = calloc((size_t)cJSON_GetArraySize(state) + 1, sizeof *entries);
+    hn_status status = entries ? HN_OK : HN_ERR_MEMORY;
+    if (entries) {
+        cJSON_ArrayForEach(item, state) {
+            entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
+        }
+        const double t = hn_body_number(r->json, "t", 0);
+        status = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions"))
+                     ? hn_model_terms_json_with_reactions(&b, model, t, entries, n, &diags)
+                     : hn_model_terms_json(&b, model, t, entries, n, &diags);
+    }
+    free(entries);
+    conclude(r, model, status, &b, &diags);
+}
+
+void hn_handle_assemble(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (model) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_model_assembly_json(&b, model);
+        conclude(r, model, HN_OK, &b, NULL);
+    }
+}
+
+void hn_handle_inspect(hn_request *r) {
+    hn_model *model = load_model(r, 1);
+    if (model) {
+        hn_strbuf b;
+        hn_diags diags = {0};
+        hn_strbuf_init(&b);
+        hn_status status = hn_model_inspect_json(&b, model, &diags);
+        conclude(r, model, status, &b, &diags);
+    }
+}
+
+void hn_handle_equations(hn_request *r) {
+    hn_model *model = load_model(r, 1);
+    if (!model) {
+        return;
+    }
+    const char *format = hn_body_text(r->json, "format");
+    format = format ? format : "text";
+    hn_equation_form form = strcmp(format, "latex") == 0  ? HN_EQUATIONS_LATEX
+                            : strcmp(format, "json") == 0 ? HN_EQUATIONS_JSON
+                                                          : HN_EQUATIONS_TEXT;
+    hn_strbuf text, b;
+    hn_diags diags = {0};
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&b);
+    hn_status status = hn_model_equations(&text, model, form, &diags);
+    if (form == HN_EQUATIONS_JSON) {
+        conclude(r, model, status, &text, &diags);
+        return;
+    }
+    hn_json_object(&b);
+    hn_json_put_string(&b, "format", format);
+    hn_json_put_string(&b, "text", hn_strbuf_text(&text));
+    hn_json_end_object(&b);
+    b.failed |= text.failed;
+    hn_strbuf_reset(&text);
+    conclude(r, model, status, &b, &diags);
+}
+
+typedef struct allowance {
+    const hn_context *context;
+    double cpu_end;
+} allowance;
+
+/// A run goes on while it has computing time left and the server is up.
+static int may_go_on(void *user, double share) {
+    const allowance *a = user;
+    (void)share;
+    return hn_thread_seconds() < a->cpu_end && !atomic_load(&a->context->stopping);
+}
+
+void hn_handle_run(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    allowance a = {.context = r->context,
+                   .cpu_end = hn_thread_seconds() + r->context->opts.max_run_cpu};
+    const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
+    double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
+    hn_run_request request = {
+        .method = hn_body_text(r->json, "method"),
+        .time = hn_body_number(r->json, "time", 0),
+        .at = at ? times : NULL,
+        .every = hn_body_number(r->json, "every", 0),
+        .max_samples = r->context->opts.max_samples,
+        .reactions = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions")),
+        .raw_lambda = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "raw_lambda")),
+        .progress = may_go_on,
+        .stop_reason = "the computing time of one request is used up",
+        .user = &a};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    hn_status ended = HN_OK, status = HN_ERR_MEMORY;
+    if (times) {
+        cJSON_ArrayForEach(item, at) {
+            times[request.n_at++] = item->valuedouble;
+        }
+        status = hn_model_run_json(&b, model, &request, &ended, &diags);
+    }
+    free(times);
+    conclude(r, model, status, &b, &diags);
+}
+
+void hn_handle_snapshot(hn_request *r) {
+    hn_model *model = load_model(r, 0);
+    if (!model) {
+        return;
+    }
+    const char *methods[HN_COMPARISON_MAX_METHODS], *theme = hn_body_text(r->json, "theme");
+    const cJSON *item;
+    int n = 0;
+    hn_status ended = HN_OK;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->json, "methods")) {
+        methods[n++] = item->valuestring;
+    }
+    hn_picture_request request = {.methods = methods,
+                                  .n_methods = n,
+                                  .time = hn_body_number(r->json, "time", 0),
+                                  .width = (int)hn_body_number(r->json, "width", 0),
+                                  .height = (int)hn_body_number(r->json, "height", 0),
+                                  .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
+                                                                               : HN_THEME_LIGHT,
+                                  .view = hn_body_text(r->json, "view"),
+                                  .cpu_budget = r->context->opts.max_run_cpu};
+    hn_strbuf png;
+    hn_diags diags = {0};
+    hn_strbuf_init(&png);
+    hn_status status = hn_model_picture(&png, NULL, model, &request, &ended, &diags);
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&png);
+        hn_reply_diags(r, status, &diags);
+        return;
+    }
+    hn_reply_bytes(r, MHD_HTTP_OK, "image/png", &png);
+    hn_reply_header_add(r, "Holonom-Status", "%s", hn_status_name(ended));
+}
+
+void hn_handle_problem(hn_request *r) {
+    hn_exercise *problem = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = hn_shelf_exercise_load(r->context->lib, r->parts[0], &problem, &diags);
+    if (status == HN_OK) {
+        hn_exercise_json(&b, problem);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+    } else if (!hn_library_problem_path(r->context->lib, r->parts[0])) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, diags.item[0].hint, "%s", diags.item[0].message);
+    } else {
+        hn_reply_diags(r, status, &diags);
+    }
+    hn_exercise_free(problem);
+}
+
+void hn_handle_grade(hn_request *r) {
+    hn_exercise *problem = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_verdict *v = calloc(1, sizeof *v);
+    char *submission =
+        cJSON_PrintUnformatted(cJSON_GetObjectItemCaseSensitive(r->json, "submission"));
+    hn_status status =
+        v && submission ? hn_shelf_exercise_load(r->context->lib, hn_body_text(r->json, "problem"),
+                                                 &problem, &diags)
+                        : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_grade_json(problem, submission, strlen(submission),
+                               (uint64_t)hn_body_number(r->json, "seed", 0), v);
+    }
+    if (status == HN_OK) {
+        hn_verdict_json(&b, v);
+        hn_reply_json(r, MHD_HTTP_OK, &b);
+    } else {
+        hn_reply_diags(r, status, &diags);
+    }
+    hn_exercise_free(problem);
+    cJSON_free(submission);
+    free(v);
+}

@@ -1,0 +1,234 @@
+#include "http/routes/static_files.h"
+
+#include "base/arena.h"
+#include "http/ground/sha256.h"
+#include "http/request/request.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_FILES = 4000, MAX_PATH_CHARS = 4096, MAX_NESTING = 8, MAX_HTML = 1 << 20 };
+
+typedef struct file {
+    const char *address, *path, *media_type;
+} file;
+
+struct hn_static_files {
+    hn_arena *arena;
+    int n;
+    file *files; ///< sorted by address
+    const char **addresses;
+    hn_strbuf policy;
+};
+
+static const char *find_media_type(const char *name) {
+    static const struct {
+        const char *ending, *type;
+    } rows[] = {{".html", "text/html; charset=utf-8"},
+                {".js", "text/javascript; charset=utf-8"},
+                {".mjs", "text/javascript; charset=utf-8"},
+                {".css", "text/css; charset=utf-8"},
+                {".json", "application/json"},
+                {".map", "application/json"},
+                {".svg", "image/svg+xml"},
+                {".png", "image/png"},
+                {".ico", "image/x-icon"},
+                {".woff2", "font/woff2"},
+                {".woff", "font/woff"},
+                {".ttf", "font/ttf"},
+                {".txt", "text/plain; charset=utf-8"},
+                {".md", "text/markdown; charset=utf-8"},
+                {".webmanifest", "application/manifest+json"}};
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; dot && i < sizeof rows / sizeof *rows; i++) {
+        if (strcasecmp(dot, rows[i].ending) == 0) {
+            return rows[i].type;
+        }
+    }
+    return "application/octet-stream";
+}
+
+static int is_left_out(const char *name) {
+    return name[0] == '.' || strcmp(name, "node_modules") == 0 ||
+           (strncmp(name, "package", 7) == 0 &&
+            strcmp(find_media_type(name), "application/json") == 0);
+}
+
+static hn_status add_file(hn_static_files *s, const char *path, size_t n_root) {
+    if (s->n == MAX_FILES) {
+        return HN_ERR_LIMIT;
+    }
+    s->files[s->n].path = hn_arena_strdup(s->arena, path);
+    s->files[s->n].media_type = find_media_type(path);
+    if (!s->files[s->n].path) {
+        return HN_ERR_MEMORY;
+    }
+    s->files[s->n].address = s->files[s->n].path + n_root;
+    s->n++;
+    return HN_OK;
+}
+
+static hn_status list_folder(hn_static_files *s, const char *folder, size_t n_root, int nesting) {
+    DIR *dir = nesting < MAX_NESTING ? opendir(folder) : NULL;
+    if (!dir) {
+        return HN_ERR_IO;
+    }
+    hn_status status = HN_OK;
+    for (struct dirent *e = readdir(dir); e && status == HN_OK; e = readdir(dir)) {
+        char path[MAX_PATH_CHARS];
+        struct stat st;
+        int n = snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
+        if (is_left_out(e->d_name) || n >= (int)sizeof path || lstat(path, &st) != 0) {
+            continue;
+        }
+        if (S_ISDIR(st.st_mode)) {
+            status = list_folder(s, path, n_root, nesting + 1);
+        } else if (S_ISREG(st.st_mode)) {
+            status = add_file(s, path, n_root);
+        }
+    }
+    closedir(dir);
+    return status;
+}
+
+static int compare_files(const void *a, const void *b) {
+    return strcmp(((const file *)a)->address, ((const file *)b)->address);
+}
+
+static const file *find_file(const hn_static_files *s, const char *address) {
+    file key = {.address = address};
+    return bsearch(&key, s->files, (size_t)s->n, sizeof key, compare_files);
+}
+
+/// The hash of each inline import map goes into the policy: browsers take an import map in no other way.
+static void allow_import_maps(hn_strbuf *policy, const char *html) {
+    static const char open[] = "<script type=\"importmap\">";
+    for (const char *at = strstr(html, open); at; at = strstr(at, open)) {
+        at += sizeof open - 1;
+        const char *end = strstr(at, "</script>");
+        if (!end) {
+            return;
+        }
+        char hash[HN_SHA256_BASE64];
+        hn_sha256_base64(at, (size_t)(end - at), hash);
+        hn_strbuf_printf(policy, " 'sha256-%s'", hash);
+    }
+}
+
+static void read_import_maps(hn_strbuf *policy, const char *path) {
+    FILE *f = fopen(path, "rb");
+    char *text = f ? malloc(MAX_HTML + 1) : NULL;
+    if (text) {
+        text[fread(text, 1, MAX_HTML, f)] = 0;
+        allow_import_maps(policy, text);
+    }
+    free(text);
+    if (f) {
+        fclose(f);
+    }
+}
+
+static void write_policy(hn_static_files *s) {
+    hn_strbuf *p = &s->policy;
+    hn_strbuf_clear(p);
+    hn_strbuf_add(p, "default-src 'self'; script-src 'self'");
+    for (int i = 0; i < s->n; i++) {
+        if (strncmp(s->files[i].media_type, "text/html", 9) == 0) {
+            read_import_maps(p, s->files[i].path);
+        }
+    }
+    hn_strbuf_add(p, "; style-src 'self'; img-src 'self' data: blob:; "
+                     "connect-src 'self'; object-src 'none'; base-uri 'none'; "
+                     "form-action 'none'; frame-ancestors 'self'");
+}
+
+hn_status hn_static_files_create(const char *folder, hn_static_files **out, hn_diag *diag) {
+    hn_static_files *s = calloc(1, sizeof *s);
+    hn_status status = s ? HN_OK : HN_ERR_MEMORY;
+    if (s) {
+        s->arena = hn_arena_create(1 << 16);
+        s->files = calloc(MAX_FILES, sizeof *s->files);
+        s->addresses = calloc(MAX_FILES, sizeof *s->addresses);
+        status = s->arena && s->files && s->addresses ? list_folder(s, folder, strlen(folder), 0)
+                                                      : HN_ERR_MEMORY;
+    }
+    if (status == HN_OK) {
+        qsort(s->files, (size_t)s->n, sizeof *s->files, compare_files);
+        for (int i = 0; i < s->n; i++) {
+            s->addresses[i] = s->files[i].address;
+        }
+        write_policy(s);
+        status = s->policy.failed ? HN_ERR_MEMORY : HN_OK;
+    }
+    if (status != HN_OK) {
+        hn_static_files_free(s);
+        return hn_diag_set(diag, status, NULL, NULL, "the files of the page in %s: %s", folder,
+                           hn_status_text(status));
+    }
+    *out = s;
+    return HN_OK;
+}
+
+void hn_static_files_free(hn_static_files *s) {
+    if (s) {
+        hn_arena_free(s->arena);
+        hn_strbuf_reset(&s->policy);
+        free(s->files);
+        free(s->addresses);
+        free(s);
+    }
+}
+
+int hn_static_files_count(const hn_static_files *s) {
+    return s->n;
+}
+
+const char *hn_static_files_policy(const hn_static_files *s) {
+    return hn_strbuf_text(&s->policy);
+}
+
+const char *hn_static_files_nearest(const hn_static_files *s, const char *address) {
+    return hn_nearest_name(address, s->addresses, s->n);
+}
+
+/// 1 when If-None-Match names this tag or is '*'.
+static int is_known(const hn_request *r, const char *tag) {
+    const char *known = hn_request_header(r, "If-None-Match");
+    return known && (strcmp(known, "*") == 0 || strstr(known, tag));
+}
+
+int hn_static_files_reply(const hn_static_files *s, hn_request *r, const char *address) {
+    const file *f = find_file(s, strcmp(address, "/") == 0 ? "/index.html" : address);
+    int fd = f ? open(f->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW) : -1;
+    struct stat st;
+    if (fd < 0 || fstat(fd, &st) != 0) {
+        if (fd >= 0) {
+            close(fd);
+        }
+        return 0;
+    }
+    char tag[64];
+    snprintf(tag, sizeof tag, "\"%llx-%llx-%lx\"", (long long)st.st_size,
+             (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
+    if (is_known(r, tag)) {
+        close(fd);
+        hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
+    } else {
+        struct MHD_Response *response = MHD_create_response_from_fd((size_t)st.st_size, fd);
+        if (!response) {
+            close(fd);
+            hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+            return 1;
+        }
+        hn_reply_response(r, MHD_HTTP_OK, response);
+        hn_reply_header_add(r, "Content-Type", "%s", f->media_type);
+    }
+    hn_reply_header_add(r, "ETag", "%s", tag);
+    hn_reply_header_add(r, "Cache-Control", "no-cache");
+    return 1;
+}

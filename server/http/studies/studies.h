@@ -1,0 +1,37 @@
+#ifndef HN_HTTP_STUDIES_H
+#define HN_HTTP_STUDIES_H
+// Studies as resources: what takes seconds is done on a thread of its own, asked for progress while it lasts and for its document
+// afterwards. Bounded in number and in computing time; finished ones go when nobody touched them for long, or to make room.
+
+#include "http/ground/http_opts.h"
+#include "session/model/library.h"
+
+enum {
+    HN_STUDIES_METHODS = 12,
+    HN_STUDIES_LEVELS = 7,
+    HN_STUDIES_SAMPLES = 10,
+    HN_STUDIES_SIDE = 24,
+    HN_STUDIES_MAPS = 4, ///< methods of one map
+    HN_STUDIES_KEPT = 16 ///< running and finished ones
+};
+
+typedef struct hn_studies hn_studies;
+struct hn_request;
+
+/// `opts` and `lib` must outlive it. NULL when memory is out.
+hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib);
+/// Asks every study to stop and waits for their threads. NULL is legal.
+void hn_studies_stop(hn_studies *all);
+void hn_studies_free(hn_studies *all); ///< stops first; NULL is legal
+
+/// The kinds, for the field table; ends with NULL.
+extern const char *const hn_studies_kind_names[];
+
+// handlers
+void hn_handle_studies_list(struct hn_request *r);
+void hn_handle_studies_create(struct hn_request *r);
+void hn_handle_study_get(struct hn_request *r);
+void hn_handle_study_report(struct hn_request *r);
+void hn_handle_study_patch(struct hn_request *r);
+void hn_handle_study_delete(struct hn_request *r);
+#endif
