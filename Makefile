@@ -103,7 +103,7 @@ UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
 TABLES        := $(call programs,$(TABLE_SOURCES))
-SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
+SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/mechanisms/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
 # ---- building -------------------------------------------------------------------------------------------------
