@@ -37,7 +37,8 @@ ROOMS_dynamics     := compile: evaluate:compile assembly:compile,evaluate analys
 ROOMS_formulations := ground: chart:ground rows:ground,chart
 ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
                       method:step
-ROOMS_study        := run: truth:run account:run stability:run cost:run,truth
+ROOMS_study        := incidents: run:incidents truth:incidents,run account:incidents,run \
+                      stability:incidents,run cost:incidents,run,truth
 ROOMS_session      := store: model:store compare:store,model references:store,model \
                       precision:store,model,compare,references \
                       accounts:store,model,references,precision \

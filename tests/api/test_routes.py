@@ -36,6 +36,9 @@ class Catalogue(driver.ServerCase):
             self.assertEqual(self.server.ask("GET", link).status, 200, link)
         self.assertGreater(index["limits"]["body_bytes"], 0)
         self.assertGreaterEqual(len(index["routes"]), 20)
+        kinds = {k["code"]: k for k in index["incidents"]}
+        self.assertIn("gap-open", kinds)
+        self.assertTrue(all(k["name"] and k["rule"].endswith(".") for k in kinds.values()))
 
     def test_front_doors_lead_to_the_index(self):
         for path in ("/api", "/api/", "/api/v1"):

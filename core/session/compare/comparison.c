@@ -15,7 +15,6 @@ typedef struct entry {
     hn_run *run;
     double h; ///< fixed step [s], 0 for an adaptive method
     int slot; ///< colour and dash, see render/look.h
-    int incidents_told;
     char warning[HN_DIAG_MESSAGE]; ///< what its spelling deserves to be told, "" if nothing
     int over_budget;               ///< stopped by the comparison because one frame cost too much
 } entry;
@@ -210,7 +209,6 @@ void hn_comparison_next(hn_comparison *c) {
 void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
     for (int i = 0; i < c->n; i++) {
-        c->entries[i].incidents_told = 0;
         c->entries[i].over_budget = 0;
         hn_run_reset(
             c->entries[i]
@@ -252,8 +250,8 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
     return HN_OK;
 }
 
-int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out) {
-    entry *e = &c->entries[method];
+int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out) {
+    const entry *e = &c->entries[method];
     double t = (double)c->frame * c->frame_dt;
     if (is_live(e) && hn_run_sample(e->run, t, out) == HN_OK) {
         return 1;
@@ -325,7 +323,7 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     if (method >= 0) {
         hn_json_put_int(b, "method", method);
     }
-    hn_json_put_string(b, "code", hn_incident_name(incident->code));
+    hn_json_put_string(b, "code", hn_incident_spelling(incident->code));
     hn_json_put_number(b, "t", incident->t);
     hn_json_put_string(b, "quantity", incident->quantity);
     hn_json_put_number(b, "value", incident->value);
@@ -340,28 +338,20 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     hn_json_end_object(b);
 }
 
-/// All incidents, or only those not told yet.
-static void put_incidents(hn_strbuf *b, const hn_comparison *c, int only_new) {
+static void put_incidents(hn_strbuf *b, const hn_comparison *c) {
     hn_json_key(b, "incidents");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
         const hn_incident *list;
         int n = hn_run_incidents(c->entries[i].run, &list);
-        for (int k = only_new ? c->entries[i].incidents_told : 0; k < n; k++) {
+        for (int k = 0; k < n; k++) {
             hn_incident_json(b, i, &list[k]);
         }
     }
     hn_json_end_array(b);
 }
 
-static void mark_incidents_told(hn_comparison *c) {
-    for (int i = 0; i < c->n; i++) {
-        const hn_incident *list;
-        c->entries[i].incidents_told = hn_run_incidents(c->entries[i].run, &list);
-    }
-}
-
-void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c) {
+void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_int(b, "frame", c->frame);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
@@ -380,8 +370,6 @@ void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c) {
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
-    put_incidents(b, c, 1);
-    mark_incidents_told(c);
     hn_json_end_object(b);
 }
 
@@ -436,6 +424,6 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
-    put_incidents(b, c, 0);
+    put_incidents(b, c);
     hn_json_end_object(b);
 }

@@ -43,10 +43,11 @@ HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const ch
 const hn_run *hn_comparison_run(const hn_comparison *c, int method);
 int hn_comparison_slot(const hn_comparison *c, int method); ///< colour and dash, see render/look.h
 /// The sample of a method at the present frame; 0 when the method has failed (then it is its last good one).
-int hn_comparison_sample(hn_comparison *c, int method, hn_sample *out);
+int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
-/// One frame: {"frame","t","methods":[{"state","t","points":[...],"gap","velocity_gap","energy_change","steps","evals","ops","cpu","worst_gap",...}],"incidents":[new since the last frame]}
-void hn_comparison_frame_json(hn_strbuf *b, hn_comparison *c);
+/// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
+/// "velocity_gap","energy_change","steps","evals","ops","cpu","worst_gap",...}]}
+void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
 /// Methods with spelling, title, short name, look slot, card; frame_dt, duration.
 void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
 /// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy change, steps, rejected, evals, ops, cpu, incidents.

@@ -167,7 +167,7 @@ static const hn_incident *find_incident(const hn_extreme_look *look) {
     const hn_incident *list = NULL;
     const int n = hn_run_incidents(look->run, &list);
     for (int i = 0; i < n; i++) {
-        if (strcmp(hn_incident_name(list[i].code), look->point->trial->incident) == 0) {
+        if (strcmp(hn_incident_spelling(list[i].code), look->point->trial->incident) == 0) {
             return &list[i];
         }
     }

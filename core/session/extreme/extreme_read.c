@@ -218,7 +218,7 @@ static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     }
     int known = !t->incident;
     for (int i = 0; i < HN_INCIDENT_COUNT && !known; i++) {
-        known = strcmp(hn_incident_name((hn_incident_code)i), t->incident) == 0;
+        known = strcmp(hn_incident_spelling((hn_incident_code)i), t->incident) == 0;
     }
     if (!known) {
         hn_xr_fault(r, "incident", NULL, "no run tells of '%.60s'", t->incident);

@@ -9,6 +9,7 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/system.h"
 #include "integrators/method/method_spec.h"
+#include "study/incidents/incident.h"
 
 typedef enum hn_run_state {
     HN_RUN_READY,
@@ -16,51 +17,6 @@ typedef enum hn_run_state {
     HN_RUN_FINISHED,
     HN_RUN_FAILED
 } hn_run_state;
-
-/// Incident codes: name as in JSON, sentence of the rule behind it.
-#define HN_INCIDENT_LIST(X)                               \
-    X(HN_INCIDENT_NEAR_SINGULAR, "near-singular")         \
-    X(HN_INCIDENT_RANK_LOSS, "rank-loss")                 \
-    X(HN_INCIDENT_BRANCH_FLIP, "branch-flip")             \
-    X(HN_INCIDENT_GAP_OPEN, "gap-open")                   \
-    X(HN_INCIDENT_ENERGY_JUMP, "energy-jump")             \
-    X(HN_INCIDENT_CHART_CHANGE, "chart-change")           \
-    X(HN_INCIDENT_CHART_LOST, "chart-lost")               \
-    X(HN_INCIDENT_STEP_LIMIT, "step-limit")               \
-    X(HN_INCIDENT_PROJECTION_FAILED, "projection-failed") \
-    X(HN_INCIDENT_DIVERGED, "diverged")                   \
-    X(HN_INCIDENT_STEP_UNDERFLOW, "step-underflow")       \
-    X(HN_INCIDENT_BUDGET, "budget")                       \
-    X(HN_INCIDENT_RANK_AHEAD, "rank-ahead")               \
-    X(HN_INCIDENT_ILL_CONDITIONED, "ill-conditioned")     \
-    X(HN_INCIDENT_MULTIPLIERS, "multipliers-grow")        \
-    X(HN_INCIDENT_SOLVER, "solver-fallback")              \
-    X(HN_INCIDENT_JOINT_LIMIT, "joint-limit")             \
-    X(HN_INCIDENT_NEWTON_FAILED, "newton-failed")         \
-    X(HN_INCIDENT_ENERGY_DRIFT, "energy-drift")           \
-    X(HN_INCIDENT_STIFF, "stiff")                         \
-    X(HN_INCIDENT_MASS, "mass-singular")                  \
-    X(HN_INCIDENT_RESTARTS, "order-lost")
-
-typedef enum hn_incident_code {
-#define HN_INCIDENT_ENUM(code, name) code,
-    HN_INCIDENT_LIST(HN_INCIDENT_ENUM)
-#undef HN_INCIDENT_ENUM
-        HN_INCIDENT_COUNT
-} hn_incident_code;
-const char *hn_incident_name(hn_incident_code code);
-
-typedef struct hn_incident {
-    hn_incident_code code;
-    double t;
-    const char *quantity; ///< "gap", "pivot ratio": static text
-    double value, limit;
-    char message[400]; ///< this run, in one clause with numbers and units
-    char remedy
-        [3]
-        [96]; ///< up to three things to try; a method spelling or "h=0.005" where it can be clicked; "" ends
-} hn_incident;
-enum { HN_RUN_MAX_INCIDENTS = 64 };
 
 #define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is told
 /// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so with pins half of it apart they

@@ -205,6 +205,7 @@ static void finish_passing(hn_run *run, double angle) {
         } else {
             add(i, "; the run went straight on");
         }
+        i->revision = ++run->revision;
     }
     a->passing = 0;
 }

@@ -105,6 +105,7 @@ struct hn_run {
     double cpu_mark, clock_cost; ///< [s]
     hn_incident incidents[HN_RUN_MAX_INCIDENTS];
     int n_incidents;
+    unsigned revision; ///< of the incident written or completed last; never reset
     hn_run_watch_state watch;
     hn_eval *points;
     // what a sample hands out

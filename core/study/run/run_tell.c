@@ -7,16 +7,6 @@
 
 // Incidents: how they are told, what is offered to try, and those that the run itself reports.
 
-static const char *const incident_names[] = {
-#define HN_INCIDENT_NAME(code, name) name,
-    HN_INCIDENT_LIST(HN_INCIDENT_NAME)
-#undef HN_INCIDENT_NAME
-};
-
-const char *hn_incident_name(hn_incident_code code) {
-    return code < HN_INCIDENT_COUNT ? incident_names[code] : "?";
-}
-
 // --- remedies ---------------------------------------------------------------------------------------------
 
 enum {
@@ -86,6 +76,7 @@ hn_incident *hn_run_tell(hn_run *run, hn_incident_code code, const char *quantit
     va_start(args, format);
     vsnprintf(i->message, sizeof i->message, format, args);
     va_end(args);
+    i->revision = ++run->revision;
     return i;
 }
 

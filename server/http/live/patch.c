@@ -147,7 +147,6 @@ static hn_status carry_out(hn_session *live, const change *c, hn_subject *fresh)
         *fresh = (hn_subject){0};
     } else if (c->reset) {
         hn_comparison_reset(live->bench.comparison);
-        memset(live->bench.told, 0, sizeof live->bench.told);
     }
     if (c->methods || c->settings || c->reset) {
         status = restart(live);

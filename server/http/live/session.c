@@ -127,28 +127,32 @@ static void put_with_generation(hn_strbuf *b, const hn_session *live, const hn_s
     b->failed |= object->failed;
 }
 
-/// The incidents that are new since the last frame, or whose message has grown (what became of the run there), an event each.
+/// Publishes an incident as an event.
+static void publish_incident(hn_session *live, int method, const hn_incident *incident) {
+    hn_strbuf text, event;
+    hn_strbuf_init(&text);
+    hn_strbuf_init(&event);
+    hn_incident_json(&text, method, incident);
+    put_with_generation(&event, live, &text);
+    pthread_mutex_lock(&live->lock);
+    hn_history_add(&live->history, HN_EVENT_INCIDENT, &event);
+    pthread_mutex_unlock(&live->lock);
+    hn_strbuf_reset(&text);
+}
+
+/// Publishes the incidents that were written or completed since the last frame.
 static void publish_incidents(hn_session *live) {
     for (int i = 0; i < hn_comparison_n_methods(live->bench.comparison); i++) {
         const hn_incident *list;
         int n = hn_run_incidents(hn_comparison_run(live->bench.comparison, i), &list);
+        unsigned newest = live->bench.published[i];
         for (int k = 0; k < n; k++) {
-            const size_t length = strlen(list[k].message);
-            if (k < live->bench.told[i] && length == live->bench.told_length[i][k]) {
-                continue;
+            if (list[k].revision > live->bench.published[i]) {
+                newest = list[k].revision > newest ? list[k].revision : newest;
+                publish_incident(live, i, &list[k]);
             }
-            live->bench.told_length[i][k] = length;
-            hn_strbuf incident, event;
-            hn_strbuf_init(&incident);
-            hn_strbuf_init(&event);
-            hn_incident_json(&incident, i, &list[k]);
-            put_with_generation(&event, live, &incident);
-            pthread_mutex_lock(&live->lock);
-            hn_history_add(&live->history, HN_EVENT_INCIDENT, &event);
-            pthread_mutex_unlock(&live->lock);
-            hn_strbuf_reset(&incident);
         }
-        live->bench.told[i] = n;
+        live->bench.published[i] = newest;
     }
 }
 

@@ -12,10 +12,8 @@ typedef struct hn_subject {
     hn_scene_request scene;
     hn_model *model;
     hn_comparison *comparison;
-    int told[HN_COMPARISON_MAX_METHODS]; ///< incidents told already, per method
-    size_t told_length
-        [HN_COMPARISON_MAX_METHODS]
-        [HN_RUN_MAX_INCIDENTS]; ///< of their messages then: one that has grown since is told again
+    /// Per method, the revision of the newest incident that was published.
+    unsigned published[HN_COMPARISON_MAX_METHODS];
 } hn_subject;
 
 struct hn_session {

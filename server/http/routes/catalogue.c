@@ -13,6 +13,7 @@
 #include "session/model/lists.h"
 #include "session/model/model.h"
 #include "session/references/references.h"
+#include "study/incidents/incident.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -95,6 +96,8 @@ void hn_handle_index(hn_request *r) {
     hn_json_end_object(&b);
     put_limits(&b, &r->context->opts);
     put_routes(&b, &r->context->routes);
+    hn_json_key(&b, "incidents");
+    hn_incident_kinds_json(&b);
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }

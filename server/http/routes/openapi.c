@@ -131,10 +131,10 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"status\"],\"properties\":{\"status\":{\"const\":\"ok\"},"
      "\"version\":" TEXT ",\"build\":" TEXT "}}"},
     {"Index", "{\"type\":\"object\",\"required\":[\"name\",\"version\",\"links\",\"limits\","
-              "\"routes\"],\"properties\":{"
+              "\"routes\",\"incidents\"],\"properties\":{"
               "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "},"
               "\"limits\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},"
-              "\"routes\":" OBJECTS "}}"},
+              "\"routes\":" OBJECTS ",\"incidents\":" OBJECTS "}}"},
     {"Scenes",
      "{\"type\":\"object\",\"required\":[\"scenes\"],\"properties\":{\"scenes\":" OBJECTS "}}"},
     {"Lessons",

@@ -262,7 +262,7 @@ static void a_limit_is_told_once_each_time_it_is_left(void **state) {
     }
     assert_int_equal(told, 4); // up and down, twice
     assert_all_near(limits, ((double[]){0.25, -0.3, 0.25, -0.3}), 4, 0);
-    assert_string_equal(hn_incident_name(HN_INCIDENT_JOINT_LIMIT), "joint-limit");
+    assert_string_equal(hn_incident_spelling(HN_INCIDENT_JOINT_LIMIT), "joint-limit");
     hn_run_free(run);
     hn_model_close(&m);
 }
