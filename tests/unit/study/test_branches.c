@@ -167,6 +167,34 @@ static void a_platform_that_comes_back_from_its_singular_yaw_says_so(void **stat
     hn_model_close(&m);
 }
 
+static void a_report_that_is_completed_later_has_a_higher_revision(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "stewart-turning", NULL);
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=2e-3");
+    const hn_incident *near = NULL;
+    while (!near) {
+        assert_int_equal(hn_run_step(run), HN_OK);
+        near = find(run, HN_INCIDENT_NEAR_SINGULAR, "; rows ");
+    }
+    const unsigned first = near->revision;
+    assert_true(first > 0);
+    // which way the run went on is known some steps later
+    (void)hn_motion_at(run, 2);
+    near = find(run, HN_INCIDENT_NEAR_SINGULAR, "; the run ");
+    assert_non_null(near);
+    const unsigned completed = near->revision;
+    assert_true(completed > first);
+    // after a reset the same report is new again
+    assert_int_equal(hn_run_reset(run), HN_OK);
+    (void)hn_motion_at(run, 2);
+    near = find(run, HN_INCIDENT_NEAR_SINGULAR, "; the run ");
+    assert_non_null(near);
+    assert_true(near->revision > completed);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 static void speeds_that_turn_round_in_a_step_are_told(void **state) {
     (void)state;
     static const char *const sizes[] = {"N=2", "N=5"};
@@ -392,6 +420,7 @@ int main(void) {
             six_legs_lose_their_hold_towards_a_yaw_of_ninety_degrees_as_computed_elsewhere),
         cmocka_unit_test(a_platform_carried_through_its_singular_yaw_is_warned_before),
         cmocka_unit_test(a_platform_that_comes_back_from_its_singular_yaw_says_so),
+        cmocka_unit_test(a_report_that_is_completed_later_has_a_higher_revision),
         cmocka_unit_test(speeds_that_turn_round_in_a_step_are_told),
         cmocka_unit_test(a_swing_that_turns_back_is_no_jump_of_its_speeds),
         cmocka_unit_test(loops_that_stand_open_by_half_the_mechanism_end_a_run),

@@ -252,49 +252,6 @@ static void an_open_gap_is_told_once_with_a_remedy_that_closes_it(void **state) 
     hn_trial_close(&four_bar);
 }
 
-/// The revision of the incident with this code, 0: there is none.
-static unsigned revision_of(const hn_run *run, hn_incident_code code) {
-    const hn_incident *list = NULL;
-    for (int i = 0, n = hn_run_incidents(run, &list); i < n; i++) {
-        if (list[i].code == code) {
-            return list[i].revision;
-        }
-    }
-    return 0;
-}
-
-static void an_incident_that_is_completed_later_has_a_higher_revision(void **state) {
-    (void)state;
-    hn_trial flat;
-    hn_trial_open(&flat, FB0);
-    hn_run *run = hn_trial_run(&flat, "index1@rk4:h=0.02");
-    unsigned first = 0;
-    char message[400] = "";
-    // the report of a singular configuration ends with which way the run went on, some steps later
-    for (int i = 0; i < 500 && !strstr(message, "the run"); i++) {
-        const hn_incident *list = NULL;
-        assert_int_equal(hn_run_step(run), HN_OK);
-        for (int k = 0, n = hn_run_incidents(run, &list); k < n; k++) {
-            if (list[k].code == HN_INCIDENT_NEAR_SINGULAR) {
-                first = first ? first : list[k].revision;
-                snprintf(message, sizeof message, "%s", list[k].message);
-                break;
-            }
-        }
-    }
-    assert_non_null(strstr(message, "the run"));
-    assert_true(first > 0 && revision_of(run, HN_INCIDENT_NEAR_SINGULAR) > first);
-    // after a reset the same report is new again
-    const unsigned last = revision_of(run, HN_INCIDENT_NEAR_SINGULAR);
-    assert_int_equal(hn_run_reset(run), HN_OK);
-    while (revision_of(run, HN_INCIDENT_NEAR_SINGULAR) == 0) {
-        assert_int_equal(hn_run_step(run), HN_OK);
-    }
-    assert_true(revision_of(run, HN_INCIDENT_NEAR_SINGULAR) > last);
-    hn_run_free(run);
-    hn_trial_close(&flat);
-}
-
 static void every_kind_of_incident_has_a_spelling_a_name_and_a_rule(void **state) {
     (void)state;
     const hn_incident_kind *kinds = hn_incident_kinds();
@@ -483,7 +440,6 @@ int main(void) {
                                         open_fb0, close_trial),
         cmocka_unit_test_setup_teardown(an_open_gap_is_told_once_with_a_remedy_that_closes_it,
                                         open_fb0, close_trial),
-        cmocka_unit_test(an_incident_that_is_completed_later_has_a_higher_revision),
         cmocka_unit_test(every_kind_of_incident_has_a_spelling_a_name_and_a_rule),
         cmocka_unit_test_setup_teardown(redundant_rows_are_told_and_give_the_same_motion, open_fb0,
                                         close_trial),
