@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/incident.h"
 
 static const hn_incident_kind kinds[HN_INCIDENT_COUNT] = {

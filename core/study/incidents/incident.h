@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_INCIDENT_H
 #define HN_STUDY_INCIDENT_H
 // Incidents: the things that can happen to a run and are worth a report, as one table. A row holds the code, its spelling in
