@@ -45,7 +45,7 @@ const char *hn_dyad_kind_about(hn_dyad_kind kind) {
     return kind_abouts[kind];
 }
 
-// blocks -------------------------------------------------------------------------------------------------------------
+// ---- blocks ----
 
 /// While it is built; scratch from malloc.
 typedef struct builder {
@@ -149,7 +149,8 @@ static int refuse_whole(builder *b) {
     return 0;
 }
 
-/// The blocks from the last one on: rows of the block triangular form hold the unknowns of their own block and of later ones.
+/// The blocks from the last one on: rows of the block triangular form hold the unknowns of their
+/// own block and of later ones.
 static void recognise_blocks(builder *b, int n_blocks) {
     hn_dyads *d = b->d;
     unsigned seed = 12345;
@@ -190,13 +191,14 @@ static void find_steps(builder *b) {
     recognise_blocks(b, n_blocks);
 }
 
-// tapes --------------------------------------------------------------------------------------------------------------
+// ---- tapes ----
 
 static int symbol_of(const hn_system *sys, int coordinate) {
     return sys->q_symbols[hn_system_position_of(sys, coordinate)];
 }
 
-/// Each step's solution with those before it put in: outputs of the solving tape are room, x, y of each.
+/// Each step's solution with those before it put in: outputs of the solving tape are room, x, y of
+/// each.
 static void compose(builder *b) {
     hn_dyads *d = b->d;
     hn_graph *g = b->sys->g;
@@ -315,7 +317,7 @@ void hn_dyads_free(hn_dyads *d) {
     }
 }
 
-// reading and running ------------------------------------------------------------------------------------------------
+// ---- reading and running ----
 
 const char *hn_dyads_refusal(const hn_dyads *d) {
     return d->refusal[0] ? d->refusal : NULL;

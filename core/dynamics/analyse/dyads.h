@@ -1,20 +1,23 @@
 #ifndef HN_DYNAMICS_DYADS_H
 #define HN_DYNAMICS_DYADS_H
-// Position analysis in closed form. Once the independent coordinates are fixed, the closure rows and the dependent coordinates
-// fall apart into blocks that can be solved one after the other (block triangular form of the pattern of J_d). In a plane most
-// mechanisms fall apart into single unknowns and dyads: two links, three joints, two rows, two unknowns:
+// Position analysis in closed form. Once the independent coordinates are fixed, the closure rows
+// and the dependent coordinates fall apart into blocks that can be solved one after the other
+// (block triangular form of the pattern of J_d). In a plane most mechanisms fall apart into single
+// unknowns and dyads: two links, three joints, two rows, two unknowns:
 //
 //     RRR   two angles              R(x) a + R(y) c + e = 0          a circle meets a circle
 //     RRP   an angle and a slide    R(x) a + y u + e = 0             a circle meets a line
 //     RPR   a slide that turns      R(x) (a + y u) + e = 0           a point seen along a line
 //     PRP   two slides              x u + y w + e = 0                a line meets a line
 //
-// (all given here but x and y are functions of what is known by then). They are recognised from the expressions of phi, whatever
-// coordinates the scene is written in: the coefficients are read off by differentiation, and phi made from them has to be phi
-// at random poses. Of two ways to assemble a dyad the one of the present pose is kept, as the sign of a square root.
+// (all given here but x and y are functions of what is known by then). They are recognised from the
+// expressions of phi, whatever coordinates the scene is written in: the coefficients are read off
+// by differentiation, and phi made from them has to be phi at random poses. Of two ways to assemble
+// a dyad the one of the present pose is kept, as the sign of a square root.
 //
-// Source: Assur groups of the second class, e.g. Manolescu 1979, "A unitary method for construction of the kinematic plane chains";
-// block triangular form: Duff & Reid 1978, Davis 2006 (SuiteSparse BTF).
+// Source: Assur groups of the second class, e.g. Manolescu 1979, "A unitary method for construction
+// of the kinematic plane chains"; block triangular form: Duff & Reid 1978, Davis 2006 (SuiteSparse
+// BTF).
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -46,8 +49,9 @@ typedef struct hn_dyad {
 const char *hn_dyad_kind_name(hn_dyad_kind kind);
 const char *hn_dyad_kind_about(hn_dyad_kind kind);
 
-/// The analysis for the dependent columns `dep` (n of them, ascending). Adds nodes to the graph: see system.h, as for evaluators. The
-/// tape is owned (hn_dyads_free), the rest from `arena`. Where there is no closed form, the object says why and solves nothing.
+/// The analysis for the dependent columns `dep` (n of them, ascending). Adds nodes to the graph:
+/// see system.h, as for evaluators. The tape is owned (hn_dyads_free), the rest from `arena`. Where
+/// there is no closed form, the object says why and solves nothing.
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_dyads_create(const hn_system *sys, const int *dep, int n,
                                         hn_arena *arena, hn_dyads **out);
@@ -62,17 +66,20 @@ hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve
 hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one look at the branches
 double hn_dyads_ops(const hn_dyads *d);               ///< arithmetic operations so far
 
-/// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead point, where the two ways meet;
-/// its sign is then 0.
+/// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead
+/// point, where the two ways meet; its sign is then 0.
 int hn_dyads_take_branch(hn_dyads *d, double t, const double *q);
-/// The first step that is assembled the other way at q (nq), -1: none. q is near a pose, e.g. predicted along a tangent.
+/// The first step that is assembled the other way at q (nq), -1: none. q is near a pose, e.g.
+/// predicted along a tangent.
 int hn_dyads_find_turned(hn_dyads *d, double t, const double *q);
-/// Sets the dependent entries of q (nq) from the others; an angle goes to the whole turn nearest to where it was. Returns -1, or the first
-/// step that cannot be closed (its circles do not meet); q is then as it was. Allocates nothing.
+/// Sets the dependent entries of q (nq) from the others; an angle goes to the whole turn nearest to
+/// where it was. Returns -1, or the first step that cannot be closed (its circles do not meet); q
+/// is then as it was. Allocates nothing.
 int hn_dyads_solve(hn_dyads *d, double t, double *q);
 
-/// Step k as an equation for people: unknown i of it in terms of what is known before it (for i = 1 also unknown 0, or the other way round), with
-/// hn_dyads_sign_name() for the way it is assembled. Borrowed; in the graph of the system.
+/// Step k as an equation for people: unknown i of it in terms of what is known before it (for i = 1
+/// also unknown 0, or the other way round), with hn_dyads_sign_name() for the way it is assembled.
+/// Borrowed; in the graph of the system.
 hn_ex hn_dyads_expression(const hn_dyads *d, int k, int i);
 /// Names that the expressions of step k use, in this order.
 enum { HN_DYAD_PARTS = 4 };

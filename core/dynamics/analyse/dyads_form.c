@@ -6,10 +6,10 @@
 #include <string.h>
 
 enum { TRIALS = 3 };
-static const double SAME =
-    1e-10; // of the terms' size: two expressions agree at a random pose, rounding aside
+// of the terms' size: two expressions agree at a random pose, rounding aside
+static const double SAME = 1e-10;
 
-// recognising --------------------------------------------------------------------------------------------------------
+// ---- recognising ----
 
 typedef struct reader {
     const hn_system *sys;
@@ -197,7 +197,7 @@ int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsig
     return 1;
 }
 
-// solving ------------------------------------------------------------------------------------------------------------
+// ---- solving ----
 
 static hn_ex times(hn_graph *g, const hn_pair *a, const hn_pair *b) {
     return hn_add(g, hn_mul(g, a->e[0], b->e[0]), hn_mul(g, a->e[1], b->e[1]));
@@ -232,7 +232,8 @@ static hn_ex name_part(hn_dyad_step *s, hn_ex name, hn_ex is) {
     return name;
 }
 
-/// p cos x + q sin x = k as a circle of radius 1 and a line. With s2 = p^2 + q^2, room = s2 - k^2 and w = sign sqrt(room):
+/// p cos x + q sin x = k as a circle of radius 1 and a line. With s2 = p^2 + q^2, room = s2 - k^2
+/// and w = sign sqrt(room):
 ///
 ///     s2 cos x = k p - w q,   s2 sin x = k q + w p,   and w = p sin x - q cos x tells the sign
 typedef struct circle {
@@ -277,7 +278,8 @@ static void tell_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn
     s->told[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
 }
 
-/// |E + A cos x + B sin x|^2 = |C|^2 is a line for (cos x, sin x); what is left over is the other link turned round.
+/// |E + A cos x + B sin x|^2 = |C|^2 is a line for (cos x, sin x); what is left over is the other
+/// link turned round.
 static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x, int number) {
     const hn_dyad_form *f = &s->form;
     const hn_ex k =

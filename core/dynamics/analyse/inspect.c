@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// tree, loops, groups ----------------------------------------------------------------------------
+// ---- tree, loops, groups ----
 
 static const char *link_name(const hn_system *sys, int link) {
     const int body = sys->tree.links[link].body;
@@ -42,8 +42,8 @@ static void put_tree(hn_strbuf *b, const hn_system *sys) {
     hn_json_array(b);
     int at = sys->tree.ground;
     while (at >= 0) {
-        if (!links[at]
-                 .is_virtual) { // a joint of several freedoms is told at its end, as the joint it is
+        // a joint of several freedoms is told at its end, as the joint it is
+        if (!links[at].is_virtual) {
             put_branch(b, sys, at);
         }
         if (links[at].first_child >= 0) {
@@ -105,7 +105,7 @@ static void put_groups(hn_strbuf *b, const hn_system *sys) {
     hn_json_end_array(b);
 }
 
-// coordinates --------------------------------------------------------------------------------------
+// ---- coordinates ----
 
 static const char *meaning_of(const hn_system *sys, int i) {
     if (sys->scene->is_lagrangian) {
@@ -210,7 +210,7 @@ static void put_sizes(hn_strbuf *b, const hn_system *sys) {
     hn_json_end_object(b);
 }
 
-// counts -------------------------------------------------------------------------------------------
+// ---- counts ----
 
 typedef struct counts {
     int M, f, phi, J, gamma, together;
@@ -280,7 +280,8 @@ static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
     return status;
 }
 
-// who factors the matrices of Newton's method: [M -J'; J 0] and what implicit integrators add to it in the same places
+// who factors the matrices of Newton's method: [M -J'; J 0] and what implicit integrators add to it
+// in the same places
 static void put_newton(hn_strbuf *b, const hn_system *sys, const counts *c) {
     const int n = sys->nv + sys->nc;
     const long long entries = c->M_entries + 2LL * sys->J.n;
@@ -357,7 +358,7 @@ static void put_operations(hn_strbuf *b, const counts *c) {
     hn_json_end_object(b);
 }
 
-// what was left out ----------------------------------------------------------------------------------
+// ---- what was left out ----
 
 static void put_absence(hn_strbuf *b, const char *what, long long count, int operations) {
     hn_json_object(b);
@@ -414,7 +415,7 @@ static void put_left_out(hn_strbuf *b, const hn_system *sys, const counts *c) {
     hn_json_end_array(b);
 }
 
-// the whole --------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     hn_arena *arena = hn_arena_create(0);

@@ -1,7 +1,8 @@
 #ifndef HN_DYNAMICS_INSPECT_H
 #define HN_DYNAMICS_INSPECT_H
-// What the compiler made of a scene, for telling: tree, loops and why they were cut, frames, coordinates, sparsity, exact
-// operation counts of every term and of a whole solve, and what was left out. Facts only, nothing estimated.
+// What the compiler made of a scene, for telling: tree, loops and why they were cut, frames,
+// coordinates, sparsity, exact operation counts of every term and of a whole solve, and what was
+// left out. Facts only, nothing estimated.
 
 #include "base/strbuf.h"
 #include "dynamics/compile/system.h"
@@ -22,10 +23,11 @@
 ///   "tape"         {"instructions", "slots", "additions", "products", "divisions", "sincos"} of the solve without Baumgarte
 ///   "graph_nodes"  of the whole system with these tapes
 ///   "left_out"     [{"what", "count"?, "operations"?}]
-/// Compiles tapes, so it takes as long as a compilation (system.h says who may do that when). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT;
-/// the object is then incomplete.
+/// Compiles tapes, so it takes as long as a compilation (system.h says who may do that when).
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT; the object is then incomplete.
 HN_MUST_CHECK hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys);
-/// Writes "actuation" {"actuated", "freedoms", "reading"} likewise: motors against the freedoms that assembly found.
+/// Writes "actuation" {"actuated", "freedoms", "reading"} likewise: motors against the freedoms
+/// that assembly found.
 void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms);
 /// The same as an object of its own.
 HN_MUST_CHECK hn_status hn_system_inspect_json(hn_strbuf *b, const hn_system *sys);

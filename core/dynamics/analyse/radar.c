@@ -11,14 +11,16 @@
 static const double LOST = 1e-8;     // ratio below which rows count as lost
 static const double RANK_TOL = 1e-8; // of the QR that answers where the factor cannot
 static const double PARTED = 0.05;   // pivot, of the largest, of a row that has become independent
-static const double DENSE_BUDGET =
-    2e5; // operations a look may cost on average where only the QR answers
-// prediction: a look becomes an anchor when sigma has fallen this much since the last; the lowest value of the parabola must be
-// this small against the present one; nothing is said from farther than NEAR of the largest sigma_min so far
+// operations a look may cost on average where only the QR answers
+static const double DENSE_BUDGET = 2e5;
+// prediction: a look becomes an anchor when sigma has fallen this much since the last; the lowest
+// value of the parabola must be this small against the present one; nothing is said from farther
+// than NEAR of the largest sigma_min so far
 static const double ANCHOR = 0.85;
 static const double TOUCHES = 0.04;
-// a sigma that is bent on its way to zero leaves the parabola's lowest value above zero, but less of it with the cube of sigma;
-// where the pose is only passed near, the lowest value stays. It has to fall like the square at least, so many times running
+// a sigma that is bent on its way to zero leaves the parabola's lowest value above zero, but less
+// of it with the cube of sigma; where the pose is only passed near, the lowest value stays. It has
+// to fall like the square at least, so many times running
 static const double BENT = 0.25;
 enum { FALLING = 2 };
 static const double NEAR = 0.35;
@@ -182,8 +184,8 @@ static double diagonal(const hn_radar *r, int k) {
     return fabs(r->qr.a[(size_t)k * (size_t)r->nv + (size_t)k]);
 }
 
-/// Rows that depended on the others at the first look part from them a little where loops stand open: they count once they stand
-/// out by more than any gap that is not told would make them.
+/// Rows that depended on the others at the first look part from them a little where loops stand
+/// open: they count once they stand out by more than any gap that is not told would make them.
 static void leave_out_blur(hn_radar *r) {
     while (r->qr.rank > r->start_rank && diagonal(r, r->qr.rank - 1) < PARTED * diagonal(r, 0)) {
         r->qr.rank--;
@@ -212,7 +214,8 @@ static void look_sparsely(hn_radar *r, int sweeps, hn_radar_info *info) {
     }
 }
 
-/// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it does not fall to a lowest value.
+/// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it
+/// does not fall to a lowest value.
 static int fit(const hn_radar *r, double *slope, double *curve) {
     if (r->n_anchors < ANCHORS) {
         return 0;
@@ -345,7 +348,7 @@ const double *hn_radar_scale(const hn_radar *r) {
     return r->d;
 }
 
-// --- what waits there ---------------------------------------------------------------------------------------------
+// ---- what waits there ----
 
 /// w' gamma(q, v)
 static double form(hn_radar *r, double t, const double *q, const double *w, const double *v) {
@@ -401,7 +404,8 @@ static void find_lost_rows(hn_radar *r, hn_radar_pose *pose) {
     }
 }
 
-/// y (nc), of unit length: the combination of rows that vanishes, from the first column that was dropped.
+/// y (nc), of unit length: the combination of rows that vanishes, from the first column that was
+/// dropped.
 static void vanishing_combination(hn_radar *r) {
     const int rank = r->qr.rank;
     memset(r->y, 0, (size_t)r->nc * sizeof *r->y);

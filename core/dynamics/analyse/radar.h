@@ -1,17 +1,21 @@
 #ifndef HN_DYNAMICS_RADAR_H
 #define HN_DYNAMICS_RADAR_H
-// How far a motion is from a pose where closure rows depend on each other, when it will be there, and what waits there.
+// How far a motion is from a pose where closure rows depend on each other, when it will be there,
+// and what waits there.
 //
 //     sigma = singular values of R J D,   D = diag(M)^-1/2,   R: one over the largest length each row of J D has had      (1)
 //
-// A row that dies away shows as well as two that become parallel; the ratio sigma_min / sigma_max has no unit. sigma_min comes by
-// inverse iteration with the sparse factor of [D^-2 J'; J 0], started from the last answer, so a look costs what J and the factor
-// hold. Where the factor has lost a pivot, a dense rank-revealing QR answers.
+// A row that dies away shows as well as two that become parallel; the ratio sigma_min / sigma_max
+// has no unit. sigma_min comes by inverse iteration with the sparse factor of [D^-2 J'; J 0],
+// started from the last answer, so a look costs what J and the factor hold. Where the factor has
+// lost a pivot, a dense rank-revealing QR answers.
 //
-// Prediction. Along a smooth motion sigma_min^2 is smooth, and a zero of it is a double one: a parabola through three looks whose
-// lowest value is zero against the present one says when; one that turns back above zero is a pose that is only passed near.
-// Branches. With w' J = 0 the speeds v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two freedoms at the
-// pose: two real roots are two crossing branches, none means that the mechanism is locked, a double one is a cusp.
+// Prediction. Along a smooth motion sigma_min^2 is smooth, and a zero of it is a double one: a
+// parabola through three looks whose lowest value is zero against the present one says when; one
+// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the speeds
+// v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two freedoms at the pose:
+// two real roots are two crossing branches, none means that the mechanism is locked, a double one
+// is a cusp.
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
 
 #include "base/arena.h"
@@ -25,10 +29,11 @@ typedef enum hn_branches {
 } hn_branches;
 
 typedef struct hn_radar_info {
-    double sigma_min,
-        sigma_max; ///< of the rows that count (those that do not always depend on others) [-]
-    double ratio;  ///< sigma_min / sigma_max; 1 without rows
-    int lost; ///< rows lost beyond those that were dependent at the first look; 0 unless ratio < 1e-8
+    /// of the rows that count (those that do not always depend on others) [-]
+    double sigma_min, sigma_max;
+    double ratio; ///< sigma_min / sigma_max; 1 without rows
+    /// rows lost beyond those that were dependent at the first look; 0 unless ratio < 1e-8
+    int lost;
     double ahead; ///< seconds until sigma_min vanishes, if that can be said, else HUGE_VAL
 } hn_radar_info;
 
@@ -48,13 +53,13 @@ void hn_radar_free(hn_radar *r); ///< NULL is legal
 void hn_radar_reset(hn_radar *r);
 /// Looks at a state; times should rise. Allocates nothing.
 void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info);
-/// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look, and where one costs so much that
-/// not every state gets it. Allocates nothing.
+/// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look,
+/// and where one costs so much that not every state gets it. Allocates nothing.
 double hn_radar_probe(hn_radar *r, double t, const double *q);
 /// D of the last look (nv): speeds divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_radar_scale(const hn_radar *r);
-/// What is known of the pose that the last look or probe saw with this `sigma_min`, from all singular values (dense: for poses
-/// that are told).
+/// What is known of the pose that the last look or probe saw with this `sigma_min`, from all
+/// singular values (dense: for poses that are told).
 void hn_radar_pose_at(hn_radar *r, double t, const double *q, double sigma_min,
                       hn_radar_pose *pose);
 

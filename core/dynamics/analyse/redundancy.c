@@ -6,9 +6,11 @@
 
 #include <math.h>
 
-/// What is left of a row below this part of it is rounding: rows are known to about 1e-14, a combination of tens of them to 1e-12.
+/// What is left of a row below this part of it is rounding: rows are known to about 1e-14, a
+/// combination of tens of them to 1e-12.
 static const double FOLLOWS = 1e-9;
-/// A row is part of a combination when it brings more than this of its length; also well above rounding.
+/// A row is part of a combination when it brings more than this of its length; also well above
+/// rounding.
 static const double TAKES_PART = 1e-7;
 
 typedef struct basis {
@@ -39,7 +41,8 @@ static int most_kept(const basis *s) {
     return s->n < s->nc ? s->n : s->nc;
 }
 
-/// Splits s->row into its part along e (s->combined) and the rest, twice: once leaves the rounding of a long row behind.
+/// Splits s->row into its part along e (s->combined) and the rest, twice: once leaves the rounding
+/// of a long row behind.
 static void split(basis *s) {
     for (int k = 0; k < s->n_kept; k++) {
         s->combined[k] = 0;

@@ -1,4 +1,5 @@
-// Assembly in outline: pose, speeds, accelerations, and the report. The search itself is in assemble_position.c.
+// Assembly in outline: pose, speeds, accelerations, and the report. The search itself is in
+// assemble_position.c.
 
 #include "dynamics/assembly/assemble.h"
 
@@ -20,9 +21,10 @@ static const hn_coordinate *user_coordinate(const hn_assembler *s, int i) {
     return &s->scene->coordinates[hn_system_user_coordinate(s->sys, i)];
 }
 
-// --- setting up ----------------------------------------------------------------------------------------------
+// ---- setting up ----
 
-/// A pin or a guess on a joint that closes a loop has no coordinate to hold or to begin from: it is refused, not overlooked.
+/// A pin or a guess on a joint that closes a loop has no coordinate to hold or to begin from: it is
+/// refused, not overlooked.
 static hn_status check_pins(const hn_assembler *s) {
     hn_status status = HN_OK;
     for (int i = 0; i < s->scene->n_coordinates; i++) {
@@ -43,7 +45,8 @@ static hn_status check_pins(const hn_assembler *s) {
     return status;
 }
 
-/// An orientation is pinned as a whole: one entry of its rotation vector alone says nothing that could be held.
+/// An orientation is pinned as a whole: one entry of its rotation vector alone says nothing that
+/// could be held.
 static hn_status check_orientations(const hn_assembler *s) {
     for (int i = 0; i + 2 < s->n; i++) {
         const hn_coordinate *c = user_coordinate(s, i);
@@ -135,7 +138,7 @@ static hn_status start(hn_assembler *s) {
     return hn_eval_create(s->sys, terms, s->arena, &s->eval);
 }
 
-// --- pose ----------------------------------------------------------------------------------------------------
+// ---- pose ----
 
 double hn_assemble_gap(const hn_assembler *s, int loop) {
     const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
@@ -187,7 +190,7 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     return status;
 }
 
-// --- speeds --------------------------------------------------------------------------------------------------
+// ---- speeds ----
 
 /// gap = J v + phi_t, and whether it is more than rounding.
 static int velocity_gap(const hn_assembler *s, const double *v, double *gap) {
@@ -219,7 +222,8 @@ static double user_mass(const hn_assembler *s, int k, int l) {
     return sum;
 }
 
-/// What a change of the free rates is solved with: rates[k] (n_free), rows J (nc x n_free), weight (n_free x n_free).
+/// What a change of the free rates is solved with: rates[k] (n_free), rows J (nc x n_free), weight
+/// (n_free x n_free).
 typedef struct rate_problem {
     int n_free, *free;
     double *J, *weight, *force, *change, *gap;
@@ -256,7 +260,8 @@ static hn_status rate_problem_init(rate_problem *p, hn_assembler *s) {
     return HN_OK;
 }
 
-/// Weight of least change: the mass matrix, or the plain sizes of the coordinates where mass alone decides nothing.
+/// Weight of least change: the mass matrix, or the plain sizes of the coordinates where mass alone
+/// decides nothing.
 static void fill_weight(const hn_assembler *s, rate_problem *p, int by_mass) {
     int n = p->n_free;
     for (int k = 0; k < n; k++) {
@@ -361,7 +366,7 @@ static hn_status find_rates(hn_assembler *s, double *v, hn_assembly *report) {
     return status;
 }
 
-// --- accelerations and the report ----------------------------------------------------------------------------
+// ---- accelerations and the report ----
 
 static hn_status find_accelerations(hn_assembler *s, const double *v, double *a, double *lambda) {
     hn_accel *accel = NULL;
@@ -391,7 +396,8 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
     return status;
 }
 
-/// Rank and singular values of J D with D = diag(M)^-1/2: independent of the units of the coordinates.
+/// Rank and singular values of J D with D = diag(M)^-1/2: independent of the units of the
+/// coordinates.
 static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
     int n = s->n;
     hn_qr qr;

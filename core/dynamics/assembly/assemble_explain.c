@@ -1,6 +1,7 @@
-// Why a loop stays open. Beside the gap and the pins: where the joints of the loop that may turn are parallel revolutes, the
-// loop is a polygon. Bodies between two turning joints form one side (pinned joints make them rigid), and it closes if and
-// only if no side is longer than all the others together.
+// Why a loop stays open. Beside the gap and the pins: where the joints of the loop that may turn
+// are parallel revolutes, the loop is a polygon. Bodies between two turning joints form one side
+// (pinned joints make them rigid), and it closes if and only if no side is longer than all the
+// others together.
 
 #include "dynamics/assembly/assemble_internal.h"
 #include "dynamics/compile/quaternion.h"
@@ -24,7 +25,7 @@ typedef struct ring_part {
     int joint_in, joint_out;
 } ring_part;
 
-// --- poses of bodies, straight from the scene ----------------------------------------------------------------
+// ---- poses of bodies, straight from the scene ----
 
 static void rotate(const double R[9], const double x[3], double out[3]) {
     for (int i = 0; i < 3; i++) {
@@ -66,7 +67,8 @@ static void place(const hn_quantity at[3], double out[3]) {
     }
 }
 
-/// Turn by one primitive of a joint at its coordinates x, in the joint's axes, and the way it moves.
+/// Turn by one primitive of a joint at its coordinates x, in the joint's axes, and the way it
+/// moves.
 static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[9],
                              double way[3]) {
     const int i = (primitive->along + 1) % 3, j = (primitive->along + 2) % 3;
@@ -91,7 +93,8 @@ static void primitive_motion(const hn_primitive *primitive, const double *x, dou
     }
 }
 
-/// Rotation and shift from the joint's child to its parent at coordinate values x: p_parent = R p_child + shift.
+/// Rotation and shift from the joint's child to its parent at coordinate values x: p_parent = R
+/// p_child + shift.
 static void joint_transform(const hn_joint *joint, const double *x, pose *out) {
     double B[9], C[9], Ct[9], so_far[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9], slid[3] = {0};
     const hn_primitive *chain;
@@ -129,7 +132,8 @@ static void coordinate_values(const hn_assembler *s, const hn_joint *joint, doub
     }
 }
 
-/// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on failure.
+/// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on
+/// failure.
 static pose find_pose(const hn_assembler *s, int body) {
     pose at = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     while (body != HN_GROUND) {
@@ -170,14 +174,15 @@ static void joint_position(const hn_assembler *s, int joint_index, int body, dou
     }
 }
 
-// --- loops closed the wrong way round --------------------------------------------------------------------------
+// ---- loops closed the wrong way round ----
 
 static void world_direction(const hn_assembler *s, int body, const double v[3], double out[3]) {
     const pose at = find_pose(s, body);
     rotate(at.R, v, out);
 }
 
-/// Whether directions of the two halves that should agree are opposed. Joints that leave an orientation free have none.
+/// Whether directions of the two halves that should agree are opposed. Joints that leave an
+/// orientation free have none.
 static int is_opposed(const hn_assembler *s, const hn_joint *joint) {
     double a[3], b[3];
     if (joint->type == HN_JOINT_SPHERICAL || joint->type == HN_JOINT_UNIVERSAL) {
@@ -209,7 +214,7 @@ int hn_assemble_flipped(const hn_assembler *s) {
     return -1;
 }
 
-// --- the ring of a loop --------------------------------------------------------------------------------------
+// ---- the ring of a loop ----
 
 static int tree_parent(const hn_assembler *s, int body) {
     const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
@@ -224,7 +229,8 @@ static int depth_of(const hn_assembler *s, int body) {
     return depth;
 }
 
-/// Walks from both bodies of the cut joint up to their common ancestor. Returns the number of parts; `parts` holds n_bodies + 1.
+/// Walks from both bodies of the cut joint up to their common ancestor. Returns the number of
+/// parts; `parts` holds n_bodies + 1.
 static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
     int a = s->scene->joints[cut].child, b = s->scene->joints[cut].parent, n = 0, n_back = 0;
     int depth_a = depth_of(s, a), depth_b = depth_of(s, b), in = cut, out = cut;
@@ -268,7 +274,7 @@ static const char *body_name(const hn_assembler *s, int body) {
     return body == HN_GROUND ? "ground" : s->scene->bodies[body].name;
 }
 
-// --- sides of the polygon ------------------------------------------------------------------------------------
+// ---- sides of the polygon ----
 
 typedef struct side {
     double length;
@@ -276,7 +282,8 @@ typedef struct side {
     char name[96];
 } side;
 
-/// 1 if every joint of the ring that may move is a revolute and all their axes are parallel in the world.
+/// 1 if every joint of the ring that may move is a revolute and all their axes are parallel in the
+/// world.
 static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
     double first[3] = {0};
     int have = 0;
@@ -345,7 +352,8 @@ static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side
     return count;
 }
 
-/// The smallest changes that mend it: one side longer or shorter by what is missing. A side of several bodies has no length to set.
+/// The smallest changes that mend it: one side longer or shorter by what is missing. A side of
+/// several bodies has no length to set.
 static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
                           size_t size) {
     size_t used = 0;
@@ -361,7 +369,8 @@ static void list_remedies(const side *sides, int n, int longest, double missing,
     }
 }
 
-/// "coupler + rocker reach 3.8 m, 4.2 m are needed": adds to `text`, and the remedy to `hint`. Nothing if the polygon could close.
+/// "coupler + rocker reach 3.8 m, 4.2 m are needed": adds to `text`, and the remedy to `hint`.
+/// Nothing if the polygon could close.
 static void explain_polygon(const hn_assembler *s, const side *sides, int n, char *text,
                             size_t size, char *hint, size_t hint_size) {
     int longest = 0;
@@ -398,7 +407,7 @@ static void explain_ring(hn_assembler *s, int loop, char *text, size_t size, cha
     }
 }
 
-// --- the message ---------------------------------------------------------------------------------------------
+// ---- the message ----
 
 /// Names and values of the pins that hold coordinates of this loop.
 static void list_pins(hn_assembler *s, int loop, char *text, size_t size) {

@@ -1,6 +1,7 @@
-// The assembly mode that a scene asks for. A pose in another mode is not a matter of a small correction: loops in the wrong mode
-// begin anew with their dependent coordinates anywhere, the rest where it is, and close again. Loops are mended in their
-// order, so that each has to be lucky only once: of two modes a try finds either about as often.
+// The assembly mode that a scene asks for. A pose in another mode is not a matter of a small
+// correction: loops in the wrong mode begin anew with their dependent coordinates anywhere, the
+// rest where it is, and close again. Loops are mended in their order, so that each has to be lucky
+// only once: of two modes a try finds either about as often.
 
 #include "dynamics/assembly/assemble_internal.h"
 

@@ -1,5 +1,7 @@
-// The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then homotopy and random starts.
-// Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982; Allgower & Georg 1990.
+// The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then
+// homotopy and random starts.
+// Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982;
+// Allgower & Georg 1990.
 
 #include "dynamics/assembly/assemble_internal.h"
 #include "dynamics/compile/quaternion.h"
@@ -168,7 +170,8 @@ static double go_back(search *w) {
     return evaluate(w);
 }
 
-/// One least-norm Newton step, dz = -J^+ r. Returns the new |r|, or a negative number when it did not pay (x is then as before).
+/// One least-norm Newton step, dz = -J^+ r. Returns the new |r|, or a negative number when it did
+/// not pay (x is then as before).
 static double newton_step(search *w, double size) {
     fill_jacobian(w);
     memcpy(w->qr.a, w->J, (size_t)w->nc * w->n * sizeof *w->J);
@@ -189,7 +192,8 @@ static double newton_step(search *w, double size) {
     return -1;
 }
 
-/// A = J'J and g = J' r; returns the largest diagonal entry. Rows of J are mostly zero, so they are walked one by one.
+/// A = J'J and g = J' r; returns the largest diagonal entry. Rows of J are mostly zero, so they are
+/// walked one by one.
 static double fill_normal_equations(search *w) {
     int n = w->n;
     memset(w->A, 0, (size_t)n * n * sizeof *w->A);
@@ -220,8 +224,9 @@ static double predicted_gain(const search *w) {
     return gain;
 }
 
-/// One damped step (J'J + mu I) dz = -J' r with damping *mu (0: to be chosen), which follows the gain ratio.
-/// Returns the new |r|, or a negative number at a stationary point (x is then as before).
+/// One damped step (J'J + mu I) dz = -J' r with damping *mu (0: to be chosen), which follows the
+/// gain ratio. Returns the new |r|, or a negative number at a stationary point (x is then as
+/// before).
 static double damped_step(search *w, double size, double *mu) {
     fill_jacobian(w);
     double largest = fill_normal_equations(w);
@@ -260,7 +265,8 @@ static double damped_step(search *w, double size, double *mu) {
     return -1;
 }
 
-/// Minimises |r| from s->x. Returns 1 when it went below `tol`; then goes on as long as Newton gains.
+/// Minimises |r| from s->x. Returns 1 when it went below `tol`; then goes on as long as Newton
+/// gains.
 static int descend(search *w, double tol, int max_iterations) {
     double size = evaluate(w), mu = 0, floor_size = ROUNDING * sqrt(w->nc);
     if (!isfinite(size)) {
@@ -285,7 +291,8 @@ static int descend(search *w, double tol, int max_iterations) {
     return size <= tol;
 }
 
-/// Follows phi(z) = (1 - s) phi(z_guess) from s = 0, where the guess solves it, to s = 1. Returns 1 when it arrived.
+/// Follows phi(z) = (1 - s) phi(z_guess) from s = 0, where the guess solves it, to s = 1. Returns 1
+/// when it arrived.
 static int follow_homotopy(search *w) {
     hn_assembler *s = w->s;
     double at = 0, stride = 0.1;
@@ -335,7 +342,8 @@ static int try_random_starts(search *w) {
     uint64_t seed = 20;
     int starts = RANDOM_STARTS;
     for (int k = 1; k <= starts; k++) {
-        // 2 rad, or two characteristic lengths, at most; half a turn where it closes, but the wrong way round
+        // 2 rad, or two characteristic lengths, at most; half a turn where it closes, but the wrong
+        // way round
         double spread = fmin(2.0 * k / RANDOM_STARTS, starts > RANDOM_STARTS ? M_PI : 2);
         memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < w->n; i++) {

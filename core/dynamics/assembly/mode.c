@@ -36,9 +36,9 @@ typedef struct loop_parts {
 typedef struct finder {
     const hn_system *sys;
     int n_user, nv;
-    double
-        *units; ///< n_user x nv, row k: the rates that a unit rate of user coordinate k stands for
-    int *start; ///< per row of J, its first entry; nc + 1
+    /// n_user x nv, row k: the rates that a unit rate of user coordinate k stands for
+    double *units;
+    int *start;               ///< per row of J, its first entry; nc + 1
     int *moves, *coordinates; ///< n_user each
     char *taken;              ///< nc: the row belongs to a loop already (formulas only)
 } finder;
@@ -65,7 +65,8 @@ static int willingness(const hn_coordinate *c) {
     return 4 * (c->actuated != 0) + 2 * (c->q0_pinned != 0) + (c->v0_pinned != 0);
 }
 
-/// Takes the most willing coordinates (the first of equals) as independent until as many are left as there are rows.
+/// Takes the most willing coordinates (the first of equals) as independent until as many are left
+/// as there are rows.
 static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts *parts) {
     const hn_scene *scene = hn_system_scene(sys);
     int n = parts->n_coordinates;
@@ -92,8 +93,9 @@ static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts 
     }
 }
 
-/// Where the joint of a coordinate stands on the way round a loop: out along the bodies that carry the cut joint's parent
-/// (from the ground on), then along those that carry its child. The order of scene formulas is kept.
+/// Where the joint of a coordinate stands on the way round a loop: out along the bodies that carry
+/// the cut joint's parent (from the ground on), then along those that carry its child. The order of
+/// scene formulas is kept.
 static int place_in_ring(const hn_system *sys, int loop, int user) {
     const hn_scene *scene = hn_system_scene(sys);
     int coordinate = hn_system_user_coordinate(sys, user);
@@ -117,7 +119,8 @@ static int place_in_ring(const hn_system *sys, int loop, int user) {
     return user;
 }
 
-/// Dependent coordinates in the order of the ring, which gives det J_d its sign whatever order the scene lists them in.
+/// Dependent coordinates in the order of the ring, which gives det J_d its sign whatever order the
+/// scene lists them in.
 static void sort_dependent(const hn_system *sys, int loop, loop_parts *parts) {
     for (int i = 1; i < parts->n_dependent; i++) {
         int keep = parts->dependent[i], place = place_in_ring(sys, loop, keep), j = i;
@@ -154,8 +157,8 @@ static hn_status finder_init(finder *f, const hn_system *sys, hn_arena *arena) {
     return HN_OK;
 }
 
-/// A scene of formulas does not say which rows make up one loop: there, these are the rows that depend on the same coordinates as
-/// the first that is left (its set stands in f->moves).
+/// A scene of formulas does not say which rows make up one loop: there, these are the rows that
+/// depend on the same coordinates as the first that is left (its set stands in f->moves).
 static int is_in_loop(const finder *f, int row, int loop) {
     if (!f->sys->scene->is_lagrangian) {
         return hn_system_row_loop(f->sys, row) == loop;
@@ -168,7 +171,8 @@ static int is_in_loop(const finder *f, int row, int loop) {
     return !f->taken[row];
 }
 
-/// Rows of the loop into parts; f->moves[k] becomes 1 for each user coordinate that moves one. 0 when it has none, or too many.
+/// Rows of the loop into parts; f->moves[k] becomes 1 for each user coordinate that moves one. 0
+/// when it has none, or too many.
 static int find_rows(finder *f, int loop, loop_parts *parts) {
     int left = 0;
     while (left < f->sys->nc && f->taken[left]) {
@@ -196,7 +200,8 @@ static int find_rows(finder *f, int loop, loop_parts *parts) {
     return parts->n_rows > 0;
 }
 
-/// Fills `parts`; n_dependent stays 0 when the loop has fewer coordinates than rows (over-closed) or there is none.
+/// Fills `parts`; n_dependent stays 0 when the loop has fewer coordinates than rows (over-closed)
+/// or there is none.
 static void find_parts(finder *f, int loop, loop_parts *parts) {
     *parts = (loop_parts){0};
     if (!find_rows(f, loop, parts)) {

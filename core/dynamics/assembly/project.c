@@ -12,20 +12,23 @@
 #include <string.h>
 
 enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
-// Position: a frozen factor that contracts less than this is made again. Not for speed (0.1 would do) but because the frozen J
-// shifts the landing point along the constraints by about this fraction of the move, a bias that a run adds up.
+// Position: a frozen factor that contracts less than this is made again. Not for speed (0.1 would
+// do) but because the frozen J shifts the landing point along the constraints by about this
+// fraction of the move, a bias that a run adds up.
 static const double FROZEN_CONTRACTION = 1e-4;
 static const double CONTRACTION = 0.1; // velocity: the problem is linear, only convergence counts
-static const double NEAR =
-    1e-2; // a factor made this close (in any coordinate) is worth trying for the speeds
-// a step this small that gains nothing meets the rounding of phi itself, which grows with the extent of the mechanism
+// a factor made this close (in any coordinate) is worth trying for the speeds
+static const double NEAR = 1e-2;
+// a step this small that gains nothing meets the rounding of phi itself, which grows with the
+// extent of the mechanism
 static const double STEP_ROUNDING = 1e-12;
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
-// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far speeds are closed, and what will do where they close no further
+// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far speeds are closed, and what will do
+// where they close no further
 static const double VELOCITY_TOL = 2e-16;
 static const double VELOCITY_ROUNDING = 4e-15;
-// A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic there, and a step
-// phi / sigma would be larger than the range in which J means something.
+// A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic
+// there, and a step phi / sigma would be larger than the range in which J means something.
 static const double PROJECTOR_RANK_TOL = 1e-7;
 // and a dependent row that is short at this pose is not stretched: its direction would be rounding
 static const double PROJECTOR_ROW_FLOOR = 0.05;
@@ -56,7 +59,7 @@ struct hn_projector {
     double ops;
 };
 
-// --- creation ------------------------------------------------------------------------------------------------
+// ---- creation ----
 
 /// Tapes of phi and of J v + phi_t, row by row over what is not zero.
 static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
@@ -117,8 +120,9 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     return HN_OK;
 }
 
-// Where all rows are lengths an angular speed counts by the length and nothing depends on the size of the mechanism. Rows of a
-// scene of formulas have no unit; the length of such a scene is the arm by which angles move them, so it is the same there.
+// Where all rows are lengths an angular speed counts by the length and nothing depends on the size
+// of the mechanism. Rows of a scene of formulas have no unit; the length of such a scene is the arm
+// by which angles move them, so it is the same there.
 static void find_speed_units(hn_projector *p) {
     const hn_scene *scene = hn_system_scene(p->sys);
     int only_lengths = 1;
@@ -208,9 +212,10 @@ void hn_projector_free(hn_projector *p) {
     }
 }
 
-// --- the two ways to solve K [x; -y] = [0; -gap] -------------------------------------------------------------
+// ---- the two ways to solve K [x; -y] = [0; -gap] ----
 
-/// Operations of one dense factorisation and of one solve with it and its refinement, to leading order (linalg/saddle.h).
+/// Operations of one dense factorisation and of one solve with it and its refinement, to leading
+/// order (linalg/saddle.h).
 static double dense_factor_ops(const hn_projector *p) {
     double nv = p->nv, nc = p->nc;
     return 2 * nv * nc * nc + 4 * nv * nv * nc + nv * nv * nv / 3;
@@ -280,7 +285,7 @@ static hn_status solve(hn_projector *p) {
     return hn_saddle_apply(p->zero, p->gap, p->step, p->multiplier, NULL, p->saddle);
 }
 
-// --- position ------------------------------------------------------------------------------------------------
+// ---- position ----
 
 static double eval_phi(hn_projector *p, double t, const double *q) {
     memcpy(p->in, q, (size_t)p->nq * sizeof *q);
@@ -307,8 +312,8 @@ static hn_status step_position(hn_projector *p, double t, double *q) {
     return status;
 }
 
-/// Iterates from q in place until the gap is at most tol, or below `rounding` and no longer shrinking, or what is left belongs
-/// to a lost direction.
+/// Iterates from q in place until the gap is at most tol, or below `rounding` and no longer
+/// shrinking, or what is left belongs to a lost direction.
 static hn_status close_gap(hn_projector *p, double t, double *q, double tol, double rounding,
                            hn_project_info *info) {
     double gap = eval_phi(p, t, q);
@@ -371,7 +376,7 @@ hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
     return status;
 }
 
-// --- velocity ------------------------------------------------------------------------------------------------
+// ---- velocity ----
 
 static double eval_velocity_gap(hn_projector *p, double t, const double *q, const double *v) {
     memcpy(p->in, q, (size_t)p->nq * sizeof *q);
@@ -395,7 +400,8 @@ static int factor_is_near(const hn_projector *p, double t, const double *q) {
     return 1;
 }
 
-/// One correction of v; the sums for the energy follow. 1/2 dv' M dv = 1/2 (J dv)' y, as M dv = J' y.
+/// One correction of v; the sums for the energy follow. 1/2 dv' M dv = 1/2 (J dv)' y, as M dv = J'
+/// y.
 static hn_status correct_velocity(hn_projector *p, double *v) {
     hn_status status = solve(p);
     if (status != HN_OK) {
@@ -407,8 +413,8 @@ static hn_status correct_velocity(hn_projector *p, double *v) {
     return HN_OK;
 }
 
-/// The problem is linear, so a fresh factor closes the gap at once and a near one does in two or three rounds. A factor that
-/// does not contract is made again here, and then by the dense solve.
+/// The problem is linear, so a fresh factor closes the gap at once and a near one does in two or
+/// three rounds. A factor that does not contract is made again here, and then by the dense solve.
 static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, double *v,
                                     double scale, hn_project_info *info) {
     double gap = info->gap;

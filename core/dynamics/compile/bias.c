@@ -1,7 +1,9 @@
-// Bias forces h (what the joints must give at zero u-dot, gravity included) and energy, by recursion.
+// Bias forces h (what the joints must give at zero u-dot, gravity included) and energy, by
+// recursion.
 //
-// Out: a_c = a_i + B_i r_c (+ 2 w x d q'), with -g at the root, so that gravity needs no term of its own.
-// In:  the force of a subtree is its mass times the acceleration of its joint point plus a LOCAL REST
+// Out: a_c = a_i + B_i r_c (+ 2 w x d q'), with -g at the root, so that gravity needs no term of
+// its own. In: the force of a subtree is its mass times the acceleration of its joint point plus a
+// LOCAL REST
 //          f_i = m_i a_i + gf_i,  gf_i = B_i s_i + pf_i,  pf_i = sum of gf_c over revolute children
 //      so no m a is pushed down and rotated up again; moments about the joint point likewise
 //          n_own = I al + w x I w + s x a + sum r_c x gf_c                       (s, I: composite B of mech.h)
@@ -10,7 +12,7 @@
 
 static const double Z[3] = {0, 0, 1};
 
-// outward ----------------------------------------------------------------------------------------------------
+// ---- outward ----
 
 /// Angular velocity and acceleration of a group's base, in the group's frame.
 static void trace_base(hn_mech *m, int link) {
@@ -79,7 +81,7 @@ static void trace_motion(hn_mech *m, int link) {
     trace_rotation(m, link);
 }
 
-// inward -----------------------------------------------------------------------------------------------------
+// ---- inward ----
 
 static void close_link(hn_mech *m, int link) {
     hn_link_trace *at = &m->at[link];
@@ -171,7 +173,7 @@ void hn_mech_trace_bias(hn_mech *m) {
     }
 }
 
-// energy -----------------------------------------------------------------------------------------------------
+// ---- energy ----
 
 static hn_ex sum_list(hn_mech *m, const hn_entries *list) {
     hn_ex *terms = malloc(((size_t)list->n + 1) * sizeof *terms);

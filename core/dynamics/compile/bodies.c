@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// symbols --------------------------------------------------------------------------------------------------------
+// ---- symbols ----
 
 /// 1 if the system coordinate is the scene's own.
 static int is_own(const hn_link *l) {
@@ -96,7 +96,7 @@ static void express_user_coordinates(hn_system *sys) {
     }
 }
 
-// loops and points -------------------------------------------------------------------------------------------------
+// ---- loops and points ----
 
 static void name_loops(hn_system *sys) {
     for (int k = 0; k < sys->tree.n_cut; k++) {
@@ -152,7 +152,7 @@ static hn_status trace_points(hn_mech *m) {
     return status;
 }
 
-// loads ------------------------------------------------------------------------------------------------------------
+// ---- loads ----
 
 static hn_status get_span(hn_mech *m, int p, int q, hn_relative *rel) {
     const hn_point *points = m->sys->scene->points;
@@ -238,7 +238,7 @@ static hn_status spin_of_body(void *self, int p, hn_span *out) {
     return HN_OK;
 }
 
-// the whole ----------------------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 static hn_status make_mech(hn_system *sys, hn_mech *m) {
     const hn_tree *tree = &sys->tree;
@@ -254,7 +254,8 @@ static hn_status make_mech(hn_system *sys, hn_mech *m) {
     return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-/// Entries that M and J may have: beyond that the equations outgrow any tape, and writing them down would take minutes.
+/// Entries that M and J may have: beyond that the equations outgrow any tape, and writing them down
+/// would take minutes.
 enum {
     MAX_MASS_ENTRIES = 60000,
     MAX_CLOSURE_ENTRIES = 300000,
@@ -262,7 +263,8 @@ enum {
     ROWS_PER_CONSTRAINT = 2
 };
 
-/// The mass matrix couples each body to all that carry it; a closure row touches every body on its two paths.
+/// The mass matrix couples each body to all that carry it; a closure row touches every body on its
+/// two paths.
 static hn_status check_size(const hn_mech *m) {
     const hn_tree *tree = m->tree;
     const hn_scene *scene = m->sys->scene;

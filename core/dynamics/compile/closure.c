@@ -159,8 +159,8 @@ hn_status hn_closure_perpendicular_row(hn_closure *c, const char *what, const hn
     return hn_closure_add_row(c, what, 0, hn_vec3_dot(g, p->v, r->v), hn_sum(g, terms, 3), n);
 }
 
-/// (p . delta)' = p . delta' + (w x p) . delta with w of the end that carries p: beside the forces along p at the two points a
-/// moment p x delta on that end's body.
+/// (p . delta)' = p . delta' + (w x p) . delta with w of the end that carries p: beside the forces
+/// along p at the two points a moment p x delta on that end's body.
 hn_measured hn_closure_along(hn_closure *c, const hn_direction *p) {
     hn_graph *g = c->m->g;
     hn_measured out = {.n = 0};

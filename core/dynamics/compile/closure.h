@@ -1,14 +1,17 @@
 #ifndef HN_DYNAMICS_CLOSURE_H
 #define HN_DYNAMICS_CLOSURE_H
-// What a closure row is made of: two ends seen from their common ancestor, directions fixed to them, and the gap between them.
-// Cut joints (loops.c) and constraints beside the joints (constraints.c) are written with it.
+// What a closure row is made of: two ends seen from their common ancestor, directions fixed to
+// them, and the gap between them. Cut joints (loops.c) and constraints beside the joints
+// (constraints.c) are written with it.
 //
-// A row also carries what its multiplier does: lambda times `force` acts on end b at its point and against end a at its own, lambda
-// times `moment_a`, `moment_b` on the two bodies, such that lambda times the row's rate is the power of it all.
+// A row also carries what its multiplier does: lambda times `force` acts on end b at its point and
+// against end a at its own, lambda times `moment_a`, `moment_b` on the two bodies, such that lambda
+// times the row's rate is the power of it all.
 
 #include "dynamics/compile/mech.h"
 
-/// A direction fixed to one end, with its first derivative and the second at zero u-dot, in the closure's frame.
+/// A direction fixed to one end, with its first derivative and the second at zero u-dot, in the
+/// closure's frame.
 typedef struct hn_direction {
     const hn_reach *end;
     hn_vec3 v, d1, d2;
@@ -34,7 +37,8 @@ typedef struct hn_measured {
     int n; ///< of entries
 } hn_measured;
 
-/// Point `at_a` (3, body axes) of link a against point `at_b` of link b (NULL: the body's origin). Memory from the system's arena.
+/// Point `at_a` (3, body axes) of link a against point `at_b` of link b (NULL: the body's origin).
+/// Memory from the system's arena.
 HN_MUST_CHECK hn_status hn_closure_begin(hn_mech *m, int index, int a, const hn_quantity *at_a,
                                          int b, const hn_quantity *at_b, hn_closure *out);
 /// delta, delta_acc and the coefficients.
@@ -43,7 +47,8 @@ void hn_closure_collect(hn_closure *c);
 void hn_closure_collect_rate(hn_closure *c);
 /// `v` in the axes of the body at end a (0) or b (1).
 hn_direction hn_closure_direction(const hn_closure *c, int end, const double v[3]);
-/// The gap along a direction that moves with one end: entries, and the wrench of a row that holds it (delta_rate is needed).
+/// The gap along a direction that moves with one end: entries, and the wrench of a row that holds
+/// it (delta_rate is needed).
 hn_measured hn_closure_along(hn_closure *c, const hn_direction *p);
 /// Adds to the derivative along a coordinate among the first n entries; returns their number.
 int hn_closure_add_entry(hn_closure *c, int n, int coordinate, hn_ex e);

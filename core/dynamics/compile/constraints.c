@@ -1,4 +1,5 @@
-// Constraints beside the joints, as rows. D = p - q, seen from the common ancestor of the two bodies; d, u, n fixed to q's body.
+// Constraints beside the joints, as rows. D = p - q, seen from the common ancestor of the two
+// bodies; d, u, n fixed to q's body.
 //     distance  (D . D - L^2) / (2 L) [m].  Not |D| - L: its gradient D / |D| is undefined where the points meet, and a square
 //               root would stand in every derivative; to first order both measure the same gap.
 //     line      e1 . D,  e2 . D        e1, e2 across d
@@ -13,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-// between points -----------------------------------------------------------------------------------------------
+// ---- between points ----
 
 static hn_status add_distance(hn_closure *c, const hn_constraint *k) {
     hn_graph *g = c->m->g;
@@ -76,7 +77,8 @@ static hn_status add_plane(hn_closure *c, const hn_constraint *k) {
 /// The wheel's angle against the body of the line, if both turn about the axle's direction only.
 static hn_status find_wheel_turn(hn_closure *c, const hn_constraint *k, const double axle[3],
                                  hn_turn *turn) {
-    // the wheel's own direction with the same numbers marks its zero, or `up` where that one lies along the axle
+    // the wheel's own direction with the same numbers marks its zero, or `up` where that one lies
+    // along the axle
     const double *marks[2] = {k->direction, k->up};
     for (int i = 0; i < 2; i++) {
         if (hn_mech_relative_turn(c->m, c->link[1], axle, marks[i], c->link[0], marks[i], turn)) {
@@ -144,9 +146,10 @@ static hn_status add_between_points(hn_mech *m, int index, const hn_constraint *
     return POINT_ADDERS[k->kind](&c, k);
 }
 
-// between coordinates ------------------------------------------------------------------------------------------
+// ---- between coordinates ----
 
-/// A row phi(x, t) of the scene's coordinates, with symbols in their place while it is differentiated.
+/// A row phi(x, t) of the scene's coordinates, with symbols in their place while it is
+/// differentiated.
 typedef struct coordinate_row {
     int n;        ///< scene coordinates, and t behind them
     int *symbols; ///< n + 1
@@ -271,7 +274,7 @@ static hn_status add_gear(hn_system *sys, int index, const hn_constraint *k) {
     return add_coordinate_row(sys, &row, phi, k, index, is_length);
 }
 
-// all ----------------------------------------------------------------------------------------------------------
+// ---- all ----
 
 int hn_constraint_has_points(const hn_constraint *k) {
     return k->kind != HN_CONSTRAINT_GEAR && k->kind != HN_CONSTRAINT_FORMULA;
@@ -306,7 +309,7 @@ hn_status hn_mech_trace_constraints(hn_mech *m) {
     return status;
 }
 
-// where the point of a constraint should be ----------------------------------------------------------------------
+// ---- where the point of a constraint should be ----
 
 static hn_status locate(hn_mech *m, int point, hn_vec3 *out) {
     const hn_point *p = &m->sys->scene->points[point];

@@ -1,6 +1,7 @@
 #include "dynamics/compile/direction.h"
 
-// Of a ball, the quaternion (w, u) turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of the speed.
+// Of a ball, the quaternion (w, u) turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of
+// the speed.
 int hn_direction_of_speed(const hn_system *sys, int j, int symbols[HN_DIRECTION_MOST],
                           hn_ex seed[HN_DIRECTION_MOST]) {
     const int position = hn_system_position_of(sys, j);

@@ -6,7 +6,8 @@
 
 enum { HN_DIRECTION_MOST = 4 }; ///< entries of q that one speed moves: those of a quaternion
 
-/// The entries of q that speed j moves: their symbols and rates at v_j = 1, all others 0. Returns how many.
+/// The entries of q that speed j moves: their symbols and rates at v_j = 1, all others 0. Returns
+/// how many.
 int hn_direction_of_speed(const hn_system *sys, int j, int symbols[HN_DIRECTION_MOST],
                           hn_ex seed[HN_DIRECTION_MOST]);
 #endif

@@ -1,7 +1,8 @@
 #include "dynamics/compile/drawing.h"
 #include "dynamics/compile/system_impl.h"
 
-/// The scene's own point at a half-joint, so that the bars that end there are known to; else the point added for it.
+/// The scene's own point at a half-joint, so that the bars that end there are known to; else the
+/// point added for it.
 static int half_joint_point(const hn_system *sys, int loop, int half) {
     const hn_scene *scene = sys->scene;
     const hn_joint *joint = &scene->joints[sys->tree.cut[loop]];
@@ -17,7 +18,8 @@ static int half_joint_point(const hn_system *sys, int loop, int half) {
     return scene->n_points + 2 * loop + half;
 }
 
-/// The pair of points that part when a loop of bodies does not close; coordinates that part have none.
+/// The pair of points that part when a loop of bodies does not close; coordinates that part have
+/// none.
 static void name_tear(const hn_system *sys, int k, int (*tears)[2], const char **names) {
     const hn_loop *loop = &sys->loops[k];
     if (loop->tear < 0) {
@@ -34,8 +36,8 @@ static void name_tear(const hn_system *sys, int k, int (*tears)[2], const char *
     }
 }
 
-/// Bodies and joints: points of the scene, then the two half-joints of every cut joint, then where the points of constraints should
-/// be. Lagrangian: the scene's own tears.
+/// Bodies and joints: points of the scene, then the two half-joints of every cut joint, then where
+/// the points of constraints should be. Lagrangian: the scene's own tears.
 hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     const hn_scene *scene = sys->scene;
     size_t n = (size_t)n_tears + 1;

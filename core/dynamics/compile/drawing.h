@@ -1,7 +1,8 @@
 #ifndef HN_DYNAMICS_DRAWING_H
 #define HN_DYNAMICS_DRAWING_H
-// What to draw, with every point an index into the world points that HN_TERM_POINTS evaluates (x, y, z each).
-// The page, the snapshot and the terminal all draw from this list and from nothing else.
+// What to draw, with every point an index into the world points that HN_TERM_POINTS evaluates (x,
+// y, z each). The page, the snapshot and the terminal all draw from this list and from nothing
+// else.
 
 #include "base/strbuf.h"
 #include "dynamics/compile/system.h"
@@ -12,8 +13,8 @@ typedef struct hn_drawing {
     int n_shapes;
     const hn_shape *shapes; ///< p, q are indices of world points
     int n_tears;
-    const int (
-        *tears)[2]; ///< the two half-joints of each cut: they coincide when the loop is closed
+    /// the two half-joints of each cut: they coincide when the loop is closed
+    const int (*tears)[2];
     const char *const *tear_names;
 } hn_drawing;
 

@@ -1,6 +1,7 @@
 #ifndef HN_DYNAMICS_ENTRIES_H
 #define HN_DYNAMICS_ENTRIES_H
-// A sparse matrix of expressions as a list of entries that are not identically zero, in the order they were made.
+// A sparse matrix of expressions as a list of entries that are not identically zero, in the order
+// they were made.
 
 #include "expr/graph.h"
 

@@ -1,4 +1,5 @@
-// Formulas of a scene in its own names: parameters, t, coordinates and rates as the scene calls them.
+// Formulas of a scene in its own names: parameters, t, coordinates and rates as the scene calls
+// them.
 #include "dynamics/compile/system_impl.h"
 #include "expr/parse.h"
 

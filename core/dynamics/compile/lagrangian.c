@@ -1,4 +1,5 @@
-// A scene of formulas, or formulas beside bodies, compiled by exact differentiation. With L = T - V and p = dT/dv:
+// A scene of formulas, or formulas beside bodies, compiled by exact differentiation. With L = T - V
+// and p = dT/dv:
 //     M = dp/dv,   h = (dp/dq) v - dT/dq + dV/dq,   f = Q - h                                          (1)
 //     J = dphi/dq, phi_t, gamma = d/dt (J v + phi_t) at zero u-dot: the directional derivative, twice,
 //     along (q', v', t') = (v, 0, 1), so that terms of t come in by themselves.                         (2)
@@ -47,7 +48,7 @@ static hn_ex at_rest(hn_system *sys, hn_ex e) {
     return out;
 }
 
-// kinetic and potential energy ---------------------------------------------------------------------------------------
+// ---- kinetic and potential energy ----
 
 static hn_status refuse_kinetic(hn_system *sys, const char *what) {
     return hn_diags_add(sys->diags, HN_ERR_INPUT, sys->scene->lagrangian.kinetic.pointer,
@@ -55,7 +56,8 @@ static hn_status refuse_kinetic(hn_system *sys, const char *what) {
                         "the kinetic energy must be quadratic in the rates: %s", what);
 }
 
-/// Coordinates with a position of their own: all but balls, whose rates are no derivatives of coordinates.
+/// Coordinates with a position of their own: all but balls, whose rates are no derivatives of
+/// coordinates.
 typedef struct plain {
     int n;
     int *speed, *q_symbols, *v_symbols;
@@ -84,7 +86,8 @@ static hn_status list_plain(hn_system *sys, plain *p) {
     return HN_OK;
 }
 
-/// The first `n_theirs` entries of M are the bodies': one that is there already takes the formulas' share.
+/// The first `n_theirs` entries of M are the bodies': one that is there already takes the formulas'
+/// share.
 static void add_mass(hn_system *sys, int n_theirs, int row, int col, hn_ex e) {
     for (int k = 0; k < n_theirs && !hn_is_zero(e); k++) {
         hn_entry *at = &sys->M.at[k];
@@ -174,7 +177,7 @@ hn_status hn_lagrangian_add_energies(hn_system *sys) {
     return trace_mass(sys, &c, p);
 }
 
-// constraints --------------------------------------------------------------------------------------------------------
+// ---- constraints ----
 
 static hn_status add_constraint(hn_system *sys, int i) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
@@ -237,9 +240,9 @@ static hn_status trace_constraints(hn_system *sys) {
     return HN_OK;
 }
 
-/// The arm by which an angle moves the constraints at the start, the largest of them: what joints of a body are apart in a
-/// scene of bodies. It is the length of a column of J, so that turning the axes changes nothing. Constraints that no angle
-/// moves leave 1.
+/// The arm by which an angle moves the constraints at the start, the largest of them: what joints
+/// of a body are apart in a scene of bodies. It is the length of a column of J, so that turning the
+/// axes changes nothing. Constraints that no angle moves leave 1.
 static hn_status find_length(hn_system *sys) {
     const hn_coordinate *c = sys->scene->coordinates;
     double *x = hn_arena_doubles(sys->arena, (size_t)hn_graph_n_symbols(sys->g));
@@ -268,7 +271,7 @@ static hn_status find_length(hn_system *sys) {
     return HN_OK;
 }
 
-// points -------------------------------------------------------------------------------------------------------------
+// ---- points ----
 
 static hn_status trace_points(hn_system *sys) {
     for (int k = 0; k < sys->scene->n_points; k++) {

@@ -1,5 +1,5 @@
-// Loads as generalised forces, by virtual work: what a load does is power = force . rate, and the coefficients of the rates
-// are those that closures use too.
+// Loads as generalised forces, by virtual work: what a load does is power = force . rate, and the
+// coefficients of the rates are those that closures use too.
 //     spring between points, D = p - q, l = |D|, e_i = D . dD/dq_i:  l l' = sum e_i u_i
 //         Q_i = -(k (1 - l0 / l) + c l'/ l) e_i,   V = k (l - l0)^2 / 2
 //     moment N on a body that turns with w = sum w_i u_i:  Q_i = N . w_i
@@ -199,8 +199,8 @@ static hn_status add_follow(hn_system *sys, const hn_geometry *geometry, const h
     return add_on_coordinate(sys, load, tau);
 }
 
-/// From value to value with every stretch as a number between 0 and 1: past its end it is 1 exactly, and the sum of what stands
-/// before holds to rounding, however long ago it was.
+/// From value to value with every stretch as a number between 0 and 1: past its end it is 1
+/// exactly, and the sum of what stands before holds to rounding, however long ago it was.
 static hn_status profile(hn_system *sys, const hn_profile *table, hn_ex *out) {
     hn_graph *g = sys->g;
     hn_ex *terms = hn_arena_get(sys->arena, ((size_t)table->n + 1) * sizeof *terms);

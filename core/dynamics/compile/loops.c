@@ -1,13 +1,15 @@
-// Loop closures. A cut joint is written as rows between its two halves, relative to the lowest common ancestor of its bodies
+// Loop closures. A cut joint is written as rows between its two halves, relative to the lowest
+// common ancestor of its bodies
 // and in that loop's frame (relate.c):
 //     revolute     position 3,  x_B . z_A,  y_B . z_A               universal  position 3,  x_B . z_A
 //     prismatic    position 2 across the axis,  x_B . y_A,  x_B . z_A,  y_B . z_A
 //     cylindrical  position 2 across the axis,  x_B . z_A,  y_B . z_A
 //     planar       position 1 along the axis,  x_B . z_A,  y_B . z_A
 //     spherical    position 3                                       fixed      position 3, turns as prismatic
-// J comes as coefficients on the path's coordinates (axis x lever arm), gamma from the same recursion for accelerations:
-// (p . r)'' = p''. r + 2 p'. r' + p . r''. Differentiating phi instead would cost more operations. Rows that vanish
-// identically drop out when they are added, so a planar loop keeps two, whatever plane it lies in.
+// J comes as coefficients on the path's coordinates (axis x lever arm), gamma from the same
+// recursion for accelerations: (p . r)'' = p''. r + 2 p'. r' + p . r''. Differentiating phi instead
+// would cost more operations. Rows that vanish identically drop out when they are added, so a
+// planar loop keeps two, whatever plane it lies in.
 #include "dynamics/compile/closure.h"
 
 #include <math.h>
@@ -37,8 +39,9 @@ static int count_open(const hn_reach *end) {
     return n;
 }
 
-/// The rows of a type, in their order. Places: 3 along the loop's own axes, or where the joint lets the halves move apart, along
-/// axes of the joint (bits: 1 x, 2 y, 4 z). Turns: the pairs that stay perpendicular.
+/// The rows of a type, in their order. Places: 3 along the loop's own axes, or where the joint lets
+/// the halves move apart, along axes of the joint (bits: 1 x, 2 y, 4 z). Turns: the pairs that stay
+/// perpendicular.
 enum { TURN = 1, TILT_1 = 2, TILT_2 = 4, CROSS = 8 };
 typedef struct closing {
     int all_places, along, turns;
@@ -117,9 +120,10 @@ static hn_status close_joint(loop *l) {
     return status == HN_OK ? turn_rows(l, rule->turns, parent, child) : status;
 }
 
-// coordinates of cut joints ------------------------------------------------------------------------------------
+// ---- coordinates of cut joints ----
 
-/// Constant part of a link's orientation in a group's frame, if the link belongs to it or does not rotate in its base.
+/// Constant part of a link's orientation in a group's frame, if the link belongs to it or does not
+/// rotate in its base.
 static int constant_in_group(const hn_tree *tree, int link, int group, double C[3][3]) {
     const hn_link *l = &tree->links[link];
     double back[3][3], own[3][3];
@@ -135,8 +139,9 @@ static int constant_in_group(const hn_tree *tree, int link, int group, double C[
     return hn_tree_is_still(tree, link) && tree->groups[group].base == tree->ground;
 }
 
-/// Between links of one group: Rz(angle) = D Rz(theta_B - theta_A + delta_B - delta_A) D with D the identity or a half turn, so
-/// the angle is the difference of two absolute angles, up to a sign and a constant.
+/// Between links of one group: Rz(angle) = D Rz(theta_B - theta_A + delta_B - delta_A) D with D the
+/// identity or a half turn, so the angle is the difference of two absolute angles, up to a sign and
+/// a constant.
 int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
                           const double ref_b[3], hn_turn *out) {
     const hn_tree *tree = m->tree;

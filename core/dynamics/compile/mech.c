@@ -89,7 +89,7 @@ hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm) {
     return hn_vec3_add(m->g, m->position[link], hn_mat3_apply(m->g, G, in_F));
 }
 
-// geometry -------------------------------------------------------------------------------------------------
+// ---- geometry ----
 
 /// From the parent's joint point to the link's, and which way a prismatic joint moves it.
 static hn_status trace_arm(hn_mech *m, int link) {
@@ -101,7 +101,8 @@ static hn_status trace_arm(hn_mech *m, int link) {
     }
     at->slide = hn_vec3_zero();
     if (l->type == HN_JOINT_PRISMATIC) {
-        // the link's point moves along the axis when the joint's own parent is the link's parent, against it otherwise
+        // the link's point moves along the axis when the joint's own parent is the link's parent,
+        // against it otherwise
         hn_mat3 C = hn_mat3_num(m->tree->links[l->parent].C);
         const double axis[3] = {l->here[0][2], l->here[1][2], l->here[2][2]};
         hn_vec3 d = hn_mat3_apply(m->g, &C, hn_vec3_num(axis));
@@ -183,8 +184,9 @@ static hn_mat3 transposed(const hn_mat3 *a) {
     return out;
 }
 
-/// Where a ball's frame stands in its parent's, and the axes of its speeds. A joint whose parent is the link itself turns back: its
-/// child's axes, in which the speeds are, are then those on the link's parent, and its child turns the other way.
+/// Where a ball's frame stands in its parent's, and the axes of its speeds. A joint whose parent is
+/// the link itself turns back: its child's axes, in which the speeds are, are then those on the
+/// link's parent, and its child turns the other way.
 static void trace_ball(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     hn_mat3 here = hn_mat3_num(m->tree->groups[l->group].X);
@@ -235,9 +237,10 @@ hn_status hn_mech_trace_geometry(hn_mech *m) {
     return HN_OK;
 }
 
-// composites -----------------------------------------------------------------------------------------------
+// ---- composites ----
 
-/// First moment and inertia of a set with mass mass, seen from a point from which its own lies at r.
+/// First moment and inertia of a set with mass mass, seen from a point from which its own lies at
+/// r.
 static void move_set(hn_mech *m, hn_ex mass, hn_vec3 *s, hn_sym3 *I, hn_vec3 r, int only_zz) {
     hn_sym3 gain = hn_sym3_shift(m->g, mass, *s, r, only_zz);
     *I = hn_sym3_add(m->g, I, &gain);
@@ -333,14 +336,15 @@ void hn_mech_trace_composites(hn_mech *m) {
     }
 }
 
-// mass matrix ----------------------------------------------------------------------------------------------
+// ---- mass matrix ----
 
 /// The wrench of a column on its way from its own link to the root, in work frames.
 typedef struct wrench {
     hn_vec3 f, nK, nF;
 } wrench;
 
-/// Turning about `axis` (E) with what hangs on a ball: it has no group children, so everything turns.
+/// Turning about `axis` (E) with what hangs on a ball: it has no group children, so everything
+/// turns.
 static wrench ball_wrench(hn_mech *m, int link, hn_vec3 axis) {
     const hn_link_trace *at = &m->at[link];
     wrench w;

@@ -2,21 +2,23 @@
 #define HN_DYNAMICS_MECH_H
 // Tracing a tree of bodies: what is known of each link as expressions, and the passes that fill it.
 //
-// Frames of a link i (see tree.h): F its group's frame; E = Rz(-theta) F, in which the body's own arms are constants; and the
-// WORK frame its vectors are kept in: F where the base of the group does not rotate (there the angular velocity is
-// u z, and products with it stay short), E elsewhere (there inertias and arms stay constants).
-// Forces flow along the translation tree (to the parent); moments along the rotation tree: what carries a link's rotation
-// takes its moment, so a group child's moment passes its parent by and reaches the group's base.
+// Frames of a link i (see tree.h): F its group's frame; E = Rz(-theta) F, in which the body's own
+// arms are constants; and the WORK frame its vectors are kept in: F where the base of the group
+// does not rotate (there the angular velocity is u z, and products with it stay short), E elsewhere
+// (there inertias and arms stay constants). Forces flow along the translation tree (to the parent);
+// moments along the rotation tree: what carries a link's rotation takes its moment, so a group
+// child's moment passes its parent by and reaches the group's base.
 
 #include "dynamics/compile/system_impl.h"
 
 typedef struct hn_link_trace {
     hn_ex c, s; ///< of theta; 1, 0 where the link never rotates
-    hn_vec3
-        arm; ///< from the parent's joint point to this one's, in E(parent), with the slide of a prismatic joint
+    /// from the parent's joint point to this one's, in E(parent), with the slide of a prismatic
+    /// joint
+    hn_vec3 arm;
     hn_vec3 slide; ///< prismatic: direction of a growing coordinate, in E(parent)
-    hn_mat3
-        spin; ///< ball: column k is the axis of speed k, in E (a turning link also has z: hn_mech_axis)
+    /// ball: column k is the axis of speed k, in E (a turning link also has z: hn_mech_axis)
+    hn_mat3 spin;
     hn_vec3 r; ///< arm in the parent's work frame
 
     // own body, about its joint point, in E
@@ -24,16 +26,17 @@ typedef struct hn_link_trace {
     hn_vec3 s_own;
     hn_sym3 I_own;
 
-    // composites about the joint point: total mass; what turns with the link (K) with everything that hangs on group
-    // children as point masses; the same with all revolute children as point masses (B); everything, rigid (full), in E
+    // composites about the joint point: total mass; what turns with the link (K) with everything
+    // that hangs on group children as point masses; the same with all revolute children as point
+    // masses (B); everything, rigid (full), in E
     hn_ex m;
     hn_vec3 sK, sB, sF;
     hn_sym3 IK, IB, IF;
     hn_vec3 sigma, eta; ///< of group children: sum of full first moments; sum s x (z x r)
 
     // motion at zero u-dot, in the work frame
-    hn_vec3 w, al,
-        a; ///< angular velocity and acceleration; acceleration of the joint point, minus gravity
+    /// angular velocity and acceleration; acceleration of the joint point, minus gravity
+    hn_vec3 w, al, a;
     hn_mat3 B;     ///< a point at r accelerates by a + B r
     hn_vec3 kappa; ///< prismatic: 2 w x d q', work frame of the parent
     hn_vec3 gravity;
@@ -49,8 +52,8 @@ typedef struct hn_mech {
     const hn_tree *tree;
     hn_link_trace *at;         ///< per link
     hn_vec3 *base_w, *base_al; ///< per group, in F
-    hn_mat3
-        *group_X; ///< per group: F to the theta-free frame of its base (of a ball: of its parent)
+    /// per group: F to the theta-free frame of its base (of a ball: of its parent)
+    hn_mat3 *group_X;
     hn_mat3 *to_world; ///< per group: F to world
     hn_vec3 *position; ///< per link: joint point in the world
     int *path;         ///< scratch, n_links
@@ -81,7 +84,7 @@ void hn_mech_trace_mass(hn_mech *m);   ///< sys->M
 void hn_mech_trace_bias(hn_mech *m);   ///< adds -h to sys->f
 void hn_mech_trace_energy(hn_mech *m); ///< kinetic; adds gravity to potential
 
-// relative motion of two points, for closures and loads -------------------------------------------------------------
+// ---- relative motion of two points, for closures and loads ----
 
 typedef struct hn_lever {
     int coordinate;
@@ -92,7 +95,8 @@ typedef struct hn_lever {
     hn_vec3 lever; ///< sum of the arms it turns
 } hn_lever;
 
-/// Motion of one link and of a point on it, relative to a common ancestor, in one frame of that ancestor's.
+/// Motion of one link and of a point on it, relative to a common ancestor, in one frame of that
+/// ancestor's.
 typedef struct hn_reach {
     hn_vec3 pos, acc; ///< acc: at zero u-dot
     hn_mat3 U;        ///< E(link) to the frame
@@ -124,17 +128,18 @@ typedef struct hn_turn {
     int speed[2];      ///< system speeds of a and b, -1: does not turn
     hn_ex angle, rate; ///< sign (theta_b - theta_a + constant), sign (theta_b' - theta_a')
 } hn_turn;
-/// Directions in body axes; the angle is 0 where ref_b lies on ref_a, seen along the axis. Returns 0 if the links do not turn about
-/// parallel axes along this one, or a ref lies along it.
+/// Directions in body axes; the angle is 0 where ref_b lies on ref_a, seen along the axis. Returns
+/// 0 if the links do not turn about parallel axes along this one, or a ref lies along it.
 int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
                           const double ref_b[3], hn_turn *out);
 
-// constraints beside the joints (constraints.c) ----------------------------------------------------------------------
+// ---- constraints beside the joints (constraints.c) ----
 
 int hn_constraint_has_points(const hn_constraint *k);
 /// Loops behind those of the cut joints.
 void hn_constraints_name_loops(hn_system *sys);
 HN_MUST_CHECK hn_status hn_mech_trace_constraints(hn_mech *m);
-/// Where point p of a constraint with points should be, in the world: it lies there when the constraint holds.
+/// Where point p of a constraint with points should be, in the world: it lies there when the
+/// constraint holds.
 HN_MUST_CHECK hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *out);
 #endif

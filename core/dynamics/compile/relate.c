@@ -1,9 +1,11 @@
-// Motion of two points relative to a common ancestor of their links, in ONE frame of that ancestor's: closure rows and loads are
+// Motion of two points relative to a common ancestor of their links, in ONE frame of that
+// ancestor's: closure rows and loads are
 // written in the frame of their loop, never in the world by default.
 //
-// The frame. If a path leaves the ancestor through an axis parallel to the ancestor's own group, absolute angles count from
-// that group's base, so the frame is the group's (and the ancestor's own angle takes part). Otherwise the frame is fixed
-// in the ancestor and agrees with the first group met, whose links then stand in it by their absolute angle alone.
+// The frame. If a path leaves the ancestor through an axis parallel to the ancestor's own group,
+// absolute angles count from that group's base, so the frame is the group's (and the ancestor's own
+// angle takes part). Otherwise the frame is fixed in the ancestor and agrees with the first group
+// met, whose links then stand in it by their absolute angle alone.
 #include "dynamics/compile/mech.h"
 
 static const double Z[3] = {0, 0, 1};
@@ -31,7 +33,8 @@ static int list_path(hn_mech *m, int common, int link) {
     return n;
 }
 
-/// The first revolute link on the way down, or -1: none, or a ball comes first and groups behind it say nothing here.
+/// The first revolute link on the way down, or -1: none, or a ball comes first and groups behind it
+/// say nothing here.
 static int first_revolute(hn_mech *m, int common, int link) {
     int n = list_path(m, common, link);
     for (int k = 0; k < n; k++) {

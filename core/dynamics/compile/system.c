@@ -5,14 +5,15 @@
 #include <stdio.h>
 #include <string.h>
 
-/// A constant closure row smaller than this counts as closed, relative to the length of the mechanism (or 1 for angles) [-].
+/// A constant closure row smaller than this counts as closed, relative to the length of the
+/// mechanism (or 1 for angles) [-].
 static const double CLOSED = 1e-9;
 
 hn_system_opts hn_system_opts_default(void) {
     return (hn_system_opts){.symbolic_params = 0};
 }
 
-// building blocks for both kinds -----------------------------------------------------------------------------------
+// ---- building blocks for both kinds ----
 
 static int name_is_taken(const hn_system *sys, const char *name) {
     if (hn_graph_find_symbol(sys->g, name) >= 0) {
@@ -128,7 +129,7 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     return HN_OK;
 }
 
-// compiling --------------------------------------------------------------------------------------------------------
+// ---- compiling ----
 
 /// A coordinate that no mass and no closure touches has no equation.
 static hn_status check_freedoms(hn_system *sys) {
@@ -260,7 +261,8 @@ hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts, h
         (hn_graph_failed(sys->g) || hn_arena_failed(sys->arena))) {
         forget_faults(
             diags,
-            told); // a graph without memory gives zeros, which the checks took for the scene's fault
+            // a graph without memory gives zeros, which the checks took for the scene's fault
+            told);
         status = HN_ERR_MEMORY;
     }
     sys->diags = NULL;
@@ -284,7 +286,7 @@ void hn_system_free(hn_system *sys) {
     free(sys);
 }
 
-// reading ----------------------------------------------------------------------------------------------------------
+// ---- reading ----
 
 const hn_scene *hn_system_scene(const hn_system *sys) {
     return sys->scene;
@@ -363,13 +365,15 @@ hn_system_exprs hn_system_get_exprs(const hn_system *sys) {
                              .t_symbol = sys->t_symbol};
 }
 
-// user and system coordinates: user_i = sign_i (q_i - q_ref(i) - offset_i), references first in tree order -----------
+// ---- user and system coordinates: user_i = sign_i (q_i - q_ref(i) - offset_i), references first
+// in tree order ----
 
 static const hn_link *link_of(const hn_system *sys, int coordinate) {
     return &sys->tree.links[sys->tree.link_of[coordinate]];
 }
 
-/// Angles and ways: user_i = sign (q_i - q_ref - offset); `place` says where q_i stands (NULL: at i). Balls are left out.
+/// Angles and ways: user_i = sign (q_i - q_ref - offset); `place` says where q_i stands (NULL: at
+/// i). Balls are left out.
 static void to_user(const hn_system *sys, const double *q, double *user, const int *place) {
     for (int i = 0; i < sys->nv; i++) {
         const hn_link *l = link_of(sys, i);
@@ -449,7 +453,8 @@ void hn_system_forces_to_user(const hn_system *sys, const double *f, double *use
     if (sys->scene->is_lagrangian) {
         return;
     }
-    // v = S user_v with S filled from references downwards, so user_f = S' f gathers from the leaves up
+    // v = S user_v with S filled from references downwards, so user_f = S' f gathers from the
+    // leaves up
     for (int k = sys->tree.n_order - 1; k >= 0; k--) {
         const hn_link *l = &sys->tree.links[sys->tree.order[k]];
         if (l->angle_ref >= 0) {
@@ -461,9 +466,10 @@ void hn_system_forces_to_user(const hn_system *sys, const double *f, double *use
     }
 }
 
-// positions and speeds: balls, and everything else --------------------------------------------------------------------
+// ---- positions and speeds: balls, and everything else ----
 
-/// Entries of q that are not a ball's stand in the order of their speeds, so between balls runs of equal length go in step.
+/// Entries of q that are not a ball's stand in the order of their speeds, so between balls runs of
+/// equal length go in step.
 typedef struct stretch {
     int position, speed, n;
 } stretch;

@@ -1,19 +1,20 @@
 #ifndef HN_DYNAMICS_SYSTEM_H
 #define HN_DYNAMICS_SYSTEM_H
-// A system: a scene compiled to equations. It keeps the expressions of every term; an evaluator (eval.h) compiles
-// a tape for the terms that one method needs and nothing else.
+// A system: a scene compiled to equations. It keeps the expressions of every term; an evaluator
+// (eval.h) compiles a tape for the terms that one method needs and nothing else.
 //
 //     M(q) a = f(q,v,t) + J' lambda,   phi(q,t) = 0,   J v + phi_t = 0,   J a + gamma = 0          (1)
 //
-// Coordinates. The compiler chooses its own: along consecutive parallel revolute axes it uses absolute angles and
-// rates (M gets sparse, see the tape sizes), everywhere else the scene's. Everything below dynamics' callers is in SYSTEM
-// coordinates q (nq), v (nv); people see the scene's USER coordinates (nv of them); the constant linear map between them is
-// hn_system_to_user() and hn_system_from_user(). nq == nv but for orientations (spherical and free joints): there q has a unit
-// quaternion of four entries, users see its rotation vector (axis times angle, no longer than pi), and the rates of both are
-// the angular velocity.
+// Coordinates. The compiler chooses its own: along consecutive parallel revolute axes it uses
+// absolute angles and rates (M gets sparse, see the tape sizes), everywhere else the scene's.
+// Everything below dynamics' callers is in SYSTEM coordinates q (nq), v (nv); people see the
+// scene's USER coordinates (nv of them); the constant linear map between them is
+// hn_system_to_user() and hn_system_from_user(). nq == nv but for orientations (spherical and free
+// joints): there q has a unit quaternion of four entries, users see its rotation vector (axis times
+// angle, no longer than pi), and the rates of both are the angular velocity.
 //
-// The system is constant after compilation: threads may share it, except hn_eval_create() (which adds nodes to the
-// graph): create evaluators from one thread at a time.
+// The system is constant after compilation: threads may share it, except hn_eval_create() (which
+// adds nodes to the graph): create evaluators from one thread at a time.
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -23,33 +24,36 @@
 typedef struct hn_system hn_system;
 
 typedef struct hn_system_opts {
-    int symbolic_params; ///< keep parameters as symbols (for printing equations); numbers are folded otherwise
+    /// keep parameters as symbols (for printing equations); numbers are folded otherwise
+    int symbolic_params;
 } hn_system_opts;
 hn_system_opts hn_system_opts_default(void);
 
-/// Compiles. The scene must outlive the system. Fails with HN_ERR_INPUT (a closure row that is a nonzero constant: the
-/// loop can never close; massless freedom; formula faults), HN_ERR_UNSUPPORTED, HN_ERR_LIMIT, HN_ERR_MEMORY; told in diags.
+/// Compiles. The scene must outlive the system. Fails with HN_ERR_INPUT (a closure row that is a
+/// nonzero constant: the loop can never close; massless freedom; formula faults),
+/// HN_ERR_UNSUPPORTED, HN_ERR_LIMIT, HN_ERR_MEMORY; told in diags.
 HN_MUST_CHECK hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts,
                                           hn_system **out, hn_diags *diags);
 void hn_system_free(hn_system *sys);
 const hn_scene *hn_system_scene(const hn_system *sys);
 
 typedef struct hn_system_info {
-    int nq, nv,
-        nc;      ///< sizes in system coordinates; nc rows left after identically zero rows are gone
-    int n_user;  ///< scene coordinates that carry freedom (tree joints), as many as nv
-    int n_loops; ///< joints (or tears) that close a loop
+    /// sizes in system coordinates; nc rows left after identically zero rows are gone
+    int nq, nv, nc;
+    int n_user;   ///< scene coordinates that carry freedom (tree joints), as many as nv
+    int n_loops;  ///< joints (or tears) that close a loop
     int n_points; ///< world points for drawing
-    int rows_before,
-        rows_dropped; ///< closure rows written down, and those that vanished identically
-    int has_time;     ///< phi or f depend on t explicitly
-    int nodes;        ///< graph size
+    /// closure rows written down, and those that vanished identically
+    int rows_before, rows_dropped;
+    int has_time; ///< phi or f depend on t explicitly
+    int nodes;    ///< graph size
 } hn_system_info;
 hn_system_info hn_system_get_info(const hn_system *sys);
 
 /// User coordinate i (0..n_user-1): index into scene->coordinates.
 int hn_system_user_coordinate(const hn_system *sys, int i);
-/// Name of constraint row i, e.g. "C: x", "loop 1 y"; which loop it belongs to; its length unit (1: metres, 0: angle or other).
+/// Name of constraint row i, e.g. "C: x", "loop 1 y"; which loop it belongs to; its length unit (1:
+/// metres, 0: angle or other).
 const char *hn_system_row_name(const hn_system *sys, int row);
 int hn_system_row_loop(const hn_system *sys, int row);
 int hn_system_row_is_length(const hn_system *sys, int row);
@@ -58,39 +62,45 @@ double hn_system_row_unit(const hn_system *sys, int row);
 /// The joint (scene index) that closes loop i, or -1 for a tear or formula loop; name of the loop.
 int hn_system_loop_joint(const hn_system *sys, int loop);
 const char *hn_system_loop_name(const hn_system *sys, int loop);
-/// Characteristic length [m] for relative tolerances: the largest distance between joint locations of one body; with a
-/// Lagrangian, the largest arm by which an angle moves a constraint at the start. 1 if there is none.
+/// Characteristic length [m] for relative tolerances: the largest distance between joint locations
+/// of one body; with a Lagrangian, the largest arm by which an angle moves a constraint at the
+/// start. 1 if there is none.
 double hn_system_length(const hn_system *sys);
 
-/// Tree, for telling: parent body and joint of each body in the spanning tree (joint -1 for Lagrangian scenes).
+/// Tree, for telling: parent body and joint of each body in the spanning tree (joint -1 for
+/// Lagrangian scenes).
 int hn_system_tree_joint(const hn_system *sys, int body);
 /// 1 if the joint was cut to close a loop.
 int hn_system_joint_is_cut(const hn_system *sys, int joint);
 
-// user <-> system, constant linear maps but for orientations: positions, and rates or accelerations (without offset)
+// user <-> system, constant linear maps but for orientations: positions, and rates or accelerations
+// (without offset)
 void hn_system_to_user(const hn_system *sys, const double *q, double *user_q);
 void hn_system_from_user(const hn_system *sys, const double *user_q, double *q);
 void hn_system_rates_to_user(const hn_system *sys, const double *v, double *user_v);
 void hn_system_rates_from_user(const hn_system *sys, const double *user_v, double *v);
 /// Generalised forces: user = T' system, such that power is the same.
 void hn_system_forces_to_user(const hn_system *sys, const double *f, double *user_f);
-/// qdot = G(q) v; a copy when nq == nv. A ball (spherical or free joint) has four entries of q, a unit quaternion, and three
-/// of v, the angular velocity in the child's axes; everything else has one of each.
+/// qdot = G(q) v; a copy when nq == nv. A ball (spherical or free joint) has four entries of q, a
+/// unit quaternion, and three of v, the angular velocity in the child's axes; everything else has
+/// one of each.
 void hn_system_kinematics(const hn_system *sys, const double *q, const double *v, double *qdot);
-/// q <- q moved by `delta` (nv, a rate times a time): what Newton's corrections and interpolations of q use, so that
-/// quaternions stay unit. A plain sum when nq == nv.
+/// q <- q moved by `delta` (nv, a rate times a time): what Newton's corrections and interpolations
+/// of q use, so that quaternions stay unit. A plain sum when nq == nv.
 void hn_system_move(const hn_system *sys, double *q, const double *delta);
 /// The `delta` (nv) that moves `from` to `to`; of two ways round the shorter.
 void hn_system_difference(const hn_system *sys, const double *from, const double *to,
                           double *delta);
-/// Brings quaternions back to length 1 (a step of an integrator leaves it by its local error). Returns 1 when q changed.
+/// Brings quaternions back to length 1 (a step of an integrator leaves it by its local error).
+/// Returns 1 when q changed.
 int hn_system_normalise(const hn_system *sys, double *q);
 /// Entry of q behind entry i of v, -1 for the speeds of a ball.
 int hn_system_position_of(const hn_system *sys, int i);
-/// The first time after t at which a load given as a table has a corner (an integrator restarts there), HUGE_VAL: none.
+/// The first time after t at which a load given as a table has a corner (an integrator restarts
+/// there), HUGE_VAL: none.
 double hn_system_next_corner(const hn_system *sys, double t);
 
-// expressions, for printing, exporting and grading; borrowed arrays in the system's graph ------------------
+// ---- expressions, for printing, exporting and grading; borrowed arrays in the system's graph ----
 hn_graph *hn_system_graph(const hn_system *sys);
 typedef struct hn_system_exprs {
     const hn_ex *M;      ///< nv x nv row-major

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double PARALLEL =
-    1e-12; ///< |sin| of the angle between axes that count as parallel [-]
-static const double ALIGNED =
-    1e-12; ///< a component this small against the vector counts as zero [-]
+/// |sin| of the angle between axes that count as parallel [-]
+static const double PARALLEL = 1e-12;
+/// a component this small against the vector counts as zero [-]
+static const double ALIGNED = 1e-12;
 
 static const hn_quantity ORIGIN[3]; // of a virtual link
 
@@ -73,7 +73,7 @@ int hn_tree_common(const hn_tree *tree, int a, int b) {
     return a;
 }
 
-// the tree itself ------------------------------------------------------------------------------------------
+// ---- the tree itself ----
 
 /// Axes of a joint on one side as columns: ref, axis x ref, axis.
 static void joint_triad(const double axis[3], const double ref[3], double out[3][3]) {
@@ -109,7 +109,8 @@ static void hang_link(hn_tree *tree, int child, int parent) {
     tree->order[tree->n_order++] = child;
 }
 
-/// Hangs a body from `parent` by the joint's chain of primitives, gone through backwards where the body is the joint's parent.
+/// Hangs a body from `parent` by the joint's chain of primitives, gone through backwards where the
+/// body is the joint's parent.
 static void hang(const hn_scene *scene, hn_tree *tree, int body, int parent, int index,
                  int reversed) {
     const hn_joint *joint = &scene->joints[index];
@@ -201,7 +202,8 @@ static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_
     return HN_OK;
 }
 
-/// The link of a joint's freedom `part`, or -1 where the joint is cut. `body_of` per joint: the body it carries, or -1.
+/// The link of a joint's freedom `part`, or -1 where the joint is cut. `body_of` per joint: the
+/// body it carries, or -1.
 static int link_of_part(const hn_tree *tree, const int *body_of, int joint, int part) {
     for (int l = body_of[joint]; l >= 0 && tree->links[l].joint == joint;
          l = tree->links[l].parent) {
@@ -248,7 +250,7 @@ static void number_coordinates(const hn_scene *scene, hn_tree *tree) {
     }
 }
 
-// frames ---------------------------------------------------------------------------------------------------
+// ---- frames ----
 
 static void apply(double m[3][3], const double v[3], double out[3]) {
     for (int i = 0; i < 3; i++) {
@@ -263,9 +265,10 @@ static void unit(double v[3]) {
     }
 }
 
-/// A frame with z along `axis` (its sign chosen so that the largest component is positive). Its x axis: for an axis along a
-/// coordinate axis the next coordinate axis; else perpendicular to `prefer` if that is given and not parallel, such
-/// that the part of `prefer` across the axis lies along -y (gravity then has one component); else any.
+/// A frame with z along `axis` (its sign chosen so that the largest component is positive). Its x
+/// axis: for an axis along a coordinate axis the next coordinate axis; else perpendicular to
+/// `prefer` if that is given and not parallel, such that the part of `prefer` across the axis lies
+/// along -y (gravity then has one component); else any.
 static void frame_about(const double axis[3], const double *prefer, double R[3][3]) {
     int big = 0;
     for (int i = 1; i < 3; i++) {
@@ -335,7 +338,8 @@ static int find_group(const hn_scene *scene, hn_tree *tree, int base, const doub
     return tree->n_groups++;
 }
 
-/// The first arm of the body across the axis, in the frame that D gives: other joints first, then the centre of mass.
+/// The first arm of the body across the axis, in the frame that D gives: other joints first, then
+/// the centre of mass.
 static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
                     const hn_quantity *own, double arm[2]) {
     for (int j = -1; j < scene->n_joints; j++) {
@@ -368,7 +372,8 @@ static int is_aligned(const double arm[2], double turned) {
     return fmin(x, y) < ALIGNED * fmax(x, y);
 }
 
-/// Where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta - offset) D.
+/// Where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta -
+/// offset) D.
 static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta,
                           double D[3][3], int align) {
     double arm[2];
@@ -385,8 +390,8 @@ static void choose_offset(const hn_scene *scene, hn_link *link, int body, double
     }
 }
 
-/// Orientation of a revolute link in its group's frame: N Rz(s q) Ch' with N = Rz(delta) D0, D0 the identity or a half turn
-/// about x (which reverses the sense of q).
+/// Orientation of a revolute link in its group's frame: N Rz(s q) Ch' with N = Rz(delta) D0, D0 the
+/// identity or a half turn about x (which reverses the sense of q).
 static void place_revolute(const hn_scene *scene, hn_link *link, int body, double N[3][3],
                            double child[3][3], int align) {
     double sigma = N[2][2] < 0 ? -1 : 1;
@@ -402,7 +407,8 @@ static void place_revolute(const hn_scene *scene, hn_link *link, int body, doubl
     hn_num3_mul(Rz, D, link->C);
 }
 
-/// A link that turns as its parent does; N is the primitive's axes in the parent's theta-free frame.
+/// A link that turns as its parent does; N is the primitive's axes in the parent's theta-free
+/// frame.
 static void place_rigid(hn_tree *tree, hn_link *link, double N[3][3]) {
     const hn_link *parent = &tree->links[link->parent];
     double back[3][3];

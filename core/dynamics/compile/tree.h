@@ -1,24 +1,30 @@
 #ifndef HN_DYNAMICS_TREE_H
 #define HN_DYNAMICS_TREE_H
-// The spanning tree of a scene and the frames its equations are written in. Numbers only, no expressions.
+// The spanning tree of a scene and the frames its equations are written in. Numbers only, no
+// expressions.
 //
-// Links are the bodies 0 .. nb-1, the ground (index nb) and virtual links behind it. A link hangs from its parent by one PRIMITIVE
-// joint: revolute, prismatic, spherical (a ball) or fixed. A joint of the scene with more freedoms is a chain of primitives through
-// virtual links, which have no mass and stand in the joint's own axes; the end of the chain is the body. The tree has the
-// least depth in bodies (breadth first from the ground, ties by the order of the joints); the joints left over close loops.
+// Links are the bodies 0 .. nb-1, the ground (index nb) and virtual links behind it. A link hangs
+// from its parent by one PRIMITIVE joint: revolute, prismatic, spherical (a ball) or fixed. A joint
+// of the scene with more freedoms is a chain of primitives through virtual links, which have no
+// mass and stand in the joint's own axes; the end of the chain is the body. The tree has the least
+// depth in bodies (breadth first from the ground, ties by the order of the joints); the joints left
+// over close loops.
 //
 //     cylindrical  slide z, turn z        universal  turn z, turn x        spherical  ball
 //     planar       slide x, y, turn z     free       slide x, y, z, ball   fixed      turns as its parent does
 //
-// GROUPS. Along consecutive parallel revolute axes absolute angles make M sparse and the closure rows short, so links
-// are collected into groups: all revolute links whose axes are parallel and that hang, directly or through one another, from
-// one rotating base (prismatic joints pass rotation through). A group's frame F is fixed in its base, z along the axis;
-// one base and one axis direction always share one group. A link's orientation in F is Rz(theta) C with theta an absolute
-// angle (the SYSTEM coordinate) and C constant. Links that never rotate have theta = 0 and use the first ground group's frame.
+// GROUPS. Along consecutive parallel revolute axes absolute angles make M sparse and the closure
+// rows short, so links are collected into groups: all revolute links whose axes are parallel and
+// that hang, directly or through one another, from one rotating base (prismatic joints pass
+// rotation through). A group's frame F is fixed in its base, z along the axis; one base and one
+// axis direction always share one group. A link's orientation in F is Rz(theta) C with theta an
+// absolute angle (the SYSTEM coordinate) and C constant. Links that never rotate have theta = 0 and
+// use the first ground group's frame.
 //
-// BALLS. A ball has four entries of q, a unit quaternion (the joint's child against its parent, in the joint's axes), and three
-// speeds, the angular velocity of the joint's child against its parent in the joint's axes on the child. It is a group of its
-// own: the frame is fixed in the link itself (theta = 0), and what takes it to the parent is an expression of the quaternion.
+// BALLS. A ball has four entries of q, a unit quaternion (the joint's child against its parent, in
+// the joint's axes), and three speeds, the angular velocity of the joint's child against its parent
+// in the joint's axes on the child. It is a group of its own: the frame is fixed in the link itself
+// (theta = 0), and what takes it to the parent is an expression of the quaternion.
 //
 //        ground --revolute--> crank --revolute--> coupler --prismatic--> slider --revolute--> flap
 //        base                 first of group      same group             rigid with coupler   same group
@@ -30,14 +36,16 @@
 /// How a link's rotation hangs on its parent's.
 typedef enum hn_carry {
     HN_CARRY_GROUP, ///< revolute, same group as the parent: the parent's rotation does not carry it
-    HN_CARRY_NEW, ///< revolute, first of a group whose base rotates with the parent: carried; a ball
+    /// revolute, first of a group whose base rotates with the parent: carried; a ball
+    HN_CARRY_NEW,
     HN_CARRY_RIGID ///< prismatic, fixed: turns exactly as the parent does
 } hn_carry;
 
 typedef struct hn_link {
     int parent; ///< link, -1 for the ground
     int joint;  ///< scene joint, -1 for the ground
-    int body; ///< scene body; of a virtual link, the body at the end of its chain; -1 for the ground
+    /// scene body; of a virtual link, the body at the end of its chain; -1 for the ground
+    int body;
     int is_virtual, is_first; ///< not the body yet; the first of its chain
     hn_joint_type type;       ///< primitive: revolute, prismatic, spherical or fixed
     hn_carry carry;
@@ -48,17 +56,16 @@ typedef struct hn_link {
     int n_speeds;   ///< 0, 1, or 3 of a ball
     int part;       ///< which of the scene joint's coordinates is its first
     int position;   ///< its first entry of q, -1
-    double here[3][3],
-        there
-            [3]
-            [3]; ///< the primitive's axes (z: along or about) on the parent, and on the link itself
-    int angle;   ///< speed whose position is theta, -1: theta is 0
-    int angle_ref; ///< revolute: coordinate of the angle that the joint's own angle is counted from, -1: none
+    /// the primitive's axes (z: along or about) on the parent, and on the link itself
+    double here[3][3], there[3][3];
+    int angle; ///< speed whose position is theta, -1: theta is 0
+    /// revolute: coordinate of the angle that the joint's own angle is counted from, -1: none
+    int angle_ref;
     double sign, offset; ///< user coordinate = sign * (q[coordinate] - q[angle_ref] - offset)
     int group;           ///< frame its vectors are in; for the ground too
     int root; ///< the link whose rotation it shares (itself, or up through prismatic joints)
-    double C[3]
-            [3]; ///< body frame to the frame that theta turns; ground: world to its group's frame
+    /// body frame to the frame that theta turns; ground: world to its group's frame
+    double C[3][3];
 } hn_link;
 
 typedef struct hn_group {
@@ -66,9 +73,8 @@ typedef struct hn_group {
     int moving; ///< the base rotates
     int ball;   ///< the link whose own frame it is, -1
     double R[3][3]; ///< frame to base body axes
-    double X
-        [3]
-        [3]; ///< frame to the base's theta-free frame: C(base) R; ball: axes `here` to that of the parent
+    /// frame to the base's theta-free frame: C(base) R; ball: axes `here` to that of the parent
+    double X[3][3];
     int n_links;
 } hn_group;
 
@@ -90,8 +96,9 @@ typedef struct hn_tree {
     int *position;     ///< per speed: entry of q, -1 for the speeds of a ball
 } hn_tree;
 
-/// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that people read: an absolute angle is then a plain sum of the scene's). Memory from
-/// `arena`. Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, HN_ERR_MEMORY.
+/// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that
+/// people read: an absolute angle is then a plain sum of the scene's). Memory from `arena`. Fails:
+/// HN_ERR_INPUT when joints marked "cut" leave a body hanging, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena,
                                       hn_tree *out, hn_diags *diags);
 
@@ -103,7 +110,8 @@ int hn_tree_link(const hn_tree *tree, int body);
 int hn_tree_is_still(const hn_tree *tree, int link);
 /// Bodies between a body and the ground along the tree, itself included.
 int hn_tree_depth(const hn_tree *tree, int body);
-/// The chain of primitives that a joint type stands for, from the joint's parent to its child; returns their number.
+/// The chain of primitives that a joint type stands for, from the joint's parent to its child;
+/// returns their number.
 typedef struct hn_primitive {
     hn_joint_type type;
     int along; ///< 0, 1, 2: x (ref), y, z (axis) of the joint
@@ -111,7 +119,8 @@ typedef struct hn_primitive {
 } hn_primitive;
 enum { HN_MAX_PRIMITIVES = 4 };
 int hn_joint_primitives(hn_joint_type type, const hn_primitive **out);
-/// Where a tree joint sits on the link itself, and on its parent; `at` are 3 quantities in the body's own frame.
+/// Where a tree joint sits on the link itself, and on its parent; `at` are 3 quantities in the
+/// body's own frame.
 const hn_quantity *hn_link_at_own(const hn_scene *scene, const hn_link *link);
 const hn_quantity *hn_link_at_parent(const hn_scene *scene, const hn_link *link);
 #endif

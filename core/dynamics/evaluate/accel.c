@@ -44,7 +44,7 @@ struct hn_accel {
     char refusal[160];
 };
 
-// compiling --------------------------------------------------------------------------------------------------------
+// ---- compiling ----
 
 /// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
 static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
@@ -187,7 +187,7 @@ void hn_accel_free(hn_accel *s) {
     }
 }
 
-// running ----------------------------------------------------------------------------------------------------------
+// ---- running ----
 
 /// Smallest pivot relative to its reference; NaN counts as lost.
 static double worst_pivot(const hn_accel *s) {
@@ -247,7 +247,8 @@ static double stabilise(hn_accel *s, const double *v, double alpha, double beta)
     return gap;
 }
 
-/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the relative gap of the loops.
+/// The terms at the state in s->in, gamma with Baumgarte's part. Returns the relative gap of the
+/// loops.
 static double eval_terms(hn_accel *s, double t, const double *q, const double *v, double alpha,
                          double beta) {
     hn_eval_run(s->terms, t, q, v);
@@ -256,7 +257,7 @@ static double eval_terms(hn_accel *s, double t, const double *q, const double *v
     return stabilise(s, v, alpha, beta);
 }
 
-// refinement ---------------------------------------------------------------------------------------------------------
+// ---- refinement ----
 
 static void subtract(hn_accel *s, int row, double entry, double x) {
     hn_sum2_add_product(&s->sum[row], -entry, x);
@@ -289,7 +290,8 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
     }
 }
 
-/// The sparse factor's own solution, corrected while the corrections halve. Fails where the factor does.
+/// The sparse factor's own solution, corrected while the corrections halve. Fails where the factor
+/// does.
 static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a, double *lambda,
                                hn_accel_info *info) {
     enum { MAX_CORRECTIONS = 4 };
@@ -329,7 +331,7 @@ static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a
     return HN_OK;
 }
 
-// the dense ways -----------------------------------------------------------------------------------------------------
+// ---- the dense ways ----
 
 static hn_kkt_way way_of(hn_solver solver) {
     switch (solver) {
@@ -404,8 +406,9 @@ static double dense_ops(const hn_accel *s) {
     return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
 }
 
-/// A row that is short at a pose says little there, also where the loops are closed to rounding: stretched, rounding is all it says.
-/// Of one below HN_ROW_LOST speeds and pose leave rounding and the error of the step.
+/// A row that is short at a pose says little there, also where the loops are closed to rounding:
+/// stretched, rounding is all it says. Of one below HN_ROW_LOST speeds and pose leave rounding and
+/// the error of the step.
 static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
     opts.row_floor = HN_BLUR_ROW_FLOOR;
@@ -450,7 +453,8 @@ static double find_row_ratio(hn_accel *s) {
     return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
 }
 
-/// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs correcting (*doubtful).
+/// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs
+/// correcting (*doubtful).
 static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
                                int *doubtful) {
     if (!s->available) {

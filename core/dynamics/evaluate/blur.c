@@ -3,8 +3,8 @@
 #include <math.h>
 
 static const double BLUR = 30;
-static const double BLUR_MAX =
-    1e-2; // a gap of a third of a per mille and more: pivots that size are real
+// a gap of a third of a per mille and more: pivots that size are real
+static const double BLUR_MAX = 1e-2;
 
 double hn_blur_of(double gap) {
     return fmin(BLUR * gap, BLUR_MAX);

@@ -1,8 +1,9 @@
 #ifndef HN_DYNAMICS_BLUR_H
 #define HN_DYNAMICS_BLUR_H
-// How finely rows of J may be told apart. Rows that depend on others on the closed set come apart where the loops stand open:
-// there J and gamma are off by about the gap over the length (and the velocity gap over the speed), a bit more in a loop of short
-// links. What is not larger tells nothing.
+// How finely rows of J may be told apart. Rows that depend on others on the closed set come apart
+// where the loops stand open: there J and gamma are off by about the gap over the length (and the
+// velocity gap over the speed), a bit more in a loop of short links. What is not larger tells
+// nothing.
 
 #include "dynamics/compile/system.h"
 
@@ -18,13 +19,15 @@ typedef struct hn_blur_terms {
     const double *phi_t; ///< nc
 } hn_blur_terms;
 
-/// The relative gap of the loops at speeds v (nv); rate (nc) receives J v + phi_t, size (nc) is scratch.
+/// The relative gap of the loops at speeds v (nv); rate (nc) receives J v + phi_t, size (nc) is
+/// scratch.
 double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *v, double *rate,
                    double *size);
-/// The size, of unit rows, below which pivots of J are blur where the loops stand open by `gap` (relative).
+/// The size, of unit rows, below which pivots of J are blur where the loops stand open by `gap`
+/// (relative).
 double hn_blur_of(double gap);
-/// How much dependent rows may disagree there about the accelerations, relative to these: what is more than the gap explains is a
-/// contradiction of the scene.
+/// How much dependent rows may disagree there about the accelerations, relative to these: what is
+/// more than the gap explains is a contradiction of the scene.
 double hn_blur_of_sides(double gap);
 
 #endif

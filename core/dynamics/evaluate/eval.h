@@ -20,24 +20,27 @@ enum { HN_TERM_COUNT = 8 };
 
 typedef struct hn_eval hn_eval;
 
-/// An evaluator of the terms in the mask. Memory from `arena`, the tape owned by the eval (hn_eval_free).
+/// An evaluator of the terms in the mask. Memory from `arena`, the tape owned by the eval
+/// (hn_eval_free).
 HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena,
                                        hn_eval **out);
 void hn_eval_free(hn_eval *e); ///< frees the tape; NULL is legal
 /// Evaluates all its terms; allocates nothing. v may be NULL: zero.
 void hn_eval_run(hn_eval *e, double t, const double *q, const double *v);
-/// Where the values of one term stand (borrowed, same place for life). M and J: entries that are identically zero
-/// are set once; only the others are written by a run.
+/// Where the values of one term stand (borrowed, same place for life). M and J: entries that are
+/// identically zero are set once; only the others are written by a run.
 const double *hn_eval_get(const hn_eval *e, hn_term term);
-/// Entries of a term that are not identically zero: returns their number, and their rows and columns (borrowed). M: the lower
-/// triangle; vectors: column 0. For large scenes, where going through dense arrays would cost more than the evaluation.
+/// Entries of a term that are not identically zero: returns their number, and their rows and
+/// columns (borrowed). M: the lower triangle; vectors: column 0. For large scenes, where going
+/// through dense arrays would cost more than the evaluation.
 int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int **cols);
 hn_tape_info hn_eval_info(const hn_eval *e);
 long long hn_eval_count(const hn_eval *e); ///< runs so far
 
-// --- accelerations and multipliers -------------------------------------------------------------------------
-/// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor where its pivots have lost digits
-/// (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where a pivot is lost altogether, or a row of J has all but vanished. The others serve alone and
+// ---- accelerations and multipliers ----
+/// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor
+/// where its pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve
+/// where a pivot is lost altogether, or a row of J has all but vanished. The others serve alone and
 /// refuse what they cannot serve; linalg/kkt.h says what that is.
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \
@@ -72,26 +75,29 @@ typedef struct hn_accel_info {
     int refinements;  ///< corrections of the answer that were kept
     int massless;     ///< the range space refused: the speed without mass; else -1
     int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
-    double
-        pivot_ratio; ///< smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
-    double
-        row_ratio; ///< shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
+    /// smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    double pivot_ratio;
+    /// shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
+    double row_ratio;
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
-/// Smaller pivots are refined: an answer then has 1e-13 or better without it, and a correction costs more than the tape.
+/// Smaller pivots are refined: an answer then has 1e-13 or better without it, and a correction
+/// costs more than the tape.
 #define HN_PIVOT_DOUBT 1e-3
 
 HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
                                         hn_arena *arena, hn_accel **out);
 void hn_accel_free(hn_accel *s);
-/// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without baumgarte. Fails: HN_ERR_SINGULAR,
-/// HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite); outputs then untouched. Allocates nothing.
+/// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without
+/// baumgarte. Fails: HN_ERR_SINGULAR, HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite);
+/// outputs then untouched. Allocates nothing.
 HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
                                       double alpha, double beta, double *a, double *lambda,
                                       hn_accel_info *info);
-/// 1-norm condition estimate of the equilibrated K (rows that depend on others left out) at a state; digits left are about
-/// 15.6 - log10 of it. Fails as the least-norm solve does. Allocates nothing.
+/// 1-norm condition estimate of the equilibrated K (rows that depend on others left out) at a
+/// state; digits left are about 15.6 - log10 of it. Fails as the least-norm solve does. Allocates
+/// nothing.
 HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
                                            double *condition);
 #define HN_CONDITION_LOST 1e13 ///< of the equilibrated K: no digit of the multipliers is left
@@ -103,10 +109,11 @@ typedef enum hn_multiplier_mark {
     HN_MULTIPLIERS_NONE,        ///< the system has no solution there
     HN_N_MULTIPLIER_MARKS
 } hn_multiplier_mark;
-extern const char
-    *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS]; ///< "determined", "one of many", ...
-/// The mark of multipliers that hn_accel_eval() found at this state with `info`. Where the tape answered, no pivot in doubt and no row
-/// dying away, K is far from singular; else its condition is estimated, at the cost of a dense solve. Allocates nothing.
+/// "determined", "one of many", ...
+extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
+/// The mark of multipliers that hn_accel_eval() found at this state with `info`. Where the tape
+/// answered, no pivot in doubt and no row dying away, K is far from singular; else its condition is
+/// estimated, at the cost of a dense solve. Allocates nothing.
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
@@ -115,7 +122,8 @@ long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of
 long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor
 /// Arithmetic operations so far, tape and linear algebra.
 double hn_accel_ops(const hn_accel *s);
-/// What the chosen solver cannot serve, in words, after it failed; NULL when there is nothing to say beyond the status.
+/// What the chosen solver cannot serve, in words, after it failed; NULL when there is nothing to
+/// say beyond the status.
 const char *hn_accel_refusal(const hn_accel *s);
 
 #endif

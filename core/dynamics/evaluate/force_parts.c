@@ -67,7 +67,8 @@ static void go_along_speeds(builder *b) {
     }
 }
 
-/// The speeds of a ball are not rates of coordinates: its momentum turns with the axes it is measured in.
+/// The speeds of a ball are not rates of coordinates: its momentum turns with the axes it is
+/// measured in.
 static void turn_momenta(builder *b) {
     for (int k = 0; k < b->sys->n_balls; k++) {
         const int at = b->sys->balls[k].speed;

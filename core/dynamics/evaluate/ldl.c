@@ -22,16 +22,18 @@ typedef struct work {
     long long updates; ///< entries changed by the eliminations so far
 } work;
 
-/// Beyond this the matrix is dense rather than sparse (a full one of 66 unknowns): unrolled it would take longer to compile
-/// than to solve, without bound, so it is left to the dense solve.
+/// Beyond this the matrix is dense rather than sparse (a full one of 66 unknowns): unrolled it
+/// would take longer to compile than to solve, without bound, so it is left to the dense solve.
 enum { MAX_UPDATES = 50000 };
 
-/// A coordinate that touches as many rows as a spatial loop has at most, where there are loops to spare, is shared by legs (a platform's). Rows need not wait for it: what
-/// each leg has of its own gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with every
-/// other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard sees it.
+/// A coordinate that touches as many rows as a spatial loop has at most, where there are loops to
+/// spare, is shared by legs (a platform's). Rows need not wait for it: what each leg has of its own
+/// gives them pivots, and the platform comes last. Otherwise every leg's rows would be coupled with
+/// every other's (a hexapod: 3 times the entries of L). Where a leg loses a direction, the guard
+/// sees it.
 enum { SHARED_ROWS = 6 };
 
-// setting up -------------------------------------------------------------------------------------------------------
+// ---- setting up ----
 
 static void fill(work *w, const hn_ldl_input *in) {
     for (int i = 0; i < in->nv && !in->W; i++) {
@@ -84,9 +86,10 @@ static void pair_rows(work *w, const hn_ldl_input *in) {
     }
 }
 
-// order --------------------------------------------------------------------------------------------------------------
+// ---- order ----
 
-/// Live neighbours of an unknown and its partner, into w->live; returns how many. *blocked: a massive coordinate is among them.
+/// Live neighbours of an unknown and its partner, into w->live; returns how many. *blocked: a
+/// massive coordinate is among them.
 static int list_live(work *w, int i, int *blocked) {
     int n = 0, pair[2] = {i, w->partner[i]};
     *blocked = 0;
@@ -141,9 +144,10 @@ static int choose(const work *w) {
     return best;
 }
 
-// elimination ----------------------------------------------------------------------------------------------------------
+// ---- elimination ----
 
-/// Keeps a pivot and its reference for the run, or checks them at once when both are numbers. Returns 0 if the pivot is lost.
+/// Keeps a pivot and its reference for the run, or checks them at once when both are numbers.
+/// Returns 0 if the pivot is lost.
 static int guard(work *w, hn_ex pivot, hn_ex ref) {
     double p, r;
     if (hn_is_number(pivot, &p)) {
@@ -234,7 +238,8 @@ static void reduce(work *w, const int pair[2], int first_row, int n, int counts)
     }
 }
 
-/// What the shared coordinates that are still to come would have added to a multiplier's sum: a pivot is small or not against all of it.
+/// What the shared coordinates that are still to come would have added to a multiplier's sum: a
+/// pivot is small or not against all of it.
 static void add_shared(work *w, int i, int n) {
     for (int k = 0; k < n && i >= w->out->nv; k++) {
         const int j = w->live[k];

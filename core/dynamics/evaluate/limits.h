@@ -7,8 +7,9 @@
 
 typedef struct hn_limits hn_limits;
 
-/// Of all scene coordinates with a limit that the state gives (entries of orientations have none, nor have coordinates of cut
-/// joints without a formula). Memory from `arena`, the tape owned (hn_limits_free).
+/// Of all scene coordinates with a limit that the state gives (entries of orientations have none,
+/// nor have coordinates of cut joints without a formula). Memory from `arena`, the tape owned
+/// (hn_limits_free).
 HN_MUST_CHECK hn_status hn_limits_create(const hn_system *sys, hn_arena *arena, hn_limits **out);
 void hn_limits_free(hn_limits *l);                   ///< NULL is legal
 int hn_limits_count(const hn_limits *l);             ///< how many

@@ -1,6 +1,6 @@
-// Every derivative is a directional one, forward over the expressions of R, f, J v + phi_t and gamma, a sweep per speed: what
-// does not depend on a coordinate is never visited. a and lambda are symbols of the tape's own; their names hold a blank,
-// which no formula can spell.
+// Every derivative is a directional one, forward over the expressions of R, f, J v + phi_t and
+// gamma, a sweep per speed: what does not depend on a coordinate is never visited. a and lambda are
+// symbols of the tape's own; their names hold a blank, which no formula can spell.
 #include "dynamics/evaluate/linearise.h"
 
 #include "dynamics/compile/direction.h"
@@ -41,7 +41,7 @@ typedef struct builder {
     hn_entries terms[HN_LINEAR_COUNT];
 } builder;
 
-// expressions --------------------------------------------------------------------------------------------------------
+// ---- expressions ----
 
 static hn_ex make_symbol(hn_graph *g, const char *kind, int i) {
     char name[32];
@@ -199,7 +199,7 @@ static hn_status make_terms(builder *b, unsigned terms) {
     return failed ? HN_ERR_MEMORY : HN_OK;
 }
 
-// the tape -----------------------------------------------------------------------------------------------------------
+// ---- the tape ----
 
 static int count_params(const hn_system *sys) {
     return sys->opts.symbolic_params ? sys->scene->n_params : 0;

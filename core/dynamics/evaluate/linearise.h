@@ -1,12 +1,13 @@
 #ifndef HN_DYNAMICS_LINEARISE_H
 #define HN_DYNAMICS_LINEARISE_H
-// Exact derivatives of the equations of motion, for Newton's method in implicit integrators and for spectra.
+// Exact derivatives of the equations of motion, for Newton's method in implicit integrators and for
+// spectra.
 //
 //     R(t, q, v, a, lambda) = M(q) a - f(q, v, t) - J(q)' lambda                                                    (1)
 //     dR = K dq + C dv + M da - J' dlambda,     dphi = J dq,     d(J v + phi_t) = V dq + J dv                            (2)
 //
-// dq is a displacement along the speeds (nv entries, hn_system_move): K = R_q G, V = (J v + phi_t)_q G. One tape, everything in
-// it shared with M, f and J.
+// dq is a displacement along the speeds (nv entries, hn_system_move): K = R_q G, V = (J v +
+// phi_t)_q G. One tape, everything in it shared with M, f and J.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -36,10 +37,12 @@ void hn_linear_free(hn_linear *l); ///< NULL is legal
 void hn_linear_run(hn_linear *l, double t, const double *q, const double *v, const double *a,
                    const double *lambda);
 const double *hn_linear_get(const hn_linear *l, hn_linear_term term);
-/// Entries of a matrix term that are not identically zero: their number, rows and columns (borrowed).
+/// Entries of a matrix term that are not identically zero: their number, rows and columns
+/// (borrowed).
 int hn_linear_pattern(const hn_linear *l, hn_linear_term term, const int **rows, const int **cols);
 int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their number alone
-/// out = X x, or X' x, for a matrix term as last evaluated; out and x must not overlap. Costs two operations an entry.
+/// out = X x, or X' x, for a matrix term as last evaluated; out and x must not overlap. Costs two
+/// operations an entry.
 void hn_linear_apply(const hn_linear *l, hn_linear_term term, const double *x, double *out);
 void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const double *x,
                                 double *out);

@@ -4,12 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// A smaller part of a wrench per unit of a multiplier that is free does not make it undetermined [-].
+/// A smaller part of a wrench per unit of a multiplier that is free does not make it undetermined
+/// [-].
 static const double TOUCHED = 1e-6;
 /// Rows dependent to this count as redundant, as in the saddle solve [-].
 static const double RANK_TOL = 1e-10;
 
-// numbers ------------------------------------------------------------------------------------------------------
+// ---- numbers ----
 
 void hn_reaction_add_cross(double out[3], double k, const double a[3], const double b[3]) {
     double c[3];
@@ -66,7 +67,7 @@ void hn_reaction_place_of(const hn_reactions *r, int body, const hn_quantity *at
     }
 }
 
-// the tape -----------------------------------------------------------------------------------------------------
+// ---- the tape ----
 
 typedef struct output_list {
     hn_ex *at;
@@ -260,7 +261,7 @@ void hn_reactions_free(hn_reactions *r) {
     }
 }
 
-// motion and inertia -------------------------------------------------------------------------------------------
+// ---- motion and inertia ----
 
 /// out += to_world (3 outputs at k).
 static void add_turned(const hn_reactions *r, const hn_reaction_body *b, int k, double factor,
@@ -325,7 +326,7 @@ static void read_body(hn_reactions *r, int body, const double *a) {
     }
 }
 
-// what is not determined -------------------------------------------------------------------------------------
+// ---- what is not determined ----
 
 static void factor_rows(hn_reactions *r) {
     memset(r->qr.a, 0, (size_t)r->nv * (size_t)r->nc * sizeof *r->qr.a);
@@ -337,7 +338,8 @@ static void factor_rows(hn_reactions *r) {
     hn_qr_factor(&r->qr, r->nv, r->nc, RANK_TOL);
 }
 
-/// Multipliers that give no generalised force at all: of J' P = Q [R11 R12], column k of R12 against R11.
+/// Multipliers that give no generalised force at all: of J' P = Q [R11 R12], column k of R12
+/// against R11.
 static void free_combination(hn_reactions *r, int k) {
     const hn_qr *qr = &r->qr;
     memset(r->lambda, 0, (size_t)r->nc * sizeof *r->lambda);
@@ -384,7 +386,7 @@ static void find_undetermined(hn_reactions *r, hn_wrench *joints, hn_wrench *con
     }
 }
 
-// what is handed out -------------------------------------------------------------------------------------------
+// ---- what is handed out ----
 
 static void hand_out(hn_wrench *out, const hn_reaction_wrench *w, const double place[3],
                      const double axes[3][3]) {
@@ -405,7 +407,8 @@ static void axes_of(const hn_reactions *r, const hn_joint *joint, double axes[3]
     hn_reaction_to_world(r, joint->parent, joint->parent_axis, axes[2]);
 }
 
-/// A constraint on coordinates: its effort along the first that a joint has, on the child of that joint.
+/// A constraint on coordinates: its effort along the first that a joint has, on the child of that
+/// joint.
 static void effort_of(hn_reactions *r, int constraint, const double *lambda, hn_wrench *out) {
     const hn_system *sys = r->sys;
     for (int k = 0; k < sys->efforts.n; k++) {

@@ -1,16 +1,20 @@
 #ifndef HN_DYNAMICS_REACTIONS_H
 #define HN_DYNAMICS_REACTIONS_H
-// What every joint carries: the force and moment that the joint's parent exerts on its child, at the joint's place, and the
-// balance of each body with them; and what acts along coordinates, at no place: efforts.
+// What every joint carries: the force and moment that the joint's parent exerts on its child, at
+// the joint's place, and the balance of each body with them; and what acts along coordinates, at no
+// place: efforts.
 //
-// Poses, velocities and accelerations of the bodies come from a tape; each body's balance (Newton and Euler) then gives the
-// wrench of its tree joint, leaves first, once loads and the closing joints' multipliers are taken off. What a joint's own
-// actuator or spring gives along its freedom is part of the wrench.
+// Poses, velocities and accelerations of the bodies come from a tape; each body's balance (Newton
+// and Euler) then gives the wrench of its tree joint, leaves first, once loads and the closing
+// joints' multipliers are taken off. What a joint's own actuator or spring gives along its freedom
+// is part of the wrench.
 //
-// Energies given as formulas beside the bodies say what they do along coordinates and nothing about where. They are taken to act in
-// the joints, between the two bodies of the joint whose coordinate they name, as a motor there would, inertia included; what they do
-// is in the wrench along the joint's freedom, and is told beside it. A formula that stands for a part somewhere else also loads
-// joints across their freedoms: that is not in any formula, and not in the wrenches. A scene of formulas alone has efforts only.
+// Energies given as formulas beside the bodies say what they do along coordinates and nothing about
+// where. They are taken to act in the joints, between the two bodies of the joint whose coordinate
+// they name, as a motor there would, inertia included; what they do
+// is in the wrench along the joint's freedom, and is told beside it. A formula that stands for a
+// part somewhere else also loads joints across their freedoms: that is not in any formula, and not
+// in the wrenches. A scene of formulas alone has efforts only.
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -20,13 +24,13 @@ typedef struct hn_wrench {
     double force[3];  ///< [N], world axes, on the child
     double moment[3]; ///< [N m], world axes, about the joint's place on the child
     double place[3];  ///< [m], world
-    double in_joint_force[3],
-        in_joint_moment
-            [3];    ///< the same in the joint's own axes on its parent: ref, axis x ref, axis
+    /// the same in the joint's own axes on its parent: ref, axis x ref, axis
+    double in_joint_force[3], in_joint_moment[3];
     int determined; ///< 0: redundant rows, so this is one of many (least-norm multipliers)
 } hn_wrench;
 
-/// A generalised force along one coordinate: of a row of a constraint on coordinates (a gear, a formula), or of the energies.
+/// A generalised force along one coordinate: of a row of a constraint on coordinates (a gear, a
+/// formula), or of the energies.
 typedef struct hn_effort {
     const char *name; ///< of the row; "energies"
     int row;          ///< -1: the energies
@@ -40,19 +44,22 @@ typedef struct hn_reactions hn_reactions;
 HN_MUST_CHECK hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena,
                                             hn_reactions **out, hn_diag *diag);
 void hn_reactions_free(hn_reactions *r); ///< NULL is legal
-/// Per scene joint (n_joints) its wrench, zero for one that only carries a coordinate of formulas; per constraint beside the joints
-/// (n_constraints; NULL: not wanted) the wrench on the body of its first point. From a state, its accelerations and multipliers (system
-/// coordinates). Allocates nothing.
+/// Per scene joint (n_joints) its wrench, zero for one that only carries a coordinate of formulas;
+/// per constraint beside the joints (n_constraints; NULL: not wanted) the wrench on the body of its
+/// first point. From a state, its accelerations and multipliers (system coordinates). Allocates
+/// nothing.
 HN_MUST_CHECK hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q,
                                           const double *v, const double *a, const double *lambda,
                                           hn_wrench *joints, hn_wrench *constraints);
 /// Efforts of the last eval: constraints in the order of their rows, then the energies.
 int hn_reactions_effort_count(const hn_reactions *r);
 hn_effort hn_reactions_effort(const hn_reactions *r, int k);
-/// 1 if a constraint beside the joints acts at a place, between points or along a coordinate of a joint of bodies; 0: it has efforts only.
+/// 1 if a constraint beside the joints acts at a place, between points or along a coordinate of a
+/// joint of bodies; 0: it has efforts only.
 int hn_reactions_has_place(const hn_reactions *r, int constraint);
-/// After an eval: largest residual of m a = sum of forces and of the moments about the centre of mass over all bodies, relative to the largest
-/// force [-] and moment. The tree joints are found from it; what it tells is that bodies whose wrenches all came from elsewhere
-/// (closing joints, loads) and generalised forces along the freedoms agree.
+/// After an eval: largest residual of m a = sum of forces and of the moments about the centre of
+/// mass over all bodies, relative to the largest force [-] and moment. The tree joints are found
+/// from it; what it tells is that bodies whose wrenches all came from elsewhere (closing joints,
+/// loads) and generalised forces along the freedoms agree.
 double hn_reactions_defect(const hn_reactions *r);
 #endif

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-// what acts ----------------------------------------------------------------------------------------------------
+// ---- what acts ----
 
 /// A force at a place and a moment act on a body: less is left to its tree joint.
 static void act(hn_reactions *r, int body, double k, const double force[3], const double place[3],
@@ -25,7 +25,8 @@ static void act(hn_reactions *r, int body, double k, const double force[3], cons
     }
 }
 
-/// The part of a joint's hn_reaction_wrench that works along one of its coordinates: a unit force or moment on the child, in the world.
+/// The part of a joint's hn_reaction_wrench that works along one of its coordinates: a unit force
+/// or moment on the child, in the world.
 int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
@@ -42,7 +43,8 @@ int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, 
         if (part < chain[k].part || part >= chain[k].part + (ball ? 3 : 1)) {
             continue;
         }
-        // a turn about x comes after the one about z, so its axis is the child's; so are those of a ball
+        // a turn about x comes after the one about z, so its axis is the child's; so are those of a
+        // ball
         const int on_child = ball || (chain[k].type == HN_JOINT_REVOLUTE && along == 0);
         hn_reaction_to_world(r, on_child ? joint->child : joint->parent, sides[on_child][along],
                              axis);
@@ -52,7 +54,8 @@ int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, 
     return 0;
 }
 
-/// Efforts along coordinates of cut joints act on both bodies, and are part of the joint's wrench; in the tree they are found.
+/// Efforts along coordinates of cut joints act on both bodies, and are part of the joint's wrench;
+/// in the tree they are found.
 static void act_along_coordinates(hn_reactions *r) {
     for (int k = 0; k < r->sys->tree.n_cut; k++) {
         const int index = r->sys->tree.cut[k];
@@ -140,7 +143,8 @@ static void read_row(const hn_reactions *r, int body, int k, double out[3]) {
     hn_reaction_to_world(r, body, v, out);
 }
 
-/// What one row's multiplier does to its two bodies; to the hn_reaction_wrench of its joint or constraint that is handed out.
+/// What one row's multiplier does to its two bodies; to the hn_reaction_wrench of its joint or
+/// constraint that is handed out.
 static void act_row(hn_reactions *r, int row, double lambda, hn_reaction_wrench *constraint) {
     const int k = r->first_row + HN_REACTION_ROW * row;
     const hn_loop *loop = &r->sys->loops[r->sys->rows[row].loop];
@@ -176,7 +180,7 @@ static void act_rows(hn_reactions *r, const double *lambda, hn_reaction_wrench *
     }
 }
 
-// leaves first -------------------------------------------------------------------------------------------------
+// ---- leaves first ----
 
 static void hand_down(hn_reactions *r) {
     for (int k = r->n_bodies - 1; k >= 0; k--) {

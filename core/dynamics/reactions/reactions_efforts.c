@@ -1,8 +1,10 @@
-// Energies given as formulas beside bodies, as what they do along the scene's coordinates x; and the list of efforts.
+// Energies given as formulas beside bodies, as what they do along the scene's coordinates x; and
+// the list of efforts.
 //     Q_i = dT/dx_i - dV/dx_i - d/dt dT/dx_i' = c_i - sum_k m_ik a_k                                              (1)
 //     c_i = dT/dx_i - dV/dx_i - sum_j (d2T/dx_i'dx_j x_j' + d2T/dx_i'dx_j' g_j),   m_ik = sum_j d2T/dx_i'dx_j' dx_j'/du_k
-// a: accelerations of the system, g_j: x_j'' at a = 0. Lagrange's derivative is the same covector in any coordinates, so (1) does
-// the work along the scene's coordinates that the equations of motion, traced in the system's own, say it does.
+// a: accelerations of the system, g_j: x_j'' at a = 0. Lagrange's derivative is the same covector
+// in any coordinates, so (1) does the work along the scene's coordinates that the equations of
+// motion, traced in the system's own, say it does.
 #include "dynamics/reactions/reactions_internal.h"
 
 #include <math.h>
@@ -131,7 +133,7 @@ void hn_reaction_read_energies(hn_reactions *r, const double *a) {
     }
 }
 
-// the list -----------------------------------------------------------------------------------------------------
+// ---- the list ----
 
 int hn_reaction_is_formal(const hn_reactions *r, int coordinate) {
     const int joint = r->scene->coordinates[coordinate].joint;

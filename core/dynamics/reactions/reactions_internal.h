@@ -1,11 +1,13 @@
 #ifndef HN_DYNAMICS_REACTIONS_INTERNAL_H
 #define HN_DYNAMICS_REACTIONS_INTERNAL_H
-// Inside the reactions, shared by reactions.c (what the tape gives, what is handed out) and reactions_balance.c.
+// Inside the reactions, shared by reactions.c (what the tape gives, what is handed out) and
+// reactions_balance.c.
 //
 // Each body is seen from the ground (relate.c), in a frame that does not move:
 //     x, R, w of its centre of mass and axes;  a = a0 + sum c_i a_i,  al = al0 + sum z_i a_i  (a_i: accelerations of the system)
-// Then F = m a - m g, N = I al + w x I w is what acts on it; loads and the rows' wrenches are taken off, and from the leaves
-// to the root what is left is the wrench of its tree joint, which the joint hands on to the body below.
+// Then F = m a - m g, N = I al + w x I w is what acts on it; loads and the rows' wrenches are taken
+// off, and from the leaves to the root what is left is the wrench of its tree joint, which the
+// joint hands on to the body below.
 
 #include "dynamics/evaluate/inputs.h"
 #include "dynamics/compile/mech.h"
@@ -13,8 +15,8 @@
 #include "linalg/qr.h"
 
 typedef struct hn_reaction_wrench {
-    double f[3],
-        n[3]; ///< about the centre of mass of the body it stands for, or about a place that is said
+    /// about the centre of mass of the body it stands for, or about a place that is said
+    double f[3], n[3];
 } hn_reaction_wrench;
 
 typedef struct hn_reaction_body {
@@ -41,8 +43,8 @@ struct hn_reactions {
     double *tau;                     ///< per scene coordinate: effort along it
     double *lambda;                  ///< nc, a free combination
     hn_reaction_wrench *constraints; ///< per constraint
-    int n_energies,
-        n_inertia;          ///< beside bodies, energies given as formulas: see reactions_efforts.c
+    /// beside bodies, energies given as formulas: see reactions_efforts.c
+    int n_energies, n_inertia;
     int *energy_coordinate; ///< n_energies coordinates of the scene that they move
     double *energy;         ///< n_energies: what they do along those
     hn_entry *inertia;      ///< n_inertia: which of these, which acceleration
@@ -53,10 +55,11 @@ struct hn_reactions {
     double defect;
 };
 
-/// Outputs of a body: U, x, a0, w, al0, then c and z of each lever; of a row in E of end b: force, the two moments; of a load.
+/// Outputs of a body: U, x, a0, w, al0, then c and z of each lever; of a row in E of end b: force,
+/// the two moments; of a load.
 enum { HN_REACTION_POSE = 21, HN_REACTION_LEVER = 6, HN_REACTION_ROW = 9, HN_REACTION_LOAD = 3 };
 
-// small vectors and places ---------------------------------------------------------------------------------------
+// ---- small vectors and places ----
 void hn_reaction_add_cross(double out[3], double k, const double a[3],
                            const double b[3]);                                  ///< += k a x b
 void hn_reaction_add_scaled(double out[3], double k, const double a[3]);        ///< += k a
@@ -69,8 +72,9 @@ void hn_reaction_to_world(const hn_reactions *r, int body, const double v[3], do
 /// A point of a body, in the world.
 void hn_reaction_place_of(const hn_reactions *r, int body, const hn_quantity *at, double out[3]);
 
-// along coordinates (reactions_efforts.c) -----------------------------------------------------------------------------
-/// Which coordinates the energies move, what they do there at zero accelerations (one expression each, in the arena), and per acceleration.
+// ---- along coordinates (reactions_efforts.c) ----
+/// Which coordinates the energies move, what they do there at zero accelerations (one expression
+/// each, in the arena), and per acceleration.
 HN_MUST_CHECK hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena,
                                                     hn_ex **at_zero, hn_entries *inertia);
 void hn_reaction_read_energies(hn_reactions *r, const double *a); ///< of the last run of the tape
@@ -78,13 +82,15 @@ HN_MUST_CHECK hn_status hn_reaction_list_efforts(hn_reactions *r, hn_arena *aren
 void hn_reaction_read_efforts(hn_reactions *r, const double *lambda);
 int hn_reaction_is_formal(const hn_reactions *r, int coordinate); ///< no joint of bodies has it
 
-// the balance (reactions_balance.c) --------------------------------------------------------------------------------
-/// Wrenches of all joints for these multipliers, and of constraints between points; of a scene without mass or loads if `bare`.
+// ---- the balance (reactions_balance.c) ----
+/// Wrenches of all joints for these multipliers, and of constraints between points; of a scene
+/// without mass or loads if `bare`.
 void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
                          hn_reaction_wrench *constraint);
-/// Work of a tree joint's wrench along its own freedoms against what is put in there, relative; see hn_reactions_defect.
+/// Work of a tree joint's wrench along its own freedoms against what is put in there, relative; see
+/// hn_reactions_defect.
 double hn_reaction_calc_defect(const hn_reactions *r);
-/// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1) or moment (0) on the child, in
-/// the world.
+/// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1)
+/// or moment (0) on the child, in the world.
 int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
 #endif

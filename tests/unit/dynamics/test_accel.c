@@ -9,8 +9,8 @@
 
 enum { MAX_NV = 8, MAX_NC = 8 };
 
-// A bead where two rails cross at the angle e: J J' has the eigenvalues 1 -+ cos e, so that the 1-norm condition of K is 6 / e^2
-// where e is small: 1e13 at 7.7e-7.
+// A bead where two rails cross at the angle e: J J' has the eigenvalues 1 -+ cos e, so that the
+// 1-norm condition of K is 6 / e^2 where e is small: 1e13 at 7.7e-7.
 static const char RAILS[] =
     "{\"holonom\": 1, \"name\": \"rails\", \"title\": \"rails\","
     " \"parameters\": {\"e\": {\"value\": 1, \"unit\": \"rad\", \"min\": 0, \"max\": 2}},"

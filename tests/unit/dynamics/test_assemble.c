@@ -1,4 +1,5 @@
-// Assembly: start values that close, pins that hold, modes that are kept, and closures that cannot be reached and say why.
+// Assembly: start values that close, pins that hold, modes that are kept, and closures that cannot
+// be reached and say why.
 
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
@@ -217,7 +218,8 @@ static void formulas_that_cannot_be_met_are_named(void **state) {
 
 static void a_dyad_that_just_reaches_assembles_at_its_dead_point(void **state) {
     (void)state;
-    // the crank tip is 3.8 m from O3 and coupler and rocker together are 3.8 m long: stretched, J_d singular
+    // the crank tip is 3.8 m from O3 and coupler and rocker together are 3.8 m long: stretched, J_d
+    // singular
     char settings[64];
     (void)snprintf(settings, sizeof settings, "d=%.17g",
                    cos(1) + sqrt(3.8 * 3.8 - sin(1) * sin(1)));
@@ -275,7 +277,8 @@ static void free_rates_change_least_by_mass(void **state) {
              "\"th1\": {\"guess\": 2}, \"a2\": {\"guess\": 1}, \"th3\": {\"guess\": -1}", NULL);
     assert_int_equal(m.status, HN_OK);
 
-    // least change: M (v - guess) has no part along the motions that the loop allows, which are multiples of v
+    // least change: M (v - guess) has no part along the motions that the loop allows, which are
+    // multiples of v
     double guess_user[3] = {0}, guess[3], change[3], Mc[3];
     guess_user[hn_model_user(&m, "th1")] = 2;
     guess_user[hn_model_user(&m, "a2")] = 1;
@@ -342,7 +345,8 @@ static void every_shipped_scene_assembles(void **state) {
 
 static void the_mode_watch_sees_a_dead_point_pass(void **state) {
     (void)state;
-    // rocker-driven: th3 pinned, so th1 and a2 depend on it; the crank stretched over the coupler is its dead point
+    // rocker-driven: th3 pinned, so th1 and a2 depend on it; the crank stretched over the coupler
+    // is its dead point
     hn_model m;
     open_bar(&m, "\"th1\": {\"guess\": 1}, \"a2\": {\"guess\": -0.5}, \"th3\": 1.516841745037813",
              "\"th3\": 0", NULL);
@@ -352,7 +356,8 @@ static void the_mode_watch_sees_a_dead_point_pass(void **state) {
     assert_int_equal(hn_mode_watch_create(m.sys, arena, &watch), HN_OK);
     double before = hn_mode_watch_value(watch, 0, m.q);
 
-    // the columns are l1 and l2 turned by a right angle: the value is the sine between them, up to its sign
+    // the columns are l1 and l2 turned by a right angle: the value is the sine between them, up to
+    // its sign
     double a2 = user_value(&m, "a2");
     double x = cos(1) + 2 * cos(1 + a2), y = sin(1) + 2 * sin(1 + a2);
     double sine = (x * 2 * sin(1 + a2) - y * 2 * cos(1 + a2)) / (hypot(x, y) * 2);

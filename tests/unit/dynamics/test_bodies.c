@@ -1,4 +1,5 @@
-// Terms of random spatial mechanisms against plain body-by-body mechanics, and against differentiation.
+// Terms of random spatial mechanisms against plain body-by-body mechanics, and against
+// differentiation.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -130,7 +131,7 @@ static void planar_trees_have_it_too(void **state) {
     }
 }
 
-// closures -----------------------------------------------------------------------------------------------------------
+// ---- closures ----
 
 /// J and gamma by differentiating phi itself.
 static void check_closure_derivatives(setup *s) {
@@ -194,8 +195,8 @@ static void world_axis(const body_motion *bodies, const hn_joint *j, double out[
     }
 }
 
-/// Velocity of the child's half of the joint as seen from axes that turn with w about the parent's half; across the axis if
-/// the joint slides along it.
+/// Velocity of the child's half of the joint as seen from axes that turn with w about the parent's
+/// half; across the axis if the joint slides along it.
 static double relative_speed(const hn_joint *j, const body_motion *bodies, const double w[3]) {
     double x[2][3], v[2][3], a[2][3], axis[3], relative[3], slide = 0;
     mechanism_point(bodies, j->parent, j->parent_at, x[0], v[0], a[0]);
@@ -212,8 +213,9 @@ static double relative_speed(const hn_joint *j, const body_motion *bodies, const
     return norm(relative, 3);
 }
 
-/// In a closed pose the rates of the length rows of a loop are the relative velocity of the two halves, in other axes. Of a
-/// sliding joint: in the axes of the body that carries the rows' directions, which may be either.
+/// In a closed pose the rates of the length rows of a loop are the relative velocity of the two
+/// halves, in other axes. Of a sliding joint: in the axes of the body that carries the rows'
+/// directions, which may be either.
 static void check_loop_rates(setup *s, const body_motion *bodies, int loop) {
     const hn_joint *j = &s->scene->joints[hn_system_loop_joint(s->sys, loop)];
     static const double none[3] = {0, 0, 0};

@@ -1,4 +1,5 @@
-// Constraints beside the joints: derivatives of every kind, and motions and multipliers that are known without us.
+// Constraints beside the joints: derivatives of every kind, and motions and multipliers that are
+// known without us.
 #include "support/near.h"
 
 #include "dynamics/compile/drawing.h"
@@ -45,7 +46,8 @@ static void phi_after(probe *p, double t, const double *q, const double *v, doub
     memcpy(phi, hn_eval_get(p->eval, HN_TERM_PHI), (size_t)p->m.info.nc * sizeof *phi);
 }
 
-/// phi' = J v + phi_t and phi'' = gamma along a motion of constant v, by five-point differences, at states where nothing is closed.
+/// phi' = J v + phi_t and phi'' = gamma along a motion of constant v, by five-point differences, at
+/// states where nothing is closed.
 static void check_derivatives(const char *json, int rows) {
     const double h = 1e-3, t = 0.4;
     probe p;
@@ -255,7 +257,8 @@ static void a_gear_shares_the_torque_by_its_ratio(void **state) {
     end(&p);
 }
 
-// a crank driven at constant speed, a wheel of inertia on it and a torque against it: lambda is the drive's torque
+// a crank driven at constant speed, a wheel of inertia on it and a torque against it: lambda is the
+// drive's torque
 static void a_driven_crank_turns_as_told_and_its_multiplier_is_the_torque(void **state) {
     (void)state;
     probe p;
@@ -277,7 +280,8 @@ static void a_driven_crank_turns_as_told_and_its_multiplier_is_the_torque(void *
     end(&p);
 }
 
-// a four-bar whose crank is driven at w: the other angles and their rates by the law of cosines, the drive's torque by its power
+// a four-bar whose crank is driven at w: the other angles and their rates by the law of cosines,
+// the drive's torque by its power
 static void a_driven_four_bar_moves_as_its_closed_form(void **state) {
     (void)state;
     const double l1 = 0.3, l2 = 0.9, l3 = 0.7, d = 1.0, w = 4, t = 0.37;
@@ -366,7 +370,8 @@ static void every_constraint_is_a_loop_and_one_with_points_has_a_tear(void **sta
     assert_string_equal(hn_system_row_name(m.sys, 1), "wheels");
     assert_int_equal(d.n_tears, 1);
     assert_string_equal(d.tear_names[0], "rod");
-    // half as long again: the point where the rod should end lies on the line, at its length from the other end
+    // half as long again: the point where the rod should end lies on the line, at its length from
+    // the other end
     hn_eval *e = NULL;
     double user[MAX_N] = {1, 2, 3, 0.1, 0.2, 0.3, 0.4, 0.5}, q[MAX_N], from[3] = {0, 0, 0};
     assert_int_equal(hn_eval_create(m.sys, HN_TERM_POINTS | HN_TERM_PHI, m.arena, &e), HN_OK);

@@ -1,4 +1,5 @@
-// Position analysis in closed form: recognised where it exists, equal to what Newton's method finds, on the branch of the start.
+// Position analysis in closed form: recognised where it exists, equal to what Newton's method
+// finds, on the branch of the start.
 #include "dynamics/analyse/dyads.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -72,7 +73,8 @@ static void mechanisms_fall_apart_into_the_groups_of_the_textbooks(void **state)
 
 static void the_coupler_of_fb0_follows_the_formula_with_the_arc_cosine(void **state) {
     (void)state;
-    // th2 = arg e +- acos((l2^2 + |e|^2 - l3^2) / (2 l2 |e|)), e = O3 - A, for an open four-bar the sign is +
+    // th2 = arg e +- acos((l2^2 + |e|^2 - l3^2) / (2 l2 |e|)), e = O3 - A, for an open four-bar the
+    // sign is +
     probe p;
     open_probe(&p, "fb0-lagrangian", "th1");
     const hn_scene *scene = p.model.scene;
@@ -207,7 +209,8 @@ static void assert_told_is_true(const probe *p, const char *name, int k, double 
     for (int i = 0; i < d.n; i++) {
         const double q = p->model.q[hn_system_position_of(p->model.sys, d.unknown[i])];
         const double off = hn_graph_eval(g, hn_dyads_expression(p->dyads, k, i), x) - q;
-        // an angle is told up to whole turns; sqrt(1 - c^2) loses digits where links are nearly in line
+        // an angle is told up to whole turns; sqrt(1 - c^2) loses digits where links are nearly in
+        // line
         if (!(fabs(remainder(off, 2 * M_PI)) < 1e-10)) {
             fail_msg("%s, step %d, unknown %d: off by %g", name, k + 1, i + 1, off);
         }

@@ -1,4 +1,5 @@
-// The parts of the forces against the whole, which comes from the bodies one by one and not from the energies.
+// The parts of the forces against the whole, which comes from the bodies one by one and not from
+// the energies.
 #include "dynamics/evaluate/force_parts.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -80,7 +81,8 @@ static void forces_without_loads_are_velocity_part_and_potential(void **state) {
     }
 }
 
-/// With v held, T changes by M alone: v' M' v / 2 per second, which is v' h because M' - 2 C is skew. T by differences.
+/// With v held, T changes by M alone: v' M' v / 2 per second, which is v' h because M' - 2 C is
+/// skew. T by differences.
 static void the_velocity_part_does_the_work_of_the_changing_mass(void **state) {
     (void)state;
     static const char *const names[] = {"heavy-top", "rssr", "stewart-6-6"};

@@ -1,5 +1,6 @@
-// The reference four-bar FB0 (uniform rods 1, 2, 1.8 m of 1, 2, 1.8 kg, ground 2.2 m): both kinds of scenes, other planes and
-// doubled closures against its formulas written out, and its accelerations and multipliers against known numbers.
+// The reference four-bar FB0 (uniform rods 1, 2, 1.8 m of 1, 2, 1.8 kg, ground 2.2 m): both kinds
+// of scenes, other planes and doubled closures against its formulas written out, and its
+// accelerations and multipliers against known numbers.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -100,7 +101,7 @@ static void terms_are_the_formulas_whatever_the_kind_of_scene_and_the_plane(void
     check_formulas(TILTED);
 }
 
-// accelerations and multipliers --------------------------------------------------------------------------------------
+// ---- accelerations and multipliers ----
 
 /// The closed pose at t = 0, with consistent rates.
 static void start_state(double *q, double *v) {
@@ -243,7 +244,7 @@ static void the_whole_evaluation_stays_within_140_operations(void **state) {
     close_fourbar(&tilted);
 }
 
-// the factor -----------------------------------------------------------------------------------------------------------
+// ---- the factor ----
 
 static void the_factor_solves_as_the_tape_does(void **state) {
     (void)state;
@@ -285,7 +286,7 @@ static void the_factor_solves_as_the_tape_does(void **state) {
     close_fourbar(&s);
 }
 
-// memory ---------------------------------------------------------------------------------------------------------------
+// ---- memory ----
 
 static void an_evaluation_allocates_nothing_even_when_the_dense_solve_answers(void **state) {
     (void)state;

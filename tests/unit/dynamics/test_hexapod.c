@@ -1,6 +1,7 @@
-// The hexapod of Stewart and Gough, base joints 15 degrees off three axes, platform joints 45 degrees: sizes, freedoms, its
-// singular pose (Fichter 1986: the platform turned by a right angle), and what its equations cost.
-// Every body's frame is the world's at the pose, so that the ring of every leg is closed with all joints at zero.
+// The hexapod of Stewart and Gough, base joints 15 degrees off three axes, platform joints 45
+// degrees: sizes, freedoms, its singular pose (Fichter 1986: the platform turned by a right angle),
+// and what its equations cost. Every body's frame is the world's at the pose, so that the ring of
+// every leg is closed with all joints at zero.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -114,7 +115,8 @@ static void rigid_legs_hold_the_platform_except_when_it_is_turned_by_a_right_ang
         hn_model_close(&m);
     }
     assert_true(sigma[0] > sigma[2] && sigma[2] > sigma[3] && sigma[3] > sigma[4]);
-    // it dies away with the cosine of the yaw; what is left of the angle in J changes it by a few per cent
+    // it dies away with the cosine of the yaw; what is left of the angle in J changes it by a few
+    // per cent
     assert_rel(sigma[4] / sigma[3], cos(89 * M_PI / 180) / cos(80 * M_PI / 180), 0.07);
 }
 
@@ -131,7 +133,8 @@ static void the_legs_stay_apart_in_the_elimination(void **state) {
     hn_accel_info info;
     assert_int_equal(hn_accel_eval(accel, 0, m.q, m.v, 0, 0, a, lambda, &info), HN_OK);
     assert_int_equal(info.fallback, 0);
-    // nothing but gravity acts from rest: by symmetry of the legs' masses about the vertical axis the platform falls straight
+    // nothing but gravity acts from rest: by symmetry of the legs' masses about the vertical axis
+    // the platform falls straight
     hn_system_rates_to_user(m.sys, a, user);
     hn_system_rates_to_user(m.sys, m.a, expected);
     assert_all_near(user, expected, 24, 1e-11);

@@ -1,4 +1,5 @@
-// Joints of every type, in the tree and closing loops, against plain body-by-body mechanics and against differentiation.
+// Joints of every type, in the tree and closing loops, against plain body-by-body mechanics and
+// against differentiation.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -250,7 +251,7 @@ static void half_joints_are_drawn_where_they_are(void **state) {
     }
 }
 
-// positions and speeds ----------------------------------------------------------------------------------------------
+// ---- positions and speeds ----
 
 static void user_coordinates_there_and_back_and_power_is_the_same(void **state) {
     (void)state;

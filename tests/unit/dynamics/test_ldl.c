@@ -15,7 +15,8 @@ static double random_unit(unsigned *seed) {
     return (double)(*seed >> 8) / (double)(1u << 24) - 0.5;
 }
 
-/// A random saddle-point system with the pattern of a chain: speed i is coupled to i + 1, row k touches four speeds.
+/// A random saddle-point system with the pattern of a chain: speed i is coupled to i + 1, row k
+/// touches four speeds.
 typedef struct chain {
     int nv, nc;
     hn_entries W, J;

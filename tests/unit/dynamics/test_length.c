@@ -1,4 +1,5 @@
-// The characteristic length, by which gaps are judged, is the mechanism's own, however the scene was written.
+// The characteristic length, by which gaps are judged, is the mechanism's own, however the scene
+// was written.
 
 #include "support/model.h"
 #include "support/near.h"
@@ -33,7 +34,8 @@ static void formulas_without_angles_have_length_one(void **state) {
     assert_near(length_of("caraxis"), 1, 0);
 }
 
-/// A loop of links of 0.3, 0.5 and 0.5 m, the axes turned by `turn`; its start is near enough to a closed one.
+/// A loop of links of 0.3, 0.5 and 0.5 m, the axes turned by `turn`; its start is near enough to a
+/// closed one.
 static double length_turned_by(double turn, int symbolic) {
     char text[1024];
     hn_model m;

@@ -1,4 +1,5 @@
-// Exact derivatives of the equations of motion against differences along the motions of the coordinates.
+// Exact derivatives of the equations of motion against differences along the motions of the
+// coordinates.
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/linearise.h"
 
@@ -88,7 +89,8 @@ static void run_linear(bench *b) {
     hn_linear_run(b->linear, b->t, b->q, b->v, b->a, b->lambda);
 }
 
-// column j of `term` against (plus - minus) / 2 e; rounding of a difference is eps / e of the largest value
+// column j of `term` against (plus - minus) / 2 e; rounding of a difference is eps / e of the
+// largest value
 static void check_column(bench *b, hn_linear_term term, int j, int rows, const double *plus,
                          const double *minus, double e, const char *scene) {
     const double *matrix = hn_linear_get(b->linear, term);

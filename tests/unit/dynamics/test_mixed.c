@@ -97,7 +97,8 @@ static void a_link_as_formulas_moves_as_the_link_does(void **state) {
         double q[2], v[2], a[2] = {999, 999}, b[2] = {-999, -999};
         state_of(k, q, v);
         const double energy = accelerate(&bodies, q, v, a), same = accelerate(&mixed, q, v, b);
-        // two formulas of one thing in doubles, M is well conditioned: rounding of some tens of operations
+        // two formulas of one thing in doubles, M is well conditioned: rounding of some tens of
+        // operations
         const double size = 1 + fabs(a[0]) + fabs(a[1]);
         assert_near(b[0], a[0], 1e-12 * size);
         assert_near(b[1], a[1], 1e-12 * size);
@@ -129,7 +130,8 @@ static void an_elastic_pendulum_follows_its_closed_form(void **state) {
     end(&s);
 }
 
-// b follows a as a gear would: one row over a joint's coordinate and an own one, and the freedom is lost
+// b follows a as a gear would: one row over a joint's coordinate and an own one, and the freedom is
+// lost
 static void constraints_reach_over_both_kinds_of_coordinates(void **state) {
     (void)state;
     char text[2048];

@@ -1,4 +1,5 @@
-// Assembly modes: those of all loops are told, and the one that a scene asks for is reached, or missed with its reason.
+// Assembly modes: those of all loops are told, and the one that a scene asks for is reached, or
+// missed with its reason.
 #include "support/near.h"
 
 #include "support/model.h"
@@ -9,8 +10,8 @@
 
 enum { TEXT = 4000 };
 
-/// A crank at 1 rad and two dyads in a row: crank 1, coupler 2, rocker 1.8 on a ground of 2.2 m; from the coupler's middle a
-/// rod of 1.2 m to a lever of 1.3 m that turns at (1.2, 1.9).
+/// A crank at 1 rad and two dyads in a row: crank 1, coupler 2, rocker 1.8 on a ground of 2.2 m;
+/// from the coupler's middle a rod of 1.2 m to a lever of 1.3 m that turns at (1.2, 1.9).
 static const char *write_scene(char out[TEXT], const char *mode, const char *more_pins) {
     snprintf(
         out, TEXT,
@@ -46,7 +47,8 @@ static double coupler_angle(int sign) {
     return atan2(ey, ex) + sign * acos((4 + L * L - 1.8 * 1.8) / (4 * L));
 }
 
-/// The rod turns left or right from the diagonal between its joint on the coupler and the lever's pivot.
+/// The rod turns left or right from the diagonal between its joint on the coupler and the lever's
+/// pivot.
 static double rod_side(const hn_model *m) {
     const double th2 = m->user_q[hn_model_user(m, "th1")] + m->user_q[hn_model_user(m, "a2")];
     const double th4 = th2 + m->user_q[hn_model_user(m, "c4")];

@@ -1,4 +1,5 @@
-// Projection: the nearest closed state, what it costs in energy, redundancy, lost rank, and its cost on long ladders.
+// Projection: the nearest closed state, what it costs in energy, redundancy, lost rank, and its
+// cost on long ladders.
 
 #include "dynamics/assembly/project.h"
 
@@ -173,7 +174,8 @@ static void a_pose_of_lost_rank_gives_a_least_step_and_no_nan(void **state) {
     hn_project_info info;
     assert_int_equal(hn_project_position(f.p, 0, f.q, 1e-13, &info), HN_OK); // closed as it stands
 
-    // turning all bars alike keeps the gap closed, so these speeds need nothing; others lose what does not fit
+    // turning all bars alike keeps the gap closed, so these speeds need nothing; others lose what
+    // does not fit
     disturb(f.v, 3, 0.5);
     assert_int_equal(hn_project_velocity(f.p, 0, f.q, f.v, &info), HN_OK);
     assert_int_equal(info.rank, 1);

@@ -1,4 +1,5 @@
-// The radar of singular poses: closed forms of sigma, the time of the next pose, the freedoms and branches there.
+// The radar of singular poses: closed forms of sigma, the time of the next pose, the freedoms and
+// branches there.
 
 #include "dynamics/analyse/radar.h"
 #include "support/alloc.h"
@@ -36,8 +37,9 @@ static void lean(const hn_model *m, int n_loops, double th, double *q) {
 
 static void a_loop_of_the_ladder_loses_a_rank_like_its_angle(void **state) {
     (void)state;
-    // a = |row x| and b = |row y| of J D against their largest lengths, masses 4/3 (first crank with its coupler), 1/3, 1/3:
-    // near the flat pose row x is th (k1, 0, k2) and row y (k1, k3, k2), so that sigma_min is proportional to th
+    // a = |row x| and b = |row y| of J D against their largest lengths, masses 4/3 (first crank
+    // with its coupler), 1/3, 1/3: near the flat pose row x is th (k1, 0, k2) and row y (k1, k3,
+    // k2), so that sigma_min is proportional to th
     static const double angle[] = {1e-1, 1e-2, 1e-3, 1e-5, 1e-7};
     hn_model m;
     hn_radar *r = open_radar(&m, NULL, "N=1");

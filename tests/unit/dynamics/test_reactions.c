@@ -1,4 +1,5 @@
-// What joints carry: balance of every body from poses alone, cases worked out by hand, and independence of the cut.
+// What joints carry: balance of every body from poses alone, cases worked out by hand, and
+// independence of the cut.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -125,7 +126,8 @@ static void a_pendulum_s_pin_carries_weight_along_the_rod_and_centrifugal_force(
     hn_model_close(&model);
 }
 
-// two rods of a wall bracket under a weight: pulled sqrt(2) W along the tie, pushed W along the strut. The rods are massless bodies
+// two rods of a wall bracket under a weight: pulled sqrt(2) W along the tie, pushed W along the
+// strut. The rods are massless bodies
 static void a_bracket_carries_its_weight_as_statics_says(void **state) {
     (void)state;
     hn_model model;
@@ -179,7 +181,8 @@ static void solve_cut(const char *json, carried *c) {
     hn_model_close(&m);
 }
 
-// the very same motion with each joint cut in turn; actuator at B and a spring along D, whether in the tree or not
+// the very same motion with each joint cut in turn; actuator at B and a spring along D, whether in
+// the tree or not
 static void reactions_do_not_depend_on_which_joint_is_cut(void **state) {
     (void)state;
     static const char CUT[] = ",\"cut\":true";
@@ -201,7 +204,8 @@ static void reactions_do_not_depend_on_which_joint_is_cut(void **state) {
     }
 }
 
-// a four-bar whose plane is known twice over: one joint's forces out of the plane cannot be told apart from another's
+// a four-bar whose plane is known twice over: one joint's forces out of the plane cannot be told
+// apart from another's
 static void redundant_rows_are_told_at_the_joints_they_touch(void **state) {
     (void)state;
     hn_model m;

@@ -1,5 +1,5 @@
-// What formulas do to joints: efforts along coordinates against closed forms, the same springs written both ways, and the balance of
-// every body from differences of its poses.
+// What formulas do to joints: efforts along coordinates against closed forms, the same springs
+// written both ways, and the balance of every body from differences of its poses.
 #include "support/near.h"
 
 #include "dynamics/evaluate/eval.h"
@@ -46,7 +46,8 @@ static void end(carried *c) {
     hn_model_close(&c->m);
 }
 
-/// Newton and Euler for each body, and the work of the wrenches along the freedoms of the tree's joints.
+/// Newton and Euler for each body, and the work of the wrenches along the freedoms of the tree's
+/// joints.
 static void check_balance(const carried *c) {
     const balance b = balance_of(c->m.sys, 0, c->m.q, c->m.v, c->a, c->joints, c->constraints);
     // differences of poses lose 1e-16 / step^2 of lengths times masses
@@ -75,7 +76,7 @@ static double effort(const carried *c, const char *name, const char *coordinate)
     return e.value;
 }
 
-// one link -----------------------------------------------------------------------------------------------------
+// ---- one link ----
 
 #define LINK                                                                                 \
     "{\"holonom\":1,\"name\":\"x\",\"gravity\":[0,-9.81,0],\"bodies\":[{\"name\":\"link\","  \
@@ -89,7 +90,8 @@ static const char BEAD[] =
          "\"potential\":\"0.8*9.81*(0.7+s)*sin(a)+40*s^2/2\"},"
          "\"start\":{\"positions\":{\"a\":0.4,\"s\":0.05},\"rates\":{\"a\":1.7,\"s\":-0.6}}}";
 
-// Q = -(r^2 m w)' - m g r cos a is what the bead does to the angle; the pin holds the link against the link's own inertia alone
+// Q = -(r^2 m w)' - m g r cos a is what the bead does to the angle; the pin holds the link against
+// the link's own inertia alone
 static void a_pin_carries_what_formulas_do_along_its_freedom(void **state) {
     (void)state;
     carried c;
@@ -135,7 +137,8 @@ static const char APART[] =
          "\"constraints\":[{\"name\":\"drum\",\"formula\":\"s-0.1*u\"}]},"
          "\"start\":{\"positions\":{\"a\":0.4,\"u\":0}}}";
 
-// a weight on a drum: m (g + s'') along the rope and 0.1 of it at the drum, and nothing of it at the pin of the link beside it
+// a weight on a drum: m (g + s'') along the rope and 0.1 of it at the drum, and nothing of it at
+// the pin of the link beside it
 static void constraints_of_formulas_alone_have_efforts_and_no_place(void **state) {
     (void)state;
     carried c;
@@ -150,7 +153,7 @@ static void constraints_of_formulas_alone_have_efforts_and_no_place(void **state
     end(&c);
 }
 
-// a closed loop ------------------------------------------------------------------------------------------------
+// ---- a closed loop ----
 
 #define BAR(name, mass, half) \
     "{\"name\":\"" name "\",\"mass\":" mass ",\"com\":[" half ",0,0],\"inertia\":{\"zz\":0.1}}"
@@ -235,7 +238,8 @@ static const char ROTORS[] = FOUR_BAR ",\"lagrangian\":{\"kinetic\":"
                                       "\"(2+cos(a))*dc^2/2+0.4*da*dc+0.3*dd^2\","
                                       "\"potential\":\"7*sin(c)*a\"}}";
 
-// T = (2 + cos a) c'^2 / 2 + 0.4 a' c' + 0.3 d'^2 and V = 7 a sin c, by Lagrange's rule on paper; C is the joint that is cut
+// T = (2 + cos a) c'^2 / 2 + 0.4 a' c' + 0.3 d'^2 and V = 7 a sin c, by Lagrange's rule on paper; C
+// is the joint that is cut
 static void energies_act_in_the_joints_of_a_loop(void **state) {
     (void)state;
     carried s;
@@ -277,7 +281,8 @@ static void energies_act_in_the_joints_of_a_loop(void **state) {
     "{\"holonom\":1,\"name\":\"x\",\"bodies\":[" CRANK_AND_ROD \
     ",{\"name\":\"slider\",\"mass\":" mass "}],\"joints\":[" SLIDER_PINS SLIDE SLIDER_START
 
-// the way of the cut joint is no linear map of the tree's angles: its acceleration has a part that is there without theirs
+// the way of the cut joint is no linear map of the tree's angles: its acceleration has a part that
+// is there without theirs
 static void mass_on_a_slide_may_be_a_formula_of_the_cut_joint(void **state) {
     (void)state;
     carried heavy, light;
@@ -350,7 +355,8 @@ static void bodies_in_space_are_in_balance_with_formulas_in_their_joints(void **
         }
         const balance b = balance_of(c.m.sys, 0, c.m.q, c.m.v, c.a, c.joints, c.constraints);
         const double size = 1 + b.largest_force + b.largest_moment;
-        // differences: 1e-16 / step^2 of lengths times masses, and (speed step)^4 / 90 of accelerations
+        // differences: 1e-16 / step^2 of lengths times masses, and (speed step)^4 / 90 of
+        // accelerations
         if (!(b.force <= 1e-6 * size && b.moment <= 1e-6 * size)) {
             fail_msg("%s: %g N and %g N m are missing", rows[k].scene, b.force, b.moment);
         }
@@ -359,7 +365,7 @@ static void bodies_in_space_are_in_balance_with_formulas_in_their_joints(void **
     }
 }
 
-// formulas alone -----------------------------------------------------------------------------------------------
+// ---- formulas alone ----
 
 // M a = f + J' lambda: the rows' efforts along each coordinate are all that is missing
 static void efforts_of_a_lagrangian_s_rows_are_what_its_motion_lacks(void **state) {

@@ -1,4 +1,5 @@
-// Spatial linkages of one loop: whichever joint is cut, however the whole is turned in space, the mechanism is the same.
+// Spatial linkages of one loop: whichever joint is cut, however the whole is turned in space, the
+// mechanism is the same.
 #include "support/near.h"
 
 #include "support/model.h"
@@ -51,7 +52,7 @@ static void whichever_joint_is_cut_the_crank_accelerates_alike(void **state) {
     }
 }
 
-// turned in space --------------------------------------------------------------------------------------------------
+// ---- turned in space ----
 
 static void turn(const double R[3][3], const double v[3], double out[3]) {
     double c[3];
@@ -122,7 +123,7 @@ static void a_mechanism_turned_in_space_as_a_whole_moves_alike(void **state) {
     }
 }
 
-// planar loops ----------------------------------------------------------------------------------------------------
+// ---- planar loops ----
 
 /// A four-bar of revolutes about one skew axis, closed by a joint of this type about the same axis.
 static void write_planar(char text[RING_TEXT], const char *closing) {
@@ -172,7 +173,8 @@ static void a_planar_loop_keeps_the_rows_of_its_plane_whatever_closes_it(void **
     }
 }
 
-/// Turned by half a revolution the rows of a fixed joint hold as well, and the guess stands next to that pose.
+/// Turned by half a revolution the rows of a fixed joint hold as well, and the guess stands next to
+/// that pose.
 static void a_loop_is_not_closed_the_wrong_way_round(void **state) {
     static const char text[] =
         "{\"holonom\":1,\"name\":\"twice held\",\"bodies\":[{\"name\":\"b\",\"mass\":1,"

@@ -60,7 +60,7 @@ static const double *term(model *m, hn_term which, double t, const double *q, co
     return hn_eval_get(m->eval, which);
 }
 
-// refusals -------------------------------------------------------------------------------------------------------------
+// ---- refusals ----
 
 #define BAR(name) \
     "{\"name\": \"" name "\", \"mass\": 1, \"com\": [0.5, 0, 0], \"inertia\": {\"zz\": 0.1}}"
@@ -118,7 +118,7 @@ static void a_kinetic_energy_that_is_not_quadratic_is_refused(void **state) {
     }
 }
 
-// Lagrangians ----------------------------------------------------------------------------------------------------------
+// ---- Lagrangians ----
 
 static void a_constraint_that_moves_with_time_has_all_its_derivatives(void **state) {
     (void)state;
@@ -155,7 +155,7 @@ static void mass_that_depends_on_the_coordinates_gives_its_bias(void **state) {
     close_model(&m);
 }
 
-// loads ------------------------------------------------------------------------------------------------------------------
+// ---- loads ----
 
 #define TWO_LINKS                                                                               \
     "{\"holonom\": 1, \"name\": \"loads\", \"bodies\": [" BAR("a") "," BAR(                     \
@@ -167,7 +167,8 @@ static void mass_that_depends_on_the_coordinates_gives_its_bias(void **state) {
              "[1, 0, 0]}, \"child\": {\"body\": \"b\"}, \"coordinate\": \"r\", \"rate\": "      \
              "\"rd\"}],"
 
-/// f . v must be the power of the loads alone: gravity is off, and M a + h at v is taken from the same scene without loads.
+/// f . v must be the power of the loads alone: gravity is off, and M a + h at v is taken from the
+/// same scene without loads.
 static double power_of_loads(const char *text, const double *user_q, const double *user_v,
                              double t) {
     model with = open_text(text), without = open_text(TWO_LINKS "\"duration\": 1}");
@@ -239,7 +240,8 @@ static void a_spring_on_a_joint_pulls_to_its_rest(void **state) {
 
 static void the_coordinate_of_a_cut_joint_follows_from_the_absolute_angles(void **state) {
     (void)state;
-    // the cut joint B runs from b to c: its angle is theta_c - theta_b; P is written the other way round
+    // the cut joint B runs from b to c: its angle is theta_c - theta_b; P is written the other way
+    // round
     static const char text[] =
         "{\"holonom\": 1, \"name\": \"cut\", \"bodies\": [" BAR("a") "," BAR("b") "," BAR(
             "c") "],"
@@ -273,10 +275,11 @@ static void the_coordinate_of_a_cut_joint_follows_from_the_absolute_angles(void 
     close_model(&m);
 }
 
-// a spatial closed loop -----------------------------------------------------------------------------------------------
+// ---- a spatial closed loop ----
 
-/// Bennett's linkage: four skew hinges, opposite links alike, a / sin(alpha) = b / sin(beta). Link k carries the next hinge at
-/// (length, 0, 0), turned by the twist about x; the ground is the fourth link.
+/// Bennett's linkage: four skew hinges, opposite links alike, a / sin(alpha) = b / sin(beta). Link
+/// k carries the next hinge at (length, 0, 0), turned by the twist about x; the ground is the
+/// fourth link.
 static hn_scene *bennett(hn_arena *arena, double alpha, double beta, double b) {
     const double length[4] = {1, b, 1, b}, twist[4] = {alpha, beta, alpha, beta};
     const mechanism_opts o = {.seed = 1, .n_bodies = 3, .n_cuts = 1};
@@ -325,7 +328,8 @@ static void a_bennett_linkage_moves_although_its_rows_outnumber_its_speeds(void 
                      HN_OK);
     assert_int_equal(hn_accel_create(sys, &opts, arena, &accel), HN_OK);
 
-    // its one freedom: tan(th1/2) tan(th2/2) = sin((beta + alpha)/2) / sin((beta - alpha)/2), th3 = -th1
+    // its one freedom: tan(th1/2) tan(th2/2) = sin((beta + alpha)/2) / sin((beta - alpha)/2), th3 =
+    // -th1
     const double ratio = sin((beta + alpha) / 2) / sin((beta - alpha) / 2);
     const double th1 = 0.9, th2 = 2 * atan(ratio / tan(th1 / 2)), user_q[3] = {th1, th2, -th1};
     double q[3], v[3] = {0, 0, 0}, a[3], lambda[5], scale = 0;
@@ -334,7 +338,8 @@ static void a_bennett_linkage_moves_although_its_rows_outnumber_its_speeds(void 
     for (int k = 0; k < 5; k++) {
         assert_near(hn_eval_get(e, HN_TERM_PHI)[k], 0, 1e-14);
     }
-    // the rates that all five rows allow: across two of them, and then across the others by themselves
+    // the rates that all five rows allow: across two of them, and then across the others by
+    // themselves
     const double *J = hn_eval_get(e, HN_TERM_J);
     for (int r = 1; r < 5 && scale < 1e-3; r++) {
         for (int i = 0; i < 3; i++) {
@@ -363,7 +368,7 @@ static void a_bennett_linkage_moves_although_its_rows_outnumber_its_speeds(void 
     hn_arena_free(arena);
 }
 
-// telling and size -------------------------------------------------------------------------------------------------------
+// ---- telling and size ----
 
 static void inspect_tells_the_tree_the_cut_and_exact_counts(void **state) {
     (void)state;
@@ -497,7 +502,8 @@ static void write_chain(hn_strbuf *b, int n) {
         n - 1, n - 1);
 }
 
-// its mass matrix is full: unrolled, the solve would grow with the cube of the links, so the dense solve answers
+// its mass matrix is full: unrolled, the solve would grow with the cube of the links, so the dense
+// solve answers
 static void a_matrix_that_is_not_sparse_is_not_unrolled(void **state) {
     (void)state;
     enum { LINKS = 80 };
