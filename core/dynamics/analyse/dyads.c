@@ -236,11 +236,7 @@ static void list_inputs(builder *b) {
 }
 
 static hn_status compile_one(builder *b, int n_out, hn_tape **tape, double **work) {
-    const hn_status status =
-        hn_tape_compile(b->sys->g, b->outputs, n_out, b->symbols, b->d->n_in, tape);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_tape_compile(b->sys->g, b->outputs, n_out, b->symbols, b->d->n_in, tape));
     *work = hn_arena_doubles(b->arena, hn_tape_work_size(*tape));
     if (!*work) {
         return HN_ERR_MEMORY;
@@ -260,12 +256,12 @@ static hn_status compile(builder *b) {
     }
     d->signs = d->in + b->sys->nq + 1;
     list_inputs(b);
-    hn_status status = compile_one(b, OUTPUTS * d->n, &d->solve, &d->solve_work);
+    HN_TRY(compile_one(b, OUTPUTS * d->n, &d->solve, &d->solve_work));
     for (int k = 0; k < d->n; k++) {
         b->outputs[k] = d->steps[k].branch;
         d->signs[k] = 1;
     }
-    return status == HN_OK ? compile_one(b, d->n, &d->branch, &d->branch_work) : status;
+    return compile_one(b, d->n, &d->branch, &d->branch_work);
 }
 
 static hn_status build(builder *b, const int *dep) {

@@ -127,13 +127,8 @@ static hn_status start(hn_assembler *s) {
     for (int i = 0; i < s->nc; i++) {
         s->row_scale[i] = 1 / hn_system_row_unit(s->sys, i);
     }
-    hn_status status = check_orientations(s);
-    if (status == HN_OK) {
-        status = read_map(s);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(check_orientations(s));
+    HN_TRY(read_map(s));
     unsigned terms = HN_TERM_M | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
     return hn_eval_create(s->sys, terms, s->arena, &s->eval);
 }
@@ -459,8 +454,8 @@ static hn_status report_mode(hn_assembler *s, hn_assembly *report) {
 static hn_status fill_report(hn_assembler *s, hn_assembly *report) {
     const double *energy = hn_eval_get(s->eval, HN_TERM_ENERGY);
     report->energy = energy[0] + energy[1];
-    hn_status status = report_mode(s, report);
-    return status == HN_OK ? report_rank(s, report) : status;
+    HN_TRY(report_mode(s, report));
+    return report_rank(s, report);
 }
 
 static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, double *lambda,

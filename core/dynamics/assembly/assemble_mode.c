@@ -99,9 +99,9 @@ static hn_status mend(mode_search *m, int wrong, int *mended) {
     int dependent[MAX_DEPENDENT], n = 0;
     uint64_t seed = 100 + (uint64_t)wrong;
     *mended = 0;
-    hn_status status = hn_mode_dependent(s->sys, s->arena, wrong, dependent, &n);
+    HN_TRY(hn_mode_dependent(s->sys, s->arena, wrong, dependent, &n));
     memcpy(m->start, s->x, (size_t)s->n * sizeof *s->x);
-    for (int k = 0; k < TRIES_PER_LOOP && status == HN_OK; k++) {
+    for (int k = 0; k < TRIES_PER_LOOP; k++) {
         memcpy(s->x, m->start, (size_t)s->n * sizeof *s->x);
         scatter(m, dependent, n, &seed);
         if (!hn_assemble_descend(m->search)) {
@@ -114,7 +114,7 @@ static hn_status mend(mode_search *m, int wrong, int *mended) {
             break;
         }
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status tell_missing(const mode_search *m) {

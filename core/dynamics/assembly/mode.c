@@ -242,11 +242,7 @@ static hn_status compile_loops(const finder *f, hn_arena *arena, const loop_part
     }
     memcpy(symbols, sys->q_symbols, (size_t)sys->nq * sizeof *symbols);
     symbols[sys->nq] = sys->t_symbol;
-    hn_status status =
-        hn_tape_compile(sys->g, entries, (int)total, symbols, sys->nq + 1, &out->tape);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_tape_compile(sys->g, entries, (int)total, symbols, sys->nq + 1, &out->tape));
     out->det = hn_arena_doubles(arena, total);
     out->work = hn_arena_doubles(arena, hn_tape_work_size(out->tape));
     if (!out->det || !out->work) {

@@ -90,23 +90,14 @@ static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
     if (hn_graph_failed(g)) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = hn_tape_compile(g, ex.phi, p->nc, symbols, n_in, &p->phi_tape);
-    if (status == HN_OK) {
-        status = hn_tape_compile(g, rows, p->nc, symbols, n_in, &p->gap_tape);
-    }
-    return status;
+    HN_TRY(hn_tape_compile(g, ex.phi, p->nc, symbols, n_in, &p->phi_tape));
+    return hn_tape_compile(g, rows, p->nc, symbols, n_in, &p->gap_tape);
 }
 
 static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     int mass = p->weight == HN_WEIGHT_MASS;
-    hn_status status =
-        hn_factor_create(p->sys, mass ? HN_FACTOR_MASS : HN_FACTOR_IDENTITY, arena, &p->factor);
-    if (status == HN_OK) {
-        status = hn_eval_create(p->sys, mass ? HN_TERM_M | HN_TERM_J : HN_TERM_J, arena, &p->terms);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_factor_create(p->sys, mass ? HN_FACTOR_MASS : HN_FACTOR_IDENTITY, arena, &p->factor));
+    HN_TRY(hn_eval_create(p->sys, mass ? HN_TERM_M | HN_TERM_J : HN_TERM_J, arena, &p->terms));
     p->saddle = hn_saddle_ws_create(arena, p->nv, p->nc);
     if (!p->saddle) {
         return HN_ERR_MEMORY;
@@ -149,13 +140,8 @@ static double size_of_speeds(const hn_projector *p, const double *v) {
 }
 
 static hn_status create_parts(hn_projector *p, hn_arena *arena) {
-    hn_status status = compile_tapes(p, arena);
-    if (status == HN_OK) {
-        status = create_solvers(p, arena);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(compile_tapes(p, arena));
+    HN_TRY(create_solvers(p, arena));
     size_t nv = (size_t)p->nv, nc = (size_t)p->nc, nq = (size_t)p->nq;
     p->in = hn_arena_doubles(arena, nq + nv + 1);
     p->phi_work = hn_arena_doubles(arena, hn_tape_work_size(p->phi_tape));
@@ -299,17 +285,12 @@ static double eval_phi(hn_projector *p, double t, const double *q) {
 /// One step of the position iteration with the present factor, made at q when there is none.
 static hn_status step_position(hn_projector *p, double t, double *q) {
     if (!p->have_factor) {
-        hn_status status = make_factor(p, t, q, 0);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(make_factor(p, t, q, 0));
     }
-    hn_status status = solve(p);
-    if (status == HN_OK) {
-        hn_system_move(p->sys, q, p->step);
-        p->ops += p->nq;
-    }
-    return status;
+    HN_TRY(solve(p));
+    hn_system_move(p->sys, q, p->step);
+    p->ops += p->nq;
+    return HN_OK;
 }
 
 /// Iterates from q in place until the gap is at most tol, or below `rounding` and no longer
@@ -324,10 +305,7 @@ static hn_status close_gap(hn_projector *p, double t, double *q, double tol, dou
             return gap <= rounding ? HN_OK : HN_ERR_NO_CONVERGENCE;
         }
         int fresh = !p->have_factor;
-        hn_status status = step_position(p, t, q);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(step_position(p, t, q));
         double before = gap;
         gap = eval_phi(p, t, q);
         info->iterations++;
@@ -403,10 +381,7 @@ static int factor_is_near(const hn_projector *p, double t, const double *q) {
 /// One correction of v; the sums for the energy follow. 1/2 dv' M dv = 1/2 (J dv)' y, as M dv = J'
 /// y.
 static hn_status correct_velocity(hn_projector *p, double *v) {
-    hn_status status = solve(p);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(solve(p));
     hn_axpy(p->nv, 1, p->step, v);
     hn_axpy(p->nc, 1, p->multiplier, p->impulse);
     p->ops += p->nv + p->nc;

@@ -120,11 +120,9 @@ static void put_point(hn_system *sys, int at, hn_vec3 p) {
 static hn_status trace_point(hn_mech *m, int at, int body, const hn_quantity *place) {
     int link = hn_tree_link(m->tree, body);
     hn_vec3 arm;
-    hn_status status = hn_mech_arm_of(m, link, place, &arm);
-    if (status == HN_OK) {
-        put_point(m->sys, at, hn_mech_world(m, link, arm));
-    }
-    return status;
+    HN_TRY(hn_mech_arm_of(m, link, place, &arm));
+    put_point(m->sys, at, hn_mech_world(m, link, arm));
+    return HN_OK;
 }
 
 static hn_status trace_points(hn_mech *m) {
@@ -188,10 +186,7 @@ static void add_levers(hn_mech *m, const hn_reach *end, double sign, const hn_ma
 static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     hn_mech *m = self;
     hn_relative rel;
-    hn_status status = get_span(m, p, q, &rel);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(get_span(m, p, q, &rel));
     size_t cap = (size_t)(rel.a.n + rel.b.n) + 1;
     out->n = 0;
     out->coordinate = hn_arena_ints(m->sys->arena, cap);
@@ -216,10 +211,7 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
 static hn_status spin_of_body(void *self, int p, hn_span *out) {
     hn_mech *m = self;
     hn_relative rel;
-    hn_status status = get_span(m, p, -1, &rel);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(get_span(m, p, -1, &rel));
     size_t cap = (size_t)rel.a.n + 1;
     out->n = 0;
     out->coordinate = hn_arena_ints(m->sys->arena, cap);
@@ -290,34 +282,21 @@ static hn_status check_size(const hn_mech *m) {
 }
 
 static hn_status trace_terms(hn_mech *m) {
-    hn_status status = check_size(m);
-    if (status == HN_OK) {
-        status = hn_mech_trace_geometry(m);
-    }
-    if (status == HN_OK) {
-        status = hn_mech_cut_coordinates(m);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(check_size(m));
+    HN_TRY(hn_mech_trace_geometry(m));
+    HN_TRY(hn_mech_cut_coordinates(m));
     hn_mech_trace_composites(m);
     hn_mech_trace_mass(m);
     hn_mech_trace_bias(m);
     hn_mech_trace_energy(m);
     if (m->sys->scene->has_formulas) {
-        status = hn_lagrangian_add_energies(m->sys);
+        HN_TRY(hn_lagrangian_add_energies(m->sys));
     }
-    if (status == HN_OK) {
-        status = hn_mech_trace_loops(m);
-    }
-    if (status == HN_OK) {
-        status = hn_mech_trace_constraints(m);
-    }
-    if (status == HN_OK) {
-        hn_geometry geometry = {.self = m, .span = span_of_points, .spin = spin_of_body};
-        status = hn_loads_compile(m->sys, &geometry);
-    }
-    return status == HN_OK ? trace_points(m) : status;
+    HN_TRY(hn_mech_trace_loops(m));
+    HN_TRY(hn_mech_trace_constraints(m));
+    hn_geometry geometry = {.self = m, .span = span_of_points, .spin = spin_of_body};
+    HN_TRY(hn_loads_compile(m->sys, &geometry));
+    return trace_points(m);
 }
 
 /// In the order of their speeds.
@@ -351,29 +330,17 @@ hn_status hn_bodies_compile(hn_system *sys) {
     if (!m) {
         return HN_ERR_MEMORY;
     }
-    hn_status status =
-        hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags);
-    if (status == HN_OK) {
-        const int n_cut = sys->tree.n_cut, more = scene->n_constraints;
-        status = hn_system_allocate(sys, sys->tree.n_positions, sys->tree.n_coordinates,
-                                    ROWS_PER_JOINT * n_cut + ROWS_PER_CONSTRAINT * more,
-                                    n_cut + more, scene->n_points + 2 * n_cut + count_feet(scene));
-    }
-    if (status == HN_OK) {
-        status = list_balls(sys);
-    }
-    if (status == HN_OK) {
-        status = make_symbols(sys);
-    }
-    if (status == HN_OK) {
-        express_user_coordinates(sys);
-        name_loops(sys);
-        status = make_mech(sys, m);
-        sys->mech = m;
-    }
-    if (status == HN_OK) {
-        status = trace_terms(m);
-    }
-    return status == HN_OK ? hn_system_make_drawing(sys, sys->tree.n_cut + count_feet(scene))
-                           : status;
+    HN_TRY(hn_tree_build(scene, !sys->opts.symbolic_params, sys->arena, &sys->tree, sys->diags));
+    const int n_cut = sys->tree.n_cut, more = scene->n_constraints;
+    HN_TRY(hn_system_allocate(sys, sys->tree.n_positions, sys->tree.n_coordinates,
+                              ROWS_PER_JOINT * n_cut + ROWS_PER_CONSTRAINT * more, n_cut + more,
+                              scene->n_points + 2 * n_cut + count_feet(scene)));
+    HN_TRY(list_balls(sys));
+    HN_TRY(make_symbols(sys));
+    express_user_coordinates(sys);
+    name_loops(sys);
+    HN_TRY(make_mech(sys, m));
+    sys->mech = m;
+    HN_TRY(trace_terms(m));
+    return hn_system_make_drawing(sys, sys->tree.n_cut + count_feet(scene));
 }

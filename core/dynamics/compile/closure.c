@@ -12,16 +12,9 @@ hn_status hn_closure_begin(hn_mech *m, int index, int a, const hn_quantity *at_a
     out->link[0] = a;
     out->link[1] = b;
     hn_vec3 arm_a, arm_b;
-    hn_status status = hn_mech_arm_of(m, a, at_a, &arm_a);
-    if (status == HN_OK) {
-        status = hn_mech_arm_of(m, b, at_b, &arm_b);
-    }
-    if (status == HN_OK) {
-        status = hn_mech_relate(m, hn_tree_common(m->tree, a, b), a, arm_a, b, arm_b, &out->rel);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_mech_arm_of(m, a, at_a, &arm_a));
+    HN_TRY(hn_mech_arm_of(m, b, at_b, &arm_b));
+    HN_TRY(hn_mech_relate(m, hn_tree_common(m->tree, a, b), a, arm_a, b, arm_b, &out->rel));
     size_t cap = (size_t)(out->rel.a.n + out->rel.b.n) + 1;
     out->coordinate = hn_arena_ints(arena, cap);
     out->coefficient = hn_arena_get(arena, cap * sizeof *out->coefficient);

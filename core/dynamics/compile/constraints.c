@@ -19,10 +19,7 @@
 static hn_status add_distance(hn_closure *c, const hn_constraint *k) {
     hn_graph *g = c->m->g;
     hn_ex length;
-    hn_status status = hn_system_quantity(c->m->sys, &k->value, &length);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_system_quantity(c->m->sys, &k->value, &length));
     hn_closure_collect_rate(c);
     hn_vec3 e = hn_vec3_scale(g, hn_div(g, hn_num(1), length), c->delta);
     int n = 0;
@@ -63,15 +60,15 @@ static hn_status add_line(hn_closure *c, const hn_constraint *k) {
     double e1[3], e2[3];
     make_across(k->direction, e1, e2);
     hn_closure_collect_rate(c);
-    hn_status status = add_across(c, "across 1", e1, hn_num(0));
-    return status == HN_OK ? add_across(c, "across 2", e2, hn_num(0)) : status;
+    HN_TRY(add_across(c, "across 1", e1, hn_num(0)));
+    return add_across(c, "across 2", e2, hn_num(0));
 }
 
 static hn_status add_plane(hn_closure *c, const hn_constraint *k) {
     hn_ex value;
-    hn_status status = hn_system_quantity(c->m->sys, &k->value, &value);
+    HN_TRY(hn_system_quantity(c->m->sys, &k->value, &value));
     hn_closure_collect_rate(c);
-    return status == HN_OK ? add_across(c, "height", k->direction, value) : status;
+    return add_across(c, "height", k->direction, value);
 }
 
 /// The wheel's angle against the body of the line, if both turn about the axle's direction only.
@@ -98,17 +95,10 @@ static hn_status add_rolling(hn_closure *c, const hn_constraint *k) {
     hn_turn turn;
     double axle[3];
     hn_num3_cross(k->direction, k->up, axle);
-    hn_status status = hn_system_quantity(c->m->sys, &k->value, &radius);
-    if (status == HN_OK) {
-        status = find_wheel_turn(c, k, axle, &turn);
-    }
+    HN_TRY(hn_system_quantity(c->m->sys, &k->value, &radius));
+    HN_TRY(find_wheel_turn(c, k, axle, &turn));
     hn_closure_collect_rate(c);
-    if (status == HN_OK) {
-        status = add_across(c, "radius", k->up, radius);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(add_across(c, "radius", k->up, radius));
     hn_direction d = hn_closure_direction(c, 1, k->direction), a = hn_closure_direction(c, 1, axle);
     hn_measured way = hn_closure_along(c, &d);
     for (int i = 0; i < 2; i++) {
@@ -135,11 +125,8 @@ static const point_adder POINT_ADDERS[HN_CONSTRAINT_FORMULA + 1] = {
 static hn_status add_between_points(hn_mech *m, int index, const hn_constraint *k) {
     const hn_point *p = &m->sys->scene->points[k->p], *q = &m->sys->scene->points[k->q];
     hn_closure c;
-    hn_status status = hn_closure_begin(m, index, hn_tree_link(m->tree, p->body), p->at,
-                                        hn_tree_link(m->tree, q->body), q->at, &c);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_closure_begin(m, index, hn_tree_link(m->tree, p->body), p->at,
+                            hn_tree_link(m->tree, q->body), q->at, &c));
     c.name = k->name;
     c.pointer = k->pointer;
     hn_closure_collect(&c);
@@ -236,11 +223,9 @@ static hn_status add_coordinate_row(hn_system *sys, coordinate_row *row, hn_ex p
 static hn_status add_formula(hn_system *sys, int index, const hn_constraint *k) {
     coordinate_row row;
     hn_ex phi;
-    hn_status status = begin_coordinates(sys, &row);
-    if (status == HN_OK) {
-        status = hn_system_quantity_of(sys, &k->value, row.x, sys->user_v, &phi);
-    }
-    return status == HN_OK ? add_coordinate_row(sys, &row, phi, k, index, 0) : status;
+    HN_TRY(begin_coordinates(sys, &row));
+    HN_TRY(hn_system_quantity_of(sys, &k->value, row.x, sys->user_v, &phi));
+    return add_coordinate_row(sys, &row, phi, k, index, 0);
 }
 
 static hn_status refuse_unknown(hn_system *sys, const hn_constraint *k, int coordinate) {
@@ -258,16 +243,9 @@ static hn_status add_gear(hn_system *sys, int index, const hn_constraint *k) {
             return refuse_unknown(sys, k, k->coordinate[i]);
         }
     }
-    hn_status status = begin_coordinates(sys, &row);
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &k->ratio, &ratio);
-    }
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &k->value, &value);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(begin_coordinates(sys, &row));
+    HN_TRY(hn_system_quantity(sys, &k->ratio, &ratio));
+    HN_TRY(hn_system_quantity(sys, &k->value, &value));
     hn_ex second = hn_mul(sys->g, ratio, row.x[k->coordinate[1]]);
     hn_ex phi = hn_sub(sys->g, hn_add(sys->g, row.x[k->coordinate[0]], second), value);
     const int is_length = sys->scene->coordinates[k->coordinate[0]].kind == HN_LENGTH;
@@ -295,18 +273,17 @@ void hn_constraints_name_loops(hn_system *sys) {
 
 hn_status hn_mech_trace_constraints(hn_mech *m) {
     hn_system *sys = m->sys;
-    hn_status status = HN_OK;
-    for (int i = 0; i < sys->scene->n_constraints && status == HN_OK; i++) {
+    for (int i = 0; i < sys->scene->n_constraints; i++) {
         const hn_constraint *k = &sys->scene->constraints[i];
         const int index = m->tree->n_cut + i;
         if (hn_constraint_has_points(k)) {
-            status = add_between_points(m, index, k);
+            HN_TRY(add_between_points(m, index, k));
         } else {
-            status = k->kind == HN_CONSTRAINT_GEAR ? add_gear(sys, index, k)
-                                                   : add_formula(sys, index, k);
+            HN_TRY(k->kind == HN_CONSTRAINT_GEAR ? add_gear(sys, index, k)
+                                                 : add_formula(sys, index, k));
         }
     }
-    return status;
+    return HN_OK;
 }
 
 // ---- where the point of a constraint should be ----
@@ -315,11 +292,9 @@ static hn_status locate(hn_mech *m, int point, hn_vec3 *out) {
     const hn_point *p = &m->sys->scene->points[point];
     const int link = hn_tree_link(m->tree, p->body);
     hn_vec3 arm;
-    hn_status status = hn_mech_arm_of(m, link, p->at, &arm);
-    if (status == HN_OK) {
-        *out = hn_mech_world(m, link, arm);
-    }
-    return status;
+    HN_TRY(hn_mech_arm_of(m, link, p->at, &arm));
+    *out = hn_mech_world(m, link, arm);
+    return HN_OK;
 }
 
 /// A direction in the axes of a body, in the world.
@@ -334,16 +309,9 @@ hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *o
     hn_graph *g = m->g;
     hn_vec3 p, q;
     hn_ex value;
-    hn_status status = locate(m, k->p, &p);
-    if (status == HN_OK) {
-        status = locate(m, k->q, &q);
-    }
-    if (status == HN_OK) {
-        status = hn_system_quantity(m->sys, &k->value, &value);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(locate(m, k->p, &p));
+    HN_TRY(locate(m, k->q, &q));
+    HN_TRY(hn_system_quantity(m->sys, &k->value, &value));
     hn_vec3 D = hn_vec3_sub(g, p, q);
     if (k->kind == HN_CONSTRAINT_DISTANCE) {
         hn_ex size = hn_sqrt(g, hn_vec3_dot(g, D, D));

@@ -97,9 +97,8 @@ void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symb
 }
 
 hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out) {
-    hn_status status = HN_OK;
-    for (int i = 0; i < 3 && status == HN_OK; i++) {
-        status = hn_system_quantity(sys, &quantity[i], &out->x[i]);
+    for (int i = 0; i < 3; i++) {
+        HN_TRY(hn_system_quantity(sys, &quantity[i], &out->x[i]));
     }
-    return status;
+    return HN_OK;
 }

@@ -20,13 +20,13 @@ static hn_status make_symbols(hn_system *sys) {
         names[i] = scene->coordinates[i].name;
         rates[i] = scene->coordinates[i].rate;
     }
-    hn_status status = hn_system_make_symbols(sys, names, rates);
+    HN_TRY(hn_system_make_symbols(sys, names, rates));
     for (int i = 0; i < scene->n_coordinates; i++) {
         sys->user_q[i] = sys->q[i];
         sys->user_v[i] = sys->v[i];
         sys->user_known[i] = 1;
     }
-    return status;
+    return HN_OK;
 }
 
 static int depends_on_any(const hn_system *sys, hn_ex e, const int *symbols) {
@@ -150,18 +150,12 @@ hn_status hn_lagrangian_add_energies(hn_system *sys) {
     const size_t n = (size_t)sys->nv + 1;
     hn_ex *p = hn_arena_get(sys->arena, 4 * n * sizeof *p);
     hn_ex kinetic, potential;
-    hn_status status = hn_system_quantity(sys, &l->kinetic, &kinetic);
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &l->potential, &potential);
-    }
-    if (status == HN_OK) {
-        status = check_energies(sys, kinetic, potential);
-    }
-    if (status == HN_OK) {
-        status = list_plain(sys, &c);
-    }
-    if (status != HN_OK || !p) {
-        return status == HN_OK ? HN_ERR_MEMORY : status;
+    HN_TRY(hn_system_quantity(sys, &l->kinetic, &kinetic));
+    HN_TRY(hn_system_quantity(sys, &l->potential, &potential));
+    HN_TRY(check_energies(sys, kinetic, potential));
+    HN_TRY(list_plain(sys, &c));
+    if (!p) {
+        return HN_ERR_MEMORY;
     }
     hn_ex *p_rate = p + n, *T_q = p + 2 * n, *V_q = p + 3 * n;
     hn_diff_reverse(g, kinetic, c.v_symbols, c.n, p);
@@ -190,9 +184,9 @@ static hn_status add_constraint(hn_system *sys, int i) {
     hn_ex *along = hn_arena_get(sys->arena, 2 * ((size_t)n + 1) * sizeof *along);
     hn_entry *entries = hn_arena_get(sys->arena, (size_t)n * sizeof *entries);
     int *symbols = hn_arena_ints(sys->arena, (size_t)n + 1);
-    hn_status status = hn_system_quantity(sys, &l->constraints[i], &row.phi);
-    if (status != HN_OK || !along || !entries || !symbols) {
-        return status == HN_OK ? HN_ERR_MEMORY : status;
+    HN_TRY(hn_system_quantity(sys, &l->constraints[i], &row.phi));
+    if (!along || !entries || !symbols) {
+        return HN_ERR_MEMORY;
     }
     if (depends_on_any(sys, row.phi, sys->v_symbols)) {
         return hn_diags_add(
@@ -217,11 +211,11 @@ static hn_status add_constraint(hn_system *sys, int i) {
     row.J = entries;
     row.n_J = n;
     const int before = sys->nc;
-    status = hn_system_add_row(sys, &row);
+    HN_TRY(hn_system_add_row(sys, &row));
     for (int j = 0; j < n && sys->nc > before; j++) {
         hn_entries_add(&sys->efforts, before, j, J[j]);
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status trace_constraints(hn_system *sys) {
@@ -232,10 +226,7 @@ static hn_status trace_constraints(hn_system *sys) {
                                   .name = l->constraint_names[i],
                                   .joint = -1,
                                   .why = "a constraint of the scene"};
-        hn_status status = add_constraint(sys, i);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(add_constraint(sys, i));
     }
     return HN_OK;
 }
@@ -276,10 +267,7 @@ static hn_status find_length(hn_system *sys) {
 static hn_status trace_points(hn_system *sys) {
     for (int k = 0; k < sys->scene->n_points; k++) {
         hn_vec3 p;
-        hn_status status = hn_system_vector(sys, sys->scene->points[k].at, &p);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(hn_system_vector(sys, sys->scene->points[k].at, &p));
         for (int i = 0; i < 3; i++) {
             sys->points[3 * k + i] = p.x[i];
         }
@@ -312,26 +300,14 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
 hn_status hn_lagrangian_compile(hn_system *sys) {
     const hn_scene *scene = sys->scene;
     int m = scene->lagrangian.n_constraints;
-    hn_status status =
-        hn_system_allocate(sys, scene->n_coordinates, scene->n_coordinates, m, m, scene->n_points);
-    if (status == HN_OK) {
-        status = make_symbols(sys);
-    }
-    if (status == HN_OK) {
-        status = hn_lagrangian_add_energies(sys);
-    }
-    if (status == HN_OK) {
-        status = trace_constraints(sys);
-    }
-    if (status == HN_OK) {
-        status = find_length(sys);
-    }
-    if (status == HN_OK) {
-        status = trace_points(sys);
-    }
-    if (status == HN_OK) {
-        hn_geometry geometry = {.self = sys, .span = span_of_points};
-        status = hn_loads_compile(sys, &geometry);
-    }
-    return status == HN_OK ? hn_system_make_drawing(sys, scene->n_tears) : status;
+    HN_TRY(
+        hn_system_allocate(sys, scene->n_coordinates, scene->n_coordinates, m, m, scene->n_points));
+    HN_TRY(make_symbols(sys));
+    HN_TRY(hn_lagrangian_add_energies(sys));
+    HN_TRY(trace_constraints(sys));
+    HN_TRY(find_length(sys));
+    HN_TRY(trace_points(sys));
+    hn_geometry geometry = {.self = sys, .span = span_of_points};
+    HN_TRY(hn_loads_compile(sys, &geometry));
+    return hn_system_make_drawing(sys, scene->n_tears);
 }

@@ -17,11 +17,9 @@ static void note_value(hn_system *sys, const hn_load *load, hn_vec3 value) {
 }
 
 static hn_status read_law(hn_system *sys, const hn_load *load, hn_ex *k, hn_ex *rest, hn_ex *c) {
-    hn_status status = hn_system_quantity(sys, &load->stiffness, k);
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &load->rest, rest);
-    }
-    return status == HN_OK ? hn_system_quantity(sys, &load->damping, c) : status;
+    HN_TRY(hn_system_quantity(sys, &load->stiffness, k));
+    HN_TRY(hn_system_quantity(sys, &load->rest, rest));
+    return hn_system_quantity(sys, &load->damping, c);
 }
 
 /// A spring whose law changes with the state has no potential that could be told.
@@ -36,13 +34,8 @@ static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const h
     hn_graph *g = sys->g;
     hn_ex k, rest, c;
     hn_span span;
-    hn_status status = read_law(sys, load, &k, &rest, &c);
-    if (status == HN_OK) {
-        status = geometry->span(geometry->self, load->p, load->q, &span);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(read_law(sys, load, &k, &rest, &c));
+    HN_TRY(geometry->span(geometry->self, load->p, load->q, &span));
     hn_ex l2 = hn_vec3_dot(g, span.delta, span.delta);
     hn_ex pull = k; // force over length
     hn_ex stretch2 = l2;
@@ -102,28 +95,23 @@ static hn_status add_joint_spring(hn_system *sys, const hn_geometry *geometry,
                                   const hn_load *load) {
     (void)geometry;
     hn_ex k, rest, c;
-    hn_status status = read_law(sys, load, &k, &rest, &c);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(read_law(sys, load, &k, &rest, &c));
     if (sys->user_known[load->coordinate] == HN_KNOWN_RATE && !hn_is_zero(k)) {
         return refuse_position(sys, load, "a spring");
     }
     hn_graph *g = sys->g;
     hn_ex stretch = hn_sub(g, sys->user_q[load->coordinate], rest);
     hn_ex tau = hn_add(g, hn_mul(g, k, stretch), hn_mul(g, c, sys->user_v[load->coordinate]));
-    status = add_on_coordinate(sys, load, hn_neg(tau));
-    if (status == HN_OK) {
-        add_spring_energy(sys, load, k, hn_mul(g, stretch, stretch));
-    }
-    return status;
+    HN_TRY(add_on_coordinate(sys, load, hn_neg(tau)));
+    add_spring_energy(sys, load, k, hn_mul(g, stretch, stretch));
+    return HN_OK;
 }
 
 static hn_status add_coordinate(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
     (void)geometry;
     hn_ex tau;
-    hn_status status = hn_system_quantity(sys, &load->value[0], &tau);
-    return status == HN_OK ? add_on_coordinate(sys, load, tau) : status;
+    HN_TRY(hn_system_quantity(sys, &load->value[0], &tau));
+    return add_on_coordinate(sys, load, tau);
 }
 
 static void add_power(hn_system *sys, hn_vec3 wrench, const hn_span *span) {
@@ -136,15 +124,11 @@ static void add_power(hn_system *sys, hn_vec3 wrench, const hn_span *span) {
 static hn_status add_force(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
     hn_vec3 force;
     hn_span span;
-    hn_status status = hn_system_vector(sys, load->value, &force);
-    if (status == HN_OK) {
-        status = geometry->span(geometry->self, load->p, -1, &span);
-    }
-    if (status == HN_OK) {
-        note_value(sys, load, force);
-        add_power(sys, force, &span);
-    }
-    return status;
+    HN_TRY(hn_system_vector(sys, load->value, &force));
+    HN_TRY(geometry->span(geometry->self, load->p, -1, &span));
+    note_value(sys, load, force);
+    add_power(sys, force, &span);
+    return HN_OK;
 }
 
 static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
@@ -154,15 +138,11 @@ static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const h
         return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
                             "a moment needs a body to act on");
     }
-    hn_status status = hn_system_vector(sys, load->value, &moment);
-    if (status == HN_OK) {
-        status = geometry->spin(geometry->self, load->p, &span);
-    }
-    if (status == HN_OK) {
-        note_value(sys, load, moment);
-        add_power(sys, moment, &span);
-    }
-    return status;
+    HN_TRY(hn_system_vector(sys, load->value, &moment));
+    HN_TRY(geometry->spin(geometry->self, load->p, &span));
+    note_value(sys, load, moment);
+    add_power(sys, moment, &span);
+    return HN_OK;
 }
 
 /// No more than `limit` either way.
@@ -228,8 +208,8 @@ static hn_status profile(hn_system *sys, const hn_profile *table, hn_ex *out) {
 static hn_status add_table(hn_system *sys, const hn_geometry *geometry, const hn_load *load) {
     (void)geometry;
     hn_ex tau;
-    hn_status status = profile(sys, &load->table, &tau);
-    return status == HN_OK ? add_on_coordinate(sys, load, tau) : status;
+    HN_TRY(profile(sys, &load->table, &tau));
+    return add_on_coordinate(sys, load, tau);
 }
 
 typedef hn_status (*load_adder)(hn_system *sys, const hn_geometry *geometry, const hn_load *load);
@@ -241,14 +221,13 @@ static const load_adder ADDERS[] = {
 };
 
 hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry) {
-    hn_status status = HN_OK;
-    for (int i = 0; i < sys->scene->n_loads && status == HN_OK; i++) {
+    for (int i = 0; i < sys->scene->n_loads; i++) {
         const hn_load *load = &sys->scene->loads[i];
         if (load->kind >= sizeof ADDERS / sizeof *ADDERS) {
             return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
                                 "a load of this kind cannot be compiled");
         }
-        status = ADDERS[load->kind](sys, geometry, load);
+        HN_TRY(ADDERS[load->kind](sys, geometry, load));
     }
-    return status;
+    return HN_OK;
 }

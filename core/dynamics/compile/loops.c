@@ -22,13 +22,12 @@ typedef struct loop {
 
 static hn_status begin_loop(hn_mech *m, int index, loop *out) {
     const hn_joint *joint = &m->sys->scene->joints[m->tree->cut[index]];
-    hn_status status =
-        hn_closure_begin(m, index, hn_tree_link(m->tree, joint->parent), joint->parent_at,
-                         hn_tree_link(m->tree, joint->child), joint->child_at, &out->c);
+    HN_TRY(hn_closure_begin(m, index, hn_tree_link(m->tree, joint->parent), joint->parent_at,
+                            hn_tree_link(m->tree, joint->child), joint->child_at, &out->c));
     out->joint = joint;
     out->c.name = joint->name;
     out->c.pointer = joint->pointer;
-    return status;
+    return HN_OK;
 }
 
 static int count_open(const hn_reach *end) {
@@ -76,15 +75,14 @@ static hn_status measured_rows(loop *l, int along_bits, const hn_direction *pare
                                const hn_direction *child) {
     static const char *const names[3] = {"across 1", "across 2", "along"};
     const hn_direction *axes = count_open(&l->c.rel.b) < count_open(&l->c.rel.a) ? child : parent;
-    hn_status status = HN_OK;
     hn_closure_collect_rate(&l->c);
-    for (int i = 0; i < 3 && status == HN_OK; i++) {
+    for (int i = 0; i < 3; i++) {
         if (along_bits & (1 << i)) {
             hn_measured row = hn_closure_along(&l->c, &axes[i]);
-            status = hn_closure_add_row(&l->c, names[i], 1, row.value, row.gamma, row.n);
+            HN_TRY(hn_closure_add_row(&l->c, names[i], 1, row.value, row.gamma, row.n));
         }
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status turn_rows(loop *l, int turns, const hn_direction *parent,
@@ -96,14 +94,13 @@ static hn_status turn_rows(loop *l, int turns, const hn_direction *parent,
                 {CROSS, 2, 0, "cross"},
                 {TILT_1, 2, 0, "tilt 1"},
                 {TILT_2, 2, 1, "tilt 2"}};
-    hn_status status = HN_OK;
-    for (size_t k = 0; k < sizeof rows / sizeof *rows && status == HN_OK; k++) {
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         if (turns & rows[k].bit) {
-            status = hn_closure_perpendicular_row(&l->c, rows[k].name, &parent[rows[k].parent],
-                                                  &child[rows[k].child]);
+            HN_TRY(hn_closure_perpendicular_row(&l->c, rows[k].name, &parent[rows[k].parent],
+                                                &child[rows[k].child]));
         }
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status close_joint(loop *l) {
@@ -188,10 +185,7 @@ static int revolute_coordinate(hn_mech *m, const hn_joint *joint, int index) {
 static hn_status prismatic_coordinate(hn_mech *m, int loop_index, const hn_joint *joint,
                                       int index) {
     loop l;
-    hn_status status = begin_loop(m, loop_index, &l);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(begin_loop(m, loop_index, &l));
     hn_closure_collect(&l.c);
     hn_closure_collect_rate(&l.c);
     hn_direction axis = hn_closure_direction(&l.c, 0, joint->parent_axis);
@@ -213,10 +207,7 @@ hn_status hn_mech_cut_coordinates(hn_mech *m) {
         int index = joint->coordinate;
         if (joint->type == HN_JOINT_PRISMATIC) {
             m->sys->user_known[index] = HN_KNOWN_BOTH;
-            hn_status status = prismatic_coordinate(m, k, joint, index);
-            if (status != HN_OK) {
-                return status;
-            }
+            HN_TRY(prismatic_coordinate(m, k, joint, index));
         } else if (joint->type == HN_JOINT_REVOLUTE && revolute_coordinate(m, joint, index)) {
             m->sys->user_known[index] = HN_KNOWN_BOTH;
         }
@@ -227,15 +218,9 @@ hn_status hn_mech_cut_coordinates(hn_mech *m) {
 hn_status hn_mech_trace_loops(hn_mech *m) {
     for (int k = 0; k < m->tree->n_cut; k++) {
         loop l;
-        hn_status status = begin_loop(m, k, &l);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(begin_loop(m, k, &l));
         hn_closure_collect(&l.c);
-        status = close_joint(&l);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(close_joint(&l));
     }
     return HN_OK;
 }

@@ -95,10 +95,7 @@ hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm) {
 static hn_status trace_arm(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     hn_link_trace *at = &m->at[link];
-    hn_status status = hn_mech_arm_of(m, l->parent, hn_link_at_parent(m->sys->scene, l), &at->arm);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_mech_arm_of(m, l->parent, hn_link_at_parent(m->sys->scene, l), &at->arm));
     at->slide = hn_vec3_zero();
     if (l->type == HN_JOINT_PRISMATIC) {
         // the link's point moves along the axis when the joint's own parent is the link's parent,
@@ -122,16 +119,11 @@ static hn_status trace_body(hn_mech *m, int link) {
     if (m->tree->links[link].is_virtual) {
         return HN_OK; // zeroed: no mass
     }
-    hn_status status = hn_system_quantity(m->sys, &body->mass, &at->mass);
-    for (int k = 0; k < 6 && status == HN_OK; k++) {
-        status = hn_system_quantity(m->sys, &body->inertia[k], &I.x[k]);
+    HN_TRY(hn_system_quantity(m->sys, &body->mass, &at->mass));
+    for (int k = 0; k < 6; k++) {
+        HN_TRY(hn_system_quantity(m->sys, &body->inertia[k], &I.x[k]));
     }
-    if (status == HN_OK) {
-        status = hn_mech_arm_of(m, link, body->com, &rho);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_mech_arm_of(m, link, body->com, &rho));
     hn_mat3 C = hn_mat3_num(m->tree->links[link].C);
     I = hn_sym3_rotate(m->g, &C, &I);
     hn_sym3 moved = hn_sym3_shift(m->g, at->mass, hn_vec3_zero(), rho, 0);
@@ -222,13 +214,8 @@ hn_status hn_mech_trace_geometry(hn_mech *m) {
         if (tree->links[link].type == HN_JOINT_SPHERICAL) {
             trace_ball(m, link);
         }
-        hn_status status = trace_arm(m, link);
-        if (status == HN_OK) {
-            status = trace_body(m, link);
-        }
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(trace_arm(m, link));
+        HN_TRY(trace_body(m, link));
         if (tree->groups[tree->links[link].group].moving) {
             trace_world_frame(m, link);
         }

@@ -229,8 +229,8 @@ hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b, hn
     choose_frame(&w, a, b);
     out->common = common;
     tell_world(&w, out);
-    hn_status status = reach(&w, a, arm_a, &out->a);
-    return status == HN_OK ? reach(&w, b, arm_b, &out->b) : status;
+    HN_TRY(reach(&w, a, arm_a, &out->a));
+    return reach(&w, b, arm_b, &out->b);
 }
 
 hn_vec3 hn_lever_coefficient(hn_graph *g, const hn_lever *lever) {

@@ -549,13 +549,8 @@ static hn_status check_cuts(const hn_scene *scene, const hn_tree *tree, hn_diags
 
 hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *tree,
                         hn_diags *diags) {
-    hn_status status = allocate(scene, arena, tree);
-    if (status == HN_OK) {
-        status = span(scene, arena, tree, diags);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(allocate(scene, arena, tree));
+    HN_TRY(span(scene, arena, tree, diags));
     choose_ground_frame(scene, tree);
     number_coordinates(scene, tree);
     if (tree->n_groups == 0) { // nothing revolves: the world's own axes

@@ -134,17 +134,14 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     for (int i = 0; i < s->nc; i++) {
         s->row_unit[i] = hn_system_row_unit(sys, i);
     }
-    hn_status status = hn_eval_create(sys, terms, arena, &s->terms);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_eval_create(sys, terms, arena, &s->terms));
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
     s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
     if (!s->available) {
         return HN_OK;
     }
-    status = hn_row_groups_init(sys, arena, &s->rows);
-    return status == HN_OK ? hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor) : status;
+    HN_TRY(hn_row_groups_init(sys, arena, &s->rows));
+    return hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor);
 }
 
 static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
@@ -298,9 +295,7 @@ static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a
     double *step_a = s->step, *step_l = s->step + s->nv, last = HUGE_VAL;
     const hn_status status = hn_factor_update(s->factor, t, q, NULL);
     s->ops += hn_factor_get_info(s->factor).update_ops;
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(status);
     memset(s->dense_a, 0, (size_t)s->nv * sizeof *s->dense_a);
     memset(s->dense_lambda, 0, (size_t)s->nc * sizeof *s->dense_lambda);
     for (int turn = 0; turn <= MAX_CORRECTIONS; turn++) {

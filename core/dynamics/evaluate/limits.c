@@ -45,11 +45,9 @@ hn_status hn_limits_create(const hn_system *sys, hn_arena *arena, hn_limits **ou
             l->coordinate[l->n++] = i;
         }
     }
-    const hn_status status = l->n > 0 ? compile(l, sys, arena) : HN_OK;
-    if (status == HN_OK) {
-        *out = l;
-    }
-    return status;
+    HN_TRY(l->n > 0 ? compile(l, sys, arena) : HN_OK);
+    *out = l;
+    return HN_OK;
 }
 
 void hn_limits_free(hn_limits *l) {

@@ -121,14 +121,9 @@ static hn_status relate_bodies(hn_reactions *r, hn_arena *arena, hn_relative *re
         hn_reaction_body *body = &r->bodies[b];
         const int link = hn_tree_link(m->tree, b);
         hn_vec3 arm;
-        hn_status status = hn_mech_arm_of(m, link, r->scene->bodies[b].com, &arm);
-        if (status == HN_OK) {
-            status = hn_mech_relate(m, m->tree->ground, link, arm, m->tree->ground, hn_vec3_zero(),
-                                    &rel[b]);
-        }
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(hn_mech_arm_of(m, link, r->scene->bodies[b].com, &arm));
+        HN_TRY(hn_mech_relate(m, m->tree->ground, link, arm, m->tree->ground, hn_vec3_zero(),
+                              &rel[b]));
         body->n = rel[b].a.n;
         body->coordinate = hn_arena_ints(arena, (size_t)body->n + 1);
         if (!body->coordinate) {

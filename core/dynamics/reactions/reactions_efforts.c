@@ -47,10 +47,8 @@ static hn_status begin(hn_reactions *r, hn_arena *arena, derivation *d) {
     hn_system_stand_ins(sys, "rate", d->rates, d->symbols + n);
     memcpy(d->along, sys->user_v, n * sizeof *d->along);
     memcpy(d->along + n, sys->user_gamma, n * sizeof *d->along);
-    hn_status status = hn_system_quantity_of(sys, &l->kinetic, d->x, d->rates, &d->kinetic);
-    return status == HN_OK
-               ? hn_system_quantity_of(sys, &l->potential, d->x, d->rates, &d->potential)
-               : status;
+    HN_TRY(hn_system_quantity_of(sys, &l->kinetic, d->x, d->rates, &d->kinetic));
+    return hn_system_quantity_of(sys, &l->potential, d->x, d->rates, &d->potential);
 }
 
 /// Puts the coordinates' own expressions back.
@@ -90,10 +88,7 @@ static void add_inertia(derivation *d, int i, int at, hn_entries *inertia) {
 hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena, hn_ex **at_zero,
                                       hn_entries *inertia) {
     derivation d;
-    hn_status status = begin(r, arena, &d);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(begin(r, arena, &d));
     hn_diff_reverse(d.g, d.kinetic, d.symbols, d.n, d.T_x);
     hn_diff_reverse(d.g, d.potential, d.symbols, d.n, d.V_x);
     hn_diff_reverse(d.g, d.kinetic, d.symbols + d.n, d.n, d.p);
