@@ -3,6 +3,8 @@
 //
 // Every result feeds the next input, so that no evaluation can be hoisted or overlapped more than in a real step. Batches of
 // the two alternate; the smallest is what the machine can do, the median what it did.
+#include "dynamics/compile/compile.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include "support/balance.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "expr/parse.h"
 #include "support/near.h"
 

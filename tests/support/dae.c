@@ -3,6 +3,7 @@
 #include "support/near.h"
 #include "support/odes.h"
 
+#include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"
 #include "linalg/dense.h"
 

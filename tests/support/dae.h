@@ -2,6 +2,7 @@
 #define HN_SUPPORT_DAE_H
 // Steppers of the differential-algebraic system driven straight through their table, step by step, without a run around them.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "integrators/step/dae.h"
 #include "integrators/step/stepper.h"

@@ -4,6 +4,7 @@
 #include "support/near.h"
 
 #include "dynamics/assembly/project.h"
+#include "dynamics/evaluate/accel.h"
 #include "integrators/implicit/implicit_linear.h"
 #include "linalg/svd.h"
 

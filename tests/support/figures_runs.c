@@ -2,6 +2,7 @@
 
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "study/cost/convergence.h"

@@ -1,6 +1,8 @@
 #include "support/model.h"
 
 #include "support/near.h"
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 
 #include <stdio.h>
 #include <stdlib.h>

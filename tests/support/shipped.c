@@ -2,6 +2,8 @@
 #include "support/shipped.h"
 
 #include "base/arena.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/assembly/project.h"
 #include "dynamics/reactions/reactions.h"

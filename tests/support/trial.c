@@ -1,6 +1,7 @@
 #include "support/trial.h"
 
 #include "support/near.h"
+#include "dynamics/compile/compile.h"
 
 #include <string.h>
 

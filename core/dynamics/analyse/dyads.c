@@ -1,6 +1,6 @@
 #include "dynamics/analyse/dyads.h"
 
-#include "dynamics/analyse/dyads_internal.h"
+#include "dynamics/analyse/dyads_form.h"
 #include "dynamics/compile/system_impl.h"
 
 #include <suitesparse/btf.h>
@@ -50,7 +50,7 @@ const char *hn_dyad_kind_about(hn_dyad_kind kind) {
 /// While it is built; scratch from malloc.
 typedef struct builder {
     hn_dyads *d;
-    hn_system *sys;
+    const hn_system *sys;
     hn_arena *arena;
     int *dep_at;           ///< per speed: its place in dep, -1
     int *start, *rows;     ///< J_d by columns
@@ -294,7 +294,7 @@ hn_status hn_dyads_create(const hn_system *sys, const int *dep, int n, hn_arena 
     d->sys = sys;
     d->n_dep = n;
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
-    builder b = {.d = d, .sys = (hn_system *)sys, .arena = arena};
+    builder b = {.d = d, .sys = sys, .arena = arena};
     const hn_status status = build(&b, dep);
     release(&b);
     if (status != HN_OK) {

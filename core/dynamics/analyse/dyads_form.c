@@ -1,5 +1,4 @@
-// Reading a block's coefficients off phi, and solving the forms of dyads.h.
-#include "dynamics/analyse/dyads_internal.h"
+#include "dynamics/analyse/dyads_form.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,8 +3,15 @@
 
 #include "dynamics/assembly/assemble.h"
 
-#include "dynamics/assembly/assemble_internal.h"
+#include "dynamics/assembly/assemble_explain.h"
+#include "dynamics/assembly/assemble_mode.h"
+#include "dynamics/assembly/assemble_pose.h"
+#include "dynamics/assembly/assemble_position.h"
+#include "dynamics/assembly/mode.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "linalg/dense.h"
+#include "linalg/qr.h"
 #include "linalg/saddle.h"
 
 #include <float.h>
@@ -134,17 +141,6 @@ static hn_status start(hn_assembler *s) {
 }
 
 // ---- pose ----
-
-double hn_assemble_gap(const hn_assembler *s, int loop) {
-    const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
-    double sum = 0;
-    for (int i = 0; i < s->nc; i++) {
-        if (loop < 0 || hn_system_row_loop(s->sys, i) == loop) {
-            sum += phi[i] * phi[i];
-        }
-    }
-    return sqrt(sum);
-}
 
 static int find_worst_loop(const hn_assembler *s) {
     int worst = -1;

@@ -3,9 +3,9 @@
 // (pinned joints make them rigid), and it closes if and only if no side is longer than all the
 // others together.
 
-#include "dynamics/assembly/assemble_internal.h"
-#include "dynamics/compile/quaternion.h"
-#include "dynamics/compile/tree.h"
+#include "dynamics/assembly/assemble_explain.h"
+
+#include "dynamics/assembly/assemble_pose.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -14,205 +14,11 @@
 
 static const double PARALLEL = 1e-9; // sine of the angle between axes that count as parallel
 
-typedef struct pose {
-    double R[9]; // body to world
-    double p[3]; // world position of the body's origin
-} pose;
-
 /// One body of the ring with the joints through which the ring enters and leaves it.
 typedef struct ring_part {
     int body;
     int joint_in, joint_out;
 } ring_part;
-
-// ---- poses of bodies, straight from the scene ----
-
-static void rotate(const double R[9], const double x[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
-    }
-}
-
-static void multiply(const double A[9], const double B[9], double out[9]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
-        }
-    }
-}
-
-static void transpose(const double A[9], double out[9]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = A[3 * j + i];
-        }
-    }
-}
-
-/// Joint frame in body axes: columns ref, axis x ref, axis.
-static void joint_frame(const double axis[3], const double ref[3], double out[9]) {
-    const double side[3] = {axis[1] * ref[2] - axis[2] * ref[1],
-                            axis[2] * ref[0] - axis[0] * ref[2],
-                            axis[0] * ref[1] - axis[1] * ref[0]};
-    for (int i = 0; i < 3; i++) {
-        out[3 * i] = ref[i];
-        out[3 * i + 1] = side[i];
-        out[3 * i + 2] = axis[i];
-    }
-}
-
-static void place(const hn_quantity at[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] = at[i].value;
-    }
-}
-
-/// Turn by one primitive of a joint at its coordinates x, in the joint's axes, and the way it
-/// moves.
-static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[9],
-                             double way[3]) {
-    const int i = (primitive->along + 1) % 3, j = (primitive->along + 2) % 3;
-    if (primitive->type == HN_JOINT_REVOLUTE) {
-        turn[4 * i] = turn[4 * j] = cos(x[0]);
-        turn[3 * j + i] = sin(x[0]);
-        turn[3 * i + j] = -turn[3 * j + i];
-    } else if (primitive->type == HN_JOINT_PRISMATIC) {
-        way[primitive->along] = x[0];
-    } else if (primitive->type == HN_JOINT_SPHERICAL) {
-        for (int k = 0; k < 3; k++) { // column k: the unit vector k turned
-            double q[4], back[4], e[4] = {0}, out[4];
-            hn_quat_exp(x, q);
-            hn_quat_exp((double[3]){-x[0], -x[1], -x[2]}, back);
-            e[k + 1] = 1;
-            hn_quat_mul(q, e, out);
-            hn_quat_mul(out, back, out);
-            for (int r = 0; r < 3; r++) {
-                turn[3 * r + k] = out[r + 1];
-            }
-        }
-    }
-}
-
-/// Rotation and shift from the joint's child to its parent at coordinate values x: p_parent = R
-/// p_child + shift.
-static void joint_transform(const hn_joint *joint, const double *x, pose *out) {
-    double B[9], C[9], Ct[9], so_far[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9], slid[3] = {0};
-    const hn_primitive *chain;
-    const int n = hn_joint_primitives(joint->type, &chain);
-    joint_frame(joint->parent_axis, joint->parent_ref, B);
-    joint_frame(joint->child_axis, joint->child_ref, C);
-    for (int k = 0; k < n; k++) {
-        double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, way[3] = {0, 0, 0}, gone[3];
-        primitive_motion(&chain[k], x + chain[k].part, turn, way);
-        rotate(so_far, way, gone);
-        hn_axpy(3, 1, gone, slid);
-        multiply(so_far, turn, half);
-        memcpy(so_far, half, sizeof half);
-    }
-    transpose(C, Ct);
-    multiply(B, so_far, half);
-    multiply(half, Ct, out->R);
-
-    double at_parent[3], at_child[3], arm[3], gone[3];
-    place(joint->parent_at, at_parent);
-    place(joint->child_at, at_child);
-    rotate(out->R, at_child, arm);
-    rotate(B, slid, gone);
-    for (int i = 0; i < 3; i++) {
-        out->p[i] = at_parent[i] + gone[i] - arm[i];
-    }
-}
-
-static void coordinate_values(const hn_assembler *s, const hn_joint *joint, double x[6]) {
-    for (int k = 0; k < s->n; k++) {
-        const int part = hn_system_user_coordinate(s->sys, k) - joint->coordinate;
-        if (joint->coordinate >= 0 && part >= 0 && part < joint->n_coordinates) {
-            x[part] = s->x[k];
-        }
-    }
-}
-
-/// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on
-/// failure.
-static pose find_pose(const hn_assembler *s, int body) {
-    pose at = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    while (body != HN_GROUND) {
-        const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
-        pose step, next;
-        double x[6] = {0};
-        coordinate_values(s, joint, x);
-        joint_transform(joint, x, &step);
-        if (joint->child != body) { // the tree runs through this joint backwards
-            pose inverse;
-            transpose(step.R, inverse.R);
-            rotate(inverse.R, step.p, inverse.p);
-            for (int i = 0; i < 3; i++) {
-                inverse.p[i] = -inverse.p[i];
-            }
-            step = inverse;
-        }
-        multiply(step.R, at.R, next.R);
-        rotate(step.R, at.p, next.p);
-        for (int i = 0; i < 3; i++) {
-            next.p[i] += step.p[i];
-        }
-        at = next;
-        body = joint->child == body ? joint->parent : joint->child;
-    }
-    return at;
-}
-
-/// World position of a joint as seen from one of its two bodies.
-static void joint_position(const hn_assembler *s, int joint_index, int body, double out[3]) {
-    const hn_joint *joint = &s->scene->joints[joint_index];
-    double local[3];
-    place(joint->parent == body ? joint->parent_at : joint->child_at, local);
-    pose at = find_pose(s, body);
-    rotate(at.R, local, out);
-    for (int i = 0; i < 3; i++) {
-        out[i] += at.p[i];
-    }
-}
-
-// ---- loops closed the wrong way round ----
-
-static void world_direction(const hn_assembler *s, int body, const double v[3], double out[3]) {
-    const pose at = find_pose(s, body);
-    rotate(at.R, v, out);
-}
-
-/// Whether directions of the two halves that should agree are opposed. Joints that leave an
-/// orientation free have none.
-static int is_opposed(const hn_assembler *s, const hn_joint *joint) {
-    double a[3], b[3];
-    if (joint->type == HN_JOINT_SPHERICAL || joint->type == HN_JOINT_UNIVERSAL) {
-        return 0;
-    }
-    world_direction(s, joint->parent, joint->parent_axis, a);
-    world_direction(s, joint->child, joint->child_axis, b);
-    int opposed = hn_dot(3, a, b) < 0;
-    if (joint->type == HN_JOINT_PRISMATIC || joint->type == HN_JOINT_FIXED) {
-        world_direction(s, joint->parent, joint->parent_ref, a);
-        world_direction(s, joint->child, joint->child_ref, b);
-        opposed |= hn_dot(3, a, b) < 0;
-    }
-    return opposed;
-}
-
-int hn_assemble_flipped(const hn_assembler *s) {
-    for (int i = 0; i < s->nc && !s->scene->is_lagrangian; i++) {
-        const int loop = hn_system_row_loop(s->sys, i), joint = hn_system_loop_joint(s->sys, loop);
-        if (joint < 0 || hn_system_row_is_length(s->sys, i) ||
-            (i > 0 && hn_system_row_loop(s->sys, i - 1) == loop &&
-             !hn_system_row_is_length(s->sys, i - 1))) {
-            continue; // once per loop, at its first row that is an angle
-        }
-        if (is_opposed(s, &s->scene->joints[joint])) {
-            return loop;
-        }
-    }
-    return -1;
-}
 
 // ---- the ring of a loop ----
 
@@ -296,8 +102,9 @@ static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
             return 0;
         }
         double axis[3];
-        pose at = find_pose(s, parts[k].body);
-        rotate(at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis, axis);
+        hn_body_pose at = hn_assemble_body_pose(s, parts[k].body);
+        hn_assemble_rotate(
+            at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis, axis);
         if (!have) {
             memcpy(first, axis, sizeof first);
             have = 1;
@@ -318,11 +125,12 @@ static void append_name(side *to, const char *name) {
 /// Distance across the axis between the joints at which a run of parts begins and ends.
 static double side_length(const hn_assembler *s, const ring_part *first, const ring_part *last) {
     double from[3], to[3], axis[3];
-    joint_position(s, first->joint_in, first->body, from);
-    joint_position(s, last->joint_out, last->body, to);
+    hn_assemble_joint_position(s, first->joint_in, first->body, from);
+    hn_assemble_joint_position(s, last->joint_out, last->body, to);
     const hn_joint *joint = &s->scene->joints[first->joint_in];
-    pose at = find_pose(s, first->body);
-    rotate(at.R, joint->child == first->body ? joint->child_axis : joint->parent_axis, axis);
+    hn_body_pose at = hn_assemble_body_pose(s, first->body);
+    hn_assemble_rotate(at.R, joint->child == first->body ? joint->child_axis : joint->parent_axis,
+                       axis);
     double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
     hn_axpy(3, -hn_dot(3, d, axis), axis, d);
     return hn_norm2(3, d);

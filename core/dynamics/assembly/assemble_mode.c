@@ -3,7 +3,10 @@
 // rest where it is, and close again. Loops are mended in their order, so that each has to be lucky
 // only once: of two modes a try finds either about as often.
 
-#include "dynamics/assembly/assemble_internal.h"
+#include "dynamics/assembly/assemble_mode.h"
+
+#include "dynamics/assembly/assemble_position.h"
+#include "dynamics/assembly/mode.h"
 
 #include <math.h>
 #include <stdio.h>

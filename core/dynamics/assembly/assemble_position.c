@@ -3,9 +3,11 @@
 // Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982;
 // Allgower & Georg 1990.
 
-#include "dynamics/assembly/assemble_internal.h"
-#include "dynamics/compile/quaternion.h"
+#include "dynamics/assembly/assemble_position.h"
+
+#include "dynamics/assembly/assemble_pose.h"
 #include "linalg/dense.h"
+#include "linalg/qr.h"
 
 #include <float.h>
 #include <math.h>
@@ -41,53 +43,6 @@ struct hn_assemble_search {
     hn_qr qr;
 };
 typedef struct hn_assemble_search search;
-
-int hn_assemble_evaluate(hn_assembler *s) {
-    hn_system_from_user(s->sys, s->x, s->q);
-    hn_eval_run(s->eval, s->t, s->q, s->rest);
-    const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);
-    for (int i = 0; i < s->nc; i++) {
-        s->residual[i] = s->row_scale[i] * phi[i];
-    }
-    int finite = hn_all_finite(s->nc, s->residual);
-    s->size = finite ? hn_norm2(s->nc, s->residual) : HUGE_VAL;
-    return finite;
-}
-
-void hn_assemble_move(const hn_assembler *s, double *x, const double *delta) {
-    for (int i = 0; i < s->n; i++) {
-        if (s->turn[i] < 0) {
-            x[i] += delta[i];
-        } else if (s->turn[i] == 0) {
-            double turned[4];
-            hn_quat_exp(x + i, turned);
-            hn_quat_move(turned, delta + i);
-            hn_quat_log(turned, x + i);
-        }
-    }
-}
-
-double hn_assemble_moved(const hn_assembler *s, int i) {
-    if (s->turn[i] < 0) {
-        return fabs(s->x[i] - s->guess[i]);
-    }
-    double from[4], to[4], delta[3];
-    hn_quat_exp(s->guess + i - s->turn[i], from);
-    hn_quat_exp(s->x + i - s->turn[i], to);
-    hn_quat_difference(from, to, delta);
-    return hn_norm2(3, delta);
-}
-
-void hn_assemble_user_row(const hn_assembler *s, int row, double *out) {
-    const double *J = hn_eval_get(s->eval, HN_TERM_J) + (size_t)row * s->n;
-    for (int k = 0; k < s->n; k++) {
-        double sum = 0;
-        for (int e = s->map_start[k]; e < s->map_start[k + 1]; e++) {
-            sum += J[s->map_row[e]] * s->map_value[e];
-        }
-        out[k] = sum;
-    }
-}
 
 static hn_status search_init(search *w, hn_assembler *s) {
     size_t n = (size_t)s->n_free, nc = (size_t)s->nc;

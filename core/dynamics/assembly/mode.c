@@ -1,7 +1,6 @@
-// Assembly modes of loops: see hn_mode_watch in assemble.h.
+#include "dynamics/assembly/mode.h"
 
-#include "dynamics/assembly/assemble.h"
-#include "dynamics/assembly/assemble_internal.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/system_impl.h"
 #include "expr/tape.h"
 #include "linalg/dense.h"

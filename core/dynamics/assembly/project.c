@@ -1,5 +1,6 @@
 #include "dynamics/assembly/project.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "dynamics/evaluate/row_groups.h"

@@ -8,7 +8,8 @@
 //      so no m a is pushed down and rotated up again; moments about the joint point likewise
 //          n_own = I al + w x I w + s x a + sum r_c x gf_c                       (s, I: composite B of mech.h)
 //      and the moments of children that the link's rotation carries (n_new) or of all children (n_all).
-#include "dynamics/compile/mech.h"
+#include "dynamics/compile/bias.h"
+#include "dynamics/compile/formula.h"
 
 static const double Z[3] = {0, 0, 1};
 

@@ -1,5 +1,12 @@
 // A scene of bodies and joints, compiled: an outline of the passes of mech.h.
-#include "dynamics/compile/mech.h"
+#include "dynamics/compile/bodies.h"
+#include "dynamics/compile/bias.h"
+#include "dynamics/compile/constraints.h"
+#include "dynamics/compile/lagrangian.h"
+#include "dynamics/compile/loads.h"
+#include "dynamics/compile/loops.h"
+#include "dynamics/compile/relate.h"
+#include "dynamics/compile/system_build.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -272,7 +279,7 @@ static hn_status check_size(const hn_mech *m) {
                                      2LL * tree->links[common].depth);
     }
     if (mass > MAX_MASS_ENTRIES || closure > MAX_CLOSURE_ENTRIES) {
-        return hn_diags_add(m->sys->diags, HN_ERR_LIMIT, "/bodies",
+        return hn_diags_add(hn_system_faults(m->sys), HN_ERR_LIMIT, "/bodies",
                             "long chains grow with the square of their length: shorten them",
                             "the equations would have %lld mass entries and %lld closure entries; "
                             "%d and %d are compiled at most",

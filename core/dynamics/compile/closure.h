@@ -8,7 +8,7 @@
 // against end a at its own, lambda times `moment_a`, `moment_b` on the two bodies, such that lambda
 // times the row's rate is the power of it all.
 
-#include "dynamics/compile/mech.h"
+#include "dynamics/compile/relate.h"
 
 /// A direction fixed to one end, with its first derivative and the second at zero u-dot, in the
 /// closure's frame.

@@ -9,7 +9,11 @@
 //               touching point D = way d + r u is d . D' = -r theta'. theta = 0 where the wheel's own direction lies along d.
 //     formula   phi(x, t), x the scene's coordinates:   J = sum phi_x dx'/du,
 //               gamma = x'' phi_xx x' + 2 phi_xt x' + phi_tt + sum phi_x x'' at zero u-dot
+#include "dynamics/compile/constraints.h"
 #include "dynamics/compile/closure.h"
+#include "dynamics/compile/formula.h"
+#include "dynamics/compile/loops.h"
+#include "dynamics/compile/system_build.h"
 
 #include <math.h>
 #include <string.h>
@@ -82,7 +86,7 @@ static hn_status find_wheel_turn(hn_closure *c, const hn_constraint *k, const do
             return HN_OK;
         }
     }
-    return hn_diags_add(c->m->sys->diags, HN_ERR_UNSUPPORTED, k->pointer,
+    return hn_diags_add(hn_system_faults(c->m->sys), HN_ERR_UNSUPPORTED, k->pointer,
                         "hang the wheel by a revolute joint about 'direction' cross 'up'",
                         "the wheel of '%s' cannot roll: its body and that of the line do not turn "
                         "about parallel axes along its axle",
@@ -229,7 +233,8 @@ static hn_status add_formula(hn_system *sys, int index, const hn_constraint *k) 
 }
 
 static hn_status refuse_unknown(hn_system *sys, const hn_constraint *k, int coordinate) {
-    return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, k->pointer, "cut another joint of its loop",
+    return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, k->pointer,
+                        "cut another joint of its loop",
                         "the gear '%s' cannot hold '%s': its joint is cut between bodies that do "
                         "not turn about parallel axes, or it is an entry of an orientation",
                         k->name, sys->scene->coordinates[coordinate].name);

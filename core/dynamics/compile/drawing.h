@@ -18,6 +18,8 @@ typedef struct hn_drawing {
     const char *const *tear_names;
 } hn_drawing;
 
+/// Makes the drawing of a compiled system, with room for n_tears pairs of points that part.
+HN_MUST_CHECK hn_status hn_system_make_drawing(hn_system *sys, int n_tears);
 hn_drawing hn_system_drawing(const hn_system *sys); ///< borrowed
 /// {"points":n,"labels":[...],"shapes":[{"kind","p","q","n","width","body"}],"tears":[{"p","q","name"}]}
 void hn_drawing_json(hn_strbuf *b, const hn_system *sys);

@@ -1,13 +1,12 @@
-// Formulas of a scene in its own names: parameters, t, coordinates and rates as the scene calls
-// them.
-#include "dynamics/compile/system_impl.h"
+#include "dynamics/compile/formula.h"
+#include "dynamics/compile/system_build.h"
 #include "expr/parse.h"
 
 #include <stdio.h>
 #include <string.h>
 
 typedef struct scope {
-    hn_system *sys;
+    const hn_system *sys;
     int with_state;         ///< coordinates, rates and t may appear
     const hn_ex *positions; ///< of the scene coordinates
     const hn_ex *rates;
@@ -16,7 +15,7 @@ typedef struct scope {
 } scope;
 
 static int find_state(scope *s, const char *name, hn_ex *out) {
-    hn_system *sys = s->sys;
+    const hn_system *sys = s->sys;
     if (!strcmp(name, "t")) {
         *out = sys->t;
         return 1;
@@ -51,12 +50,12 @@ static int find_name(void *user, const char *name, hn_ex *out) {
     return s->with_state && find_state(s, name, out);
 }
 
-hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out) {
+hn_status hn_system_quantity(const hn_system *sys, const hn_quantity *quantity, hn_ex *out) {
     return hn_system_quantity_of(sys, quantity, sys->user_q, sys->user_v, out);
 }
 
-hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, const hn_ex *positions,
-                                const hn_ex *rates, hn_ex *out) {
+hn_status hn_system_quantity_of(const hn_system *sys, const hn_quantity *quantity,
+                                const hn_ex *positions, const hn_ex *rates, hn_ex *out) {
     *out = hn_num(quantity->value);
     if (!quantity->formula || (!quantity->varies && !sys->opts.symbolic_params)) {
         return HN_OK;
@@ -66,7 +65,7 @@ hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, con
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
     if (status == HN_OK && s.refused && s.refused_ball) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+        return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, quantity->pointer,
                             "use its rates, or a joint of revolutes in its place",
                             "'%s' is an entry of an orientation, which jumps where the turn passes "
                             "half a revolution, so it has no formula that holds at every pose",
@@ -74,20 +73,20 @@ hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity, con
     }
     if (status == HN_OK && s.refused) {
         return hn_diags_add(
-            sys->diags, HN_ERR_UNSUPPORTED, quantity->pointer,
+            hn_system_faults(sys), HN_ERR_UNSUPPORTED, quantity->pointer,
             "cut another joint of its loop, or use coordinates of joints that are not cut",
             "'%s' belongs to a cut joint between bodies that do not turn about parallel axes, so "
             "it has no formula",
             s.refused);
     }
     if (status != HN_OK) {
-        (void)hn_diags_add(sys->diags, status, quantity->pointer, diag.hint, "in '%s': %s",
-                           quantity->formula, diag.message);
+        (void)hn_diags_add(hn_system_faults(sys), status, quantity->pointer, diag.hint,
+                           "in '%s': %s", quantity->formula, diag.message);
     }
     return status;
 }
 
-void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symbols) {
+void hn_system_stand_ins(const hn_system *sys, const char *kind, hn_ex *out, int *symbols) {
     for (int i = 0; i < sys->scene->n_coordinates; i++) {
         char name[160];
         snprintf(name, sizeof name, "%s %s", kind, sys->scene->coordinates[i].name);
@@ -96,7 +95,7 @@ void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symb
     }
 }
 
-hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out) {
+hn_status hn_system_vector(const hn_system *sys, const hn_quantity *quantity, hn_vec3 *out) {
     for (int i = 0; i < 3; i++) {
         HN_TRY(hn_system_quantity(sys, &quantity[i], &out->x[i]));
     }

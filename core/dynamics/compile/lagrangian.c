@@ -1,9 +1,7 @@
-// A scene of formulas, or formulas beside bodies, compiled by exact differentiation. With L = T - V
-// and p = dT/dv:
-//     M = dp/dv,   h = (dp/dq) v - dT/dq + dV/dq,   f = Q - h                                          (1)
-//     J = dphi/dq, phi_t, gamma = d/dt (J v + phi_t) at zero u-dot: the directional derivative, twice,
-//     along (q', v', t') = (v, 0, 1), so that terms of t come in by themselves.                         (2)
-#include "dynamics/compile/system_impl.h"
+#include "dynamics/compile/lagrangian.h"
+#include "dynamics/compile/formula.h"
+#include "dynamics/compile/loads.h"
+#include "dynamics/compile/system_build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,7 +49,7 @@ static hn_ex at_rest(hn_system *sys, hn_ex e) {
 // ---- kinetic and potential energy ----
 
 static hn_status refuse_kinetic(hn_system *sys, const char *what) {
-    return hn_diags_add(sys->diags, HN_ERR_INPUT, sys->scene->lagrangian.kinetic.pointer,
+    return hn_diags_add(hn_system_faults(sys), HN_ERR_INPUT, sys->scene->lagrangian.kinetic.pointer,
                         "each term must be (something of the coordinates) * rate * rate",
                         "the kinetic energy must be quadratic in the rates: %s", what);
 }
@@ -134,9 +132,9 @@ static hn_status check_energies(hn_system *sys, hn_ex kinetic, hn_ex potential) 
         }
     }
     if (depends_on_any(sys, potential, sys->v_symbols)) {
-        return hn_diags_add(sys->diags, HN_ERR_INPUT, sys->scene->lagrangian.potential.pointer,
-                            "write it as a force on a coordinate",
-                            "the potential energy contains a rate");
+        return hn_diags_add(
+            hn_system_faults(sys), HN_ERR_INPUT, sys->scene->lagrangian.potential.pointer,
+            "write it as a force on a coordinate", "the potential energy contains a rate");
     }
     return hn_is_zero(at_rest(sys, kinetic))
                ? HN_OK
@@ -190,7 +188,8 @@ static hn_status add_constraint(hn_system *sys, int i) {
     }
     if (depends_on_any(sys, row.phi, sys->v_symbols)) {
         return hn_diags_add(
-            sys->diags, HN_ERR_UNSUPPORTED, row.pointer, "write the constraint on positions",
+            hn_system_faults(sys), HN_ERR_UNSUPPORTED, row.pointer,
+            "write the constraint on positions",
             "constraint '%s' contains a rate; only constraints on positions are served", row.name);
     }
     hn_ex *J = along + n + 1;

@@ -1,12 +1,6 @@
-// Loads as generalised forces, by virtual work: what a load does is power = force . rate, and the
-// coefficients of the rates are those that closures use too.
-//     spring between points, D = p - q, l = |D|, e_i = D . dD/dq_i:  l l' = sum e_i u_i
-//         Q_i = -(k (1 - l0 / l) + c l'/ l) e_i,   V = k (l - l0)^2 / 2
-//     moment N on a body that turns with w = sum w_i u_i:  Q_i = N . w_i
-//     on a coordinate x:  Q_i = tau dx'/du_i
-//         follower   tau = k (x_d(t) - x) + c (x_d' - x'), clamped
-//         table      tau(t)
-#include "dynamics/compile/system_impl.h"
+#include "dynamics/compile/loads.h"
+#include "dynamics/compile/formula.h"
+#include "dynamics/compile/system_build.h"
 
 /// Kept for telling the wrenches of loads.
 static void note_value(hn_system *sys, const hn_load *load, hn_vec3 value) {
@@ -65,7 +59,7 @@ static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const h
 
 static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex tau) {
     if (!sys->user_known[load->coordinate]) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
+        return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer,
                             "cut another joint of its loop",
                             "a load on '%s' is not served: its joint is cut between bodies that do "
                             "not turn about parallel axes",
@@ -84,7 +78,7 @@ static hn_status add_on_coordinate(hn_system *sys, const hn_load *load, hn_ex ta
 }
 
 static hn_status refuse_position(hn_system *sys, const hn_load *load, const char *what) {
-    return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer,
+    return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer,
                         "give it damping only, or use springs between points",
                         "%s on '%s' is not served: an entry of an orientation jumps where "
                         "the turn passes half a revolution",
@@ -135,7 +129,7 @@ static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const h
     hn_vec3 moment;
     hn_span span;
     if (!geometry->spin) {
-        return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
+        return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer, NULL,
                             "a moment needs a body to act on");
     }
     HN_TRY(hn_system_vector(sys, load->value, &moment));
@@ -224,7 +218,7 @@ hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry) {
     for (int i = 0; i < sys->scene->n_loads; i++) {
         const hn_load *load = &sys->scene->loads[i];
         if (load->kind >= sizeof ADDERS / sizeof *ADDERS) {
-            return hn_diags_add(sys->diags, HN_ERR_UNSUPPORTED, load->pointer, NULL,
+            return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, load->pointer, NULL,
                                 "a load of this kind cannot be compiled");
         }
         HN_TRY(ADDERS[load->kind](sys, geometry, load));

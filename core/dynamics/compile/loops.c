@@ -10,6 +10,7 @@
 // recursion for accelerations: (p . r)'' = p''. r + 2 p'. r' + p . r''. Differentiating phi instead
 // would cost more operations. Rows that vanish identically drop out when they are added, so a
 // planar loop keeps two, whatever plane it lies in.
+#include "dynamics/compile/loops.h"
 #include "dynamics/compile/closure.h"
 
 #include <math.h>

@@ -80,66 +80,6 @@ hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm);
 
 HN_MUST_CHECK hn_status hn_mech_trace_geometry(hn_mech *m); ///< arms, own bodies, world positions
 void hn_mech_trace_composites(hn_mech *m);
-void hn_mech_trace_mass(hn_mech *m);   ///< sys->M
-void hn_mech_trace_bias(hn_mech *m);   ///< adds -h to sys->f
-void hn_mech_trace_energy(hn_mech *m); ///< kinetic; adds gravity to potential
+void hn_mech_trace_mass(hn_mech *m); ///< sys->M
 
-// ---- relative motion of two points, for closures and loads ----
-
-typedef struct hn_lever {
-    int coordinate;
-    int is_slide;
-    int group;
-    int open;      ///< still turns whatever comes: at the end of a path, the end link
-    hn_vec3 axis;  ///< of the turn or slide
-    hn_vec3 lever; ///< sum of the arms it turns
-} hn_lever;
-
-/// Motion of one link and of a point on it, relative to a common ancestor, in one frame of that
-/// ancestor's.
-typedef struct hn_reach {
-    hn_vec3 pos, acc; ///< acc: at zero u-dot
-    hn_mat3 U;        ///< E(link) to the frame
-    hn_vec3 w;        ///< angular velocity in the frame
-    hn_mat3 B;
-    int n;
-    hn_lever *levers;
-} hn_reach;
-
-typedef struct hn_relative {
-    int common; ///< link both are seen from
-    hn_reach a, b;
-    int aligned;           ///< the frame's axes are the world's (seen from the ground)
-    double to_world[3][3]; ///< frame to world, where `common` does not rotate
-} hn_relative;
-
-/// Point `arm_a` (in E) of link a and point `arm_b` of link b. Memory from the system's arena.
-HN_MUST_CHECK hn_status hn_mech_relate(hn_mech *m, int common, int a, hn_vec3 arm_a, int b,
-                                       hn_vec3 arm_b, hn_relative *out);
-/// d pos / d u of one lever.
-hn_vec3 hn_lever_coefficient(hn_graph *g, const hn_lever *lever);
-/// Closure rows of every cut joint, and the coordinates of cut joints.
-HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
-HN_MUST_CHECK hn_status hn_mech_cut_coordinates(hn_mech *m);
-
-/// The angle of link b against link a about an axis of a, as a difference of two absolute angles.
-typedef struct hn_turn {
-    double sign;
-    int speed[2];      ///< system speeds of a and b, -1: does not turn
-    hn_ex angle, rate; ///< sign (theta_b - theta_a + constant), sign (theta_b' - theta_a')
-} hn_turn;
-/// Directions in body axes; the angle is 0 where ref_b lies on ref_a, seen along the axis. Returns
-/// 0 if the links do not turn about parallel axes along this one, or a ref lies along it.
-int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
-                          const double ref_b[3], hn_turn *out);
-
-// ---- constraints beside the joints (constraints.c) ----
-
-int hn_constraint_has_points(const hn_constraint *k);
-/// Loops behind those of the cut joints.
-void hn_constraints_name_loops(hn_system *sys);
-HN_MUST_CHECK hn_status hn_mech_trace_constraints(hn_mech *m);
-/// Where point p of a constraint with points should be, in the world: it lies there when the
-/// constraint holds.
-HN_MUST_CHECK hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *out);
 #endif

@@ -6,7 +6,7 @@
 // absolute angles count from that group's base, so the frame is the group's (and the ancestor's own
 // angle takes part). Otherwise the frame is fixed in the ancestor and agrees with the first group
 // met, whose links then stand in it by their absolute angle alone.
-#include "dynamics/compile/mech.h"
+#include "dynamics/compile/relate.h"
 
 static const double Z[3] = {0, 0, 1};
 

@@ -23,18 +23,6 @@
 
 typedef struct hn_system hn_system;
 
-typedef struct hn_system_opts {
-    /// keep parameters as symbols (for printing equations); numbers are folded otherwise
-    int symbolic_params;
-} hn_system_opts;
-hn_system_opts hn_system_opts_default(void);
-
-/// Compiles. The scene must outlive the system. Fails with HN_ERR_INPUT (a closure row that is a
-/// nonzero constant: the loop can never close; massless freedom; formula faults),
-/// HN_ERR_UNSUPPORTED, HN_ERR_LIMIT, HN_ERR_MEMORY; told in diags.
-HN_MUST_CHECK hn_status hn_system_compile(const hn_scene *scene, const hn_system_opts *opts,
-                                          hn_system **out, hn_diags *diags);
-void hn_system_free(hn_system *sys);
 const hn_scene *hn_system_scene(const hn_system *sys);
 
 typedef struct hn_system_info {
@@ -73,27 +61,6 @@ int hn_system_tree_joint(const hn_system *sys, int body);
 /// 1 if the joint was cut to close a loop.
 int hn_system_joint_is_cut(const hn_system *sys, int joint);
 
-// user <-> system, constant linear maps but for orientations: positions, and rates or accelerations
-// (without offset)
-void hn_system_to_user(const hn_system *sys, const double *q, double *user_q);
-void hn_system_from_user(const hn_system *sys, const double *user_q, double *q);
-void hn_system_rates_to_user(const hn_system *sys, const double *v, double *user_v);
-void hn_system_rates_from_user(const hn_system *sys, const double *user_v, double *v);
-/// Generalised forces: user = T' system, such that power is the same.
-void hn_system_forces_to_user(const hn_system *sys, const double *f, double *user_f);
-/// qdot = G(q) v; a copy when nq == nv. A ball (spherical or free joint) has four entries of q, a
-/// unit quaternion, and three of v, the angular velocity in the child's axes; everything else has
-/// one of each.
-void hn_system_kinematics(const hn_system *sys, const double *q, const double *v, double *qdot);
-/// q <- q moved by `delta` (nv, a rate times a time): what Newton's corrections and interpolations
-/// of q use, so that quaternions stay unit. A plain sum when nq == nv.
-void hn_system_move(const hn_system *sys, double *q, const double *delta);
-/// The `delta` (nv) that moves `from` to `to`; of two ways round the shorter.
-void hn_system_difference(const hn_system *sys, const double *from, const double *to,
-                          double *delta);
-/// Brings quaternions back to length 1 (a step of an integrator leaves it by its local error).
-/// Returns 1 when q changed.
-int hn_system_normalise(const hn_system *sys, double *q);
 /// Entry of q behind entry i of v, -1 for the speeds of a ball.
 int hn_system_position_of(const hn_system *sys, int i);
 /// The first time after t at which a load given as a table has a corner (an integrator restarts

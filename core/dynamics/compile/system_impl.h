@@ -1,7 +1,9 @@
 #ifndef HN_DYNAMICS_SYSTEM_IMPL_H
 #define HN_DYNAMICS_SYSTEM_IMPL_H
-// Inside a system; for the files of dynamics/ only. See system.h for what it means to the outside.
+// The inside of a system, for the files of dynamics/ only. system.h says what it means to the
+// outside.
 
+#include "dynamics/compile/compile.h"
 #include "dynamics/compile/drawing.h"
 #include "dynamics/compile/entries.h"
 #include "dynamics/compile/system.h"
@@ -85,65 +87,4 @@ struct hn_system {
     hn_entries efforts;         ///< row, scene coordinate: d phi / dx of gears and formulas
 };
 
-/// The expression of a quantity: its number, or its formula in parameters and, where it varies, the
-/// state.
-HN_MUST_CHECK hn_status hn_system_quantity(hn_system *sys, const hn_quantity *quantity, hn_ex *out);
-/// The same with these expressions for the scene's coordinates and their rates (by index) instead
-/// of their own.
-HN_MUST_CHECK hn_status hn_system_quantity_of(hn_system *sys, const hn_quantity *quantity,
-                                              const hn_ex *positions, const hn_ex *rates,
-                                              hn_ex *out);
-/// Symbols "kind name" to stand for the scene's coordinates (or their rates) while a formula is
-/// differentiated by them.
-void hn_system_stand_ins(hn_system *sys, const char *kind, hn_ex *out, int *symbols);
-/// Three at once.
-HN_MUST_CHECK hn_status hn_system_vector(hn_system *sys, const hn_quantity *quantity, hn_vec3 *out);
-/// A closure row: kept, dropped when it vanishes identically, or refused when it is a constant that
-/// is not zero. `J` holds n_J entries (row ignored). is_length decides the unit in messages.
-typedef struct hn_new_row {
-    const char *name;
-    int loop, is_length;
-    hn_ex phi, phi_t, gamma;
-    const hn_entry *J;
-    int n_J;
-    const char *pointer;         ///< of the joint or formula
-    const hn_row_wrench *wrench; ///< NULL: none
-} hn_new_row;
-HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row);
-
-// ---- the two kinds of scenes: symbols, terms, rows, loops, points, drawing ----
-HN_MUST_CHECK hn_status hn_bodies_compile(hn_system *sys);
-HN_MUST_CHECK hn_status hn_lagrangian_compile(hn_system *sys);
-/// Adds the Lagrangian's energies to M, f and the energies. Coordinates must be known to formulas
-/// by then.
-HN_MUST_CHECK hn_status hn_lagrangian_add_energies(hn_system *sys);
-
-/// The difference of two scene points, and how the rates move it.
-typedef struct hn_span {
-    hn_vec3 delta; ///< point p minus point q
-    int n;
-    int *coordinate;      ///< n system coordinates
-    hn_vec3 *coefficient; ///< d delta / dt = sum coefficient u (without what t alone moves)
-} hn_span;
-
-/// How a kind of scene gives spans: p minus q in any one frame (only lengths and powers are taken
-/// from it), or, with q < 0, p seen from the world's origin in world axes.
-typedef struct hn_geometry {
-    void *self;
-    hn_status (*span)(void *self, int p, int q, hn_span *out);
-    /// How the rates turn the body of point p, in world axes (delta is not used); NULL where there
-    /// are no bodies.
-    hn_status (*spin)(void *self, int p, hn_span *out);
-} hn_geometry;
-/// Loads of either kind, by virtual work: adds to f, springs also to potential.
-HN_MUST_CHECK hn_status hn_loads_compile(hn_system *sys, const hn_geometry *geometry);
-
-/// Symbols of the nq coordinates and nv rates under these names (a name that is taken gets
-/// underscores), then t and the gains.
-HN_MUST_CHECK hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
-                                               const char *const *rates);
-/// Allocates what is sized by nq and nv, and rows for at most max_rows.
-HN_MUST_CHECK hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows,
-                                           int n_loops, int n_points);
-HN_MUST_CHECK hn_status hn_system_make_drawing(hn_system *sys, int n_tears);
 #endif

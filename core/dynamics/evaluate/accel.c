@@ -1,8 +1,10 @@
-#include "dynamics/evaluate/blur.h"
+#include "dynamics/evaluate/accel.h"
+
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "dynamics/evaluate/inputs.h"
 #include "dynamics/evaluate/ldl.h"
+#include "dynamics/evaluate/pivot_noise.h"
 #include "dynamics/evaluate/row_groups.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"
@@ -47,7 +49,7 @@ struct hn_accel {
 // ---- compiling ----
 
 /// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
-static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
+static void closure_rhs(const hn_system *sys, int baumgarte, hn_ex *rhs) {
     hn_graph *g = sys->g;
     if (!baumgarte) {
         for (int i = 0; i < sys->nc; i++) {
@@ -71,7 +73,7 @@ static void closure_rhs(hn_system *sys, int baumgarte, hn_ex *rhs) {
 }
 
 /// Outputs of the tape: a, lambda, guards. Returns owned, or NULL.
-static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
+static hn_ex *list_outputs(hn_accel *s, const hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
     hn_ex *outputs = malloc((4 * (size_t)ldl->n + 1) * sizeof *outputs);
     if (!outputs) {
         return NULL;
@@ -91,7 +93,7 @@ static hn_ex *list_outputs(hn_accel *s, hn_system *sys, const hn_ldl *ldl, const
     return outputs;
 }
 
-static hn_status compile_tape(hn_accel *s, hn_system *sys, hn_arena *arena) {
+static hn_status compile_tape(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     hn_arena *scratch = hn_arena_create(0);
     if (!scratch) {
         return HN_ERR_MEMORY;
@@ -144,7 +146,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     return hn_factor_create(sys, HN_FACTOR_MASS, arena, &s->factor);
 }
 
-static hn_status build(hn_accel *s, hn_system *sys, hn_arena *arena) {
+static hn_status build(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     const int by_tape = s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL;
     hn_status status = by_tape ? compile_tape(s, sys, arena) : HN_OK;
     if (status == HN_OK && !s->available) {
@@ -165,7 +167,7 @@ hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_ar
     s->nv = sys->nv;
     s->nc = sys->nc;
     s->opts = *opts;
-    hn_status status = build(s, (hn_system *)sys, arena);
+    hn_status status = build(s, sys, arena);
     if (status != HN_OK) {
         hn_accel_free(s);
         return status;
@@ -229,15 +231,15 @@ static int all_finite(const double *x, int n) {
     return zero == 0;
 }
 
-/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (blur.h).
+/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (pivot_noise.h).
 static double stabilise(hn_accel *s, const double *v, double alpha, double beta) {
-    const hn_blur_terms at = {.n_J = s->n_J,
-                              .row = s->J_row,
-                              .col = s->J_col,
-                              .J = hn_eval_get(s->terms, HN_TERM_J),
-                              .phi = hn_eval_get(s->terms, HN_TERM_PHI),
-                              .phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T)};
-    const double *rate = s->rest, gap = hn_blur_gap(s->sys, &at, v, s->rest, s->step);
+    const hn_pivot_noise_terms at = {.n_J = s->n_J,
+                                     .row = s->J_row,
+                                     .col = s->J_col,
+                                     .J = hn_eval_get(s->terms, HN_TERM_J),
+                                     .phi = hn_eval_get(s->terms, HN_TERM_PHI),
+                                     .phi_t = hn_eval_get(s->terms, HN_TERM_PHI_T)};
+    const double *rate = s->rest, gap = hn_pivot_noise_gap(s->sys, &at, v, s->rest, s->step);
     for (int i = 0; s->opts.baumgarte && i < s->nc; i++) {
         s->gamma[i] += 2 * alpha * rate[i] + beta * beta * at.phi[i];
     }
@@ -406,10 +408,10 @@ static double dense_ops(const hn_accel *s) {
 /// the error of the step.
 static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
-    opts.row_floor = HN_BLUR_ROW_FLOOR;
+    opts.row_floor = HN_PIVOT_NOISE_ROW_FLOOR;
     opts.row_unit = s->row_unit;
-    opts.rank_tol = fmax(opts.rank_tol, hn_blur_of(gap));
-    opts.residual_tol = fmax(opts.residual_tol, hn_blur_of_sides(gap));
+    opts.rank_tol = fmax(opts.rank_tol, hn_pivot_noise_of(gap));
+    opts.residual_tol = fmax(opts.residual_tol, hn_pivot_noise_of_sides(gap));
     opts.want_cond = want_cond;
     if (row_ratio < HN_ROW_LOST) {
         opts.row_floor = 1;

@@ -124,7 +124,7 @@ static int count_all(const hn_system *sys, unsigned terms) {
     return n;
 }
 
-static hn_status build(hn_eval *e, hn_system *sys, unsigned terms, hn_arena *arena) {
+static hn_status build(hn_eval *e, const hn_system *sys, unsigned terms, hn_arena *arena) {
     int n = count_all(sys, terms);
     builder b = {.e = e, .outputs = malloc(((size_t)n + 1) * sizeof(hn_ex)), .cap = n};
     e->target = hn_arena_get(arena, (2 * (size_t)n + 1) * sizeof *e->target);
@@ -153,7 +153,7 @@ hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena, 
         return HN_ERR_MEMORY;
     }
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
-    hn_status status = build(e, (hn_system *)sys, terms, arena);
+    hn_status status = build(e, sys, terms, arena);
     if (status != HN_OK) {
         hn_eval_free(e);
         return status;

@@ -1,4 +1,5 @@
 #include "dynamics/evaluate/factor.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/inputs.h"
 #include "dynamics/evaluate/ldl.h"
@@ -63,7 +64,8 @@ static void take_diagonal(const hn_system *sys, hn_entries *W) {
     }
 }
 
-static hn_status build_ldl(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
+static hn_status build_ldl(hn_factor *f, const hn_system *sys, hn_factor_weight weight,
+                           hn_arena *arena) {
     hn_entries diagonal = {0};
     const hn_entries *W = weight == HN_FACTOR_MASS ? &sys->M : NULL;
     if (weight == HN_FACTOR_DIAGONAL) {
@@ -76,7 +78,8 @@ static hn_status build_ldl(hn_factor *f, hn_system *sys, hn_factor_weight weight
     return status;
 }
 
-static hn_status build(hn_factor *f, hn_system *sys, hn_factor_weight weight, hn_arena *arena) {
+static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weight,
+                       hn_arena *arena) {
     hn_status status = build_ldl(f, sys, weight, arena);
     f->info.available = f->ldl.available;
     if (status != HN_OK || !f->ldl.available) {
@@ -116,7 +119,7 @@ hn_status hn_factor_create(const hn_system *sys, hn_factor_weight weight, hn_are
     if (!f) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = build(f, (hn_system *)sys, weight, arena);
+    hn_status status = build(f, sys, weight, arena);
     if (status != HN_OK) {
         hn_factor_free(f);
         return status;

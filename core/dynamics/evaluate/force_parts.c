@@ -14,7 +14,7 @@ struct hn_force_parts {
 
 /// While it is built: gradients of the energies, momenta and their rate at a = 0, then (2) and (3).
 typedef struct builder {
-    hn_system *sys;
+    const hn_system *sys;
     hn_graph *g;
     hn_ex *T_q, *V_q, *q_dot; ///< nq
     hn_ex *p, *p_dot, *out;   ///< nv, nv, 2 nv
@@ -117,7 +117,7 @@ hn_status hn_force_parts_create(const hn_system *sys, hn_arena *arena, hn_force_
         return HN_ERR_MEMORY;
     }
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
-    builder b = {.sys = (hn_system *)sys, .g = sys->g};
+    builder b = {.sys = sys, .g = sys->g};
     const hn_status status = compile(&b, arena, p);
     release(&b);
     if (status == HN_OK) {

@@ -35,7 +35,7 @@ static void list_symbols(const hn_system *sys, int *symbols) {
     }
 }
 
-hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out, hn_arena *arena,
+hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_out, hn_arena *arena,
                             hn_inputs *in) {
     set_sizes(sys, in);
     int *symbols = malloc((size_t)in->n * sizeof *symbols);

@@ -16,7 +16,7 @@ typedef struct hn_inputs {
 /// Room for the values alone, where there is no tape.
 HN_MUST_CHECK hn_status hn_inputs_create(const hn_system *sys, hn_arena *arena, hn_inputs *in);
 /// The same with a tape for `outputs` and its workspace.
-HN_MUST_CHECK hn_status hn_inputs_compile(hn_system *sys, const hn_ex *outputs, int n_out,
+HN_MUST_CHECK hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_out,
                                           hn_arena *arena, hn_inputs *in);
 void hn_inputs_free(hn_inputs *in); ///< the tape
 /// q (nq); v (nv) or NULL for zero.

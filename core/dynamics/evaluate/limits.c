@@ -24,7 +24,7 @@ static hn_status compile(hn_limits *l, const hn_system *sys, hn_arena *arena) {
         outputs[i] = sys->user_q[l->coordinate[i]];
     }
     // only the graph grows
-    hn_status status = hn_inputs_compile((hn_system *)sys, outputs, l->n, arena, &l->in);
+    hn_status status = hn_inputs_compile(sys, outputs, l->n, arena, &l->in);
     free(outputs);
     return status;
 }

@@ -32,7 +32,7 @@ struct hn_linear {
 /// While it is built.
 typedef struct builder {
     hn_linear *l;
-    hn_system *sys;
+    const hn_system *sys;
     hn_graph *g;
     hn_arena *arena; ///< of what outlives the building
     hn_ex *a, *lambda;
@@ -50,7 +50,7 @@ static hn_ex make_symbol(hn_graph *g, const char *kind, int i) {
 }
 
 static hn_status make_symbols(builder *b) {
-    hn_system *sys = b->sys;
+    const hn_system *sys = b->sys;
     const size_t nv = (size_t)sys->nv, nc = (size_t)sys->nc;
     b->a = calloc(nv + 1, sizeof *b->a);
     b->lambda = calloc(nc + 1, sizeof *b->lambda);
@@ -325,7 +325,7 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     }
     *l = (hn_linear){.nq = sys->info.nq, .nv = sys->nv, .nc = sys->nc};
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
-    builder b = {.l = l, .sys = (hn_system *)sys, .g = sys->g, .arena = arena};
+    builder b = {.l = l, .sys = sys, .g = sys->g, .arena = arena};
     hn_status status = make_symbols(&b);
     if (status == HN_OK) {
         status = make_sums(&b);

@@ -1,4 +1,9 @@
-#include "dynamics/reactions/reactions_internal.h"
+#include "dynamics/reactions/reactions.h"
+
+#include "dynamics/compile/constraints.h"
+#include "dynamics/compile/relate.h"
+#include "dynamics/reactions/reactions_balance.h"
+#include "dynamics/reactions/reactions_efforts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,63 +14,6 @@
 static const double TOUCHED = 1e-6;
 /// Rows dependent to this count as redundant, as in the saddle solve [-].
 static const double RANK_TOL = 1e-10;
-
-// ---- numbers ----
-
-void hn_reaction_add_cross(double out[3], double k, const double a[3], const double b[3]) {
-    double c[3];
-    hn_num3_cross(a, b, c);
-    for (int i = 0; i < 3; i++) {
-        out[i] += k * c[i];
-    }
-}
-
-void hn_reaction_add_scaled(double out[3], double k, const double a[3]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] += k * a[i];
-    }
-}
-
-void hn_reaction_apply(const double m[3][3], const double v[3], double out[3]) {
-    const double c[3] = {hn_num3_dot(m[0], v), hn_num3_dot(m[1], v), hn_num3_dot(m[2], v)};
-    memcpy(out, c, sizeof c);
-}
-
-void hn_reaction_apply_transposed(const double m[3][3], const double v[3], double out[3]) {
-    const double c[3] = {m[0][0] * v[0] + m[1][0] * v[1] + m[2][0] * v[2],
-                         m[0][1] * v[0] + m[1][1] * v[1] + m[2][1] * v[2],
-                         m[0][2] * v[0] + m[1][2] * v[1] + m[2][2] * v[2]};
-    memcpy(out, c, sizeof c);
-}
-
-double hn_reaction_value(const hn_reactions *r, int k) {
-    return r->in.x[r->in.slots[k]];
-}
-
-void hn_reaction_values3(const hn_reactions *r, int k, double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] = hn_reaction_value(r, k + i);
-    }
-}
-
-void hn_reaction_to_world(const hn_reactions *r, int body, const double v[3], double out[3]) {
-    if (body == HN_GROUND) {
-        memcpy(out, v, 3 * sizeof *out);
-    } else {
-        hn_reaction_apply((const double(*)[3])r->bodies[body].R, v, out);
-    }
-}
-
-void hn_reaction_place_of(const hn_reactions *r, int body, const hn_quantity *at, double out[3]) {
-    double arm[3];
-    for (int i = 0; i < 3; i++) {
-        arm[i] = at[i].value - (body == HN_GROUND ? 0 : r->scene->bodies[body].com[i].value);
-    }
-    hn_reaction_to_world(r, body, arm, out);
-    for (int i = 0; i < 3 && body != HN_GROUND; i++) {
-        out[i] += r->bodies[body].x[i];
-    }
-}
 
 // ---- the tape ----
 
@@ -198,7 +146,7 @@ static hn_status compile(hn_reactions *r, hn_arena *arena) {
     if (status == HN_OK) {
         put_all(r, &t, &list);
         // only the graph of the system grows
-        status = hn_inputs_compile((hn_system *)r->sys, list.at, list.n, arena, &r->in);
+        status = hn_inputs_compile(r->sys, list.at, list.n, arena, &r->in);
     }
     free(list.at);
     hn_entries_reset(&t.inertia);
@@ -487,4 +435,29 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
 
 double hn_reactions_defect(const hn_reactions *r) {
     return r->defect;
+}
+
+// ---- efforts ----
+
+int hn_reactions_effort_count(const hn_reactions *r) {
+    return r->n_efforts;
+}
+
+hn_effort hn_reactions_effort(const hn_reactions *r, int k) {
+    HN_ASSERT(k >= 0 && k < r->n_efforts);
+    return r->efforts[k];
+}
+
+int hn_reactions_has_place(const hn_reactions *r, int constraint) {
+    if (hn_constraint_has_points(&r->scene->constraints[constraint])) {
+        return 1;
+    }
+    for (int k = 0; k < r->n_efforts; k++) {
+        const int row = r->efforts[k].row;
+        if (row >= 0 && r->sys->loops[r->sys->rows[row].loop].constraint == constraint &&
+            !hn_reaction_is_formal(r, r->efforts[k].coordinate)) {
+            return 1;
+        }
+    }
+    return 0;
 }

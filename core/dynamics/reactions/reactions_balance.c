@@ -1,4 +1,6 @@
-#include "dynamics/reactions/reactions_internal.h"
+#include "dynamics/reactions/reactions_balance.h"
+
+#include "dynamics/compile/constraints.h"
 
 #include <math.h>
 #include <string.h>

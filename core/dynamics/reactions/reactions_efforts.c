@@ -5,7 +5,9 @@
 // a: accelerations of the system, g_j: x_j'' at a = 0. Lagrange's derivative is the same covector
 // in any coordinates, so (1) does the work along the scene's coordinates that the equations of
 // motion, traced in the system's own, say it does.
-#include "dynamics/reactions/reactions_internal.h"
+#include "dynamics/reactions/reactions_efforts.h"
+
+#include "dynamics/compile/formula.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +15,7 @@
 
 /// While it is built; n scene coordinates.
 typedef struct derivation {
-    hn_system *sys;
+    const hn_system *sys;
     hn_graph *g;
     int n;
     int *symbols;      ///< 2 n: of coordinates, then of rates
@@ -26,7 +28,7 @@ typedef struct derivation {
 } derivation;
 
 static hn_status begin(hn_reactions *r, hn_arena *arena, derivation *d) {
-    hn_system *sys = (hn_system *)r->sys; // only its graph grows
+    const hn_system *sys = r->sys; // only its graph grows
     const hn_lagrangian *l = &r->scene->lagrangian;
     const size_t n = (size_t)r->scene->n_coordinates;
     const size_t widest = n > (size_t)r->nv ? n : (size_t)r->nv;
@@ -169,27 +171,4 @@ void hn_reaction_read_efforts(hn_reactions *r, const double *lambda) {
             (e++)->determined = 1;
         }
     }
-}
-
-int hn_reactions_effort_count(const hn_reactions *r) {
-    return r->n_efforts;
-}
-
-hn_effort hn_reactions_effort(const hn_reactions *r, int k) {
-    HN_ASSERT(k >= 0 && k < r->n_efforts);
-    return r->efforts[k];
-}
-
-int hn_reactions_has_place(const hn_reactions *r, int constraint) {
-    if (hn_constraint_has_points(&r->scene->constraints[constraint])) {
-        return 1;
-    }
-    for (int k = 0; k < r->n_efforts; k++) {
-        const int row = r->efforts[k].row;
-        if (row >= 0 && r->sys->loops[r->sys->rows[row].loop].constraint == constraint &&
-            !hn_reaction_is_formal(r, r->efforts[k].coordinate)) {
-            return 1;
-        }
-    }
-    return 0;
 }

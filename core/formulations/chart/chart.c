@@ -1,5 +1,6 @@
 #include "formulations/chart/chart.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/reduced_mass.h"

@@ -1,5 +1,7 @@
 #include "formulations/chart/orthonormal_state.h"
 
+#include "dynamics/compile/coordinates.h"
+
 #include <string.h>
 
 hn_status hn_orthonormal_init(hn_orthonormal_state *s, const hn_system *sys, int tracked,

@@ -1,5 +1,6 @@
 #include "formulations/chart/reduced_terms.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 #include "linalg/lu.h"
 #include "formulations/ground/reduced_mass.h"

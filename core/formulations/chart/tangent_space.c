@@ -1,5 +1,6 @@
 #include "formulations/chart/tangent_space.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 

@@ -1,5 +1,6 @@
 #include "formulations/chart/tangent_state.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 
 #include <math.h>

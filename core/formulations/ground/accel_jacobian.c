@@ -1,4 +1,6 @@
-#include "dynamics/evaluate/blur.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
+#include "dynamics/evaluate/pivot_noise.h"
 #include "formulations/ground/accel_jacobian_internal.h"
 
 #include "dynamics/compile/quaternion.h"
@@ -242,7 +244,7 @@ static const double *scale_rows(const hn_accel_jacobian *j) {
         longest = fmax(longest, scale[i] / hn_system_row_unit(j->sys, i));
     }
     for (int i = 0; i < j->nc; i++) {
-        const double least = HN_BLUR_ROW_FLOOR * longest * hn_system_row_unit(j->sys, i);
+        const double least = HN_PIVOT_NOISE_ROW_FLOOR * longest * hn_system_row_unit(j->sys, i);
         scale[i] = fmax(scale[i], least);
         scale[i] = scale[i] > 0 ? 1 / scale[i] : 1;
     }

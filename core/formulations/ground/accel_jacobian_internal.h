@@ -2,6 +2,7 @@
 #define HN_FORMULATIONS_ACCEL_JACOBIAN_INTERNAL_H
 // Inside accel_jacobian.h: what its two files share.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/linearise.h"
 #include "linalg/newton_matrix.h"

@@ -1,5 +1,8 @@
 #include "formulations/ground/accel_ode.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
+
 #include <stdio.h>
 
 static hn_accel_law law(const void *self) {

@@ -6,6 +6,7 @@
 //
 // A formulation's instance begins with an hn_accel_ode, so that the functions below and those of hn_state_ode fit its table.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/state_ode.h"
 

@@ -1,6 +1,7 @@
 #include "formulations/ground/dense_ode.h"
 
-#include "dynamics/evaluate/blur.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/pivot_noise.h"
 #include "linalg/dense.h"
 
 #include <stdio.h>
@@ -46,13 +47,13 @@ void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, d
 }
 
 double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size) {
-    const hn_blur_terms at = {.n_J = ode->n_J,
+    const hn_pivot_noise_terms at = {.n_J = ode->n_J,
                               .row = ode->J_row,
                               .col = ode->J_col,
                               .J = ode->J,
                               .phi = ode->phi,
                               .phi_t = ode->phi_t};
-    return hn_blur_of(hn_blur_gap(ode->base.sys, &at, v, rate, size));
+    return hn_pivot_noise_of(hn_pivot_noise_gap(ode->base.sys, &at, v, rate, size));
 }
 
 void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y) {

@@ -28,7 +28,7 @@ HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sy
 /// out (nc) = gamma + 2 xi omega (J v + phi_t) + omega^2 phi at the terms last evaluated.
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
                        double *out);
-/// The size of pivots of J that are blur at the state evaluated last (dynamics/evaluate/blur.h), with the gap's terms; rate (nc) receives
+/// The size of pivots of J that are blur at the state evaluated last (dynamics/evaluate/pivot_noise.h), with the gap's terms; rate (nc) receives
 /// J v + phi_t, size (nc) is scratch.
 double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size);
 /// y (nc) = J x and x (nv) += J' y, entry by entry.

@@ -1,5 +1,6 @@
 #include "formulations/ground/state_ode.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "formulations/ground/flops.h"
 
 #include <stdio.h>

@@ -1,3 +1,5 @@
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/registry.h"
 

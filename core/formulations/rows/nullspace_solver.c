@@ -1,3 +1,4 @@
+#include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/registry.h"
 

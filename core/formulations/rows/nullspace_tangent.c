@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "formulations/ground/registry.h"
 #include "formulations/chart/tangent_space.h"
 

@@ -1,4 +1,5 @@
 #include "dynamics/assembly/project.h"
+#include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/registry.h"
 

@@ -1,4 +1,4 @@
-#include "dynamics/evaluate/blur.h"
+#include "dynamics/evaluate/pivot_noise.h"
 #include "linalg/dense.h"
 #include "linalg/qr.h"
 #include "formulations/ground/dense_ode.h"
@@ -14,7 +14,7 @@
 // The pseudo-inverse by complete orthogonal decomposition: L^-1 J' P = Q [R; 0] with pivoting, rows of J scaled to unit length
 // in that metric, then R' z = P' b in least squares where rows were dropped, and x = Q z. Rows that depend on others
 // need no care; contradicting ones are met in the least-squares sense. Where the loops stand open, rows that depend on others on the
-// closed set part by about the gap: the tolerance that decides the rank grows with it (dynamics/evaluate/blur.h).
+// closed set part by about the gap: the tolerance that decides the rank grows with it (dynamics/evaluate/pivot_noise.h).
 //
 // Where M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia & Phohomsiri 2006),
 //
@@ -69,7 +69,7 @@ static void factor_rows(udwadia_kalaba *u) {
         u->size[k] = hn_norm2(nv, u->rows.a + (size_t)k * nv);
         longest = fmax(longest, u->size[k]);
     }
-    const double least = u->rank_tol > RANK_TOL ? HN_BLUR_ROW_FLOOR * longest : 0;
+    const double least = u->rank_tol > RANK_TOL ? HN_PIVOT_NOISE_ROW_FLOOR * longest : 0;
     for (int k = 0; k < nc; k++) {
         double *column = u->rows.a + (size_t)k * nv;
         const double size = fmax(u->size[k], least);

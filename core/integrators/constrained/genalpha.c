@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "integrators/constrained/newmark.h"
 #include "integrators/step/registry.h"
 

@@ -1,6 +1,7 @@
 #include "integrators/constrained/half_explicit.h"
 
 #include "dynamics/assembly/project.h"
+#include "dynamics/compile/coordinates.h"
 #include "integrators/step/dae_base.h"
 #include "linalg/dense.h"
 

@@ -1,5 +1,6 @@
 #include "integrators/constrained/newmark.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 
 #include <math.h>

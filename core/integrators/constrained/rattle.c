@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "integrators/step/ball_step.h"
 #include "integrators/step/dae_base.h"
 #include "integrators/step/lagrange_terms.h"

@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "integrators/step/dae_base.h"
 #include "integrators/step/registry.h"
 #include "linalg/dense.h"

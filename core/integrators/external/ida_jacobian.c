@@ -1,5 +1,6 @@
 #include "integrators/external/ida_jacobian.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 #include "linalg/newton_matrix.h"
 

@@ -1,5 +1,7 @@
 #include "integrators/external/ida_problem.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "integrators/step/control.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"

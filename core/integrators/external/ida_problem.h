@@ -16,6 +16,7 @@
 // method stays regular.
 // Source: Gear, Leimkuhler & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "integrators/step/dae.h"
 #include "linalg/qr.h"

@@ -1,5 +1,7 @@
 #include "integrators/implicit/implicit_dae.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/assembly/project.h"
 #include "integrators/step/control.h"

@@ -1,5 +1,6 @@
 #include "integrators/step/ball_step.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/vec3.h"
 #include "linalg/dense.h"
 

@@ -1,5 +1,6 @@
 #include "integrators/step/dae_base.h"
 
+#include "dynamics/evaluate/accel.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
 

@@ -8,6 +8,7 @@
 // pose, by column-pivoted QR of J', and goes on with those alone; the others follow, because every motion that keeps the
 // chosen rows closed keeps them closed. The multipliers of rows left out are 0 inside a scheme.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "integrators/step/dae.h"
 #include "linalg/newton_matrix.h"

@@ -1,5 +1,6 @@
 #include "integrators/step/lagrange_terms.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/direction.h"
 #include "expr/tape.h"
 

@@ -1,4 +1,6 @@
 // One run with its output: the object of `holonom run --json`.
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
 #include "session/compare/comparison.h"
 #include "session/model/reactions_json.h"

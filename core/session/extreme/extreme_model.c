@@ -1,4 +1,5 @@
 // The scene of a point and where its runs start: settings filled in from the sweep, states off the loops by a stated amount.
+#include "dynamics/compile/coordinates.h"
 #include "session/extreme/extreme_internal.h"
 
 #include "dynamics/evaluate/eval.h"

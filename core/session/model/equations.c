@@ -1,4 +1,6 @@
 // The equations of motion, with parameters as symbols.
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 #include "expr/print.h"
 #include "session/model/model.h"
 #include "session/model/position_form.h"

@@ -1,5 +1,7 @@
 #include "session/model/model.h"
 
+#include "dynamics/compile/compile.h"
+
 #include <stdio.h>
 #include <string.h>
 

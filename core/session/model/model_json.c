@@ -1,4 +1,5 @@
 // The documents that describe a scene: the list of scenes, one scene for a page, its assembly.
+#include "dynamics/compile/coordinates.h"
 #include "session/model/caption.h"
 #include "session/model/envelope.h"
 #include "session/model/model.h"

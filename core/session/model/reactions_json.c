@@ -1,5 +1,6 @@
 #include "session/model/reactions_json.h"
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/reactions/reactions.h"
 

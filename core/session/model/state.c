@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "session/model/model.h"
 
 #include <math.h>

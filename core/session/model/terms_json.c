@@ -1,4 +1,6 @@
 // Every term at one state, in the coordinates of the scene.
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "session/store/columns_json.h"

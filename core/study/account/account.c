@@ -1,3 +1,5 @@
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/account/account_internal.h"
 
 #include "linalg/dense.h"

@@ -1,4 +1,6 @@
 // From the end of a run back to its start: what each step's parts have become by then.
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/account/account_internal.h"
 
 #include "linalg/dense.h"

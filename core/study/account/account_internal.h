@@ -2,6 +2,7 @@
 #define HN_STUDY_ACCOUNT_INTERNAL_H
 // The inside of an account: account.c books the steps, account_back.c carries their parts to the end.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/linearise.h"
 #include "linalg/saddle.h"
 #include "formulations/ground/accel_jacobian.h"

@@ -1,3 +1,5 @@
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/run/run_internal.h"
 
 #include "linalg/dense.h"
@@ -33,17 +35,17 @@ hn_status hn_run_ahead_create(hn_run *run) {
     a->entered = hn_arena_doubles(run->arena, (size_t)run->info.nq);
     a->smooth = hn_arena_doubles(run->arena, (size_t)run->info.nv + 1);
     return hn_arena_failed(run->arena) ? HN_ERR_MEMORY
-                                       : hn_radar_create(run->sys, run->arena, &a->radar);
+                                       : hn_singularity_create(run->sys, run->arena, &a->radar);
 }
 
 void hn_run_ahead_free(hn_run *run) {
-    hn_radar_free(ahead_of(run)->radar);
+    hn_singularity_free(ahead_of(run)->radar);
 }
 
 void hn_run_ahead_start(hn_run *run) {
     hn_run_ahead *a = ahead_of(run);
-    hn_radar_reset(a->radar);
-    a->info = (hn_radar_info){.ratio = 1, .ahead = HUGE_VAL};
+    hn_singularity_reset(a->radar);
+    a->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL};
     a->largest = a->multiplier = 0;
     a->n_headings = a->passing = a->inside = a->driven = 0;
     a->fastest = 0;
@@ -95,7 +97,7 @@ static const char *body_name(const hn_run *run, int body) {
     return body >= 0 ? hn_system_scene(run->sys)->bodies[body].name : "ground";
 }
 
-static void add_rows(const hn_run *run, hn_incident *i, const hn_radar_pose *pose) {
+static void add_rows(const hn_run *run, hn_incident *i, const hn_singularity_pose *pose) {
     for (int k = 0; k < pose->n_rows; k++) {
         add(i, "%s%s", k ? ", " : "; rows ", hn_system_row_name(run->sys, pose->rows[k]));
     }
@@ -113,8 +115,8 @@ static void add_rows(const hn_run *run, hn_incident *i, const hn_radar_pose *pos
 void hn_run_describe_pose(hn_run *run, hn_incident *i, double t, const double *q,
                           double sigma_min) {
     hn_run_ahead *a = ahead_of(run);
-    hn_radar_pose pose;
-    hn_radar_pose_at(a->radar, t, q, sigma_min, &pose);
+    hn_singularity_pose pose;
+    hn_singularity_pose_at(a->radar, t, q, sigma_min, &pose);
     add_rows(run, i, &pose);
     if (pose.mobility > pose.mobility_before) {
         add(i, "; %d freedoms there instead of %d", pose.mobility, pose.mobility_before);
@@ -160,7 +162,7 @@ static double angle_between(const hn_run *run, const double *x, const double *y)
 static int take_heading(hn_run *run, hn_run_heading *h) {
     hn_run_ahead *a = ahead_of(run);
     const int n = run->info.nv;
-    const double *scale = hn_radar_scale(a->radar);
+    const double *scale = hn_singularity_scale(a->radar);
     h->t = run->now.t;
     for (int i = 0; i < n; i++) {
         h->e[i] = run->now.v[i] / scale[i];
@@ -388,7 +390,7 @@ void hn_run_ahead_look(hn_run *run, const double *lambda) {
     if (run->info.nc == 0) {
         return;
     }
-    hn_radar_look(a->radar, run->now.t, run->now.q, &a->info);
+    hn_singularity_check(a->radar, run->now.t, run->now.q, &a->info);
     a->largest = fmax(a->largest, a->info.sigma_min);
     look_at_prediction(run);
     look_at_multipliers(run, lambda);

@@ -1,3 +1,4 @@
+#include "dynamics/compile/coordinates.h"
 #include "study/run/run_internal.h"
 
 #include <math.h>
@@ -33,7 +34,7 @@ static double sigma_at(hn_run *run, double s) {
     }
     memcpy(b->q, run->before.q, (size_t)run->info.nq * sizeof *b->q);
     hn_system_move(run->sys, b->q, b->part);
-    return hn_radar_probe(run->watch.ahead.radar, run->before.t + s * h, b->q);
+    return hn_singularity_probe(run->watch.ahead.radar, run->before.t + s * h, b->q);
 }
 
 /// Of the ends and n looks between them, evenly apart: the share of the step with the lowest sigma_min.

@@ -1,6 +1,7 @@
 // An engine: a formulation and an integrator put together, for either kind of pair: an ordinary differential equation and a
 // stepper of it, or a differential-algebraic system and an integrator that takes it as it is (integrators/step/dae.h). What is
 // different between the two is here; the rest of a run knows engines only.
+#include "dynamics/compile/coordinates.h"
 #include "study/run/run_internal.h"
 
 #include "integrators/step/dae.h"

@@ -3,9 +3,11 @@
 // The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time), run_watch.c
 // (what is looked at after a step) and run_tell.c (incidents).
 
+#include "dynamics/assembly/mode.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/limits.h"
-#include "dynamics/analyse/radar.h"
+#include "dynamics/analyse/singularity_monitor.h"
 #include "integrators/step/control.h"
 #include "study/run/run.h"
 
@@ -32,8 +34,8 @@ typedef struct hn_run_heading {
 
 /// What the watch knows of singular poses on the way.
 typedef struct hn_run_ahead {
-    hn_radar *radar;
-    hn_radar_info info;              ///< the last look
+    hn_singularity *radar;
+    hn_singularity_info info;              ///< the last look
     double largest;                  ///< sigma_min so far
     hn_run_heading older, last, now; ///< the first two away from singular poses
     int n_headings;

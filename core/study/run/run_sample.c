@@ -1,3 +1,5 @@
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/run/run_internal.h"
 
 #include <math.h>

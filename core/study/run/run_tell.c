@@ -1,3 +1,4 @@
+#include "dynamics/evaluate/accel.h"
 #include "study/run/run_internal.h"
 
 #include <math.h>

@@ -1,3 +1,6 @@
+#include "dynamics/assembly/mode.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/run/run_internal.h"
 
 #include "linalg/dense.h"

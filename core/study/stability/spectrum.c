@@ -1,5 +1,6 @@
 #include "study/stability/spectrum.h"
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/linearise.h"
 #include "linalg/dense.h"

@@ -1,5 +1,6 @@
 #include "study/stability/stability.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 

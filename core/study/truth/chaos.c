@@ -1,6 +1,7 @@
 #include "study/truth/chaos.h"
 
 #include "dynamics/assembly/project.h"
+#include "dynamics/compile/coordinates.h"
 #include "study/truth/errors.h"
 
 #include <math.h>

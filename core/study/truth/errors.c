@@ -1,5 +1,6 @@
 #include "study/truth/errors.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include "study/truth/precise.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "study/truth/precise_solver.h"
 #include "study/truth/precise_stepper.h"
 

@@ -1,5 +1,6 @@
 // What the multipliers of a state are worth: told from the rank and the condition of K.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "support/alloc.h"
 #include "support/model.h"

@@ -1,6 +1,8 @@
 // Assembly: start values that close, pins that hold, modes that are kept, and closures that cannot
 // be reached and say why.
 
+#include "dynamics/assembly/mode.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "support/alloc.h"

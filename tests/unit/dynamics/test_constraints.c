@@ -2,7 +2,10 @@
 // known without us.
 #include "support/near.h"
 
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/drawing.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "support/mechanism.h"
 #include "support/model.h"

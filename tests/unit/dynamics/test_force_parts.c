@@ -1,5 +1,6 @@
 // The parts of the forces against the whole, which comes from the bodies one by one and not from
 // the energies.
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/force_parts.h"
 
 #include "dynamics/evaluate/eval.h"

@@ -3,6 +3,8 @@
 // accelerations and multipliers against known numbers.
 #include "support/near.h"
 
+#include "dynamics/compile/compile.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "support/alloc.h"

@@ -4,6 +4,8 @@
 // every leg is closed with all joints at zero.
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "support/model.h"
 

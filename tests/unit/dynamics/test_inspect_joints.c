@@ -3,6 +3,7 @@
 
 #include "dynamics/analyse/inspect.h"
 #include "support/model.h"
+#include "dynamics/compile/compile.h"
 
 #include <string.h>
 

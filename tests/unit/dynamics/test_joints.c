@@ -2,6 +2,8 @@
 // against differentiation.
 #include "support/near.h"
 
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "support/mechanism.h"
 

@@ -3,6 +3,7 @@
 
 #include "support/model.h"
 #include "support/near.h"
+#include "dynamics/compile/compile.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // Exact derivatives of the equations of motion against differences along the motions of the
 // coordinates.
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/linearise.h"
 

@@ -1,4 +1,7 @@
 // A Lagrangian's terms beside bodies: the same mechanism written in both ways, and closed forms.
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 
 #include "support/near.h"

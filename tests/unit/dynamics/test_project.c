@@ -3,6 +3,7 @@
 
 #include "dynamics/assembly/project.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "support/alloc.h"

@@ -2,6 +2,8 @@
 // written both ways, and the balance of every body from differences of its poses.
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/reactions/reactions.h"
 #include "support/balance.h"

@@ -4,6 +4,8 @@
 
 #include "support/model.h"
 #include "support/ring.h"
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 #include <stdio.h>

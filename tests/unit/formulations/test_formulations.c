@@ -2,6 +2,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/formulation.h"
 

@@ -1,4 +1,6 @@
 // The equations left on the free motion, at random closed states of every shipped scene.
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "formulations/chart/reduced_terms.h"
 
 #include "dynamics/assembly/project.h"

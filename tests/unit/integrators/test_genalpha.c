@@ -2,6 +2,7 @@
 #include "support/dae.h"
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 
 #include <math.h>

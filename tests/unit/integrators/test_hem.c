@@ -1,6 +1,7 @@
 #include "support/dae.h"
 #include "support/near.h"
 #include "support/odes.h"
+#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 

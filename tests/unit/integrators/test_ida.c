@@ -2,6 +2,8 @@
 #include "support/model.h"
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"
 #include "integrators/step/registry.h"

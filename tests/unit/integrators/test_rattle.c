@@ -2,6 +2,7 @@
 #include "support/dae.h"
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/quaternion.h"
 #include "linalg/dense.h"
 

@@ -2,6 +2,7 @@
 #include "support/near.h"
 #include "support/odes.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 
 #include <math.h>

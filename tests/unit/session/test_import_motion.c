@@ -1,6 +1,7 @@
 // Mechanisms read from other programs' files move as the same mechanisms written by hand.
 #include "support/near.h"
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "import/import.h"
 #include "support/imported.h"

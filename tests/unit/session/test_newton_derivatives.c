@@ -1,6 +1,8 @@
 // The derivatives that formulations give to implicit integrators, on every scene of the library against differences of their own
 // right-hand sides, and the systems solved by structure against the full matrix.
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/assembly/project.h"
 #include "integrators/step/stepper.h"

@@ -4,6 +4,8 @@
 #include "support/motion.h"
 #include "support/near.h"
 
+#include "dynamics/compile/compile.h"
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
 

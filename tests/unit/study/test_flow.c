@@ -1,5 +1,7 @@
 // Flows against motions in closed form, and derivatives that are carried back along them.
 
+#include "dynamics/compile/coordinates.h"
+#include "dynamics/evaluate/accel.h"
 #include "study/account/flow.h"
 #include "support/model.h"
 #include "support/near.h"

@@ -2,6 +2,7 @@
 #include "support/near.h"
 
 #include "support/motion.h"
+#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // Penalty, augmented Lagrangian and Udwadia-Kalaba against figures of an independent program and against exact statements.
 
+#include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
 #include "study/cost/convergence.h"

@@ -1,6 +1,7 @@
 // Who solves for the accelerations is a choice: the same motion by each, a reason from each that cannot serve; and what is told
 // at singular poses leads through them.
 
+#include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "support/motion.h"
 #include "support/near.h"

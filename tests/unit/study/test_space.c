@@ -2,6 +2,7 @@
 #include "support/near.h"
 #include "support/trial.h"
 
+#include "dynamics/compile/compile.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/svd.h"
 

@@ -1,6 +1,7 @@
 #include "support/motion.h"
 #include "support/near.h"
 #include "support/odes.h"
+#include "dynamics/compile/coordinates.h"
 
 #include <math.h>
 #include <stdio.h>

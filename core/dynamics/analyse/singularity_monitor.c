@@ -1,4 +1,4 @@
-#include "dynamics/analyse/radar.h"
+#include "dynamics/analyse/singularity_monitor.h"
 
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
@@ -29,7 +29,7 @@ static const double TOGETHER = 5;
 static const double CUSP = 1e-6; // discriminant against the squares of the form's entries
 enum { ANCHORS = 3, SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8 };
 
-struct hn_radar {
+struct hn_singularity {
     const hn_system *sys;
     int nq, nv, nc;
     hn_eval *rows, *gamma; // J and M; gamma
@@ -49,17 +49,17 @@ struct hn_radar {
     int n_anchors;
     double lowest; ///< of the parabola through the last anchors
     int falling;   ///< anchors in a row by which it has fallen so
-    hn_radar_info last;
+    hn_singularity_info last;
 };
 
-hn_status hn_radar_create(const hn_system *sys, hn_arena *arena, hn_radar **out) {
+hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singularity **out) {
     const hn_system_info info = hn_system_get_info(sys);
-    hn_radar *r = hn_arena_get(arena, sizeof *r);
+    hn_singularity *r = hn_arena_get(arena, sizeof *r);
     *out = NULL;
     if (!r) {
         return HN_ERR_MEMORY;
     }
-    *r = (hn_radar){.sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc};
+    *r = (hn_singularity){.sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc};
     const size_t nv = (size_t)info.nv, nc = (size_t)info.nc;
     double **of_nv[] = {&r->d, &r->x, &r->v, &r->no_speed},
            **of_nc[] = {&r->r, &r->w, &r->top, &r->y, &r->kept[0], &r->kept[1], &r->kept[2]};
@@ -82,15 +82,15 @@ hn_status hn_radar_create(const hn_system *sys, hn_arena *arena, hn_radar **out)
         status = hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor);
     }
     if (status != HN_OK) {
-        hn_radar_free(r);
+        hn_singularity_free(r);
         return status;
     }
-    hn_radar_reset(r);
+    hn_singularity_reset(r);
     *out = r;
     return HN_OK;
 }
 
-void hn_radar_free(hn_radar *r) {
+void hn_singularity_free(hn_singularity *r) {
     if (r) {
         hn_eval_free(r->rows);
         hn_eval_free(r->gamma);
@@ -100,7 +100,7 @@ void hn_radar_free(hn_radar *r) {
     }
 }
 
-void hn_radar_reset(hn_radar *r) {
+void hn_singularity_reset(hn_singularity *r) {
     r->first = 1;
     r->wait = r->n_anchors = r->falling = 0;
     r->lowest = HUGE_VAL;
@@ -113,13 +113,13 @@ void hn_radar_reset(hn_radar *r) {
     }
 }
 
-static double entry(const hn_radar *r, int k) {
+static double entry(const hn_singularity *r, int k) {
     return hn_eval_get(r->rows,
                        HN_TERM_J)[(size_t)r->J_row[k] * (size_t)r->nv + (size_t)r->J_col[k]];
 }
 
 /// D, and R as the reciprocal of the largest length that each row has had.
-static void scale(hn_radar *r) {
+static void scale(hn_singularity *r) {
     const double *M = hn_eval_get(r->rows, HN_TERM_M);
     for (int j = 0; j < r->nv; j++) {
         const double m = M[(size_t)j * (size_t)r->nv + (size_t)j];
@@ -145,7 +145,7 @@ static double normalise(int n, double *x) {
 }
 
 /// top <- R J D^2 J' R top, normalised; the root of its growth tends to sigma_max.
-static double sweep_top(hn_radar *r) {
+static double sweep_top(hn_singularity *r) {
     memset(r->x, 0, (size_t)r->nv * sizeof *r->x);
     for (int k = 0; k < r->n_J; k++) {
         const int i = r->J_row[k], j = r->J_col[k];
@@ -160,7 +160,7 @@ static double sweep_top(hn_radar *r) {
 }
 
 /// w <- (R J D^2 J' R)^-1 w, normalised; one over the root of its growth tends to sigma_min.
-static double sweep_bottom(hn_radar *r) {
+static double sweep_bottom(hn_singularity *r) {
     for (int i = 0; i < r->nc; i++) {
         r->y[i] = r->r[i] > 0 ? r->w[i] / r->r[i] : 0;
     }
@@ -172,7 +172,7 @@ static double sweep_bottom(hn_radar *r) {
     return growth > 0 ? 1 / sqrt(growth) : 0;
 }
 
-static void fill_qr(hn_radar *r) {
+static void fill_qr(hn_singularity *r) {
     memset(r->qr.a, 0, (size_t)r->nv * (size_t)r->nc * sizeof *r->qr.a);
     for (int k = 0; k < r->n_J; k++) {
         const int i = r->J_row[k], j = r->J_col[k];
@@ -180,20 +180,20 @@ static void fill_qr(hn_radar *r) {
     }
 }
 
-static double diagonal(const hn_radar *r, int k) {
+static double diagonal(const hn_singularity *r, int k) {
     return fabs(r->qr.a[(size_t)k * (size_t)r->nv + (size_t)k]);
 }
 
 /// Rows that depended on the others at the first look part from them a little where loops stand
 /// open: they count once they stand out by more than any gap that is not told would make them.
-static void leave_out_blur(hn_radar *r) {
+static void leave_out_blur(hn_singularity *r) {
     while (r->qr.rank > r->start_rank && diagonal(r, r->qr.rank - 1) < PARTED * diagonal(r, 0)) {
         r->qr.rank--;
     }
     r->start_rank = r->qr.rank > r->start_rank ? r->qr.rank : r->start_rank;
 }
 
-static void look_densely(hn_radar *r, hn_radar_info *info) {
+static void look_densely(hn_singularity *r, hn_singularity_info *info) {
     fill_qr(r);
     hn_qr_factor(&r->qr, r->nv, r->nc, RANK_TOL);
     if (r->first) {
@@ -207,7 +207,7 @@ static void look_densely(hn_radar *r, hn_radar_info *info) {
     }
 }
 
-static void look_sparsely(hn_radar *r, int sweeps, hn_radar_info *info) {
+static void look_sparsely(hn_singularity *r, int sweeps, hn_singularity_info *info) {
     for (int i = 0; i < sweeps; i++) {
         info->sigma_max = sweep_top(r);
         info->sigma_min = sweep_bottom(r);
@@ -216,7 +216,7 @@ static void look_sparsely(hn_radar *r, int sweeps, hn_radar_info *info) {
 
 /// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it
 /// does not fall to a lowest value.
-static int fit(const hn_radar *r, double *slope, double *curve) {
+static int fit(const hn_singularity *r, double *slope, double *curve) {
     if (r->n_anchors < ANCHORS) {
         return 0;
     }
@@ -228,7 +228,7 @@ static int fit(const hn_radar *r, double *slope, double *curve) {
 }
 
 /// Seconds from the last anchor until sigma itself, as a parabola through the anchors, is zero.
-static double root(const hn_radar *r) {
+static double root(const hn_singularity *r) {
     const double s[ANCHORS] = {sqrt(r->square[0]), sqrt(r->square[1]), sqrt(r->square[2])};
     const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
     const double s1 = (s[1] - s[0]) / a, s2 = (s[2] - s[1]) / b;
@@ -238,7 +238,7 @@ static double root(const hn_radar *r) {
 }
 
 /// Seconds from t until sigma is zero if it goes on as it did, HUGE_VAL when it does not get there.
-static double predict(const hn_radar *r, double t, double sigma) {
+static double predict(const hn_singularity *r, double t, double sigma) {
     double slope = 0, curve = 0, when = HUGE_VAL;
     if (!(sigma < NEAR * r->largest) || !fit(r, &slope, &curve)) {
         return HUGE_VAL;
@@ -252,7 +252,7 @@ static double predict(const hn_radar *r, double t, double sigma) {
 }
 
 /// What the parabola through the anchors says after one was added.
-static void follow_lowest(hn_radar *r) {
+static void follow_lowest(hn_singularity *r) {
     double slope = 0, curve = 0;
     if (!fit(r, &slope, &curve)) {
         r->falling = 0;
@@ -265,7 +265,7 @@ static void follow_lowest(hn_radar *r) {
     r->lowest = lowest;
 }
 
-static void remember(hn_radar *r, double t, double sigma) {
+static void remember(hn_singularity *r, double t, double sigma) {
     const double square = sigma * sigma;
     if (r->n_anchors > 0 && square > r->square[r->n_anchors - 1]) {
         r->n_anchors = 0; // rising: no approach
@@ -283,8 +283,8 @@ static void remember(hn_radar *r, double t, double sigma) {
     follow_lowest(r);
 }
 
-void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) {
-    *info = (hn_radar_info){.ratio = 1, .ahead = HUGE_VAL};
+void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singularity_info *info) {
+    *info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL};
     if (r->nc == 0) {
         return;
     }
@@ -317,7 +317,7 @@ void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info) 
 }
 
 /// What the looks know of the rows: kept, or given back.
-static void keep(hn_radar *r, int back) {
+static void keep(hn_singularity *r, int back) {
     double *const known[] = {r->r, r->w, r->top};
     for (int i = 0; i < 3; i++) {
         memcpy(back ? known[i] : r->kept[i], back ? r->kept[i] : known[i],
@@ -325,8 +325,8 @@ static void keep(hn_radar *r, int back) {
     }
 }
 
-double hn_radar_probe(hn_radar *r, double t, const double *q) {
-    hn_radar_info info = {0};
+double hn_singularity_probe(hn_singularity *r, double t, const double *q) {
+    hn_singularity_info info = {0};
     if (r->nc == 0 || r->wait > 0 || r->first) {
         return HUGE_VAL;
     }
@@ -344,20 +344,20 @@ double hn_radar_probe(hn_radar *r, double t, const double *q) {
     return info.sigma_min;
 }
 
-const double *hn_radar_scale(const hn_radar *r) {
+const double *hn_singularity_scale(const hn_singularity *r) {
     return r->d;
 }
 
 // ---- what waits there ----
 
 /// w' gamma(q, v)
-static double form(hn_radar *r, double t, const double *q, const double *w, const double *v) {
+static double form(hn_singularity *r, double t, const double *q, const double *w, const double *v) {
     hn_eval_run(r->gamma, t, q, v);
     return hn_dot(r->nc, w, hn_eval_get(r->gamma, HN_TERM_GAMMA));
 }
 
 /// Column k of Q as a direction of speeds.
-static void kernel_column(hn_radar *r, int k, double *v) {
+static void kernel_column(hn_singularity *r, int k, double *v) {
     memset(v, 0, (size_t)r->nv * sizeof *v);
     v[k] = 1;
     hn_qr_apply_q(&r->qr, v);
@@ -366,7 +366,7 @@ static void kernel_column(hn_radar *r, int k, double *v) {
     }
 }
 
-static hn_branches count_branches(hn_radar *r, double t, const double *q, const double *w) {
+static hn_branches count_branches(hn_singularity *r, double t, const double *q, const double *w) {
     double *n1 = r->basis, *n2 = r->basis + r->nv;
     kernel_column(r, r->nv - 2, n1);
     kernel_column(r, r->nv - 1, n2);
@@ -383,7 +383,7 @@ static hn_branches count_branches(hn_radar *r, double t, const double *q, const 
 }
 
 /// The rows with the largest parts in the combination in y.
-static void find_lost_rows(hn_radar *r, hn_radar_pose *pose) {
+static void find_lost_rows(hn_singularity *r, hn_singularity_pose *pose) {
     for (int k = 0; k < 4 && k < r->nc; k++) {
         int best = -1;
         for (int i = 0; i < r->nc; i++) {
@@ -406,7 +406,7 @@ static void find_lost_rows(hn_radar *r, hn_radar_pose *pose) {
 
 /// y (nc), of unit length: the combination of rows that vanishes, from the first column that was
 /// dropped.
-static void vanishing_combination(hn_radar *r) {
+static void vanishing_combination(hn_singularity *r) {
     const int rank = r->qr.rank;
     memset(r->y, 0, (size_t)r->nc * sizeof *r->y);
     memcpy(r->x, r->qr.a + (size_t)rank * (size_t)r->nv, (size_t)rank * sizeof *r->x);
@@ -418,11 +418,11 @@ static void vanishing_combination(hn_radar *r) {
     (void)normalise(r->nc, r->y);
 }
 
-void hn_radar_pose_at(hn_radar *r, double t, const double *q, double sigma_min,
-                      hn_radar_pose *pose) {
+void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,
+                            hn_singularity_pose *pose) {
     const double lost = TOGETHER * fmax(sigma_min, RANK_TOL);
-    *pose = (hn_radar_pose){.mobility_before = r->nv - r->start_rank,
-                            .mobility = r->nv - r->start_rank};
+    *pose = (hn_singularity_pose){.mobility_before = r->nv - r->start_rank,
+                                  .mobility = r->nv - r->start_rank};
     if (r->nc == 0 || lost > 0.5 * r->last.sigma_max) {
         return;
     }

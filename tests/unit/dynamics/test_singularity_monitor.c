@@ -1,7 +1,7 @@
 // The radar of singular poses: closed forms of sigma, the time of the next pose, the freedoms and
 // branches there.
 
-#include "dynamics/analyse/radar.h"
+#include "dynamics/analyse/singularity_monitor.h"
 #include "support/alloc.h"
 #include "support/model.h"
 #include "support/near.h"
@@ -12,19 +12,19 @@
 
 enum { MAX_NV = 32 };
 
-static hn_radar *open_radar(hn_model *m, const char *json, const char *setting) {
-    hn_radar *r = NULL;
+static hn_singularity *open_radar(hn_model *m, const char *json, const char *setting) {
+    hn_singularity *r = NULL;
     if (json) {
         hn_model_open_text(m, json, NULL);
     } else {
         hn_model_open_closed(m, "n-four-bar", setting);
     }
-    assert_int_equal(hn_radar_create(m->sys, m->arena, &r), HN_OK);
+    assert_int_equal(hn_singularity_create(m->sys, m->arena, &r), HN_OK);
     return r;
 }
 
-static void close_radar(hn_model *m, hn_radar *r) {
-    hn_radar_free(r);
+static void close_radar(hn_model *m, hn_singularity *r) {
+    hn_singularity_free(r);
     hn_model_close(m);
 }
 
@@ -42,17 +42,17 @@ static void a_loop_of_the_ladder_loses_a_rank_like_its_angle(void **state) {
     // k2), so that sigma_min is proportional to th
     static const double angle[] = {1e-1, 1e-2, 1e-3, 1e-5, 1e-7};
     hn_model m;
-    hn_radar *r = open_radar(&m, NULL, "N=1");
+    hn_singularity *r = open_radar(&m, NULL, "N=1");
     double q[MAX_NV], first = 0;
-    hn_radar_info info;
+    hn_singularity_info info;
     lean(&m, 1, 1.5707963267948966, q);
-    hn_radar_look(r, 0, q, &info);
+    hn_singularity_check(r, 0, q, &info);
     assert_near(info.sigma_max, 1,
                 0.05); // upright the rows are almost orthogonal, each of length 1
     for (int k = 0; k < 5; k++) {
         for (int turn = 0; turn < 20; turn++) { // a look improves the last one
             lean(&m, 1, angle[k], q);
-            hn_radar_look(r, 1 + k, q, &info);
+            hn_singularity_check(r, 1 + k, q, &info);
         }
         first = k == 1 ? info.sigma_min / angle[k] : first;
         if (k > 1) {
@@ -61,7 +61,7 @@ static void a_loop_of_the_ladder_loses_a_rank_like_its_angle(void **state) {
         assert_true(info.sigma_min < info.sigma_max);
     }
     lean(&m, 1, 0, q);
-    hn_radar_look(r, 9, q, &info);
+    hn_singularity_check(r, 9, q, &info);
     assert_near(info.sigma_min, 0, 1e-12);
     assert_int_equal(info.lost, 1);
     close_radar(&m, r);
@@ -70,24 +70,24 @@ static void a_loop_of_the_ladder_loses_a_rank_like_its_angle(void **state) {
 static void a_probe_sees_what_a_look_sees_and_says_nothing_of_it(void **state) {
     (void)state;
     hn_model m;
-    hn_radar *r = open_radar(&m, NULL, "N=1"), *other = NULL;
+    hn_singularity *r = open_radar(&m, NULL, "N=1"), *other = NULL;
     double q[MAX_NV];
-    hn_radar_info info, alone;
-    assert_int_equal(hn_radar_create(m.sys, m.arena, &other), HN_OK);
-    assert_true(hn_radar_probe(r, 0, m.q) ==
+    hn_singularity_info info, alone;
+    assert_int_equal(hn_singularity_create(m.sys, m.arena, &other), HN_OK);
+    assert_true(hn_singularity_probe(r, 0, m.q) ==
                 HUGE_VAL); // what rows count is known from the first look on
     for (int k = 0; k <= 120; k++) {
         const double t = 0.01 * k, inside = 1.5 - t - 0.3;
         lean(&m, 1, 1.5 - t, q);
-        hn_radar_look(r, t, q, &info);
-        hn_radar_look(other, t, q, &alone);
+        hn_singularity_check(r, t, q, &info);
+        hn_singularity_check(other, t, q, &alone);
         assert_near(info.sigma_min, alone.sigma_min, 0);
         assert_true(info.ahead == alone.ahead); // HUGE_VAL mostly
         lean(&m, 1, inside, q);
-        const double sigma = hn_radar_probe(r, t, q);
+        const double sigma = hn_singularity_probe(r, t, q);
         assert_true(fabs(inside) > 0.05 ? sigma > 0.03 : sigma < 0.05); // like the angle itself
     }
-    hn_radar_free(other);
+    hn_singularity_free(other);
     close_radar(&m, r);
 }
 
@@ -98,15 +98,15 @@ static void a_ladder_lying_flat_has_a_freedom_for_each_loop_more(void **state) {
         char setting[16];
         double q[MAX_NV];
         hn_model m;
-        hn_radar_info info;
-        hn_radar_pose pose;
+        hn_singularity_info info;
+        hn_singularity_pose pose;
         snprintf(setting, sizeof setting, "N=%d", loops[k]);
-        hn_radar *r = open_radar(&m, NULL, setting);
-        hn_radar_look(r, 0, m.q, &info);
+        hn_singularity *r = open_radar(&m, NULL, setting);
+        hn_singularity_check(r, 0, m.q, &info);
         lean(&m, loops[k], 1e-4, q);
-        hn_radar_look(r, 1, q, &info);
-        hn_radar_look(r, 1, q, &info);
-        hn_radar_pose_at(r, 1, q, info.sigma_min, &pose);
+        hn_singularity_check(r, 1, q, &info);
+        hn_singularity_check(r, 1, q, &info);
+        hn_singularity_pose_at(r, 1, q, info.sigma_min, &pose);
         assert_int_equal(pose.mobility_before, 1);
         assert_int_equal(pose.mobility, loops[k] + 1);
         assert_true(pose.n_rows > 0);
@@ -119,14 +119,14 @@ static void a_ladder_lying_flat_has_a_freedom_for_each_loop_more(void **state) {
 static void the_time_of_the_flat_pose_is_said_before_it_comes(void **state) {
     (void)state;
     hn_model m;
-    hn_radar *r = open_radar(&m, NULL, "N=1");
+    hn_singularity *r = open_radar(&m, NULL, "N=1");
     double q[MAX_NV];
     int said = 0;
     for (int k = 0; k <= 140; k++) {
-        hn_radar_info info;
+        hn_singularity_info info;
         const double t = 0.01 * k; // turns at 1 rad/s: flat at pi/2
         lean(&m, 1, 1.5707963267948966 - t, q);
-        hn_radar_look(r, t, q, &info);
+        hn_singularity_check(r, t, q, &info);
         if (info.ahead < HUGE_VAL) {
             said++;
             assert_rel(t + info.ahead, 1.5707963267948966, 0.02);
@@ -145,11 +145,11 @@ static void a_pose_that_is_only_passed_near_is_not_announced(void **state) {
         "\"constraints\": [{\"name\": \"curve\", \"formula\": \"x^2/4 - y^2 + 0.01\"}]},"
         "\"start\": {\"positions\": {\"x\": 2, \"y\": {\"guess\": 1}}}}";
     hn_model m;
-    hn_radar *r = open_radar(&m, json, NULL);
+    hn_singularity *r = open_radar(&m, json, NULL);
     for (int k = 0; k <= 400; k++) {
-        hn_radar_info info;
+        hn_singularity_info info;
         const double t = 0.01 * k, x = 2 - t, q[2] = {x, sqrt(x * x / 4 + 0.01)};
-        hn_radar_look(r, t, q, &info);
+        hn_singularity_check(r, t, q, &info);
         assert_true(info.ahead == HUGE_VAL);
         assert_true(info.sigma_min > 0.05);
     }
@@ -159,8 +159,8 @@ static void a_pose_that_is_only_passed_near_is_not_announced(void **state) {
 static hn_branches branches_of(const char *formula) {
     char json[512];
     hn_model m;
-    hn_radar_info info;
-    hn_radar_pose pose;
+    hn_singularity_info info;
+    hn_singularity_pose pose;
     snprintf(
         json, sizeof json,
         "{\"holonom\": 1, \"name\": \"curve\", \"lagrangian\": {\"coordinates\": [{\"name\": "
@@ -168,11 +168,11 @@ static hn_branches branches_of(const char *formula) {
         "d_y^2)/2\", \"constraints\": [{\"name\": \"curve\", \"formula\": \"%s\"}]},"
         "\"start\": {\"positions\": {\"x\": {\"guess\": 1}, \"y\": {\"guess\": 1}}}}",
         formula);
-    hn_radar *r = open_radar(&m, json, NULL);
+    hn_singularity *r = open_radar(&m, json, NULL);
     const double away[2] = {1, 1}, there[2] = {0, 1e-12};
-    hn_radar_look(r, 0, away, &info);
-    hn_radar_look(r, 1, there, &info);
-    hn_radar_pose_at(r, 1, there, info.sigma_min, &pose);
+    hn_singularity_check(r, 0, away, &info);
+    hn_singularity_check(r, 1, there, &info);
+    hn_singularity_pose_at(r, 1, there, info.sigma_min, &pose);
     assert_int_equal(pose.mobility, 2);
     close_radar(&m, r);
     return pose.branches;
@@ -190,13 +190,13 @@ static void branches_are_the_tangents_of_the_curve(void **state) {
 static void a_look_costs_no_memory(void **state) {
     (void)state;
     hn_model m;
-    hn_radar *r = open_radar(&m, NULL, "N=5");
-    hn_radar_info info;
-    hn_radar_pose pose;
+    hn_singularity *r = open_radar(&m, NULL, "N=5");
+    hn_singularity_info info;
+    hn_singularity_pose pose;
     const long before = hn_alloc_count();
-    hn_radar_look(r, 0, m.q, &info);
-    hn_radar_pose_at(r, 0, m.q, info.sigma_min, &pose);
-    (void)hn_radar_probe(r, 0, m.q);
+    hn_singularity_check(r, 0, m.q, &info);
+    hn_singularity_pose_at(r, 0, m.q, info.sigma_min, &pose);
+    (void)hn_singularity_probe(r, 0, m.q);
     assert_int_equal(hn_alloc_count(), before);
     close_radar(&m, r);
 }

@@ -1,5 +1,5 @@
-#ifndef HN_DYNAMICS_RADAR_H
-#define HN_DYNAMICS_RADAR_H
+#ifndef HN_DYNAMICS_SINGULARITY_MONITOR_H
+#define HN_DYNAMICS_SINGULARITY_MONITOR_H
 // How far a motion is from a pose where closure rows depend on each other, when it will be there,
 // and what waits there.
 //
@@ -28,39 +28,40 @@ typedef enum hn_branches {
     HN_BRANCHES_CUSP
 } hn_branches;
 
-typedef struct hn_radar_info {
+typedef struct hn_singularity_info {
     /// of the rows that count (those that do not always depend on others) [-]
     double sigma_min, sigma_max;
     double ratio; ///< sigma_min / sigma_max; 1 without rows
     /// rows lost beyond those that were dependent at the first look; 0 unless ratio < 1e-8
     int lost;
     double ahead; ///< seconds until sigma_min vanishes, if that can be said, else HUGE_VAL
-} hn_radar_info;
+} hn_singularity_info;
 
 /// What a pose where rows are nearly lost looks like.
-typedef struct hn_radar_pose {
+typedef struct hn_singularity_pose {
     int mobility_before, mobility; ///< freedoms off the pose, and at it
     hn_branches branches;
     int n_rows, rows[4]; ///< rows with the largest part in what is lost, largest first
     double parts[4];     ///< and their parts, of 1
-} hn_radar_pose;
+} hn_singularity_pose;
 
-typedef struct hn_radar hn_radar;
+typedef struct hn_singularity hn_singularity;
 /// Memory from `arena`. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
-HN_MUST_CHECK hn_status hn_radar_create(const hn_system *sys, hn_arena *arena, hn_radar **out);
-void hn_radar_free(hn_radar *r); ///< NULL is legal
+HN_MUST_CHECK hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena,
+                                              hn_singularity **out);
+void hn_singularity_free(hn_singularity *r); ///< NULL is legal
 /// Forgets all looks.
-void hn_radar_reset(hn_radar *r);
+void hn_singularity_reset(hn_singularity *r);
 /// Looks at a state; times should rise. Allocates nothing.
-void hn_radar_look(hn_radar *r, double t, const double *q, hn_radar_info *info);
+void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singularity_info *info);
 /// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look,
 /// and where one costs so much that not every state gets it. Allocates nothing.
-double hn_radar_probe(hn_radar *r, double t, const double *q);
+double hn_singularity_probe(hn_singularity *r, double t, const double *q);
 /// D of the last look (nv): speeds divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
-const double *hn_radar_scale(const hn_radar *r);
+const double *hn_singularity_scale(const hn_singularity *r);
 /// What is known of the pose that the last look or probe saw with this `sigma_min`, from all
 /// singular values (dense: for poses that are told).
-void hn_radar_pose_at(hn_radar *r, double t, const double *q, double sigma_min,
-                      hn_radar_pose *pose);
+void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,
+                            hn_singularity_pose *pose);
 
 #endif

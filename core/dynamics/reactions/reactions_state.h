@@ -1,5 +1,5 @@
-#ifndef HN_DYNAMICS_REACTIONS_INTERNAL_H
-#define HN_DYNAMICS_REACTIONS_INTERNAL_H
+#ifndef HN_DYNAMICS_REACTIONS_STATE_H
+#define HN_DYNAMICS_REACTIONS_STATE_H
 // Inside the reactions, shared by reactions.c (what the tape gives, what is handed out) and
 // reactions_balance.c.
 //
@@ -72,25 +72,4 @@ void hn_reaction_to_world(const hn_reactions *r, int body, const double v[3], do
 /// A point of a body, in the world.
 void hn_reaction_place_of(const hn_reactions *r, int body, const hn_quantity *at, double out[3]);
 
-// ---- along coordinates (reactions_efforts.c) ----
-/// Which coordinates the energies move, what they do there at zero accelerations (one expression
-/// each, in the arena), and per acceleration.
-HN_MUST_CHECK hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena,
-                                                    hn_ex **at_zero, hn_entries *inertia);
-void hn_reaction_read_energies(hn_reactions *r, const double *a); ///< of the last run of the tape
-HN_MUST_CHECK hn_status hn_reaction_list_efforts(hn_reactions *r, hn_arena *arena);
-void hn_reaction_read_efforts(hn_reactions *r, const double *lambda);
-int hn_reaction_is_formal(const hn_reactions *r, int coordinate); ///< no joint of bodies has it
-
-// ---- the balance (reactions_balance.c) ----
-/// Wrenches of all joints for these multipliers, and of constraints between points; of a scene
-/// without mass or loads if `bare`.
-void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
-                         hn_reaction_wrench *constraint);
-/// Work of a tree joint's wrench along its own freedoms against what is put in there, relative; see
-/// hn_reactions_defect.
-double hn_reaction_calc_defect(const hn_reactions *r);
-/// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1)
-/// or moment (0) on the child, in the world.
-int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
 #endif

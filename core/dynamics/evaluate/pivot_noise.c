@@ -1,4 +1,4 @@
-#include "dynamics/evaluate/blur.h"
+#include "dynamics/evaluate/pivot_noise.h"
 
 #include <math.h>
 
@@ -6,16 +6,16 @@ static const double BLUR = 30;
 // a gap of a third of a per mille and more: pivots that size are real
 static const double BLUR_MAX = 1e-2;
 
-double hn_blur_of(double gap) {
+double hn_pivot_noise_of(double gap) {
     return fmin(BLUR * gap, BLUR_MAX);
 }
 
-double hn_blur_of_sides(double gap) {
+double hn_pivot_noise_of_sides(double gap) {
     return fmin(BLUR * gap, 1);
 }
 
-double hn_blur_gap(const hn_system *sys, const hn_blur_terms *at, const double *v, double *rate,
-                   double *size) {
+double hn_pivot_noise_gap(const hn_system *sys, const hn_pivot_noise_terms *at, const double *v,
+                          double *rate, double *size) {
     const hn_system_info info = hn_system_get_info(sys);
     double gap = 0, rates = 0, sizes = 0;
     for (int i = 0; i < info.nc; i++) {

@@ -1,5 +1,5 @@
-#ifndef HN_DYNAMICS_DYADS_INTERNAL_H
-#define HN_DYNAMICS_DYADS_INTERNAL_H
+#ifndef HN_DYNAMICS_DYADS_FORM_H
+#define HN_DYNAMICS_DYADS_FORM_H
 // One step of a position analysis while it is recognised and solved; for dyads*.c only.
 
 #include "dynamics/analyse/dyads.h"

@@ -1,0 +1,20 @@
+#ifndef HN_DYNAMICS_ASSEMBLE_POSITION_H
+#define HN_DYNAMICS_ASSEMBLE_POSITION_H
+// The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then
+// homotopy and random starts.
+
+#include "dynamics/assembly/assemble_state.h"
+
+#include <stdint.h>
+
+/// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual,
+/// s->size. HN_OK: closed; HN_ERR_UNREACHABLE; HN_ERR_DIVERGED: phi is not finite at the guess;
+/// HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
+/// One descent from s->x, as often as wanted; 1 when it closed.
+typedef struct hn_assemble_search hn_assemble_search;
+HN_MUST_CHECK hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out);
+int hn_assemble_descend(hn_assemble_search *w);
+double hn_assemble_random(uint64_t *seed); ///< in [-1, 1), the same on every machine
+
+#endif

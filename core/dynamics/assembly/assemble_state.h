@@ -1,0 +1,51 @@
+#ifndef HN_DYNAMICS_ASSEMBLE_STATE_H
+#define HN_DYNAMICS_ASSEMBLE_STATE_H
+// The state of one assembly at work, and what all its stages do with it: evaluate, move, measure.
+
+#include "base/diag.h"
+#include "dynamics/evaluate/eval.h"
+
+/// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates,
+/// made comparable: z = x / reach (1 rad, or the characteristic length), residual r = phi / L in
+/// length rows, phi elsewhere.
+typedef struct hn_assembler {
+    const hn_system *sys;
+    const hn_scene *scene;
+    hn_arena *arena;
+    hn_diags *diags;
+    double t;
+    int n, nq, nc; ///< user coordinates (= nv), system positions, constraint rows
+    double length;
+
+    hn_eval *eval; ///< M, phi, phi_t, J, energy
+    /// user coordinates, their start, system coordinates, speeds of zero
+    double *x, *guess, *q, *rest;
+    int *turn;              ///< n: 0, 1, 2 for the entries of a rotation vector, else -1
+    double *reach;          ///< n
+    double *row_scale;      ///< nc
+    int n_free, *free;      ///< user coordinates that may move
+    double *residual, size; ///< scaled phi (nc) and its length
+
+    // column k of T^-1: rates of the system coordinates for a unit rate of user coordinate k,
+    // nonzeros only
+    int *map_start, *map_row;
+    double *map_value;
+
+    int iterations;
+    const char *route;
+} hn_assembler;
+
+/// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
+int hn_assemble_evaluate(hn_assembler *s);
+/// x moved by `delta` (n, user rates times time): a sum, and for orientations the turn by that much
+/// in the child's axes.
+void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);
+/// How far user coordinate i is from its guess; of an orientation, the angle of the turn between
+/// them.
+double hn_assemble_moved(const hn_assembler *s, int i);
+/// Row i of J in user rates, out (n).
+void hn_assemble_user_row(const hn_assembler *s, int row, double *out);
+/// Euclidean norm of the unscaled phi, over all rows (loop < 0) or those of one loop.
+double hn_assemble_gap(const hn_assembler *s, int loop);
+
+#endif

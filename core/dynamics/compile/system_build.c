@@ -1,0 +1,126 @@
+#include "dynamics/compile/system_build.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/// A constant closure row smaller than this counts as closed, relative to the length of the
+/// mechanism (or 1 for angles) [-].
+static const double CLOSED = 1e-9;
+
+static int name_is_taken(const hn_system *sys, const char *name) {
+    if (hn_graph_find_symbol(sys->g, name) >= 0) {
+        return 1;
+    }
+    return sys->opts.symbolic_params && hn_scene_find_param(sys->scene, name) >= 0;
+}
+
+static hn_ex new_symbol(hn_system *sys, const char *stem, int *number) {
+    char name[128];
+    snprintf(name, sizeof name - 8, "%s", stem);
+    for (size_t n = strlen(name); name_is_taken(sys, name) && n < sizeof name - 1; n++) {
+        name[n] = '_';
+        name[n + 1] = 0;
+    }
+    hn_ex e = hn_symbol(sys->g, name, NULL);
+    *number = hn_ex_symbol(sys->g, e);
+    return e;
+}
+
+hn_status hn_system_make_symbols(hn_system *sys, const char *const *names,
+                                 const char *const *rates) {
+    for (int i = 0; i < sys->nq; i++) {
+        sys->q[i] = new_symbol(sys, names[i], &sys->q_symbols[i]);
+    }
+    for (int i = 0; i < sys->nv; i++) {
+        sys->v[i] = new_symbol(sys, rates[i], &sys->v_symbols[i]);
+    }
+    sys->t = new_symbol(sys, "t", &sys->t_symbol);
+    sys->alpha = new_symbol(sys, "alpha", &sys->alpha_symbol);
+    sys->beta = new_symbol(sys, "beta", &sys->beta_symbol);
+    for (int i = 0; i < sys->scene->n_params; i++) {
+        const hn_param *param = &sys->scene->params[i];
+        sys->params[i] =
+            sys->opts.symbolic_params ? hn_symbol(sys->g, param->name, NULL) : hn_num(param->value);
+    }
+    return hn_graph_failed(sys->g) ? HN_ERR_MEMORY : HN_OK;
+}
+
+hn_ex *hn_system_get_zeros(hn_system *sys, size_t n) {
+    return hn_arena_get(sys->arena, (n ? n : 1) * sizeof(hn_ex));
+}
+
+hn_diags *hn_system_faults(const hn_system *sys) {
+    return hn_graph_failed(sys->g) ? NULL : sys->diags;
+}
+
+hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n_loops,
+                             int n_points) {
+    size_t n = (size_t)nv, m = (size_t)max_rows, nu = (size_t)sys->scene->n_coordinates;
+    sys->nq = nq;
+    sys->nv = nv;
+    sys->n_loops = n_loops;
+    sys->info.n_points = n_points;
+    sys->q = hn_system_get_zeros(sys, (size_t)nq);
+    sys->v = hn_system_get_zeros(sys, n);
+    sys->f = hn_system_get_zeros(sys, n);
+    sys->phi = hn_system_get_zeros(sys, m);
+    sys->phi_t = hn_system_get_zeros(sys, m);
+    sys->gamma = hn_system_get_zeros(sys, m);
+    sys->points = hn_system_get_zeros(sys, 3 * (size_t)n_points);
+    sys->params = hn_system_get_zeros(sys, (size_t)sys->scene->n_params);
+    sys->user_q = hn_system_get_zeros(sys, nu);
+    sys->user_v = hn_system_get_zeros(sys, nu);
+    sys->user_gamma = hn_system_get_zeros(sys, nu);
+    sys->load_values =
+        hn_arena_get(sys->arena, ((size_t)sys->scene->n_loads + 1) * sizeof *sys->load_values);
+    sys->user_known = hn_arena_get(sys->arena, nu);
+    sys->q_symbols = hn_arena_ints(sys->arena, (size_t)nq);
+    sys->v_symbols = hn_arena_ints(sys->arena, n);
+    sys->rows = hn_arena_get(sys->arena, m * sizeof *sys->rows);
+    sys->dropped = hn_arena_get(sys->arena, m * sizeof *sys->dropped);
+    sys->loops = hn_arena_get(sys->arena, (size_t)n_loops * sizeof *sys->loops);
+    return hn_arena_failed(sys->arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+static hn_status refuse_row(hn_system *sys, const hn_new_row *row, double offset) {
+    const char *unit = row->is_length ? " m" : "";
+    return hn_diags_add(
+        hn_system_faults(sys), HN_ERR_INPUT, row->pointer,
+        row->is_length ? "check where the joint sits on its two bodies, and the axes"
+                       : "check the axes of the loop's joints",
+        "the loop can never close: '%s' is off by %.6g%s in every pose", row->name, offset, unit);
+}
+
+hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
+    sys->info.rows_before++;
+    int moves = 0;
+    for (int k = 0; k < row->n_J; k++) {
+        moves |= !hn_is_zero(row->J[k].e);
+    }
+    double value;
+    if (!moves) {
+        if (!hn_is_number(row->phi, &value)) {
+            return hn_diags_add(hn_system_faults(sys), HN_ERR_INPUT, row->pointer,
+                                "a constraint must contain a coordinate",
+                                "'%s' depends on no coordinate", row->name);
+        }
+        if (fabs(value) > CLOSED * (row->is_length ? sys->length : 1)) {
+            return refuse_row(sys, row, value);
+        }
+        sys->dropped[sys->info.rows_dropped++] = row->name;
+        return HN_OK;
+    }
+    int i = sys->nc++;
+    sys->phi[i] = row->phi;
+    sys->phi_t[i] = row->phi_t;
+    sys->gamma[i] = row->gamma;
+    sys->rows[i] = (hn_row){.name = row->name, .loop = row->loop, .is_length = row->is_length};
+    if (row->wrench) {
+        sys->rows[i].wrench = *row->wrench;
+    }
+    for (int k = 0; k < row->n_J; k++) {
+        hn_entries_add(&sys->J, i, row->J[k].col, row->J[k].e);
+    }
+    return HN_OK;
+}

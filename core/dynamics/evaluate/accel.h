@@ -1,0 +1,100 @@
+#ifndef HN_DYNAMICS_ACCEL_H
+#define HN_DYNAMICS_ACCEL_H
+// Accelerations and multipliers at one state, from the saddle-point system
+//
+//     K [a; -lambda] = [f; -(gamma + 2 alpha (J v + phi_t) + beta^2 phi)],   K = [M J'; J 0]  (1)
+//
+// A sparse symbolic LDL' of K, its order chosen when the system is compiled, is part of the tape;
+// its pivots are guarded at run time. Where a pivot is lost, or a value is not finite, the dense
+// rank-revealing solve of linalg/kkt.h answers instead, and the info says so.
+
+#include "base/arena.h"
+#include "dynamics/compile/system.h"
+#include "expr/tape.h"
+
+/// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor
+/// where its pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve
+/// where a pivot is lost altogether, or a row of J has all but vanished. The others serve alone and
+/// refuse what they cannot serve; linalg/kkt.h says what that is.
+#define HN_SOLVER_LIST(X)                   \
+    X(HN_SOLVER_AUTO, "auto")               \
+    X(HN_SOLVER_LDL, "ldl")                 \
+    X(HN_SOLVER_DENSE, "dense")             \
+    X(HN_SOLVER_RANGE_SPACE, "range-space") \
+    X(HN_SOLVER_NULL_SPACE, "null-space")   \
+    X(HN_SOLVER_PROXIMAL, "proximal")       \
+    X(HN_SOLVER_LEAST_NORM, "least-norm")
+typedef enum hn_solver {
+#define HN_SOLVER_ENUM(code, name) code,
+    HN_SOLVER_LIST(HN_SOLVER_ENUM)
+#undef HN_SOLVER_ENUM
+        HN_SOLVER_COUNT
+} hn_solver;
+extern const char *const hn_solver_names[HN_SOLVER_COUNT];
+
+typedef struct hn_accel hn_accel;
+
+typedef struct hn_accel_opts {
+    int baumgarte;    ///< phi and J v enter, alpha and beta become inputs
+    int want_lambda;  ///< leave out what only multipliers need otherwise
+    hn_solver solver; ///< 0: automatic
+} hn_accel_opts;
+
+typedef struct hn_accel_info {
+    int fallback;     ///< 1: the dense solve answered in place of the tape
+    hn_solver solver; ///< who answered: the tape counts as ldl
+    int refinements;  ///< corrections of the answer that were kept
+    int massless;     ///< the range space refused: the speed without mass; else -1
+    int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
+    /// smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
+    double pivot_ratio;
+    /// shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
+    double row_ratio;
+    double residual; ///< dense solve only: max |J a + gamma|
+} hn_accel_info;
+#define HN_PIVOT_GUARD 1e-8
+/// Smaller pivots are refined: an answer then has 1e-13 or better without it, and a correction
+/// costs more than the tape.
+#define HN_PIVOT_DOUBT 1e-3
+
+HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
+                                        hn_arena *arena, hn_accel **out);
+void hn_accel_free(hn_accel *s);
+/// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without
+/// baumgarte. Fails: HN_ERR_SINGULAR, HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite);
+/// outputs then untouched. Allocates nothing.
+HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
+                                      double alpha, double beta, double *a, double *lambda,
+                                      hn_accel_info *info);
+/// 1-norm condition estimate of the equilibrated K (rows that depend on others left out) at a
+/// state; digits left are about 15.6 - log10 of it. Fails as the least-norm solve does. Allocates
+/// nothing.
+HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
+                                           double *condition);
+#define HN_CONDITION_LOST 1e13 ///< of the equilibrated K: no digit of the multipliers is left
+/// What the multipliers of a state are worth.
+typedef enum hn_multiplier_mark {
+    HN_MULTIPLIERS_DETERMINED,
+    HN_MULTIPLIERS_ONE_OF_MANY, ///< rows depend on each other: the least-norm choice of many
+    HN_MULTIPLIERS_LOST,        ///< condition above HN_CONDITION_LOST
+    HN_MULTIPLIERS_NONE,        ///< the system has no solution there
+    HN_N_MULTIPLIER_MARKS
+} hn_multiplier_mark;
+/// "determined", "one of many", ...
+extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
+/// The mark of multipliers that hn_accel_eval() found at this state with `info`. Where the tape
+/// answered, no pivot in doubt and no row dying away, K is far from singular; else its condition is
+/// estimated, at the cost of a dense solve. Allocates nothing.
+hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
+                                 const hn_accel_info *info);
+hn_tape_info hn_accel_tape_info(const hn_accel *s);
+long long hn_accel_count(const hn_accel *s);
+long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's
+long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor
+/// Arithmetic operations so far, tape and linear algebra.
+double hn_accel_ops(const hn_accel *s);
+/// What the chosen solver cannot serve, in words, after it failed; NULL when there is nothing to
+/// say beyond the status.
+const char *hn_accel_refusal(const hn_accel *s);
+
+#endif

@@ -1,0 +1,18 @@
+#ifndef HN_DYNAMICS_REACTIONS_BALANCE_H
+#define HN_DYNAMICS_REACTIONS_BALANCE_H
+// The balance of every body, leaves first, which gives the wrenches of the joints.
+
+#include "dynamics/reactions/reactions_state.h"
+
+/// Wrenches of all joints for these multipliers, and of constraints between points; of a scene
+/// without mass or loads if `bare`.
+void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
+                         hn_reaction_wrench *constraint);
+/// Work of a tree joint's wrench along its own freedoms against what is put in there, relative; see
+/// hn_reactions_defect.
+double hn_reaction_calc_defect(const hn_reactions *r);
+/// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1)
+/// or moment (0) on the child, in the world.
+int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
+
+#endif
