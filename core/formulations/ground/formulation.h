@@ -88,6 +88,19 @@ static inline hn_status hn_step_call_make(const hn_step_call *call, double t, do
     return call->step(call->stepper, call->ode, t, h, y, y_new, err);
 }
 
+/// What a formulation does and needs: bits of hn_formulation.traits. Remedies and studies choose by them, never by a name.
+typedef enum hn_trait {
+    HN_TRAIT_CLOSES_POSITION = 1 << 0,    ///< phi = 0 after each step, to rounding
+    HN_TRAIT_CLOSES_VELOCITY = 1 << 1,    ///< J v + phi_t = 0 after each step, to rounding
+    HN_TRAIT_PULLS_GAP = 1 << 2,          ///< feedback makes the gap decay at a rate that is set
+    HN_TRAIT_NEEDS_MASS_INVERSE = 1 << 3, ///< whichever solver is chosen: fails where M is singular
+    HN_TRAIT_ADDS_VIBRATIONS = 1 << 4,    ///< springs on the constraints: omega, xi are their rates
+    HN_TRAIT_HAS_CHART = 1 << 5,          ///< integrates independent coordinates of a chart
+    HN_TRAIT_FIXED_CHART = 1 << 6,        ///< the user chose the chart; none takes its place
+    HN_TRAIT_HAS_BASIS = 1 << 7,          ///< velocities from a basis of the null space of J
+    HN_TRAIT_COUNTER_EXAMPLE = 1 << 8     ///< wrong on purpose
+} hn_trait;
+
 typedef struct hn_formulation {
     const char *name;       ///< as spelled: "baumgarte"
     const char *title;      ///< "Baumgarte stabilisation"
@@ -104,7 +117,7 @@ typedef struct hn_formulation {
         also; ///< the form for integrators that do not serve `form` (index1: as ODE, or with lambda); HN_FORM_ODE: none
     int index; ///< differential index of the equations that are handed over; 0: no multipliers in them
     int model_error; ///< 1: converges to something else, on purpose
-    int keeps_gap;   ///< 1: phi stays at rounding level
+    unsigned traits; ///< hn_trait bits: what others choose formulations by
     int n_settings;
     hn_setting_info settings[HN_MAX_SETTINGS];
 
@@ -140,5 +153,7 @@ enum { HN_FORM_COUNT = HN_FORM_AUGMENTED + 1 };
 int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);
 const hn_formulation *hn_formulation_find(const char *name); ///< NULL when unknown
+/// Returns the first formulation of the registry that has all traits in `have` and none in `lack`; NULL: there is none.
+const hn_formulation *hn_formulation_with(unsigned have, unsigned lack);
 
 #endif

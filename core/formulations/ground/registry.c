@@ -48,3 +48,13 @@ const hn_formulation *hn_formulation_find(const char *name) {
     }
     return NULL;
 }
+
+const hn_formulation *hn_formulation_with(unsigned have, unsigned lack) {
+    for (int i = 0; i < N_FORMULATIONS; i++) {
+        const unsigned traits = formulations[i]->traits;
+        if ((traits & have) == have && (traits & lack) == 0) {
+            return formulations[i];
+        }
+    }
+    return NULL;
+}

@@ -12,6 +12,7 @@ const hn_formulation hn_formulation_ali3p = {
     .rule = "Push the gap back with a strong spring, add what it pushed to the loop force, and "
             "repeat until nothing is left to push; then take from speeds and accelerations what "
             "the loop forbids.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY,
     .drift = "none in the gap; the speed gap is left at about 1 / weight",
     .when = "redundant rows, passing poses where the loop loses rank, real time with a fixed step",
     .when_not = "digits beyond order 2; energy: the projections take a little of it",
@@ -21,7 +22,6 @@ const hn_formulation hn_formulation_ali3p = {
     .limits = "without projections its multipliers and speeds are unstable, an exhibit",
     .form = HN_FORM_AUGMENTED,
     .index = 3,
-    .keeps_gap = 1,
     .n_settings = 2,
     .settings =
         {

@@ -147,6 +147,7 @@ const hn_formulation hn_formulation_augmented_lagrangian = {
     .short_name = "augm. Lagr.",
     .rule = "Take the penalty's answer, read off the loop force it implies, apply that force, and "
             "repeat: a few turns with a mild penalty give what the penalty alone never reaches.",
+    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
     .drift = "as Baumgarte with alpha = xi omega and beta = omega: bounded, fed by truncation",
     .when =
         "redundant rows, passing through poses where the loop loses rank; multipliers stay bounded",

@@ -113,6 +113,7 @@ const hn_formulation hn_formulation_baumgarte = {
     .rule = "Replace zero acceleration error by a damped oscillator: the gap decays like "
             "exp(-alpha t) instead of "
             "growing, and the force that closes it also disturbs the motion.",
+    .traits = HN_TRAIT_PULLS_GAP,
     .drift =
         "bounded: truncation feeds the gap, alpha and beta drain it; alpha = beta damps critically",
     .when = "a small gap at almost the price of index-1; real time",

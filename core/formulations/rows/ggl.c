@@ -10,6 +10,7 @@ const hn_formulation hn_formulation_ggl = {
     .rule = "Ask for the loop and for its speed at once; a second multiplier, zero in the exact "
             "motion, "
             "makes room for the extra rows. Nothing drifts.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
     .drift = "none: loop gap and speed gap stay at rounding",
     .when =
         "stiff springs and dampers, long runs, tight tolerances; the default among implicit ones",
@@ -22,5 +23,4 @@ const hn_formulation hn_formulation_ggl = {
     .order_note = "q and v as the integrator; its own multipliers lower (radau5: 3)",
     .form = HN_FORM_GGL,
     .index = 2,
-    .keeps_gap = 1,
 };

@@ -7,6 +7,7 @@ const hn_formulation hn_formulation_index2 = {
     .short_name = "index-2",
     .rule = "Ask that the loop keeps closing at speed level, nothing more. The speed gap stays at "
             "rounding; the loop gap grows with what integration of the speeds leaves.",
+    .traits = HN_TRAIT_CLOSES_VELOCITY,
     .drift = "speed gap at rounding, loop gap grows like h^p t",
     .when = "stiff scenes where the gap may open a little; implicit midpoint, which needs one "
             "evaluation a step",

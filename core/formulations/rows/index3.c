@@ -10,6 +10,7 @@ const hn_formulation hn_formulation_index3 = {
     .short_name = "index-3",
     .rule = "Ask that the loop is closed at the end of the step, nothing else. The gap stays at "
             "rounding; speeds and multipliers pay for it with orders.",
+    .traits = HN_TRAIT_CLOSES_POSITION,
     .drift = "loop gap at rounding, speed gap of the order of the speeds",
     .when = "to see what the index costs; implicit Euler for robust first-order runs",
     .when_not = "accurate speeds or reactions, variable steps at tight tolerances: take ggl",
@@ -21,7 +22,6 @@ const hn_formulation hn_formulation_index3 = {
     .limits = "Gauss methods do not converge on it",
     .form = HN_FORM_INDEX3,
     .index = 3,
-    .keeps_gap = 1,
     .n_settings = 1,
     .settings = {{"project", 0, 0, 1, "",
                   "speeds are taken to what the loops allow at the end of each step; radau5, "

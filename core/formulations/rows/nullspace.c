@@ -95,13 +95,14 @@ const hn_formulation hn_formulation_nullspace = {
     .rule = "Write the speeds as v = N u with J N = 0 and project the equations on N: the "
             "multipliers vanish. N turns "
             "with the mechanism, so its rate belongs in the equation.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_HAS_BASIS,
     .drift = "none: J v = 0 by construction, positions are closed after each step",
     .when = "any mechanism off its singular poses; multipliers not needed; basis=orthonormal for "
             "many freedoms in one loop",
     .when_not = "poses where the rank of J drops: N changes its width there",
     .source = "Kim & Vanderploeg 1986; Liang & Lance 1987; Potra & Rheinboldt 1991",
     .needs = "M f phi J gamma",
-    .keeps_gap = 1,
     .n_settings = 1,
     .settings = {{"basis", 0, 0, 1, "",
                   "N from as many coordinates as there are freedoms, or an orthonormal N carried "

@@ -26,6 +26,8 @@ const hn_formulation hn_formulation_nullspace_as_printed = {
     .rule = "The lesson's Section 3 leaves out the rate of the basis. The loop stays closed to "
             "rounding while energy "
             "appears from nowhere; halving the step does not help.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_HAS_BASIS | HN_TRAIT_COUNTER_EXAMPLE,
     .drift = "none in the gap; the energy is wrong at any step size, and by an amount that depends "
              "on the basis",
     .when = "to see a model error beside a discretisation error",
@@ -33,7 +35,6 @@ const hn_formulation hn_formulation_nullspace_as_printed = {
     .source = "the lesson, section 3, as printed",
     .needs = "M f phi J",
     .model_error = 1,
-    .keeps_gap = 1,
     .n_settings = 1,
     .settings = {{"basis", 0, 0, 1, "", "how the columns of N are scaled", bases, 2, 0}},
     .create = create,

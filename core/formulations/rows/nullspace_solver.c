@@ -26,6 +26,7 @@ const hn_formulation hn_formulation_nullspace_solver = {
     .rule = "Use the null space of J only to solve for the accelerations, at positions and speeds "
             "that are free. The multipliers are gone, and nothing else: it drifts exactly as "
             "index-1 does.",
+    .traits = HN_TRAIT_HAS_BASIS,
     .drift = "as index-1: the gap grows like t^2, the speed gap like t",
     .when = "to see that eliminating multipliers does not remove drift; redundant rows",
     .when_not = "long runs; large mechanisms (dense)",

@@ -209,13 +209,14 @@ const hn_formulation hn_formulation_nullspace_tangent = {
     .rule = "For one step, describe the motion by its shadow on the tangent space at the step's "
             "beginning, with the loops closed at every evaluation; then begin again from where "
             "the step has led.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_HAS_BASIS,
     .drift = "none: every right-hand side closes the loops",
     .when = "any number of freedoms, no drift wanted, no coordinate good for the whole motion",
     .when_not = "poses where the rank of J drops; many loops (dense); integrators that live on "
                 "their history: it ends with every step",
     .source = "Potra & Rheinboldt 1991",
     .needs = "M f phi J gamma",
-    .keeps_gap = 1,
     .create = create,
     .destroy = destroy,
     .ode = ode,

@@ -23,6 +23,8 @@ const hn_formulation hn_formulation_nullspace_untracked = {
     .rule = "Take an orthonormal basis of the free speeds anew at every evaluation. The "
             "factorisation may change its sign at any time; the speeds along it then turn round "
             "in the middle of the motion.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_BASIS |
+              HN_TRAIT_COUNTER_EXAMPLE,
     .drift = "none in the gap; the motion is wrong by radians after the first change of sign",
     .when = "to see why a basis has to be carried along",
     .when_not = "for any result that matters: nullspace:basis=orthonormal carries its basis",
@@ -30,7 +32,6 @@ const hn_formulation hn_formulation_nullspace_untracked = {
     .needs = "M f phi J gamma",
     .order_note = "none: the basis jumps",
     .model_error = 1,
-    .keeps_gap = 1,
     .create = create,
     .destroy = hn_orthonormal_destroy,
     .ode = hn_orthonormal_ode,

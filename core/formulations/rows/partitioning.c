@@ -47,12 +47,12 @@ const hn_formulation hn_formulation_partitioning = {
     .rule = "Integrate as many coordinates as there are freedoms; the others follow from the "
             "closed loops. Near a "
             "dead point of the chosen ones, others are chosen.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART,
     .drift = "none: every right-hand side closes the loops",
     .when = "one or two freedoms, no drift wanted, motions that pass dead points",
     .when_not = "poses where the rank of J drops: no choice of coordinates is regular there",
     .source = "Wehage & Haug 1982",
     .needs = "M f phi J gamma",
-    .keeps_gap = 1,
     .n_settings = 1,
     .settings = {{"tau", HN_CHART_TAU, 0, 1, "",
                   "change coordinates when |det J_d| falls below tau times the best choice", NULL,

@@ -50,6 +50,7 @@ const hn_formulation hn_formulation_penalty = {
     .rule =
         "Replace the closed loop by a very strong spring, damper and mass acting on the gap. The "
         "stronger they are, the nearer the motion comes to the true one, until rounding wins.",
+    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
     .drift = "bounded: the gap follows the loop force, |lambda| / (a omega^2), whatever the step",
     .when = "redundant rows, massless links, joints that do give",
     .when_not = "more than a few digits: the error falls only as 1 / a, and a beyond 1e10 meets "

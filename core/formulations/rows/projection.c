@@ -110,6 +110,7 @@ const hn_formulation hn_formulation_projection = {
     .rule = "Step as index-1, then move the state to the nearest one that closes the loop: "
             "positions first, then "
             "speeds. Measured with the mass matrix, it can only take kinetic energy away.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY,
     .drift = "none: gap and speed gap at rounding level after every step; energy may still drift",
     .when = "the accurate and cheap default for short and medium runs",
     .when_not =
@@ -117,7 +118,6 @@ const hn_formulation hn_formulation_projection = {
     .source = "Eich 1993; Ascher, Chin & Reich 1994; Blajer 2002",
     .needs = "M f phi J gamma",
     .index = 1,
-    .keeps_gap = 1,
     .n_settings = 3,
     .settings =
         {

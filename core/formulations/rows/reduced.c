@@ -57,13 +57,14 @@ const hn_formulation hn_formulation_reduced = {
     .rule = "Write all coordinates as functions of as many as there are freedoms and integrate "
             "only those; the loops "
             "are closed by construction, as far as the chosen coordinates reach.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_FIXED_CHART,
     .drift = "none: every right-hand side closes the loops",
     .when = "teaching, closed-form loops, a driven crank that turns all the way round",
     .when_not = "motions through a dead point of the chosen coordinate: the run stops there "
                 "(partitioning goes on)",
     .source = "Wehage & Haug 1982; Featherstone 2008, ch. 8",
     .needs = "M f phi J gamma",
-    .keeps_gap = 1,
     .n_settings = 2,
     .settings = {{"coordinate", 0, 0, 4000, "",
                   "number of the joint coordinate to keep, as inspect lists them; 0: the best "

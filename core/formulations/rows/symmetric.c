@@ -281,6 +281,7 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .short_name = "symm. proj.",
     .rule = "Push the state off the closed loop by the same amount before the step as it is pushed "
             "back after it. Forwards and backwards are then the same, and energy does not wander.",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
     .drift = "none: gap and speed gap at rounding; with a symmetric integrator the energy error "
              "stays bounded",
     .when = "long conservative runs with midpoint or Gauss methods",
@@ -291,7 +292,6 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .order_note = "the integrator's in q, v and recomputed lambda",
     .limits = "the energy stays bounded with a symmetric integrator only",
     .index = 1,
-    .keeps_gap = 1,
     .create = create,
     .destroy = destroy,
     .ode = hn_accel_ode_get,

@@ -258,6 +258,7 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
         "Let every body move as if free, then add the smallest correction, measured by the mass "
         "matrix, that meets the constraints: one formula with a pseudo-inverse, no "
         "multipliers.",
+    .traits = HN_TRAIT_NEEDS_MASS_INVERSE,
     .drift = "as index-1: speed gap grows like h^p t, loop gap like h^p t^2",
     .when = "redundant closure rows, a start at a pose where the loop loses rank, massless links",
     .when_not = "long runs (nothing closes the gap); large mechanisms (dense, cost grows with the "

@@ -82,7 +82,7 @@ static void put_formulation(hn_strbuf *b, const hn_formulation *f) {
     hn_json_put_int(b, "index", f->index);
     put_integrators_of(b, f);
     hn_json_put_bool(b, "model_error", f->model_error);
-    hn_json_put_bool(b, "keeps_gap", f->keeps_gap);
+    hn_json_put_bool(b, "keeps_gap", (f->traits & HN_TRAIT_CLOSES_POSITION) != 0);
     put_settings(b, f->settings, f->n_settings);
     hn_json_end_object(b);
 }

@@ -387,7 +387,8 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
         hn_json_put_string(b, "rule", spec->formulation->rule);
         hn_json_put_string(b, "drift", spec->formulation->drift);
         hn_json_put_bool(b, "model_error", spec->formulation->model_error);
-        hn_json_put_bool(b, "keeps_gap", spec->formulation->keeps_gap);
+        hn_json_put_bool(b, "keeps_gap",
+                         (spec->formulation->traits & HN_TRAIT_CLOSES_POSITION) != 0);
         hn_json_put_int(b, "order", spec->stepper->order);
         put_warning(b, &c->entries[i]);
         hn_json_key(b, "method");

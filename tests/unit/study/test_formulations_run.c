@@ -127,6 +127,37 @@ static void weight_and_part_of_a_projection_can_be_chosen(void **state) {
     hn_trial_close(&trial);
 }
 
+/// What each formulation states about the gap is what it does: closed to rounding, or open by what RK4 leaves (about 1e-6 m at
+/// this step).
+static void traits_say_what_stays_closed(void **state) {
+    (void)state;
+    hn_trial trial;
+    hn_trial_open(&trial, FB0);
+    for (int i = 0; i < hn_formulation_count(); i++) {
+        const hn_formulation *f = hn_formulation_at(i);
+        char text[HN_SPEC_MAX];
+        if (f->form != HN_FORM_ODE || (f->traits & HN_TRAIT_COUNTER_EXAMPLE)) {
+            continue;
+        }
+        snprintf(text, sizeof text, "%s@rk4:h=0.01", f->name);
+        hn_run *run = hn_trial_run(&trial, text);
+        assert_int_equal(hn_run_advance(run, 1), HN_OK);
+        const hn_run_summary s = hn_run_get_summary(run);
+        assert_int_equal(s.worst_gap < 1e-12, (f->traits & HN_TRAIT_CLOSES_POSITION) != 0);
+        assert_int_equal(s.worst_velocity_gap < 1e-11, (f->traits & HN_TRAIT_CLOSES_VELOCITY) != 0);
+        hn_run_free(run);
+    }
+    hn_trial_close(&trial);
+}
+
+static void a_formulation_is_found_by_its_traits(void **state) {
+    (void)state;
+    const hn_formulation *closing =
+        hn_formulation_with(HN_TRAIT_CLOSES_POSITION, HN_TRAIT_HAS_CHART);
+    assert_string_equal(closing->name, "projection");
+    assert_null(hn_formulation_with(HN_TRAIT_PULLS_GAP | HN_TRAIT_CLOSES_POSITION, 0));
+}
+
 static void reduced_coordinates_stop_at_the_dead_point_at_every_step_size(void **state) {
     (void)state;
     // the coupler of FB0 turns round at t = 0.746 s, where crank and rocker are parallel
@@ -233,6 +264,8 @@ int main(void) {
         cmocka_unit_test(an_open_gap_decays_under_baumgarte_as_the_closed_formula_says),
         cmocka_unit_test(a_constraint_that_moves_in_time_drives_every_formulation_alike),
         cmocka_unit_test(projection_takes_kinetic_energy_and_counts_it),
+        cmocka_unit_test(traits_say_what_stays_closed),
+        cmocka_unit_test(a_formulation_is_found_by_its_traits),
         cmocka_unit_test(weight_and_part_of_a_projection_can_be_chosen),
         cmocka_unit_test(reduced_coordinates_stop_at_the_dead_point_at_every_step_size),
         cmocka_unit_test(partitioning_goes_through_the_dead_point_where_a_fixed_crank_stops),
