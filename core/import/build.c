@@ -9,16 +9,16 @@
 
 enum { MAX_NAME = 60, MAX_IDENTIFIER = 50, MAX_TEXT = 400 };
 
-// files ----------------------------------------------------------------------------------------------------
+// ---- files ----
 
-int hn_im_begin_files(hn_build *b, const char *name) {
+bool hn_im_begin_files(hn_build *b, const char *name) {
     b->files = hn_arena_get(b->arena, HN_IMPORT_MAX_FILES * sizeof *b->files);
     if (!b->files) {
         return hn_im_out_of_memory(b);
     }
     b->files[0] = (hn_im_file){.name = name ? name : ""};
     b->n_files = 1;
-    return 1;
+    return true;
 }
 
 hn_im_file *hn_im_file_of(const hn_build *b, const xmlNode *node) {
@@ -35,11 +35,11 @@ const char *hn_im_line_of(hn_build *b, const xmlNode *node) {
     return hn_im_line(b, hn_im_file_of(b, node), xmlGetLineNo(node));
 }
 
-// faults and notes -----------------------------------------------------------------------------------------
+// ---- faults and notes ----
 
-int hn_im_out_of_memory(hn_build *b) {
+bool hn_im_out_of_memory(hn_build *b) {
     b->status = HN_ERR_MEMORY;
-    return 0;
+    return false;
 }
 
 const char *hn_im_text(hn_build *b, const char *format, ...) {
@@ -63,8 +63,8 @@ static void put_path(const xmlNode *node, const char *attribute, char *out, size
     xmlFree(path);
 }
 
-int hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const char *hint,
-                const char *format, ...) {
+bool hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const char *hint,
+                 const char *format, ...) {
     char text[MAX_TEXT], path[HN_DIAG_POINTER];
     va_list args;
     va_start(args, format);
@@ -73,7 +73,7 @@ int hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const c
     put_path(node, attribute, path, sizeof path);
     b->status = b->status == HN_OK ? HN_ERR_INPUT : b->status;
     (void)hn_diags_add(b->diags, b->status, path, hint, "%s: %s", hn_im_line_of(b, node), text);
-    return 0;
+    return false;
 }
 
 void *hn_im_grow(hn_build *b, void *list, int n, int *cap, size_t size) {
@@ -100,12 +100,16 @@ void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, con
     va_start(args, format);
     (void)vsnprintf(text, sizeof text, format, args);
     va_end(args);
+
+    // so many notes say that the model is of another kind
     if (b->n_notes == HN_IMPORT_MAX_NOTES) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
                            "%s: more than %d things of this model are not in the scene",
                            hn_im_line_of(b, node), HN_IMPORT_MAX_NOTES);
     }
+
+    // one note, with place and line
     hn_import_note *notes = b->n_notes < HN_IMPORT_MAX_NOTES
                                 ? hn_im_grow(b, b->notes, b->n_notes, &b->cap_notes, sizeof *notes)
                                 : NULL;
@@ -121,24 +125,25 @@ void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, con
     }
 }
 
-// names ----------------------------------------------------------------------------------------------------
+// ---- names ----
 
-static int is_used(const hn_build *b, const char *name) {
+static bool is_used(const hn_build *b, const char *name) {
     static const char *const fixed[] = {"t", "pi", "e"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) {
         if (strcmp(fixed[i], name) == 0) {
-            return 1;
+            return true;
         }
     }
     for (int i = 0; i < b->n_used; i++) {
         if (strcmp(b->used[i], name) == 0) {
-            return 1;
+            return true;
         }
     }
     return hn_op_find(name) != HN_OP_COUNT;
 }
 
-/// From one number behind a name that is taken to the next to try: small ones first, then far from all that are.
+/// From one number behind a name that is taken to the next to try: small ones first, then far from
+/// all that are.
 static int next_step(const hn_build *b, int k) {
     return k < 8 ? 1 : b->n_bodies + b->n_joints + b->n_params;
 }
@@ -158,12 +163,16 @@ static const char *identifier(hn_build *b, const char *wanted) {
     if (!isalpha((unsigned char)wanted[0]) && wanted[0] != '_') {
         base[n++] = '_';
     }
+
+    // letters, digits and _; anything else becomes _
     for (const char *c = wanted; *c && n < MAX_IDENTIFIER; c++) {
         int plain =
             (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
         base[n++] = plain ? *c : '_';
     }
     base[n] = '\0';
+
+    // a number behind it, until neither it nor its rate is taken
     (void)snprintf(name, sizeof name, "%s", base);
     for (int k = 1;;) {
         (void)snprintf(rate, sizeof rate, "d_%s", name);
@@ -173,33 +182,35 @@ static const char *identifier(hn_build *b, const char *wanted) {
         k += next_step(b, k);
         (void)snprintf(name, sizeof name, "%s_%d", base, k);
     }
+
+    // both are taken now
     const char *copy = hn_im_text(b, "%s", name);
     use(b, copy);
     use(b, hn_im_text(b, "%s", rate));
     return copy;
 }
 
-static int body_has(const hn_build *b, const char *name) {
+static bool body_has(const hn_build *b, const char *name) {
     for (int i = 0; i < b->n_bodies; i++) {
         if (strcmp(b->bodies[i].name, name) == 0) {
-            return 1;
+            return true;
         }
     }
     return strcmp(name, "ground") == 0;
 }
 
-static int joint_has(const hn_build *b, const char *name) {
+static bool joint_has(const hn_build *b, const char *name) {
     for (int i = 0; i < b->n_joints; i++) {
         if (strcmp(b->joints[i].name, name) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// A name for people: braces mean something in a scene, and 60 characters are the most.
 static const char *label(hn_build *b, const char *wanted,
-                         int (*has)(const hn_build *, const char *)) {
+                         bool (*has)(const hn_build *, const char *)) {
     char base[MAX_IDENTIFIER + 1], name[MAX_NAME + 1];
     size_t n = 0;
     for (const unsigned char *c = (const unsigned char *)wanted; *c; c++) {
@@ -219,12 +230,12 @@ static const char *label(hn_build *b, const char *wanted,
     return hn_im_text(b, "%s", name);
 }
 
-// building ---------------------------------------------------------------------------------------------------
+// ---- building ----
 
-static int has_none(const hn_build *b, const char *name) {
+static bool has_none(const hn_build *b, const char *name) {
     (void)b;
     (void)name;
-    return 0;
+    return false;
 }
 
 const char *hn_im_label(hn_build *b, const char *wanted) {
@@ -262,6 +273,8 @@ static void name_coordinates(hn_build *b, hn_im_joint *j) {
         [HN_JOINT_FIXED] = {0, {""}},
         [HN_JOINT_FREE] = {6, {"_x", "_y", "_z", "_rx", "_ry", "_rz"}},
     };
+
+    // each name is made unique
     char wanted[MAX_NAME + 16];
     j->n = parts[j->type].n;
     for (int k = 0; k < j->n; k++) {
@@ -310,7 +323,7 @@ int hn_im_add_param(hn_build *b, const xmlNode *node, const hn_im_param *param,
     return b->n_params++;
 }
 
-int hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text) {
+bool hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text) {
     const char **item = hn_im_grow(b, list->item, list->n, &list->cap, sizeof *item);
     const char *copy =
         item && !text->failed ? hn_arena_strdup(b->arena, hn_strbuf_text(text)) : NULL;
@@ -320,7 +333,7 @@ int hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text) {
     }
     list->item = item;
     item[list->n++] = copy;
-    return 1;
+    return true;
 }
 
 int hn_im_find_body(const hn_build *b, const char *source) {

@@ -1,7 +1,8 @@
 #ifndef HN_IMPORT_BUILD_H
 #define HN_IMPORT_BUILD_H
-// A mechanism on its way from a file to a scene: both readers fill it, write.c tells it as JSON. Everything lives in one
-// arena and is freed at once. `world` is a pose at the file's zero configuration.
+// A mechanism on its way from a file to a scene: both readers fill it, write.c tells it as JSON.
+// Everything lives in one arena and is freed at once. `world` is a pose at the file's zero
+// configuration.
 
 #include "base/arena.h"
 #include "base/strbuf.h"
@@ -9,9 +10,11 @@
 #include "import/import.h"
 #include "scene/scene.h"
 
+#include <stdbool.h>
 #include <libxml/tree.h>
 
-/// One of a model's files; a pointer to it stands in _private of the elements of those that are included.
+/// One of a model's files; a pointer to it stands in _private of the elements of those that are
+/// included.
 typedef struct hn_im_file {
     const char *name;
     int order, depth;            ///< in which it was met; 0: the model's own
@@ -43,7 +46,8 @@ typedef struct hn_im_joint {
     double zero; ///< of a joint with one coordinate: its value in the file's zero configuration
 } hn_im_joint;
 
-/// Text that stands in a list of the scene as it is: a load, a constraint, or a joint of the loop file.
+/// Text that stands in a list of the scene as it is: a load, a constraint, or a joint of the loop
+/// file.
 typedef struct hn_im_texts {
     int n, cap;
     const char **item;
@@ -75,30 +79,30 @@ typedef struct hn_build {
     int guess; ///< the start need not satisfy what closes the loops: it is where assembly begins
 } hn_build;
 
-// files ---------------------------------------------------------------------------------------------------
+// ---- files ----
 /// The list of files, with the model's own in it; `name` may be NULL. 0 without memory.
-int hn_im_begin_files(hn_build *b, const char *name);
+bool hn_im_begin_files(hn_build *b, const char *name);
 hn_im_file *hn_im_file_of(const hn_build *b, const xmlNode *node);
 /// "line 12", or "leg.xml, line 12" in an included file; in the arena, never NULL.
 const char *hn_im_line(hn_build *b, const hn_im_file *file, long line);
 const char *hn_im_line_of(hn_build *b, const xmlNode *node);
 
-// faults and notes ---------------------------------------------------------------------------------------
+// ---- faults and notes ----
 /// "line 12: ..." at the node (and its attribute, which may be NULL). Always returns 0.
-int hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const char *hint,
-                const char *format, ...) HN_PRINTF(5, 6);
-int hn_im_out_of_memory(hn_build *b); ///< notes it; returns 0
+bool hn_im_fault(hn_build *b, const xmlNode *node, const char *attribute, const char *hint,
+                 const char *format, ...) HN_PRINTF(5, 6);
+bool hn_im_out_of_memory(hn_build *b); ///< notes it; returns 0
 void hn_im_note(hn_build *b, hn_import_outcome outcome, const xmlNode *node, const char *attribute,
                 const char *format, ...) HN_PRINTF(5, 6);
 
-// building; each gives -1 after a fault ------------------------------------------------------------------
+// ---- building; each gives -1 after a fault ----
 int hn_im_add_body(hn_build *b, const xmlNode *node, const char *source, const hn_im_frame *world);
 /// `joint` with its names still to be chosen from `wanted`; counts and names its coordinates.
 int hn_im_add_joint(hn_build *b, const xmlNode *node, const hn_im_joint *joint, const char *wanted);
 /// A parameter named after `wanted`.
 int hn_im_add_param(hn_build *b, const xmlNode *node, const hn_im_param *param, const char *wanted);
 /// Takes the buffer's text (and empties it).
-int hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text);
+bool hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text);
 
 int hn_im_find_body(const hn_build *b, const char *source);  ///< -2 if there is none
 int hn_im_find_joint(const hn_build *b, const char *source); ///< -1 if there is none
@@ -115,12 +119,4 @@ hn_im_frame hn_im_axis_frame(const double at[3], const double axis[3]);
 /// "(1.25)": a number in a formula, that reads back to the same double; in the arena, never NULL.
 const char *hn_im_number(hn_build *b, double x);
 
-// the parts ----------------------------------------------------------------------------------------------
-/// Puts the files that an MJCF includes in their places; 0 after a fault.
-int hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source);
-int hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source);
-int hn_im_read_urdf(hn_build *b, const xmlNode *root);
-/// The loop file: joints that close loops, constraints, gravity.
-int hn_im_read_loops(hn_build *b, const char *text, size_t n);
-void hn_im_write_scene(hn_build *b, hn_strbuf *out);
 #endif

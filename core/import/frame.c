@@ -4,8 +4,8 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-static const double ROUNDING =
-    4e-16; ///< an entry of a rotation this near to 0, 1 or -1 is meant to be that [-]
+/// an entry of a rotation this near to 0, 1 or -1 is meant to be that [-]
+static const double ROUNDING = 4e-16;
 static const double NO_LENGTH = 1e-10; ///< below this a vector has no direction
 
 hn_im_frame hn_im_frame_unit(void) {
@@ -79,15 +79,15 @@ void hn_im_cross(const double a[3], const double b[3], double out[3]) {
     memcpy(out, c, sizeof c);
 }
 
-int hn_im_normalise(double a[3]) {
+bool hn_im_normalise(double a[3]) {
     double n = hn_im_norm(a);
     if (!(n >= NO_LENGTH) || !isfinite(n)) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < 3; i++) {
         a[i] = a[i] / n + 0.0;
     }
-    return 1;
+    return true;
 }
 
 void hn_im_across(const double axis[3], double out[3]) {
@@ -121,13 +121,16 @@ void hn_im_from_quaternion(const double q[4], double R[3][3]) {
     memcpy(R, out, sizeof out);
 }
 
-/// Through the quaternion with its largest entry first (Shepperd 1978): no loss of digits at any angle.
+/// Through the quaternion with its largest entry first (Shepperd 1978): no loss of digits at any
+/// angle.
 void hn_im_rotation_vector(double R[3][3], double out[3]) {
     double trace = R[0][0] + R[1][1] + R[2][2], q[4];
     int k = 0;
     for (int i = 1; i < 3; i++) {
         k = R[i][i] > R[k][k] ? i : k;
     }
+
+    // the largest entry of the quaternion first
     if (trace >= R[k][k]) {
         q[0] = 1 + trace;
         q[1] = R[2][1] - R[1][2];
@@ -140,6 +143,8 @@ void hn_im_rotation_vector(double R[3][3], double out[3]) {
         q[1 + i] = R[i][k] + R[k][i];
         q[1 + j] = R[j][k] + R[k][j];
     }
+
+    // the half turn that is at most pi
     double sign = q[0] < 0 ? -1 : 1, s = hn_im_norm(q + 1), angle = 2 * atan2(s, sign * q[0]);
     angle = fmin(angle, PI);
     for (int i = 0; i < 3; i++) {
@@ -147,7 +152,7 @@ void hn_im_rotation_vector(double R[3][3], double out[3]) {
     }
 }
 
-// mass ---------------------------------------------------------------------------------------------------
+// ---- mass ----
 
 static void to_matrix(const double I[6], double out[3][3]) {
     double M[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
@@ -227,7 +232,8 @@ double hn_im_volume(hn_im_solid solid, const double s[3]) {
 /// A cylinder between two half balls; the share of each in the mass is that of its volume.
 static hn_im_mass capsule(double r, double h, double m) {
     double balls = m * 2 * r / (2 * r + 3 * h), middle = m - balls;
-    // a half ball's centre of mass is 3/8 r beyond its flat side: two at h make 2/5 r^2 + h^2 + 3/4 h r
+    // a half ball's centre of mass is 3/8 r beyond its flat side: two at h make 2/5 r^2 + h^2 + 3/4
+    // h r
     double across = middle * (r * r / 4 + h * h / 3) + balls * (0.4 * r * r + h * h + 0.75 * h * r);
     double along = middle * r * r / 2 + balls * 0.4 * r * r;
     return (hn_im_mass){.m = m, .I = {across, across, along}};
@@ -236,6 +242,8 @@ static hn_im_mass capsule(double r, double h, double m) {
 hn_im_mass hn_im_solid_mass(hn_im_solid solid, const double s[3], double m) {
     hn_im_mass out = {.m = m};
     double a = s[0] * s[0], b = s[1] * s[1], c = s[2] * s[2];
+
+    // about the centre, by the textbook formula of each solid
     switch (solid) {
     case HN_IM_SPHERE:
         out.I[0] = out.I[1] = out.I[2] = 0.4 * m * a;

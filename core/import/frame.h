@@ -1,7 +1,9 @@
 #ifndef HN_IMPORT_FRAME_H
 #define HN_IMPORT_FRAME_H
-// Places and directions of rigid bodies in numbers, and what their mass amounts to. Columns of R are the axes of the
-// inner frame in those of the outer one: x_outer = p + R x_inner.
+// Places and directions of rigid bodies in numbers, and what their mass amounts to. Columns of R
+// are the axes of the inner frame in those of the outer one: x_outer = p + R x_inner.
+
+#include <stdbool.h>
 
 typedef struct hn_im_frame {
     double R[3][3];
@@ -18,11 +20,13 @@ void hn_im_turn(const hn_im_frame *a, const double x[3], double out[3]);  ///< R
 double hn_im_norm(const double a[3]);
 void hn_im_cross(const double a[3], const double b[3], double out[3]);
 /// 0 when there is no direction in it (length below 1e-10).
-int hn_im_normalise(double a[3]);
-/// A unit vector across the unit vector `axis`: the coordinate axis least aligned with it, x before y before z, made perpendicular.
+bool hn_im_normalise(double a[3]);
+/// A unit vector across the unit vector `axis`: the coordinate axis least aligned with it, x before
+/// y before z, made perpendicular.
 void hn_im_across(const double axis[3], double out[3]);
 
-// Rotations; entries that miss 0 or 1 by rounding are set to it, so that planar mechanisms stay planar.
+// Rotations; entries that miss 0 or 1 by rounding are set to it, so that planar mechanisms stay
+// planar.
 void hn_im_rotation(const double axis[3], double angle, double R[3][3]); ///< axis of length 1
 void hn_im_from_quaternion(const double q[4], double R[3][3]);           ///< w x y z of length 1
 /// Rotation vector (axis times angle, angle at most pi) of a rotation.
@@ -47,7 +51,8 @@ typedef enum hn_im_solid {
     HN_IM_ELLIPSOID,
     HN_IM_BOX
 } hn_im_solid;
-/// Volume [m^3]. size: sphere r; capsule and cylinder r, half length along z; ellipsoid half axes; box half edges [m].
+/// Volume [m^3]. size: sphere r; capsule and cylinder r, half length along z; ellipsoid half axes;
+/// box half edges [m].
 double hn_im_volume(hn_im_solid solid, const double size[3]);
 /// Homogeneous, of mass m, centred at the origin, axes along the frame.
 hn_im_mass hn_im_solid_mass(hn_im_solid solid, const double size[3], double m);

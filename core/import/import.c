@@ -1,6 +1,9 @@
 #include "import/import.h"
 
-#include "import/xml.h"
+#include "import/loops.h"
+#include "import/mjcf.h"
+#include "import/urdf.h"
+#include "import/write.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +30,7 @@ static int file_order(const hn_build *b, const hn_import_note *note) {
     return i;
 }
 
-static int comes_after(const hn_build *b, const hn_import_note *x, const hn_import_note *y) {
+static bool comes_after(const hn_build *b, const hn_import_note *x, const hn_import_note *y) {
     const int one = file_order(b, x), two = file_order(b, y);
     return one != two ? one > two : x->line > y->line;
 }
@@ -96,12 +99,16 @@ static void sum_up(hn_import *im) {
 /// Faults the scene's loader finds, told where they stand in the files that were read.
 static void tell_at_source(const hn_build *b, const hn_diag *d) {
     int i = -1;
+
+    // bodies and joints of the model have a line there
     if (sscanf(d->pointer, "/bodies/%d", &i) == 1 && i >= 0 && i < b->n_bodies) {
         (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "%s: %s", b->bodies[i].line,
                            d->message);
     } else if (sscanf(d->pointer, "/joints/%d", &i) == 1 && i >= 0 && i < b->n_joints) {
         (void)hn_diags_add(b->diags, d->status, d->pointer, d->hint, "%s: %s", b->joints[i].line,
                            d->message);
+
+        // joints and constraints behind them are from the loop file
     } else if (i >= b->n_joints) {
         const char *rest = strchr(d->pointer + strlen("/joints/"), '/');
         char pointer[HN_DIAG_POINTER + 32];

@@ -1,11 +1,13 @@
 #ifndef HN_IMPORT_IMPORT_H
 #define HN_IMPORT_IMPORT_H
-// Mechanisms written for other programs, read into a scene of ours: MuJoCo's MJCF with the files it includes, and URDF with a list of
-// the joints that close its loops. The scene comes as JSON text that the loader of scene/ has accepted. Whatever of the file is not in
-// the scene is in the notes, one for each element or attribute, with its line: nothing is dropped silently.
+// Mechanisms written for other programs, read into a scene of ours: MuJoCo's MJCF with the files it
+// includes, and URDF with a list of the joints that close its loops. The scene comes as JSON text
+// that the loader of scene/ has accepted. Whatever of the file is not in the scene is in the notes,
+// one for each element or attribute, with its line: nothing is dropped silently.
 //
-// What closes a loop (an equality `connect` or `weld`, a joint of the loop file) becomes a joint that is marked as cut, so that
-// the file's own tree carries the coordinates. Coordinates are those of the file: 0 means what it means there.
+// What closes a loop (an equality `connect` or `weld`, a joint of the loop file) becomes a joint
+// that is marked as cut, so that the file's own tree carries the coordinates. Coordinates are those
+// of the file: 0 means what it means there.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -31,13 +33,14 @@ typedef struct hn_import_note {
     hn_import_outcome outcome;
     const char *file; ///< the included file it stands in; NULL: the model's own
     int line;         ///< of the element in its file, from 1
-    const char
-        *where; ///< "/mujoco/worldbody/body[2]/joint/@armature", with all files in their places
+    /// "/mujoco/worldbody/body[2]/joint/@armature", with all files in their places
+    const char *where;
     const char *what; ///< what was done and why, one sentence
 } hn_import_note;
 
-/// Adds the text of a file that a model includes to `text`, but no more than `most` + 1 bytes of it. `name` is relative to the folder of the
-/// model's own file and stays below it: "parts/leg.xml". HN_ERR_IO with the reason in diag.
+/// Adds the text of a file that a model includes to `text`, but no more than `most` + 1 bytes of
+/// it. `name` is relative to the folder of the model's own file and stays below it:
+/// "parts/leg.xml". HN_ERR_IO with the reason in diag.
 typedef hn_status (*hn_import_reader)(void *user, const char *name, size_t most, hn_strbuf *text,
                                       hn_diag *diag);
 
@@ -55,8 +58,9 @@ typedef struct hn_import_source {
 
 typedef struct hn_import hn_import;
 
-/// Reads MJCF or URDF, whichever the root element says. Returns owned in *out. Fails: HN_ERR_INPUT, HN_ERR_LIMIT,
-/// HN_ERR_IO (a file that is included), with line and column or line and path of each fault; HN_ERR_MEMORY.
+/// Reads MJCF or URDF, whichever the root element says. Returns owned in *out. Fails: HN_ERR_INPUT,
+/// HN_ERR_LIMIT, HN_ERR_IO (a file that is included), with line and column or line and path of each
+/// fault; HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_import_read(const hn_import_source *source, hn_import **out,
                                        hn_diags *diags);
 void hn_import_free(hn_import *import); ///< NULL is legal

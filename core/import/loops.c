@@ -1,8 +1,8 @@
 // The loop file: what closes the loops of a URDF, which is a tree. JSON of ours:
 //   {"holonom_loops": 1, "joints": [..], "constraints": [..], "gravity": [x, y, z]}
-// Joints and constraints are written as in a scene (scene.schema.json); bodies are links by name, places and directions
-// in the frames of the links. Each joint is marked as cut.
-#include "import/build.h"
+// Joints and constraints are written as in a scene (scene.schema.json); bodies are links by name,
+// places and directions in the frames of the links. Each joint is marked as cut.
+#include "import/loops.h"
 
 #include "base/json_text.h"
 
@@ -11,13 +11,13 @@
 
 enum { MAX_DEPTH = 32, MAX_ENTRIES = 4000 };
 
-static int fault(hn_build *b, const char *pointer, const char *hint, const char *message) {
+static bool fault(hn_build *b, const char *pointer, const char *hint, const char *message) {
     b->status = HN_ERR_INPUT;
     (void)hn_diags_add(b->diags, HN_ERR_INPUT, pointer, hint, "loop file: %s", message);
-    return 0;
+    return false;
 }
 
-static int add_entry(hn_build *b, hn_im_texts *list, const cJSON *entry) {
+static bool add_entry(hn_build *b, hn_im_texts *list, const cJSON *entry) {
     char *text = cJSON_PrintUnformatted(entry);
     hn_strbuf o;
     hn_strbuf_init(&o);
@@ -27,7 +27,7 @@ static int add_entry(hn_build *b, hn_im_texts *list, const cJSON *entry) {
     return hn_im_add_text(b, list, &o);
 }
 
-static int add_joint(hn_build *b, cJSON *entry) {
+static bool add_joint(hn_build *b, cJSON *entry) {
     const cJSON *cut = cJSON_GetObjectItemCaseSensitive(entry, "cut");
     if (!cut && !cJSON_AddTrueToObject(entry, "cut")) {
         return hn_im_out_of_memory(b);
@@ -41,7 +41,7 @@ static int add_joint(hn_build *b, cJSON *entry) {
 }
 
 /// The entries of a list under `key`; joints are marked.
-static int read_list(hn_build *b, const cJSON *root, const char *key) {
+static bool read_list(hn_build *b, const cJSON *root, const char *key) {
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, key);
     int joints = strcmp(key, "joints") == 0;
     if (list && !cJSON_IsArray(list)) {
@@ -57,16 +57,16 @@ static int read_list(hn_build *b, const cJSON *root, const char *key) {
         }
         b->n_closing += !joints;
         if (!(joints ? add_joint(b, c) : add_entry(b, &b->constraints, c))) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int read_gravity(hn_build *b, const cJSON *root) {
+static bool read_gravity(hn_build *b, const cJSON *root) {
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "gravity");
     if (!list) {
-        return 1;
+        return true;
     }
     int good = cJSON_IsArray(list) && cJSON_GetArraySize(list) == 3, k = 0;
     for (const cJSON *c = good ? list->child : NULL; c; c = c->next) {
@@ -76,15 +76,17 @@ static int read_gravity(hn_build *b, const cJSON *root) {
     return good || fault(b, "/gravity", "as in [0, 0, -9.81]", "expected three numbers");
 }
 
-static int read_document(hn_build *b, const cJSON *root) {
+static bool read_document(hn_build *b, const cJSON *root) {
     static const char *const fields[] = {"holonom_loops", "about", "joints", "constraints",
                                          "gravity"};
     enum { N_FIELDS = sizeof fields / sizeof *fields };
     if (!cJSON_IsObject(root)) {
         return fault(b, "", "as in {\"holonom_loops\": 1, \"joints\": [..]}", "expected an object");
     }
+
+    // no field that nobody reads
     for (const cJSON *c = root->child; c; c = c->next) {
-        int known = 0;
+        bool known = 0;
         for (int k = 0; k < N_FIELDS; k++) {
             known |= strcmp(c->string, fields[k]) == 0;
         }
@@ -94,6 +96,8 @@ static int read_document(hn_build *b, const cJSON *root) {
                          near ? hn_im_text(b, "did you mean '%s'?", near) : NULL, "unknown field");
         }
     }
+
+    // a version of the form, so that it may change one day
     const cJSON *version = cJSON_GetObjectItemCaseSensitive(root, "holonom_loops");
     if (!cJSON_IsNumber(version) || version->valuedouble != 1) {
         return fault(b, "/holonom_loops", "\"holonom_loops\": 1", "the version of this form is 1");
@@ -102,7 +106,7 @@ static int read_document(hn_build *b, const cJSON *root) {
            read_gravity(b, root);
 }
 
-int hn_im_read_loops(hn_build *b, const char *text, size_t n) {
+bool hn_im_read_loops(hn_build *b, const char *text, size_t n) {
     hn_diag diag = {0};
     b->n_own_constraints = b->constraints.n;
     if (n > HN_IMPORT_MAX_BYTES) {

@@ -5,7 +5,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-// settings -----------------------------------------------------------------------------------------------
+// ---- settings ----
 
 static int one_of(hn_mj *m, const xmlNode *node, const char *attribute, const char *const *words,
                   int n, int otherwise) {
@@ -55,7 +55,7 @@ void hn_mj_compiler(hn_mj *m, const xmlNode *node) {
     }
 }
 
-static int is_off(hn_mj *m, const xmlNode *flag, const char *attribute) {
+static bool is_off(hn_mj *m, const xmlNode *flag, const char *attribute) {
     static const char *const words[] = {"enable", "disable"};
     return one_of(m, flag, attribute, words, 2, 0);
 }
@@ -90,7 +90,7 @@ void hn_mj_option(hn_mj *m, const xmlNode *node) {
     }
 }
 
-// start ----------------------------------------------------------------------------------------------------
+// ---- start ----
 
 static int count_qpos(const hn_mj *m) {
     int n = 0;
@@ -101,7 +101,7 @@ static int count_qpos(const hn_mj *m) {
     return n;
 }
 
-static int turn_from(hn_mj *m, const xmlNode *key, const double *quat, double out[3]) {
+static bool turn_from(hn_mj *m, const xmlNode *key, const double *quat, double out[3]) {
     double n = sqrt(quat[0] * quat[0] + quat[1] * quat[1] + quat[2] * quat[2] + quat[3] * quat[3]);
     double R[3][3];
     if (!(n > 1e-10)) {
@@ -109,7 +109,7 @@ static int turn_from(hn_mj *m, const xmlNode *key, const double *quat, double ou
     }
     hn_im_from_quaternion((double[]){quat[0] / n, quat[1] / n, quat[2] / n, quat[3] / n}, R);
     hn_im_rotation_vector(R, out);
-    return 1;
+    return true;
 }
 
 static void set_positions(hn_mj *m, const xmlNode *key) {
@@ -198,7 +198,7 @@ static void check_key(hn_mj *m, const char *wanted) {
                 "there is no keyframe named '%.60s'", wanted);
 }
 
-// the whole ------------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 typedef void (*section_reader)(hn_mj *m, const xmlNode *section);
 
@@ -271,14 +271,18 @@ static void tell_touching(hn_mj *m) {
 }
 
 static void read_sections(hn_mj *m, const char *key) {
-    int use_key = !key || strcmp(key, "qpos0") != 0;
+    bool use_key = !key || strcmp(key, "qpos0") != 0;
     hn_mj_check(m, m->root);
+
+    // in this order, whatever the file's: each section needs those before it
     each(m, "compiler", hn_mj_compiler);
     each(m, "option", hn_mj_option);
     each(m, "default", hn_mj_defaults);
     each(m, "worldbody", hn_mj_world);
     each(m, "equality", hn_mj_equality);
     each(m, "actuator", hn_mj_actuators);
+
+    // the start, and everything that is not read
     if (key && use_key && m->b->status == HN_OK) {
         check_key(m, key);
     }
@@ -293,7 +297,7 @@ static void read_sections(hn_mj *m, const char *key) {
     }
 }
 
-int hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source) {
+bool hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source) {
     hn_mj m = {.b = b,
                .root = root,
                .per_angle = PI / 180,
@@ -302,17 +306,21 @@ int hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *so
                .settotalmass = -1,
                .groups = {-HUGE_VAL, HUGE_VAL}};
     b->gravity[2] = -9.81;
+
+    // defaults first: every element looks into them
     if (!hn_mj_collect_classes(&m)) {
-        return 0;
+        return false;
     }
     read_sections(&m, source->key);
     if (b->status != HN_OK) {
-        return 0;
+        return false;
     }
     if (b->n_bodies == 0) {
         return hn_im_fault(b, root, NULL, "as in <worldbody><body> ... </body></worldbody>",
                            "there is no body in this model");
     }
+
+    // what needs the whole model
     settle_masses(&m);
     tell_touching(&m);
     b->name = source->name ? source->name : hn_im_attr(b, root, "model");

@@ -43,29 +43,37 @@ typedef struct hn_mj_element {
     const xmlNode *defaults; ///< its class, or NULL: the main one
 } hn_mj_element;
 
-// attributes: its own, else those of its class and of the classes around it ---------------------------------
-int hn_mj_collect_classes(hn_mj *m);
-/// `childclass`: the class of the body around it, or NULL. The class is checked once, here; then .node is NULL after a fault.
+// ---- attributes: its own, else those of its class and of the classes around it ----
+bool hn_mj_collect_classes(hn_mj *m);
+/// `childclass`: the class of the body around it, or NULL. The class is checked once, here; then
+/// .node is NULL after a fault.
 hn_mj_element hn_mj_look(hn_mj *m, const xmlNode *node, const xmlNode *childclass);
 /// The class an attribute names, `otherwise` when absent; *ok = 0 after a fault.
 const xmlNode *hn_mj_class(hn_mj *m, const xmlNode *node, const char *attribute,
-                           const xmlNode *otherwise, int *ok);
+                           const xmlNode *otherwise, bool *ok);
 const char *hn_mj_attr(hn_mj *m, const hn_mj_element *e, const char *name);
 /// Counts of numbers read (0: absent), -1 after a fault.
 int hn_mj_numbers(hn_mj *m, const hn_mj_element *e, const char *name, int least, int most,
                   double *out);
 /// One number; 0 after a fault.
-int hn_mj_number(hn_mj *m, const hn_mj_element *e, const char *name, double otherwise, double *out);
-int hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwise);
+bool hn_mj_number(hn_mj *m, const hn_mj_element *e, const char *name, double otherwise,
+                  double *out);
+bool hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwise);
 /// true, false or auto, where auto asks whether `range` is given.
 int hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range);
 /// pos and one of quat, axisangle, xyaxes, zaxis, euler.
-int hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out);
-int hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]);
+bool hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out);
+bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]);
 /// Names what is not used of an element, by the rules for its name.
 void hn_mj_check(hn_mj *m, const xmlNode *node);
 
-// sections -------------------------------------------------------------------------------------------------
+// ---- the whole ----
+/// Puts the files that a model includes in their places; 0 after a fault.
+bool hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source);
+/// Reads the element <mujoco> into `b`; 0 after a fault.
+bool hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *source);
+
+// ---- sections ----
 void hn_mj_compiler(hn_mj *m, const xmlNode *section);
 void hn_mj_option(hn_mj *m, const xmlNode *section);
 void hn_mj_defaults(hn_mj *m, const xmlNode *section);
@@ -81,5 +89,5 @@ void hn_mj_join(hn_mj *m, const xmlNode *body_node, const xmlNode *childclass, i
 void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const hn_im_frame *at,
                 int on_ground, int needed, hn_im_mass *sum);
 /// Mass of a body from its `inertial` element; 0 after a fault.
-int hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out);
+bool hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out);
 #endif

@@ -1,4 +1,5 @@
-// Drives of joints: force = gear (gain u + b0 + b1 gear q + b2 gear v), u the control, which becomes a parameter.
+// Drives of joints: force = gear (gain u + b0 + b1 gear q + b2 gear v), u the control, which
+// becomes a parameter.
 #include "import/mjcf.h"
 
 #include <math.h>
@@ -12,12 +13,13 @@ typedef struct drive {
     const char *control;
 } drive;
 
-static int is_word(const char *text, const char *word) {
+static bool is_word(const char *text, const char *word) {
     return !text || strcmp(text, word) == 0;
 }
 
-/// `general`: only gains and biases that are fixed or affine, without dynamics of their own. 1, or 0 after a note or fault.
-static int read_general(hn_mj *m, const hn_mj_element *e, drive *d) {
+/// `general`: only gains and biases that are fixed or affine, without dynamics of their own. 1, or
+/// 0 after a note or fault.
+static bool read_general(hn_mj *m, const hn_mj_element *e, drive *d) {
     double gain[10] = {1}, bias[10] = {0};
     const char *type = hn_mj_attr(m, e, "biastype");
     if (!is_word(hn_mj_attr(m, e, "gaintype"), "fixed") ||
@@ -25,32 +27,36 @@ static int read_general(hn_mj *m, const hn_mj_element *e, drive *d) {
         (type && strcmp(type, "none") != 0 && strcmp(type, "affine") != 0)) {
         hn_im_note(m->b, HN_IMPORT_REFUSED, e->node, NULL,
                    "a drive with a gain, bias or dynamics of its own kind is not in the scene");
-        return 0;
+        return false;
     }
     if (hn_mj_numbers(m, e, "gainprm", 1, 10, gain) < 0 ||
         hn_mj_numbers(m, e, "biasprm", 1, 10, bias) < 0) {
-        return 0;
+        return false;
     }
     d->gain = gain[0];
     for (int k = 0; k < 3 && type && strcmp(type, "affine") == 0; k++) {
         d->bias[k] = bias[k];
     }
-    return 1;
+    return true;
 }
 
-static int read_law(hn_mj *m, const hn_mj_element *e, drive *d) {
+static bool read_law(hn_mj *m, const hn_mj_element *e, drive *d) {
     double kp, kv;
-    int velocity = hn_im_is(e->node, "velocity");
+    bool velocity = hn_im_is(e->node, "velocity");
     if (hn_im_is(e->node, "general")) {
         return read_general(m, e, d);
     }
+
+    // gains of their own names
     if (!hn_mj_number(m, e, "kp", 1, &kp) || !hn_mj_number(m, e, "kv", velocity, &kv)) {
-        return 0;
+        return false;
     }
     if (kp < 0 || kv < 0) {
         return hn_im_fault(m->b, e->node, kp < 0 ? "kp" : "kv", NULL, "a gain of %g is negative",
                            kp < 0 ? kp : kv);
     }
+
+    // force = gain u + bias, in the terms of MuJoCo
     d->gain = 1;
     if (hn_im_is(e->node, "position")) {
         d->gain = kp;
@@ -60,18 +66,18 @@ static int read_law(hn_mj *m, const hn_mj_element *e, drive *d) {
         d->gain = kv;
         d->bias[2] = -kv;
     }
-    return 1;
+    return true;
 }
 
-static int read_drive(hn_mj *m, const hn_mj_element *e, drive *d) {
+static bool read_drive(hn_mj *m, const hn_mj_element *e, drive *d) {
     double gear[6] = {1, 0, 0, 0, 0, 0}, force[2] = {0, 0};
     if (hn_mj_numbers(m, e, "gear", 1, 6, gear) < 0 || !read_law(m, e, d)) {
-        return 0;
+        return false;
     }
     d->gear = gear[0];
     d->clamped = hn_mj_is_limited(m, e, "forcelimited", "forcerange");
     if (d->clamped && hn_mj_numbers(m, e, "forcerange", 2, 2, force) < 0) {
-        return 0;
+        return false;
     }
     d->least = force[0];
     d->most = force[1];
@@ -100,7 +106,7 @@ static int add_control(hn_mj *m, const hn_mj_element *e, const char *name) {
 }
 
 /// A follower says the same as a position drive, and its limit is the same both ways.
-static int is_follower(const hn_mj_element *e, const drive *d) {
+static bool is_follower(const hn_mj_element *e, const drive *d) {
     return hn_im_is(e->node, "position") && d->gain > 0 && d->gear != 0 &&
            (!d->clamped || (d->most > 0 && d->least == -d->most));
 }
@@ -127,6 +133,8 @@ static void put_force(hn_mj *m, hn_strbuf *o, const drive *d) {
     hn_strbuf f;
     hn_strbuf_init(&f);
     hn_strbuf_printf(&f, "%s*%s", hn_im_number(m->b, d->gain), d->control);
+
+    // the law of the drive, with its coordinate and rate by name
     const char *of[3] = {NULL, d->joint->coordinate[0], d->joint->rate[0]};
     for (int k = 0; k < 3; k++) {
         if (d->bias[k] != 0 && !of[k]) {
@@ -135,6 +143,8 @@ static void put_force(hn_mj *m, hn_strbuf *o, const drive *d) {
             hn_strbuf_printf(&f, " + %s*%s", hn_im_number(m->b, d->bias[k] * d->gear), of[k]);
         }
     }
+
+    // as a load on the coordinate, bounded where the drive is
     hn_json_key(o, d->joint->type == HN_JOINT_PRISMATIC ? "force" : "torque");
     hn_json_object(o);
     hn_json_put_string(o, "coordinate", d->joint->coordinate[0]);
@@ -198,11 +208,15 @@ static void read_actuator(hn_mj *m, const xmlNode *c) {
     static const char known[] = "motor position velocity general";
     drive d = {.gear = 1};
     int control = -1;
+
+    // kinds that are not in a scene leave a hole in the order of the controls
     if (!hn_im_lists(known, (const char *)c->name)) {
         hn_im_skip(m->b, HN_IMPORT_REFUSED, c, "this kind of drive is not in the scene");
         remember_control(m, -1);
         return;
     }
+
+    // the joint it drives
     hn_mj_element e = hn_mj_look(m, c, NULL);
     hn_mj_check(m, c);
     const char *name = hn_im_attr(m->b, c, "name");
@@ -214,6 +228,8 @@ static void read_actuator(hn_mj *m, const xmlNode *c) {
         control = add_control(m, &e, name);
     }
     remember_control(m, control);
+
+    // the control is a parameter
     if (control >= 0) {
         m->b->joints[joint].actuated = 1;
         d.joint = &m->b->joints[joint];

@@ -4,14 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-// default classes --------------------------------------------------------------------------------------------
+// ---- default classes ----
 
 static const char *class_name(hn_mj *m, const xmlNode *node) {
     const char *name = hn_im_attr(m->b, node, "class");
     return name ? name : "main";
 }
 
-static int is_top(const hn_mj *m, const xmlNode *cls) {
+static bool is_top(const hn_mj *m, const xmlNode *cls) {
     return cls->parent == m->root;
 }
 
@@ -27,7 +27,7 @@ static const xmlNode *find_class(hn_mj *m, const char *name) {
 enum { MAX_CLASSES = 1000, MAX_ELEMENTS = 64 };
 
 /// Attributes are looked up in every class around; both bounds keep that short.
-static int check_size(hn_mj *m, const xmlNode *cls) {
+static bool check_size(hn_mj *m, const xmlNode *cls) {
     int n = 0;
     for (const xmlNode *c = hn_im_first(cls); c; c = hn_im_next(c)) {
         n += !hn_im_is(c, "default");
@@ -37,8 +37,10 @@ static int check_size(hn_mj *m, const xmlNode *cls) {
                        MAX_CLASSES, MAX_ELEMENTS);
 }
 
-static int collect(hn_mj *m, const xmlNode *cls) {
+static bool collect(hn_mj *m, const xmlNode *cls) {
     const xmlNode *other = find_class(m, class_name(m, cls));
+
+    // the top class may stand there several times, any other once
     if (!is_top(m, cls) && !hn_im_attr(m->b, cls, "class")) {
         return hn_im_fault(m->b, cls, NULL, NULL, "a default inside a default needs its 'class'");
     }
@@ -49,34 +51,36 @@ static int collect(hn_mj *m, const xmlNode *cls) {
                            hn_im_line_of(m->b, other));
     }
     if (!check_size(m, cls)) {
-        return 0;
+        return false;
     }
+
+    // the class, then those inside it
     const xmlNode **classes =
         hn_im_grow(m->b, m->classes, m->n_classes, &m->cap_classes, sizeof *classes);
     if (!classes) {
-        return 0;
+        return false;
     }
     m->classes = classes;
     classes[m->n_classes++] = cls;
     for (const xmlNode *c = hn_im_first(cls); c; c = hn_im_next(c)) {
         if (hn_im_is(c, "default") && !collect(m, c)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-int hn_mj_collect_classes(hn_mj *m) {
+bool hn_mj_collect_classes(hn_mj *m) {
     for (const xmlNode *c = hn_im_first(m->root); c; c = hn_im_next(c)) {
         if (hn_im_is(c, "default") && !collect(m, c)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 const xmlNode *hn_mj_class(hn_mj *m, const xmlNode *node, const char *attribute,
-                           const xmlNode *otherwise, int *ok) {
+                           const xmlNode *otherwise, bool *ok) {
     const char *name = hn_im_attr(m->b, node, attribute);
     const xmlNode *cls = name ? find_class(m, name) : otherwise;
     if (name && !cls && strcmp(name, "main") != 0) {
@@ -94,13 +98,13 @@ const xmlNode *hn_mj_class(hn_mj *m, const xmlNode *node, const char *attribute,
 }
 
 hn_mj_element hn_mj_look(hn_mj *m, const xmlNode *node, const xmlNode *childclass) {
-    int ok = 1;
+    bool ok = 1;
     const xmlNode *cls = hn_mj_class(m, node, "class", childclass, &ok);
     return (hn_mj_element){.node = ok ? node : NULL, .defaults = cls};
 }
 
 /// All actuators share one set of defaults, whatever their spelling.
-static int same_defaults(const char *a, const char *b) {
+static bool same_defaults(const char *a, const char *b) {
     static const char actuators[] =
         "general motor position velocity intvelocity damper cylinder muscle adhesion";
     return strcmp(a, b) == 0 || (hn_im_lists(actuators, a) && hn_im_lists(actuators, b));
@@ -131,7 +135,7 @@ const char *hn_mj_attr(hn_mj *m, const hn_mj_element *e, const char *name) {
     return text;
 }
 
-// values -----------------------------------------------------------------------------------------------------
+// ---- values ----
 
 int hn_mj_numbers(hn_mj *m, const hn_mj_element *e, const char *name, int least, int most,
                   double *out) {
@@ -139,13 +143,13 @@ int hn_mj_numbers(hn_mj *m, const hn_mj_element *e, const char *name, int least,
     return text ? hn_im_numbers(m->b, e->node, name, text, least, most, out) : 0;
 }
 
-int hn_mj_number(hn_mj *m, const hn_mj_element *e, const char *name, double otherwise,
-                 double *out) {
+bool hn_mj_number(hn_mj *m, const hn_mj_element *e, const char *name, double otherwise,
+                  double *out) {
     *out = otherwise;
     return hn_mj_numbers(m, e, name, 1, 1, out) >= 0;
 }
 
-int hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwise) {
+bool hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwise) {
     const char *text = hn_mj_attr(m, e, name);
     if (!text || strcmp(text, "auto") == 0) {
         return otherwise;
@@ -162,32 +166,32 @@ int hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, cons
     return hn_mj_flag(m, e, limited, m->autolimits && hn_mj_attr(m, e, range) != NULL);
 }
 
-// orientations -----------------------------------------------------------------------------------------------
+// ---- orientations ----
 
-static int fault_no_direction(hn_mj *m, const hn_mj_element *e, const char *name) {
+static bool fault_no_direction(hn_mj *m, const hn_mj_element *e, const char *name) {
     return hn_im_fault(m->b, e->node, name, NULL, "a direction of length 0");
 }
 
-static int from_quaternion(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
+static bool from_quaternion(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
     double n = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3]);
     if (!(n > 1e-10) || !isfinite(n)) {
         return fault_no_direction(m, e, "quat");
     }
     hn_im_from_quaternion((double[]){x[0] / n, x[1] / n, x[2] / n, x[3] / n}, R);
-    return 1;
+    return true;
 }
 
-static int from_axis_angle(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
+static bool from_axis_angle(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
     double axis[3] = {x[0], x[1], x[2]};
     if (!hn_im_normalise(axis)) {
         return fault_no_direction(m, e, "axisangle");
     }
     hn_im_rotation(axis, x[3] * m->per_angle, R);
-    return 1;
+    return true;
 }
 
 /// x as given, y made perpendicular to it.
-static int from_xy_axes(hn_mj *m, const hn_mj_element *e, const double *v, double R[3][3]) {
+static bool from_xy_axes(hn_mj *m, const hn_mj_element *e, const double *v, double R[3][3]) {
     double x[3] = {v[0], v[1], v[2]}, y[3] = {v[3], v[4], v[5]}, z[3];
     if (!hn_im_normalise(x)) {
         return fault_no_direction(m, e, "xyaxes");
@@ -206,11 +210,11 @@ static int from_xy_axes(hn_mj *m, const hn_mj_element *e, const double *v, doubl
         R[i][2] = z[i];
     }
     hn_im_snap(R);
-    return 1;
+    return true;
 }
 
 /// The shortest turn of z into the direction; about x where that is not one.
-static int from_z_axis(hn_mj *m, const hn_mj_element *e, const double *v, double R[3][3]) {
+static bool from_z_axis(hn_mj *m, const hn_mj_element *e, const double *v, double R[3][3]) {
     double z[3] = {v[0], v[1], v[2]};
     if (!hn_im_normalise(z)) {
         return fault_no_direction(m, e, "zaxis");
@@ -220,11 +224,11 @@ static int from_z_axis(hn_mj *m, const hn_mj_element *e, const double *v, double
         axis[0] = 1;
     }
     hn_im_rotation(axis, angle, R);
-    return 1;
+    return true;
 }
 
 /// Small letters turn about the axes as they are by then, capitals about those of the frame around.
-static int from_euler(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
+static bool from_euler(hn_mj *m, const hn_mj_element *e, const double *x, double R[3][3]) {
     hn_im_frame out = hn_im_frame_unit();
     (void)e;
     for (int k = 0; k < 3; k++) {
@@ -241,14 +245,14 @@ static int from_euler(hn_mj *m, const hn_mj_element *e, const double *x, double 
     }
     hn_im_snap(out.R);
     memcpy(R, out.R, sizeof out.R);
-    return 1;
+    return true;
 }
 
-int hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
+bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
     static const struct {
         const char *name;
         int n;
-        int (*read)(hn_mj *, const hn_mj_element *, const double *, double[3][3]);
+        bool (*read)(hn_mj *, const hn_mj_element *, const double *, double[3][3]);
     } forms[] = {{"quat", 4, from_quaternion},
                  {"axisangle", 4, from_axis_angle},
                  {"xyaxes", 6, from_xy_axes},
@@ -259,6 +263,8 @@ int hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
     double x[6];
     int found = -1;
     memcpy(R, unit.R, sizeof unit.R);
+
+    // its own orientation, given once
     for (int k = 0; k < N_FORMS; k++) {
         if (hn_im_attr(m->b, e->node, forms[k].name)) {
             if (found >= 0) {
@@ -269,17 +275,19 @@ int hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]) {
             found = k;
         }
     }
+
+    // else that of its default class
     for (int k = 0; k < N_FORMS && found < 0; k++) {
         found = hn_mj_attr(m, e, forms[k].name) ? k : -1;
     }
     if (found < 0) {
-        return 1;
+        return true;
     }
     int n = forms[found].n;
     return hn_mj_numbers(m, e, forms[found].name, n, n, x) == n && forms[found].read(m, e, x, R);
 }
 
-int hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out) {
+bool hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out) {
     *out = hn_im_frame_unit();
     return hn_mj_numbers(m, e, "pos", 3, 3, out->p) >= 0 && hn_mj_orientation(m, e, out->R);
 }

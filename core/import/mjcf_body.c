@@ -31,15 +31,15 @@ static void add_site(hn_mj *m, const xmlNode *node, const place *p) {
 }
 
 /// Mass by `inertial` unless geoms are to be asked always.
-static int read_inertial(hn_mj *m, const xmlNode *node, int body, int *needs_geoms) {
+static bool read_inertial(hn_mj *m, const xmlNode *node, int body, int *needs_geoms) {
     const xmlNode *inertial = hn_im_child(node, "inertial");
     hn_im_mass mass;
     *needs_geoms = m->from_geoms == HN_MJ_ALWAYS || (m->from_geoms == HN_MJ_AUTO && !inertial);
     if (!inertial) {
-        return 1;
+        return true;
     }
     if (!hn_mj_inertial(m, inertial, &mass)) {
-        return 0;
+        return false;
     }
     if (*needs_geoms) {
         hn_im_note(m->b, HN_IMPORT_IGNORED, inertial, NULL,
@@ -48,7 +48,7 @@ static int read_inertial(hn_mj *m, const xmlNode *node, int body, int *needs_geo
         m->b->bodies[body].mass = mass;
         m->b->bodies[body].has_mass = 1;
     }
-    return 1;
+    return true;
 }
 
 static void check_static(hn_mj *m, const xmlNode *node) {
@@ -63,18 +63,24 @@ static void read_body(hn_mj *m, const xmlNode *node, const place *around) {
     hn_mj_element e = {.node = node};
     place p = {.at = hn_im_frame_unit()};
     hn_im_frame own, local, world;
-    int ok = 1;
+    bool ok = 1;
+
+    // its place, in the class of the bodies around it
     hn_mj_check(m, node);
     check_static(m, node);
     p.childclass = hn_mj_class(m, node, "childclass", around->childclass, &ok);
     if (!ok || !hn_mj_frame(m, &e, &own)) {
         return;
     }
+
+    // names are unique
     const char *name = hn_im_attr(m->b, node, "name");
     if (name && (hn_im_find_body(m->b, name) >= 0 || strcmp(name, "world") == 0)) {
         hn_im_fault(m->b, node, "name", NULL, "two bodies have the name '%.60s'", name);
         return;
     }
+
+    // in its parent, and in the world
     local = hn_im_frame_mul(&around->at, &own);
     world = around->body == HN_GROUND ? local
                                       : hn_im_frame_mul(&m->b->bodies[around->body].world, &local);
@@ -82,6 +88,8 @@ static void read_body(hn_mj *m, const xmlNode *node, const place *around) {
     if (p.body < 0 || !read_inertial(m, node, p.body, &p.needs_geoms)) {
         return;
     }
+
+    // joints first, then what hangs on it
     hn_mj_join(m, node, p.childclass, around->body, p.body, &local);
     read_children(m, node, &p);
     if (p.needs_geoms) {
@@ -94,7 +102,7 @@ static void read_frame(hn_mj *m, const xmlNode *node, place *around) {
     hn_mj_element e = {.node = node};
     place inner = *around;
     hn_im_frame own;
-    int ok = 1;
+    bool ok = 1;
     hn_mj_check(m, node);
     inner.childclass = hn_mj_class(m, node, "childclass", around->childclass, &ok);
     if (ok && hn_mj_frame(m, &e, &own)) {

@@ -1,4 +1,5 @@
-// Equalities of MJCF close loops: connect is a ball joint, weld a fixed one, joint a gear or a formula of two coordinates.
+// Equalities of MJCF close loops: connect is a ball joint, weld a fixed one, joint a gear or a
+// formula of two coordinates.
 #include "import/mjcf.h"
 
 #include <math.h>
@@ -44,42 +45,43 @@ typedef struct sides {
     hn_im_frame at[2]; ///< what coincides, in each body
 } sides;
 
-static int by_sites(hn_mj *m, const hn_mj_element *e, sides *s) {
+static bool by_sites(hn_mj *m, const hn_mj_element *e, sides *s) {
     static const char *const names[] = {"site1", "site2"};
     for (int k = 0; k < 2; k++) {
         const hn_mj_site *site = find_site(m, e, names[k]);
         if (!site) {
-            return 0;
+            return false;
         }
         s->body[k] = site->body;
         s->at[k] = site->at;
     }
-    return 1;
+    return true;
 }
 
 /// Both bodies hold the place that they have in common where the model is written.
-static int by_anchor(hn_mj *m, const hn_mj_element *e, sides *s) {
+static bool by_anchor(hn_mj *m, const hn_mj_element *e, sides *s) {
     s->at[0] = hn_im_frame_unit();
     if (!hn_im_attr(m->b, e->node, "anchor")) {
         return hn_im_fault(m->b, e->node, NULL, "or 'site1' and 'site2'",
                            "a connect needs its 'anchor'");
     }
     if (hn_mj_numbers(m, e, "anchor", 3, 3, s->at[0].p) < 0) {
-        return 0;
+        return false;
     }
     hn_im_frame first = world_of(m, s->body[0]), second = world_of(m, s->body[1]);
     hn_im_frame back = hn_im_frame_inverse(&second);
     hn_im_frame there = hn_im_frame_mul(&first, &s->at[0]);
     s->at[1] = hn_im_frame_mul(&back, &there);
-    return 1;
+    return true;
 }
 
-/// relpose is the second body seen from the first; a quaternion of zeros stands for the pose the model is written in.
-static int by_pose(hn_mj *m, const hn_mj_element *e, sides *s) {
+/// relpose is the second body seen from the first; a quaternion of zeros stands for the pose the
+/// model is written in.
+static bool by_pose(hn_mj *m, const hn_mj_element *e, sides *s) {
     double x[7];
     int n = hn_mj_numbers(m, e, "relpose", 7, 7, x);
     if (n < 0) {
-        return 0;
+        return false;
     }
     s->at[1] = hn_im_frame_unit();
     double size = n ? sqrt(x[3] * x[3] + x[4] * x[4] + x[5] * x[5] + x[6] * x[6]) : 0;
@@ -87,15 +89,15 @@ static int by_pose(hn_mj *m, const hn_mj_element *e, sides *s) {
         hn_im_frame first = world_of(m, s->body[0]), second = world_of(m, s->body[1]);
         hn_im_frame back = hn_im_frame_inverse(&first);
         s->at[0] = hn_im_frame_mul(&back, &second);
-        return 1;
+        return true;
     }
     memcpy(s->at[0].p, x, sizeof s->at[0].p);
     hn_im_from_quaternion((double[]){x[3] / size, x[4] / size, x[5] / size, x[6] / size},
                           s->at[0].R);
-    return 1;
+    return true;
 }
 
-static int read_sides(hn_mj *m, const hn_mj_element *e, int weld, sides *s) {
+static bool read_sides(hn_mj *m, const hn_mj_element *e, int weld, sides *s) {
     if (hn_im_attr(m->b, e->node, "site1") || hn_im_attr(m->b, e->node, "site2")) {
         return by_sites(m, e, s);
     }
@@ -126,7 +128,7 @@ static void add_closing_joint(hn_mj *m, const hn_mj_element *e, int weld) {
     (void)hn_im_add_joint(m->b, e->node, &j, name ? name : (const char *)e->node->name);
 }
 
-// joints coupled -----------------------------------------------------------------------------------------
+// ---- joints coupled ----
 
 static int find_joint(hn_mj *m, const hn_mj_element *e, const char *attribute) {
     const char *name = hn_im_attr(m->b, e->node, attribute);
@@ -143,7 +145,8 @@ static int find_joint(hn_mj *m, const hn_mj_element *e, const char *attribute) {
     return joint;
 }
 
-/// y - y0 = a0 + a1 (x - x0) + ... + a4 (x - x0)^4, y and x the coordinates, y0 and x0 theirs where the model is written.
+/// y - y0 = a0 + a1 (x - x0) + ... + a4 (x - x0)^4, y and x the coordinates, y0 and x0 theirs where
+/// the model is written.
 static void put_polynomial(hn_mj *m, hn_strbuf *o, const hn_im_joint *y, const hn_im_joint *x,
                            const double a[5]) {
     hn_strbuf f;
@@ -180,13 +183,17 @@ static void put_motion(hn_strbuf *o, const hn_im_joint *y, double value) {
 
 static void couple_joints(hn_mj *m, const hn_mj_element *e) {
     double a[5] = {0, 1, 0, 0, 0};
+
+    // the joints it couples, and the coefficients of the polynomial
     int given = hn_mj_numbers(m, e, "polycoef", 1, 5, a);
     int first = given < 0 ? -1 : find_joint(m, e, "joint1");
-    int alone = !hn_im_attr(m->b, e->node, "joint2");
+    bool alone = !hn_im_attr(m->b, e->node, "joint2");
     int second = first < 0 || alone ? first : find_joint(m, e, "joint2");
     if (second < 0) {
         return;
     }
+
+    // a fixed value, a gear or a formula, by the degree of the polynomial
     const hn_im_joint *y = &m->b->joints[first], *x = &m->b->joints[second];
     const char *name = hn_im_attr(m->b, e->node, "name");
     hn_strbuf o;

@@ -28,8 +28,9 @@ static int find_solid(const char *type) {
 }
 
 /// Two ends on the z axis give centre, direction and the size along it.
-static int place_between(hn_mj *m, const hn_mj_element *e, int kind, const double ends[6],
-                         double size[3], hn_im_frame *at) {
+static bool place_between(hn_mj *m, const hn_mj_element *e, int kind, const double ends[6],
+                          double size[3], hn_im_frame *at) {
+    // the axis and the middle
     double z[3], x[3], y[3];
     for (int i = 0; i < 3; i++) {
         z[i] = ends[i + 3] - ends[i];
@@ -39,8 +40,12 @@ static int place_between(hn_mj *m, const hn_mj_element *e, int kind, const doubl
     if (!hn_im_normalise(z)) {
         return hn_im_fault(m->b, e->node, "fromto", NULL, "the two ends are the same point");
     }
+
+    // the half length along it, twice where a solid has a square section
     size[1] = SOLIDS[kind].squares ? size[0] : half;
     size[2] = SOLIDS[kind].squares ? half : size[2];
+
+    // any directions across will do: the solids are round
     hn_im_across(z, x);
     hn_im_cross(z, x, y);
     for (int i = 0; i < 3; i++) {
@@ -49,15 +54,16 @@ static int place_between(hn_mj *m, const hn_mj_element *e, int kind, const doubl
         at->R[i][2] = z[i];
     }
     hn_im_snap(at->R);
-    return 1;
+    return true;
 }
 
-static int read_shape(hn_mj *m, const hn_mj_element *e, int kind, double size[3], hn_im_frame *at) {
+static bool read_shape(hn_mj *m, const hn_mj_element *e, int kind, double size[3],
+                       hn_im_frame *at) {
     double ends[6];
     int given = hn_mj_numbers(m, e, "size", 1, 3, size);
     int n_ends = hn_mj_numbers(m, e, "fromto", 6, 6, ends);
     if (given < 0 || n_ends < 0 || !hn_mj_frame(m, e, at)) {
-        return 0;
+        return false;
     }
     int between = n_ends && SOLIDS[kind].n_sizes_fromto > 0;
     int needed = between ? SOLIDS[kind].n_sizes_fromto : SOLIDS[kind].n_sizes;
@@ -74,11 +80,11 @@ static int read_shape(hn_mj *m, const hn_mj_element *e, int kind, double size[3]
     return !between || place_between(m, e, kind, ends, size, at);
 }
 
-static int read_mass(hn_mj *m, const hn_mj_element *e, int kind, const double size[3],
-                     double *mass) {
+static bool read_mass(hn_mj *m, const hn_mj_element *e, int kind, const double size[3],
+                      double *mass) {
     double density;
     if (!hn_mj_number(m, e, "density", WATER, &density) || !hn_mj_number(m, e, "mass", -1, mass)) {
-        return 0;
+        return false;
     }
     int by_mass = hn_mj_attr(m, e, "mass") != NULL;
     if (!by_mass) {
@@ -100,7 +106,7 @@ static void count_touching(hn_mj *m, const hn_mj_element *e) {
 }
 
 /// 1 when the geom's group is among those that have mass.
-static int has_mass(hn_mj *m, const hn_mj_element *e) {
+static bool has_mass(hn_mj *m, const hn_mj_element *e) {
     double group;
     return hn_mj_number(m, e, "group", 0, &group) && group >= m->groups[0] && group <= m->groups[1];
 }
@@ -114,6 +120,8 @@ void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const 
     if (!e.node) {
         return;
     }
+
+    // the kind of solid, if it is one
     count_touching(m, &e);
     const char *type = hn_mj_attr(m, &e, "type");
     type = type ? type : hn_mj_attr(m, &e, "mesh") ? "mesh" : "sphere";
@@ -126,6 +134,8 @@ void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const 
                    type);
         return;
     }
+
+    // mass only where the body needs it
     if (!read_shape(m, &e, kind, size, &own) || !read_mass(m, &e, kind, size, &mass) || on_ground ||
         !needed || !has_mass(m, &e)) {
         return;
@@ -134,25 +144,29 @@ void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const 
         hn_im_note(m->b, HN_IMPORT_APPROXIMATED, node, "shellinertia",
                    "a shell of %g kg is taken as a solid of that mass", mass);
     }
+
+    // its share of the body
     hn_im_mass solid = hn_im_solid_mass(SOLIDS[kind].solid, size, mass);
     hn_im_frame place = hn_im_frame_mul(at, &own);
     hn_im_mass moved = hn_im_mass_moved(&solid, &place);
     *sum = hn_im_mass_sum(sum, &moved);
 }
 
-int hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out) {
+bool hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out) {
     hn_mj_element e = hn_mj_look(m, node, NULL);
     hn_im_mass own = {.m = 0};
     hn_im_frame at;
     double mass;
     hn_mj_check(m, node);
     if (!e.node || !hn_mj_frame(m, &e, &at) || !hn_mj_number(m, &e, "mass", -1, &mass)) {
-        return 0;
+        return false;
     }
     if (!hn_im_attr(m->b, node, "mass") || mass < 0) {
         return hn_im_fault(m->b, node, hn_im_attr(m->b, node, "mass") ? "mass" : NULL, NULL,
                            "an 'inertial' needs a mass that is not negative");
     }
+
+    // about its principal axes, or with products of inertia
     int diagonal = hn_mj_numbers(m, &e, "diaginertia", 3, 3, own.I);
     if (diagonal > 0 && hn_im_attr(m->b, node, "fullinertia")) {
         return hn_im_fault(m->b, node, "fullinertia", "keep one of them",
@@ -161,9 +175,9 @@ int hn_mj_inertial(hn_mj *m, const xmlNode *node, hn_im_mass *out) {
     // both orders are xx yy zz xy xz yz
     int full = diagonal > 0 ? 0 : hn_mj_numbers(m, &e, "fullinertia", 6, 6, own.I);
     if (diagonal < 0 || full < 0) {
-        return 0;
+        return false;
     }
     own.m = mass;
     *out = hn_im_mass_moved(&own, &at);
-    return 1;
+    return true;
 }

@@ -1,6 +1,6 @@
-// <include file="..."/>: the elements of another file in the place of this one, anywhere in a model, before anything is read. As in
-// MuJoCo the file's root is left out, whatever it is called, names are relative to the folder of the model's own file, and each
-// file is included once at most.
+// <include file="..."/>: the elements of another file in the place of this one, anywhere in a
+// model, before anything is read. As in MuJoCo the file's root is left out, whatever it is called,
+// names are relative to the folder of the model's own file, and each file is included once at most.
 #include "import/mjcf.h"
 
 #include <ctype.h>
@@ -17,24 +17,29 @@ typedef struct including {
     size_t n_bytes; ///< of all files so far
 } including;
 
-// names ----------------------------------------------------------------------------------------------------
+// ---- names ----
 
-/// "./parts//leg.xml" as "parts/leg.xml", in the arena; NULL after a fault where it leads out of the model's folder.
+/// "./parts//leg.xml" as "parts/leg.xml", in the arena; NULL after a fault where it leads out of
+/// the model's folder.
 static const char *settle_name(including *in, const xmlNode *node, const char *name) {
     const size_t n = strlen(name);
-    const int drive = isalpha((unsigned char)name[0]) && name[1] == ':';
+    const bool drive = isalpha((unsigned char)name[0]) && name[1] == ':';
     char *out = hn_arena_get(in->b->arena, n + 1);
     size_t used = 0;
     if (!out) {
         hn_im_out_of_memory(in->b);
         return NULL;
     }
+
+    // names that lead elsewhere on any system
     if (name[0] == '/' || drive || strchr(name, '\\')) {
         hn_im_fault(in->b, node, "file", "copy it beside the model; folders are parted by /",
                     "'%.80s' is not a file below the model's own folder, and others are not read",
                     name);
         return NULL;
     }
+
+    // part by part, without "." and empty parts
     for (const char *part = name; *part;) {
         const size_t length = strcspn(part, "/");
         if (length == 2 && strncmp(part, "..", 2) == 0) {
@@ -69,7 +74,7 @@ static const char *tell_circle(including *in, const hn_im_file *from, const char
 }
 
 /// 0 after a fault: a file that is there already, or is being read.
-static int check_new(including *in, const xmlNode *node, const char *name) {
+static bool check_new(including *in, const xmlNode *node, const char *name) {
     const hn_im_file *from = hn_im_file_of(in->b, node), *f = from;
     while (f && strcmp(f->name, name) != 0) {
         f = f->includer;
@@ -84,10 +89,10 @@ static int check_new(including *in, const xmlNode *node, const char *name) {
                                "'%.80s' is included already", name);
         }
     }
-    return 1;
+    return true;
 }
 
-// files ----------------------------------------------------------------------------------------------------
+// ---- files ----
 
 static hn_im_file *add_file(including *in, const xmlNode *node, const char *name) {
     hn_im_file *from = hn_im_file_of(in->b, node);
@@ -111,6 +116,8 @@ static xmlDoc *read_file(including *in, const xmlNode *node, hn_im_file *file) {
     hn_diag diag = {0};
     xmlDoc *doc = NULL;
     hn_strbuf_init(&text);
+
+    // the caller reads; sizes are bounded over all files
     const hn_status status = in->source->read(in->source->user, file->name, most, &text, &diag);
     if (status == HN_ERR_MEMORY || text.failed) {
         hn_im_out_of_memory(in->b);
@@ -130,9 +137,9 @@ static xmlDoc *read_file(including *in, const xmlNode *node, hn_im_file *file) {
     return doc;
 }
 
-// trees ----------------------------------------------------------------------------------------------------
+// ---- trees ----
 
-static int expand(including *in, xmlNode *parent);
+static bool expand(including *in, xmlNode *parent);
 
 /// The children of `root` go where `node` stands.
 static void put_in_place(xmlNode *node, xmlNode *root) {
@@ -145,8 +152,10 @@ static void put_in_place(xmlNode *node, xmlNode *root) {
     xmlFreeNode(node);
 }
 
-static int include(including *in, xmlNode *node) {
+static bool include(including *in, xmlNode *node) {
     const char *wanted = hn_im_attr(in->b, node, "file");
+
+    // a file that can be read
     hn_im_check_attributes(in->b, node, USED);
     if (!wanted) {
         return hn_im_fault(in->b, node, NULL, "as in <include file=\"leg.xml\"/>",
@@ -161,10 +170,12 @@ static int include(including *in, xmlNode *node) {
         hn_im_skip_children(in->b, HN_IMPORT_REFUSED, node,
                             "not read: the include around it is replaced by its file");
     }
+
+    // read once, with the files that it includes itself
     const char *name = settle_name(in, node, wanted);
     hn_im_file *file = name && check_new(in, node, name) ? add_file(in, node, name) : NULL;
     xmlDoc *doc = file ? read_file(in, node, file) : NULL;
-    const int ok = doc && expand(in, xmlDocGetRootElement(doc));
+    const bool ok = doc && expand(in, xmlDocGetRootElement(doc));
     if (ok) {
         put_in_place(node, xmlDocGetRootElement(doc));
     }
@@ -173,18 +184,18 @@ static int include(including *in, xmlNode *node) {
 }
 
 /// Every include below an element; 0 after a fault.
-static int expand(including *in, xmlNode *parent) {
+static bool expand(including *in, xmlNode *parent) {
     for (xmlNode *c = parent->children, *next; c; c = next) {
         next = c->next;
-        const int is_include = hn_im_is(c, "include");
+        const bool is_include = hn_im_is(c, "include");
         if (c->type == XML_ELEMENT_NODE && !(is_include ? include(in, c) : expand(in, c))) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-int hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source) {
+bool hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source) {
     including in = {.b = b, .source = source, .doc = doc, .n_bytes = source->n};
     return expand(&in, xmlDocGetRootElement(doc)) &&
            hn_im_check_depth(b, xmlDocGetRootElement(doc), 1);

@@ -1,4 +1,5 @@
-// Joints of MJCF: they act one after the other, the first next to the parent, with a body without mass between two of them.
+// Joints of MJCF: they act one after the other, the first next to the parent, with a body without
+// mass between two of them.
 #include "import/mjcf.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static const joint_type TYPES[] = {{"hinge", HN_JOINT_REVOLUTE},
                                    {"free", HN_JOINT_FREE}};
 enum { N_TYPES = sizeof TYPES / sizeof *TYPES };
 
-static int read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
+static bool read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
     const char *word = hn_im_is(e->node, "freejoint") ? "free" : hn_mj_attr(m, e, "type");
     const char *names[N_TYPES];
     *type = HN_JOINT_REVOLUTE;
@@ -31,7 +32,7 @@ static int read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
         names[k] = TYPES[k].name;
         if (!word || strcmp(word, TYPES[k].name) == 0) {
             *type = TYPES[k].type;
-            return 1;
+            return true;
         }
     }
     const char *near = hn_nearest_name(word, names, N_TYPES);
@@ -42,11 +43,11 @@ static int read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
 }
 
 /// Anchor and axis in the body: where the joint sits before it turns anything.
-static int read_place(hn_mj *m, const hn_mj_element *e, const hn_im_frame *at, int ball,
-                      hn_im_frame *out) {
+static bool read_place(hn_mj *m, const hn_mj_element *e, const hn_im_frame *at, int ball,
+                       hn_im_frame *out) {
     double pos[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
     if (hn_mj_numbers(m, e, "pos", 3, 3, pos) < 0 || hn_mj_numbers(m, e, "axis", 3, 3, axis) < 0) {
-        return 0;
+        return false;
     }
     if (!hn_im_normalise(axis)) {
         return hn_im_fault(m->b, e->node, "axis", NULL, "an axis of length 0");
@@ -59,22 +60,26 @@ static int read_place(hn_mj *m, const hn_mj_element *e, const hn_im_frame *at, i
     } else {
         *out = hn_im_axis_frame(pos, axis);
     }
-    return 1;
+    return true;
 }
 
-static int read_limits(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double unit) {
+static bool read_limits(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double unit) {
     double range[2] = {0, 0};
     if (m->no_limits || !hn_mj_is_limited(m, e, "limited", "range")) {
-        return 1;
+        return true;
     }
+
+    // a ball joint's limit is a cone, which a scene has not
     if (hn_mj_numbers(m, e, "range", 2, 2, range) < 0) {
-        return 0;
+        return false;
     }
     if (j->type == HN_JOINT_SPHERICAL) {
         hn_im_note(m->b, HN_IMPORT_REFUSED, e->node, "range",
                    "the angle of a ball joint has no limit in the scene");
-        return 1;
+        return true;
     }
+
+    // in radians or metres
     if (!(range[0] < range[1])) {
         return hn_im_fault(m->b, e->node, "range", NULL, "the range from %g to %g is empty",
                            range[0], range[1]);
@@ -82,15 +87,15 @@ static int read_limits(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double 
     j->limited = 1;
     j->min = range[0] * unit;
     j->max = range[1] * unit;
-    return 1;
+    return true;
 }
 
 /// Coordinates mean what qpos means: `ref` in the pose in which the model is written.
-static int set_zero(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double unit,
-                    hn_im_frame *in_parent, hn_im_frame *in_child) {
+static bool set_zero(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double unit,
+                     hn_im_frame *in_parent, hn_im_frame *in_child) {
     double ref, turn[3][3];
     if (!hn_mj_number(m, e, "ref", 0, &ref)) {
-        return 0;
+        return false;
     }
     j->zero = j->q0[0] = ref * unit;
     if (j->type == HN_JOINT_REVOLUTE && ref != 0) {
@@ -102,7 +107,7 @@ static int set_zero(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double uni
             in_parent->p[i] -= j->zero * in_parent->R[i][2];
         }
     }
-    return 1;
+    return true;
 }
 
 static void add_spring(hn_mj *m, const char *coordinate, double stiffness, double rest,
@@ -125,7 +130,8 @@ static void add_spring(hn_mj *m, const char *coordinate, double stiffness, doubl
     (void)hn_im_add_text(m->b, &m->b->loads, &o);
 }
 
-/// Force -stiffness (q - springref) - damping v. Of a ball or free joint only the damping is along coordinates.
+/// Force -stiffness (q - springref) - damping v. Of a ball or free joint only the damping is along
+/// coordinates.
 static void read_springs(hn_mj *m, const hn_mj_element *e, int joint, double unit) {
     double stiffness, damping, rest;
     const hn_im_joint *j = &m->b->joints[joint];
@@ -133,18 +139,24 @@ static void read_springs(hn_mj *m, const hn_mj_element *e, int joint, double uni
         !hn_mj_number(m, e, "damping", 0, &damping) || !hn_mj_number(m, e, "springref", 0, &rest)) {
         return;
     }
+
+    // springs and dampers push back
     if (stiffness < 0 || damping < 0) {
         const char *which = stiffness < 0 ? "stiffness" : "damping";
         hn_im_fault(m->b, e->node, which, NULL, "a %s of %g is negative", which,
                     stiffness < 0 ? stiffness : damping);
         return;
     }
+
+    // orientations have no spring in a scene
     if (stiffness != 0 && j->n > 1) {
         hn_im_note(m->b, HN_IMPORT_REFUSED, e->node, "stiffness",
                    "a spring on the orientation of a %s joint is not in the scene",
                    hn_joint_type_name(j->type));
         stiffness = 0;
     }
+
+    // one load for each coordinate
     stiffness = m->no_springs ? 0 : stiffness;
     damping = m->no_dampers ? 0 : damping;
     for (int k = 0; k < j->n && (stiffness != 0 || damping != 0); k++) {
@@ -178,7 +190,7 @@ static void remember_moving(hn_mj *m, int joint) {
     }
 }
 
-static int start_free(hn_mj *m, const hn_mj_element *e, const chain *c, hn_im_joint *j) {
+static bool start_free(hn_mj *m, const hn_mj_element *e, const chain *c, hn_im_joint *j) {
     if (c->parent != HN_GROUND || c->n > 1) {
         return hn_im_fault(m->b, e->node, NULL, NULL,
                            c->n > 1
@@ -189,7 +201,7 @@ static int start_free(hn_mj *m, const hn_mj_element *e, const chain *c, hn_im_jo
     memcpy(R, c->local.R, sizeof R);
     memcpy(j->q0, c->local.p, sizeof c->local.p);
     hn_im_rotation_vector(R, j->q0 + 3);
-    return 1;
+    return true;
 }
 
 static void add_joint(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
@@ -201,12 +213,16 @@ static void add_joint(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
     if (!e.node || !read_type(m, &e, &j.type)) {
         return;
     }
+
+    // a name of its own
     double unit = j.type == HN_JOINT_PRISMATIC ? 1 : m->per_angle;
     if (j.source && hn_im_find_joint(m->b, j.source) >= 0) {
         hn_im_fault(m->b, node, "name", NULL, "two joints have the name '%.60s'", j.source);
         return;
     }
-    int whole = j.type == HN_JOINT_SPHERICAL || j.type == HN_JOINT_FREE;
+
+    // where it sits in child and parent
+    bool whole = j.type == HN_JOINT_SPHERICAL || j.type == HN_JOINT_FREE;
     if (!read_place(m, &e, at, whole, &in_child) || !read_limits(m, &e, &j, unit)) {
         return;
     }
@@ -219,6 +235,8 @@ static void add_joint(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
     } else if (!whole && !set_zero(m, &e, &j, unit, &in_parent, &in_child)) {
         return;
     }
+
+    // the body it carries: the next without mass, or the body itself
     const char *wanted = j.source    ? j.source
                          : c->n == 1 ? c->body_name
                                      : hn_im_text(m->b, "%.40s_%d", c->body_name, c->done + 1);
@@ -227,6 +245,8 @@ static void add_joint(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
     if (j.child < 0) {
         return;
     }
+
+    // the joint, and what acts along it
     hn_im_set_sides(&j, &in_parent, &in_child);
     int joint = hn_im_add_joint(m->b, node, &j, wanted);
     if (joint >= 0) {
@@ -238,7 +258,7 @@ static void add_joint(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
     }
 }
 
-static int is_joint(const xmlNode *node) {
+static bool is_joint(const xmlNode *node) {
     return hn_im_is(node, "joint") || hn_im_is(node, "freejoint");
 }
 
@@ -257,7 +277,7 @@ static void walk_joints(hn_mj *m, const xmlNode *node, const xmlNode *childclass
         if (is_joint(c)) {
             add_joint(m, c, childclass, at, links);
         } else if (hn_im_is(c, "frame")) {
-            int ok = 1;
+            bool ok = 1;
             hn_mj_element e = {.node = c};
             const xmlNode *inner = hn_mj_class(m, c, "childclass", childclass, &ok);
             hn_im_frame own;

@@ -1,4 +1,5 @@
-// What the reader of MJCF does with every attribute it knows. Attributes it does not know are named as such.
+// What the reader of MJCF does with every attribute it knows. Attributes it does not know are named
+// as such.
 #include "import/mjcf.h"
 
 #include <string.h>

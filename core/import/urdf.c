@@ -1,4 +1,7 @@
-// URDF: links and joints by name, a tree whose root stands on the ground. Semantics after the ROS wiki (urdf/XML).
+// URDF: links and joints by name, a tree whose root stands on the ground. Semantics after the ROS
+// wiki (urdf/XML).
+#include "import/urdf.h"
+
 #include "import/xml.h"
 
 #include <math.h>
@@ -48,25 +51,25 @@ static const char *need(urdf *u, const xmlNode *node, const char *attribute) {
 }
 
 /// Fixed axes: about x, then y, then z of the frame around.
-static int read_origin(urdf *u, const xmlNode *around, hn_im_frame *out) {
+static bool read_origin(urdf *u, const xmlNode *around, hn_im_frame *out) {
     static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const xmlNode *origin = hn_im_child(around, "origin");
     double rpy[3] = {0, 0, 0}, turn[3][3];
     *out = hn_im_frame_unit();
     if (!origin) {
-        return 1;
+        return true;
     }
     hn_im_check_attributes(u->b, origin, ORIGIN);
     if (hn_im_vector(u->b, origin, "xyz", 3, out->p) < 0 ||
         hn_im_vector(u->b, origin, "rpy", 3, rpy) < 0) {
-        return 0;
+        return false;
     }
     for (int k = 0; k < 3; k++) {
         hn_im_rotation(axes[k], rpy[k], turn);
         hn_im_mul(turn, out->R, out->R);
     }
     hn_im_snap(out->R);
-    return 1;
+    return true;
 }
 
 /// Names children of an element that are not among `known`.
@@ -86,28 +89,30 @@ static void name_others(urdf *u, const xmlNode *node, const char *known) {
     }
 }
 
-// links ------------------------------------------------------------------------------------------------------
+// ---- links ----
 
-static int read_inertia(urdf *u, const xmlNode *node, double I[6]) {
+static bool read_inertia(urdf *u, const xmlNode *node, double I[6]) {
     static const char *const names[] = {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
     hn_im_check_attributes(u->b, node, INERTIA);
     for (int k = 0; k < 6; k++) {
         if ((k < 3 && !need(u, node, names[k])) ||
             hn_im_vector(u->b, node, names[k], 1, &I[k]) < 0) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int read_mass(urdf *u, const xmlNode *link, hn_im_mass *out) {
+static bool read_mass(urdf *u, const xmlNode *link, hn_im_mass *out) {
     const xmlNode *inertial = hn_im_child(link, "inertial");
     hn_im_mass own = {.m = 0};
     hn_im_frame at;
     *out = own;
     if (!inertial) {
-        return 1;
+        return true;
     }
+
+    // its mass, and its inertia if it has one
     const xmlNode *mass = hn_im_child(inertial, "mass"),
                   *inertia = hn_im_child(inertial, "inertia");
     hn_im_check_attributes(u->b, inertial, INERTIAL);
@@ -118,34 +123,34 @@ static int read_mass(urdf *u, const xmlNode *link, hn_im_mass *out) {
     hn_im_check_attributes(u->b, mass, MASS);
     if (!read_origin(u, inertial, &at) || hn_im_vector(u->b, mass, "value", 1, &own.m) < 0 ||
         (inertia && !read_inertia(u, inertia, own.I))) {
-        return 0;
+        return false;
     }
     if (own.m < 0) {
         return hn_im_fault(u->b, mass, "value", NULL, "a mass of %g kg is negative", own.m);
     }
     *out = hn_im_mass_moved(&own, &at);
-    return 1;
+    return true;
 }
 
-static int add_link(urdf *u, int link, const hn_im_frame *world) {
+static bool add_link(urdf *u, int link, const hn_im_frame *world) {
     const xmlNode *node = u->links[link];
     hn_im_mass mass;
     hn_im_check_attributes(u->b, node, LINK);
     name_others(u, node, "inertial");
     if (!read_mass(u, node, &mass)) {
-        return 0;
+        return false;
     }
     int body = hn_im_add_body(u->b, node, need(u, node, "name"), world);
     if (body < 0) {
-        return 0;
+        return false;
     }
     u->b->bodies[body].mass = mass;
     u->b->bodies[body].has_mass = mass.m > 0;
     u->body[link] = body;
-    return 1;
+    return true;
 }
 
-// joints -----------------------------------------------------------------------------------------------------
+// ---- joints ----
 
 static const struct {
     const char *name;
@@ -172,17 +177,19 @@ static int read_type(urdf *u, const xmlNode *node) {
     return -1;
 }
 
-static int read_limits(urdf *u, const xmlNode *node, int kind, hn_im_joint *j) {
+static bool read_limits(urdf *u, const xmlNode *node, int kind, hn_im_joint *j) {
     const xmlNode *limit = hn_im_child(node, "limit");
     if (!limit) {
         return !TYPES[kind].needs_limit ||
                hn_im_fault(u->b, node, NULL, "or make it continuous",
                            "a %s joint needs its 'limit'", TYPES[kind].name);
     }
+
+    // an empty range is a fault, one of no width is none
     hn_im_check_attributes(u->b, limit, LIMIT);
     if (hn_im_vector(u->b, limit, "lower", 1, &j->min) < 0 ||
         hn_im_vector(u->b, limit, "upper", 1, &j->max) < 0) {
-        return 0;
+        return false;
     }
     if (j->min > j->max) {
         return hn_im_fault(u->b, limit, NULL, NULL, "the range from %g to %g is empty", j->min,
@@ -198,47 +205,53 @@ static int read_limits(urdf *u, const xmlNode *node, int kind, hn_im_joint *j) {
         hn_im_note(u->b, HN_IMPORT_IGNORED, limit, NULL, "a %s joint has no range",
                    TYPES[kind].name);
     }
-    return 1;
+    return true;
 }
 
-static int read_axis(urdf *u, const xmlNode *node, int kind, hn_im_frame *in_child) {
+static bool read_axis(urdf *u, const xmlNode *node, int kind, hn_im_frame *in_child) {
     static const double nowhere[3] = {0, 0, 0};
     const xmlNode *element = hn_im_child(node, "axis");
     double axis[3] = {1, 0, 0};
     *in_child = hn_im_frame_unit();
+
+    // types without axis
     if (!TYPES[kind].has_axis) {
         if (element) {
             hn_im_note(u->b, HN_IMPORT_IGNORED, element, NULL, "a %s joint has no axis",
                        TYPES[kind].name);
         }
-        return 1;
+        return true;
     }
+
+    // x unless the file says otherwise
     if (element) {
         hn_im_check_attributes(u->b, element, AXIS);
         if (!need(u, element, "xyz") || hn_im_vector(u->b, element, "xyz", 3, axis) < 0) {
-            return 0;
+            return false;
         }
     }
     if (!hn_im_normalise(axis)) {
         return hn_im_fault(u->b, element, "xyz", NULL, "an axis of length 0");
     }
     *in_child = hn_im_axis_frame(nowhere, axis);
-    return 1;
+    return true;
 }
 
-static int add_damping(urdf *u, const xmlNode *node, int joint) {
+static bool add_damping(urdf *u, const xmlNode *node, int joint) {
     const xmlNode *dynamics = hn_im_child(node, "dynamics");
     double damping = 0;
     if (!dynamics) {
-        return 1;
+        return true;
     }
     hn_im_check_attributes(u->b, dynamics, DYNAMICS);
     if (hn_im_vector(u->b, dynamics, "damping", 1, &damping) < 0) {
-        return 0;
+        return false;
     }
     if (damping < 0) {
         return hn_im_fault(u->b, dynamics, "damping", NULL, "a damping of %g is negative", damping);
     }
+
+    // a damper along each coordinate
     for (int k = 0; k < u->b->joints[joint].n && damping > 0; k++) {
         hn_strbuf o;
         hn_strbuf_init(&o);
@@ -250,30 +263,36 @@ static int add_damping(urdf *u, const xmlNode *node, int joint) {
         hn_json_end_object(&o);
         hn_json_end_object(&o);
         if (!hn_im_add_text(u->b, &u->b->loads, &o)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int add_joint(urdf *u, int index) {
+static bool add_joint(urdf *u, int index) {
     const xmlNode *node = u->joints[index];
     const char *name = need(u, node, "name");
     int kind = name ? read_type(u, node) : -1, parent = u->body[u->parent[index]];
+
+    // type, place and axis
     hn_im_frame origin, in_child;
     hn_im_check_attributes(u->b, node, JOINT);
     name_others(u, node, "origin parent child axis limit dynamics mimic");
     if (kind < 0 || !read_origin(u, node, &origin) || !read_axis(u, node, kind, &in_child)) {
-        return 0;
+        return false;
     }
+
+    // the name, and the link that hangs on it
     hn_im_joint j = {.source = name, .type = TYPES[kind].type, .parent = parent};
     if (hn_im_find_joint(u->b, name) >= 0) {
         return hn_im_fault(u->b, node, "name", NULL, "two joints have the name '%.60s'", name);
     }
     hn_im_frame world = hn_im_frame_mul(&u->b->bodies[parent].world, &origin);
     if (!read_limits(u, node, kind, &j) || !add_link(u, u->child[index], &world)) {
-        return 0;
+        return false;
     }
+
+    // where it sits in both
     hn_im_frame in_parent = hn_im_frame_mul(&origin, &in_child);
     j.child = u->body[u->child[index]];
     hn_im_set_sides(&j, &in_parent, &in_child);
@@ -282,23 +301,27 @@ static int add_joint(urdf *u, int index) {
 }
 
 /// q = multiplier q_other + offset
-static int add_mimic(urdf *u, const xmlNode *node) {
+static bool add_mimic(urdf *u, const xmlNode *node) {
     const xmlNode *mimic = hn_im_child(node, "mimic");
     double multiplier = 1, offset = 0;
     if (!mimic) {
-        return 1;
+        return true;
     }
     hn_im_check_attributes(u->b, mimic, MIMIC);
     const char *other = need(u, mimic, "joint");
     if (!other || hn_im_vector(u->b, mimic, "multiplier", 1, &multiplier) < 0 ||
         hn_im_vector(u->b, mimic, "offset", 1, &offset) < 0) {
-        return 0;
+        return false;
     }
+
+    // both joints have one coordinate
     int a = hn_im_find_joint(u->b, need(u, node, "name")), c = hn_im_find_joint(u->b, other);
     if (a < 0 || c < 0 || u->b->joints[a].n != 1 || u->b->joints[c].n != 1 || a == c) {
         return hn_im_fault(u->b, mimic, "joint", "name another joint with one coordinate",
                            "the joint cannot follow '%.60s'", other);
     }
+
+    // a gear, or a fixed value where the multiplier is zero
     hn_strbuf o;
     hn_strbuf_init(&o);
     hn_json_object(&o);
@@ -323,7 +346,7 @@ static int add_mimic(urdf *u, const xmlNode *node) {
     return hn_im_add_text(u->b, &u->b->constraints, &o);
 }
 
-// the tree -----------------------------------------------------------------------------------------------------
+// ---- the tree ----
 
 static int find_link(urdf *u, const xmlNode *joint, const char *side) {
     const xmlNode *node = hn_im_child(joint, side);
@@ -345,7 +368,7 @@ static int find_link(urdf *u, const xmlNode *joint, const char *side) {
     return -1;
 }
 
-static int check_names(urdf *u) {
+static bool check_names(urdf *u) {
     for (int i = 0; i < u->n_links; i++) {
         const char *name = need(u, u->links[i], "name");
         for (int k = 0; k < i && name; k++) {
@@ -355,13 +378,14 @@ static int check_names(urdf *u) {
             }
         }
         if (!name) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int collect(urdf *u) {
+static bool collect(urdf *u) {
+    // room for as many links and joints as there are elements
     int n = 0;
     for (const xmlNode *c = hn_im_first(u->root); c; c = hn_im_next(c)) {
         n++;
@@ -376,6 +400,8 @@ static int collect(urdf *u) {
     if (hn_arena_failed(u->b->arena)) {
         return hn_im_out_of_memory(u->b);
     }
+
+    // one list each
     for (const xmlNode *c = hn_im_first(u->root); c; c = hn_im_next(c)) {
         if (hn_im_is(c, "link")) {
             u->links[u->n_links++] = c;
@@ -391,7 +417,7 @@ static int collect(urdf *u) {
     return check_names(u);
 }
 
-static int link_up(urdf *u) {
+static bool link_up(urdf *u) {
     for (int i = 0; i < u->n_links; i++) {
         u->carrier[i] = u->body[i] = -1;
     }
@@ -399,7 +425,7 @@ static int link_up(urdf *u) {
         u->parent[k] = find_link(u, u->joints[k], "parent");
         u->child[k] = u->parent[k] < 0 ? -1 : find_link(u, u->joints[k], "child");
         if (u->child[k] < 0) {
-            return 0;
+            return false;
         }
         if (u->carrier[u->child[k]] >= 0) {
             return hn_im_fault(u->b, u->joints[k], NULL,
@@ -409,7 +435,7 @@ static int link_up(urdf *u) {
         }
         u->carrier[u->child[k]] = k;
     }
-    return 1;
+    return true;
 }
 
 static int find_root(urdf *u) {
@@ -431,11 +457,11 @@ static int find_root(urdf *u) {
     return root;
 }
 
-static int mount(urdf *u, int root) {
+static bool mount(urdf *u, int root) {
     hn_im_frame unit = hn_im_frame_unit();
     hn_im_joint j = {.type = HN_JOINT_FIXED, .parent = HN_GROUND};
     if (!add_link(u, root, &unit)) {
-        return 0;
+        return false;
     }
     j.child = u->body[root];
     hn_im_set_sides(&j, &unit, &unit);
@@ -446,19 +472,22 @@ static int mount(urdf *u, int root) {
 }
 
 /// Joints whose parent is made, round after round.
-static int grow(urdf *u) {
+static bool grow(urdf *u) {
+    // joint by joint outwards from the root, as long as that finds new links
     for (int made = 1, left = u->n_joints; left > 0 && made;) {
         made = 0;
         for (int k = 0; k < u->n_joints; k++) {
             if (u->body[u->parent[k]] >= 0 && u->body[u->child[k]] < 0) {
                 if (!add_joint(u, k)) {
-                    return 0;
+                    return false;
                 }
                 made = 1;
                 left--;
             }
         }
     }
+
+    // what it never reached
     for (int i = 0; i < u->n_links; i++) {
         if (u->body[i] < 0) {
             return hn_im_fault(u->b, u->links[i], NULL, NULL,
@@ -466,23 +495,23 @@ static int grow(urdf *u) {
                                need(u, u->links[i], "name"));
         }
     }
-    return 1;
+    return true;
 }
 
-int hn_im_read_urdf(hn_build *b, const xmlNode *root) {
+bool hn_im_read_urdf(hn_build *b, const xmlNode *root) {
     urdf u = {.b = b, .root = root};
     b->gravity[2] = -9.81;
     hn_im_check_attributes(b, root, ROBOT);
     if (!collect(&u) || !link_up(&u)) {
-        return 0;
+        return false;
     }
     int first = find_root(&u);
     if (first < 0 || !mount(&u, first) || !grow(&u)) {
-        return 0;
+        return false;
     }
     for (int k = 0; k < u.n_joints; k++) {
         if (!add_mimic(&u, u.joints[k])) {
-            return 0;
+            return false;
         }
     }
     b->name = hn_im_attr(b, root, "name");

@@ -1,16 +1,16 @@
 // The mechanism as scene JSON, a body, joint or load a line.
-#include "import/build.h"
+#include "import/write.h"
 
 #include <math.h>
 #include <string.h>
 
-static int is_zero(const double *x, int n) {
+static bool is_zero(const double *x, int n) {
     for (int i = 0; i < n; i++) {
         if (x[i] != 0) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static void put_vector(hn_strbuf *o, const char *key, const double x[3]) {
@@ -21,6 +21,8 @@ static void write_params(const hn_build *b, hn_strbuf *o) {
     if (b->n_params == 0) {
         return;
     }
+
+    // each with its unit and its range as far as they are known
     hn_json_key(o, "parameters");
     hn_json_object(o);
     for (int i = 0; i < b->n_params; i++) {
@@ -50,6 +52,8 @@ static void write_body(const hn_im_body *body, hn_strbuf *o) {
     if (body->about) {
         hn_json_put_string(o, "about", body->about);
     }
+
+    // zeros are left out
     hn_json_put_number(o, "mass", body->mass.m);
     if (!is_zero(body->mass.c, 3)) {
         put_vector(o, "com", body->mass.c);
@@ -101,6 +105,8 @@ static void write_joint(const hn_build *b, const hn_im_joint *j, hn_strbuf *o) {
     if (j->about) {
         hn_json_put_string(o, "about", j->about);
     }
+
+    // parent first; the child says its directions only where they differ
     hn_json_put_string(o, "type", hn_joint_type_name(j->type));
     write_side(b, o, "parent", j->parent, j->parent_at);
     hn_json_end_object(o);
@@ -113,6 +119,8 @@ static void write_joint(const hn_build *b, const hn_im_joint *j, hn_strbuf *o) {
     hn_json_end_object(o);
     put_vector(o, "axis", j->parent_axis);
     put_vector(o, "ref", j->parent_ref);
+
+    // names of coordinates, and how the joint is used
     write_names(j, o);
     if (j->cut) {
         hn_json_put_bool(o, "cut", 1);
@@ -160,10 +168,14 @@ static void write_document(const hn_build *b, hn_strbuf *o) {
     hn_json_put_int(o, "holonom", 1);
     hn_json_put_string(o, "name", b->name);
     hn_json_put_string(o, "about", b->about);
+
+    // what moves
     write_params(b, o);
     if (!is_zero(b->gravity, 3)) {
         put_vector(o, "gravity", b->gravity);
     }
+
+    // the tree, then the joints that close its loops
     hn_json_key(o, "bodies");
     hn_json_array(o);
     for (int i = 0; i < b->n_bodies; i++) {
@@ -179,8 +191,12 @@ static void write_document(const hn_build *b, hn_strbuf *o) {
         hn_json_raw(o, b->closing.item[i]);
     }
     hn_json_end_array(o);
+
+    // what holds and pushes it
     write_texts("constraints", &b->constraints, o);
     write_texts("loads", &b->loads, o);
+
+    // where it starts
     hn_json_key(o, "start");
     hn_json_object(o);
     write_values(b, o, "positions", 0);
@@ -196,11 +212,14 @@ static void break_line(hn_strbuf *out, int depth) {
     hn_strbuf_printf(out, "\n%*s", 2 * depth, "");
 }
 
-/// Lines where the first two levels open, close and go on; lists of numbers and what is deeper stay in their line.
+/// Lines where the first two levels open, close and go on; lists of numbers and what is deeper stay
+/// in their line.
 static void lay_out(const char *json, hn_strbuf *out) {
     enum { LEVELS = 2 };
     int depth = 0, in_string = 0,
         numbers = 0; // numbers: the depth of the list of numbers that is open
+
+    // character by character: what stands between two of them depends on depth and kind
     for (const char *c = json; *c; c++) {
         const int opens = !in_string && (*c == '{' || *c == '[');
         const int closes = !in_string && (*c == '}' || *c == ']');

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// parsing ------------------------------------------------------------------------------------------------
+// ---- parsing ----
 
 /// A document type can declare entities that grow without bound, and no mechanism needs one.
 static void meet_document_type(void *context, const xmlChar *name, const xmlChar *external,
@@ -25,7 +25,7 @@ static void keep_quiet(void *context, xmlErrorPtr error) {
     (void)error;
 }
 
-static int tell_syntax(hn_build *b, const hn_im_file *file, const xmlParserCtxt *parser) {
+static bool tell_syntax(hn_build *b, const hn_im_file *file, const xmlParserCtxt *parser) {
     const xmlError *e = &parser->lastError;
     char text[300];
     (void)snprintf(text, sizeof text, "%s", e->message ? e->message : "not XML");
@@ -38,23 +38,23 @@ static int tell_syntax(hn_build *b, const hn_im_file *file, const xmlParserCtxt 
     (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, NULL, "%s, column %d: %s",
                        hn_im_line(b, file, e->line > 0 ? e->line : 1), e->int2 > 0 ? e->int2 : 1,
                        text);
-    return 0;
+    return false;
 }
 
-int hn_im_check_depth(hn_build *b, const xmlNode *node, int depth) {
+bool hn_im_check_depth(hn_build *b, const xmlNode *node, int depth) {
     if (depth > HN_IMPORT_MAX_DEPTH) {
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
                            "%s: elements are nested more than %d deep", hn_im_line_of(b, node),
                            HN_IMPORT_MAX_DEPTH);
-        return 0;
+        return false;
     }
     for (const xmlNode *c = hn_im_first(node); c; c = hn_im_next(c)) {
         if (!hn_im_check_depth(b, c, depth + 1)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 /// Only included files need telling.
@@ -76,6 +76,8 @@ static xmlDoc *parse(hn_build *b, hn_im_file *file, xmlParserCtxt *parser, const
     xmlDoc *doc = xmlCtxtReadMemory(parser, text, (int)n, NULL, NULL,
                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
                                         XML_PARSE_NOCDATA | XML_PARSE_BIG_LINES);
+
+    // a document type could pull in files and entities
     if (document_type) {
         b->status = HN_ERR_INPUT;
         (void)hn_diags_add(b->diags, HN_ERR_INPUT, NULL, "take the <!DOCTYPE ...> out",
@@ -118,9 +120,9 @@ xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
     return doc;
 }
 
-// elements and attributes ----------------------------------------------------------------------------------
+// ---- elements and attributes ----
 
-int hn_im_is(const xmlNode *node, const char *name) {
+bool hn_im_is(const xmlNode *node, const char *name) {
     return node && node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
 }
 
@@ -168,11 +170,11 @@ const char *hn_im_attr(hn_build *b, const xmlNode *node, const char *name) {
 }
 
 /// A decimal number, whatever sign the locale has for the point; hexadecimal, inf and nan are none.
-static int read_number(const char *word, size_t n, double *out) {
+static bool read_number(const char *word, size_t n, double *out) {
     enum { ROOM = 64 };
     char copy[ROOM];
     if (n == 0 || n >= ROOM || strspn(word, "+-.0123456789eE") < n) {
-        return 0;
+        return false;
     }
     memcpy(copy, word, n);
     copy[n] = '\0';
@@ -188,6 +190,8 @@ int hn_im_numbers(hn_build *b, const xmlNode *node, const char *attribute, const
                   int least, int most, double *out) {
     static const char SPACE[] = " \t\r\n";
     int n = 0;
+
+    // each word is one number
     for (const char *p = text + strspn(text, SPACE); *p; p += strspn(p, SPACE)) {
         size_t length = strcspn(p, SPACE);
         double value;
@@ -202,6 +206,8 @@ int hn_im_numbers(hn_build *b, const xmlNode *node, const char *attribute, const
         n++;
         p += length;
     }
+
+    // too few or too many
     if (n < least || n > most) {
         if (least == most) {
             hn_im_fault(b, node, attribute, NULL, "%d numbers, expected %d", n, least);
@@ -231,23 +237,23 @@ int hn_im_flag(hn_build *b, const xmlNode *node, const char *attribute, int othe
     return yes;
 }
 
-int hn_im_lists(const char *list, const char *word) {
+bool hn_im_lists(const char *list, const char *word) {
     size_t n = strlen(word);
     for (const char *p = list; *p;) {
         size_t length = strcspn(p, " ");
         if (length == n && memcmp(p, word, n) == 0) {
-            return 1;
+            return true;
         }
         p += length;
         p += strspn(p, " ");
     }
-    return 0;
+    return false;
 }
 
-// what is not used -----------------------------------------------------------------------------------------
+// ---- what is not used ----
 
 /// Numbers, all of them 0.
-static int is_zero(const char *text) {
+static bool is_zero(const char *text) {
     return text[0] && text[strspn(text, " \t\r\n+-0.")] == '\0';
 }
 

@@ -2,6 +2,7 @@
 
 #include "render/canvas_record.h"
 
+#include <stdbool.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -68,16 +69,16 @@ hn_stroke hn_stroke_solid(uint32_t rgb, double width) {
     return (hn_stroke){.paint = {rgb, 1}, .width = width};
 }
 
-// ---- recording --------------------------------------------------------------------------------------------------
+// ---- recording ----
 
 /// Room for `more` items of `size` bytes; 0, and the canvas failed, when memory is out.
-static int make_room(hn_canvas *c, void **items, int *cap, int n, int more, size_t size) {
+static bool make_room(hn_canvas *c, void **items, int *cap, int n, int more, size_t size) {
     if (c->failed || more > INT_MAX / 4 - n) {
         c->failed = 1;
-        return 0;
+        return false;
     }
     if (n + more <= *cap) {
-        return 1;
+        return true;
     }
     int wanted = *cap > 0 ? *cap : FIRST_CAP;
     while (wanted < n + more) {
@@ -86,19 +87,19 @@ static int make_room(hn_canvas *c, void **items, int *cap, int n, int more, size
     void *grown = realloc(*items, (size_t)wanted * size);
     if (grown == NULL) {
         c->failed = 1;
-        return 0;
+        return false;
     }
     *items = grown;
     *cap = wanted;
-    return 1;
+    return true;
 }
 
-static int add_layer(hn_canvas *c, double opacity) {
+static bool add_layer(hn_canvas *c, double opacity) {
     if (!make_room(c, (void **)&c->layers, &c->cap_layers, c->n_layers, 1, sizeof *c->layers)) {
-        return 0;
+        return false;
     }
     c->layers[c->n_layers++] = fmin(1, fmax(0, opacity));
-    return 1;
+    return true;
 }
 
 void hn_record_begin(hn_canvas *c, hn_paint paint) {
@@ -159,7 +160,7 @@ void hn_canvas_unclip(hn_canvas *c) {
     hn_canvas_clip(c, 0, 0, c->width, c->height);
 }
 
-// ---- filled shapes ----------------------------------------------------------------------------------------------
+// ---- filled shapes ----
 
 /// Corners of a circle so that its chords stay within 0.05 px of it.
 static int circle_steps(double radius) {
@@ -201,11 +202,11 @@ static double signed_area(const double *xy, int n) {
 }
 
 /// 1 if corner i of the ring is an ear: convex, and no other corner inside its triangle.
-static int is_ear(const double *xy, const int *ring, int n, int i, double sense) {
+static bool is_ear(const double *xy, const int *ring, int n, int i, double sense) {
     const double *a = xy + 2 * ring[(i + n - 1) % n], *b = xy + 2 * ring[i],
                  *d = xy + 2 * ring[(i + 1) % n];
     if (sense * cross(a, b, d) <= 0) {
-        return 0;
+        return false;
     }
     for (int k = 0; k < n; k++) {
         const double *p = xy + 2 * ring[k];
@@ -214,13 +215,14 @@ static int is_ear(const double *xy, const int *ring, int n, int i, double sense)
         }
         if (sense * cross(a, b, p) > 0 && sense * cross(b, d, p) > 0 &&
             sense * cross(d, a, p) > 0) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-/// Cuts off ears (Meisters, American Mathematical Monthly 82 (1975) 648); O(n^3) at worst, polygons are small.
+/// Cuts off ears (Meisters, American Mathematical Monthly 82 (1975) 648); O(n^3) at worst, polygons
+/// are small.
 static void record_polygon(hn_canvas *c, const double *xy, int n, int *ring) {
     const double sense = signed_area(xy, n) >= 0 ? 1 : -1;
     for (int i = 0; i < n; i++) {

@@ -1,13 +1,16 @@
 #ifndef HN_RENDER_CANVAS_H
 #define HN_RENDER_CANVAS_H
-// A small drawing surface: shapes are recorded as triangles, then painted by OSMesa off the screen, tile by tile at
-// four times the size in both directions and averaged down, so that every edge has 17 levels and memory stays small.
+// A small drawing surface: shapes are recorded as triangles, then painted by OSMesa off the screen,
+// tile by tile at four times the size in both directions and averaged down, so that every edge has
+// 17 levels and memory stays small.
 //
-// Coordinates are pixels, x right, y down, (0, 0) the upper left corner. Colours are 0xRRGGBB, mixed as sRGB values.
-// One shape never covers itself twice: a translucent line that crosses itself has one shade. A layer (begin ... end)
-// holds several shapes to the same rule, the last drawn on top, so that a whole mechanism can be shown at 60 %.
+// Coordinates are pixels, x right, y down, (0, 0) the upper left corner. Colours are 0xRRGGBB,
+// mixed as sRGB values. One shape never covers itself twice: a translucent line that crosses itself
+// has one shade. A layer (begin ... end) holds several shapes to the same rule, the last drawn on
+// top, so that a whole mechanism can be shown at 60 %.
 //
-// Drawing calls cannot fail visibly; when memory runs out the canvas remembers, and painting says so.
+// Drawing calls cannot fail visibly; when memory runs out the canvas remembers, and painting says
+// so.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -17,8 +20,8 @@ enum { HN_CANVAS_MIN = 16, HN_CANVAS_MAX = 4096, HN_CANVAS_SAMPLES = 4 };
 
 typedef struct hn_canvas hn_canvas;
 
-/// A sheet of the theme's paper, width x height pixels in HN_CANVAS_MIN..HN_CANVAS_MAX. Fails: HN_ERR_LIMIT
-/// (pointer "/width" or "/height"), HN_ERR_MEMORY.
+/// A sheet of the theme's paper, width x height pixels in HN_CANVAS_MIN..HN_CANVAS_MAX. Fails:
+/// HN_ERR_LIMIT (pointer "/width" or "/height"), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_canvas_create(int width, int height, hn_theme theme, hn_canvas **out,
                                          hn_diag *diag);
 void hn_canvas_free(hn_canvas *c); ///< NULL is legal
@@ -42,7 +45,8 @@ typedef struct hn_stroke {
 hn_paint hn_paint_solid(uint32_t rgb);
 hn_stroke hn_stroke_solid(uint32_t rgb, double width);
 
-// shapes: xy holds n points x, y; points that are not finite are left out with their segments ---------------------
+// ---- shapes ----
+// xy holds n points x, y; points that are not finite are left out with their segments
 
 /// Round ends and joints.
 void hn_canvas_line(hn_canvas *c, const double *xy, int n, const hn_stroke *stroke);
@@ -52,16 +56,17 @@ void hn_canvas_disc(hn_canvas *c, double x, double y, double radius, hn_paint pa
 void hn_canvas_ring(hn_canvas *c, double x, double y, double radius, const hn_stroke *stroke);
 /// A simple polygon, convex or not, either sense; n >= 3.
 void hn_canvas_polygon(hn_canvas *c, const double *xy, int n, hn_paint paint);
-/// The outline of a bar with round ends, `width` across, from one point to the other: writes at most
-/// HN_CAPSULE_POINTS points, returns how many. For hn_canvas_polygon and hn_canvas_line (closed).
+/// The outline of a bar with round ends, `width` across, from one point to the other: writes at
+/// most HN_CAPSULE_POINTS points, returns how many. For hn_canvas_polygon and hn_canvas_line
+/// (closed).
 enum { HN_CAPSULE_POINTS = 34 };
 int hn_canvas_capsule(double x0, double y0, double x1, double y1, double width,
                       double xy[2 * HN_CAPSULE_POINTS]);
 /// Shaft and head, tip at (x1, y1).
 void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, double head,
                      const hn_stroke *stroke);
-/// A ground line of the given length through (x, y), its normal at `angle` (radians, counted clockwise from
-/// straight down), strokes slanting away on that side.
+/// A ground line of the given length through (x, y), its normal at `angle` (radians, counted
+/// clockwise from straight down), strokes slanting away on that side.
 void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double angle,
                      const hn_stroke *stroke);
 /// The sign of a method.
@@ -74,17 +79,17 @@ void hn_canvas_text(hn_canvas *c, double x, double y, double size, hn_align alig
                     const char *utf8);
 double hn_canvas_text_width(double size, const char *utf8);
 
-// grouping -------------------------------------------------------------------------------------------------------
+// ---- grouping ----
 void hn_canvas_begin_layer(hn_canvas *c, double opacity); ///< layers do not nest
 void hn_canvas_end_layer(hn_canvas *c);
 /// Shapes from now on are seen inside this rectangle only (whole pixels).
 void hn_canvas_clip(hn_canvas *c, int x, int y, int width, int height);
 void hn_canvas_unclip(hn_canvas *c);
 
-// painting: may be called more than once, and from several threads: they take turns --------------
+// ---- painting: may be called more than once, and from several threads: they take turns ----
 
-/// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED when OSMesa
-/// cannot give a context; HN_ERR_INTERNAL when GL reports a fault.
+/// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED
+/// when OSMesa cannot give a context; HN_ERR_INTERNAL when GL reports a fault.
 HN_MUST_CHECK hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag);
 /// Appends the bytes of a PNG file.
 HN_MUST_CHECK hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag);

@@ -3,6 +3,7 @@
 
 #include "render/canvas_record.h"
 
+#include <stdbool.h>
 #include <GL/osmesa.h>
 #include <png.h>
 #include <pthread.h>
@@ -10,11 +11,12 @@
 #include <stdio.h>
 #include <string.h>
 
-// a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the sheet
+// a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the
+// sheet
 enum { TILE = 256, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_STENCIL = 255 };
 
-// OSMesa 22 keeps one list of drawing buffers for the process and changes it without a lock, so two threads must not
-// make contexts at once. The lock guards OSMesa, not state of ours.
+// OSMesa 22 keeps one list of drawing buffers for the process and changes it without a lock, so two
+// threads must not make contexts at once. The lock guards OSMesa, not state of ours.
 static pthread_mutex_t osmesa_lock = PTHREAD_MUTEX_INITIALIZER;
 
 typedef struct tile {
@@ -49,16 +51,16 @@ static int min_int(int a, int b) {
 }
 
 /// Limits drawing to the shape's rectangle within the tile; 0 if nothing is left.
-static int set_clip(const hn_canvas_shape *s, const tile *t) {
+static bool set_clip(const hn_canvas_shape *s, const tile *t) {
     const int x0 = max_int(s->clip[0], t->x0), x1 = min_int(s->clip[2], t->x1);
     const int y0 = max_int(s->clip[1], t->y0), y1 = min_int(s->clip[3], t->y1);
     if (x0 >= x1 || y0 >= y1) {
-        return 0;
+        return false;
     }
     glEnable(GL_SCISSOR_TEST);
     glScissor(HN_CANVAS_SAMPLES * (x0 - t->x0), HN_CANVAS_SAMPLES * (t->y1 - y1),
               HN_CANVAS_SAMPLES * (x1 - x0), HN_CANVAS_SAMPLES * (y1 - y0));
-    return 1;
+    return true;
 }
 
 static void draw_shape(const hn_canvas *c, const hn_canvas_shape *s, const tile *t) {
@@ -68,8 +70,8 @@ static void draw_shape(const hn_canvas *c, const hn_canvas_shape *s, const tile 
     }
 }
 
-/// Every sample of a layer takes its colour from one shape, the last that covers it: shapes are drawn last to first,
-/// and the stencil keeps the layer's number where a sample is taken.
+/// Every sample of a layer takes its colour from one shape, the last that covers it: shapes are
+/// drawn last to first, and the stencil keeps the layer's number where a sample is taken.
 static void draw_layer(const hn_canvas *c, int first, int end, int number, const tile *t) {
     glStencilFunc(GL_NOTEQUAL, number, 0xff);
     for (int i = end - 1; i >= first; i--) {
@@ -179,7 +181,7 @@ hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag)
     return status;
 }
 
-// ---- PNG --------------------------------------------------------------------------------------------------------
+// ---- PNG ----
 
 static void append_bytes(png_structp png, png_bytep bytes, png_size_t n) {
     hn_strbuf_add_n(png_get_io_ptr(png), (const char *)bytes, n);
@@ -200,10 +202,10 @@ _Noreturn static void leave(png_structp png, png_const_charp text) {
 }
 
 /// libpng leaves by longjmp: everything it needs is passed in, so that no local changes between.
-static int write_png(png_structp png, png_infop info, const hn_canvas *c, const unsigned char *rgb,
-                     jmp_buf *back) {
+static bool write_png(png_structp png, png_infop info, const hn_canvas *c, const unsigned char *rgb,
+                      jmp_buf *back) {
     if (setjmp(*back) != 0) {
-        return 0;
+        return false;
     }
     png_set_IHDR(png, info, (png_uint_32)c->width, (png_uint_32)c->height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -213,7 +215,7 @@ static int write_png(png_structp png, png_infop info, const hn_canvas *c, const 
         png_write_row(png, rgb + 3 * (size_t)y * (size_t)c->width);
     }
     png_write_end(png, info);
-    return 1;
+    return true;
 }
 
 static hn_status encode_png(const hn_canvas *c, const unsigned char *rgb, hn_strbuf *out,

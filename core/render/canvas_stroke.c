@@ -4,6 +4,7 @@
 #include "render/canvas_record.h"
 #include "render/font.h"
 
+#include <stdbool.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@ static const double LONGEST_DASHED =
     1e5; // [px] beyond this a dashed line is off any sheet and is drawn in full
 static const double TEXT_STROKE = 0.085; // of the font size
 
-static int is_point(const double *p) {
+static bool is_point(const double *p) {
     return isfinite(p[0]) && isfinite(p[1]);
 }
 
@@ -46,9 +47,10 @@ void hn_record_stroke(hn_canvas *c, const double *xy, int n, int closed, double 
     }
 }
 
-// ---- dashes -----------------------------------------------------------------------------------------------------
+// ---- dashes ----
 
-// where a walk along a dashed line is: the dash, how much of it is left, and the start of the piece now on
+// where a walk along a dashed line is: the dash, how much of it is left, and the start of the piece
+// now on
 typedef struct dash_walk {
     const hn_stroke *stroke;
     int index;
@@ -60,7 +62,8 @@ static void next_dash(dash_walk *w) {
     w->left = w->stroke->dash[w->index];
 }
 
-/// The part a..b (distances from p) of a dash, shortened by its round ends where it begins or ends there.
+/// The part a..b (distances from p) of a dash, shortened by its round ends where it begins or ends
+/// there.
 static void record_dash(hn_canvas *c, const double *p, const double *dir, double a, double b,
                         int begins, int ends, double width) {
     a += begins ? width / 2 : 0;
@@ -93,7 +96,7 @@ static void record_dashed_segment(hn_canvas *c, const double *p, const double *q
     }
 }
 
-static int dashes_are_usable(const hn_stroke *s, const double *xy, int n) {
+static bool dashes_are_usable(const hn_stroke *s, const double *xy, int n) {
     double length = 0;
     for (int i = 1; i < n; i++) {
         length += hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]);
@@ -128,7 +131,7 @@ void hn_canvas_segment(hn_canvas *c, double x0, double y0, double x1, double y1,
     hn_canvas_line(c, xy, 2, stroke);
 }
 
-// ---- made of lines ----------------------------------------------------------------------------------------------
+// ---- made of lines ----
 
 void hn_canvas_ring(hn_canvas *c, double x, double y, double radius, const hn_stroke *stroke) {
     double xy[2 * RING_POINTS];
@@ -209,6 +212,8 @@ void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double
     static const double upright[] = {-1, 0, 1, 0, 0, -1, 0, 1};
     const double r = size / 2;
     const hn_stroke thin = {.paint = paint, .width = 0.45 * r};
+
+    // one shape each
     switch (marker) {
     case HN_MARKER_DISC:
         hn_canvas_disc(c, x, y, r, paint);
@@ -239,7 +244,7 @@ void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double
     }
 }
 
-// ---- text -------------------------------------------------------------------------------------------------------
+// ---- text ----
 
 static double font_scale(double size) {
     return 0.7 * size / HN_FONT_CAP;

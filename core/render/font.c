@@ -4,8 +4,9 @@
 
 #include <math.h>
 
-// A glyph is a path of whole numbers: M x y moves, L x y draws a line, h x y and v x y draw a quarter of an ellipse
-// that leaves horizontally or vertically and arrives the other way, q cx cy x y a quadratic curve.
+// A glyph is a path of whole numbers: M x y moves, L x y draws a line, h x y and v x y draw a
+// quarter of an ellipse that leaves horizontally or vertically and arrives the other way, q cx cy x
+// y a quadratic curve.
 typedef struct glyph_row {
     uint32_t code;
     int width;
@@ -182,6 +183,8 @@ void hn_font_glyph(uint32_t code, hn_glyph *out) {
     double x = 0, y = 0;
     out->advance = row->width + 2 * SIDE;
     out->n_lines = out->n_points = 0;
+
+    // letter by letter of the path: where to, and how
     while (*path != '\0') {
         const char kind = *path++;
         const double first = read_number(&path), second = read_number(&path);
@@ -208,7 +211,7 @@ double hn_font_advance(uint32_t code) {
     return find_row(code)->width + 2 * SIDE;
 }
 
-int hn_font_has(uint32_t code) {
+bool hn_font_has(uint32_t code) {
     return find_row(code) != &box;
 }
 

@@ -1,8 +1,8 @@
 #include "render/look.h"
 
-// Found by random search with the hue of each row held, for the largest smallest distance: at least 24 apart
-// (CIE76) in normal, protan and deutan sight, at least 3.1:1 against the paper. tests/unit/render/test_look.c
-// computes both for every pair.
+// Found by random search with the hue of each row held, for the largest smallest distance: at least
+// 24 apart (CIE76) in normal, protan and deutan sight, at least 3.1:1 against the paper.
+// tests/unit/render/test_look.c computes both for every pair.
 static const hn_look looks[HN_LOOK_SLOTS] = {
     {"blue", {0x0A49D5, 0x6B99DB}, 0, {0}, HN_MARKER_DISC, "\xe2\x97\x8f"},
     {"orange", {0xCE7D06, 0xE1800E}, 2, {8, 4}, HN_MARKER_SQUARE, "\xe2\x96\xa0"},

@@ -1,7 +1,8 @@
 #ifndef HN_RENDER_LOOK_H
 #define HN_RENDER_LOOK_H
-// The one table of colours, dashes, markers and glyphs. The page (through its JSON), the snapshot, the report
-// and the terminal read it, so that a method looks the same everywhere. Colour is never the only difference.
+// The one table of colours, dashes, markers and glyphs. The page (through its JSON), the snapshot,
+// the report and the terminal read it, so that a method looks the same everywhere. Colour is never
+// the only difference.
 
 #include "base/strbuf.h"
 
@@ -55,8 +56,9 @@ typedef struct hn_surface {
 const hn_surface *hn_surface_get(hn_theme theme);
 const char *hn_theme_name(hn_theme theme); ///< "light", "dark"
 
-/// {"surfaces":{"light":{"paper":"#FCFCFA",...},"dark":{...}},"slots":[{"slot":0,"name","light","dark","dash":[...],
-/// "marker","glyph"}, ... 7 methods],"reference":{the same}}
+/// Writes the table: {"surfaces":{"light":{"paper":"#FCFCFA",...},"dark":{...}},
+/// "slots":[{"slot":0,"name","light","dark","dash":[...],"marker","glyph"}, ... 7 methods],
+/// "reference":{the same}}
 void hn_look_json(hn_strbuf *b);
 
 #endif

@@ -1,8 +1,9 @@
 // The mechanism itself: one function per kind of shape, found through one table.
-#include "render/snapshot_parts.h"
+#include "render/snapshot_shapes.h"
 
 #include "base/units.h"
 
+#include <stdbool.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -55,7 +56,7 @@ static void draw_outlined(const pen *p, const double *xy, int n) {
     hn_canvas_line(p->c, xy, n, &closed);
 }
 
-// ---- kinds ------------------------------------------------------------------------------------------------------
+// ---- kinds ----
 
 static void draw_bar(const pen *p, const hn_shape *shape) {
     double a[2], b[2], xy[2 * HN_CAPSULE_POINTS];
@@ -105,8 +106,10 @@ static void draw_spring(const pen *p, const hn_shape *shape) {
     at(p, shape->q, b);
     const double length = direction(a, b, u), lead = 0.15 * length, swing = 0.6 * p->s->bar;
     int n = 0;
+
+    // a straight lead, the coils to either side, a straight lead
     for (int i = -2; i <= 2 * COILS + 1; i++) {
-        const int is_end = i <= -1 || i >= 2 * COILS;
+        const bool is_end = i <= -1 || i >= 2 * COILS;
         const double share = (i + 0.5) / (2 * COILS);
         const double s = i == -2              ? 0
                          : i == -1            ? lead
@@ -122,7 +125,8 @@ static void draw_spring(const pen *p, const hn_shape *shape) {
     hn_canvas_line(p->c, xy, n, &wire);
 }
 
-/// A piston in an open pot: `local` gives points along and across the line as shares of its length and of the bar.
+/// A piston in an open pot: `local` gives points along and across the line as shares of its length
+/// and of the bar.
 static void draw_local(const pen *p, const double a[2], const double u[2], double length,
                        const double *local, int n) {
     double xy[8];
@@ -201,9 +205,10 @@ static void draw_guide(const pen *p, const hn_shape *shape) {
                       &rail);
 }
 
-// ---- one table --------------------------------------------------------------------------------------------------
+// ---- one table ----
 
-// HN_SHAPE_ARROW and HN_SHAPE_TRACE are not here: what they show comes with the pose and the options
+// HN_SHAPE_ARROW and HN_SHAPE_TRACE are not here: what they show comes with the pose and the
+// options
 typedef struct shape_row {
     hn_shape_kind kind;
     int order; ///< what is drawn first within a pose: guides and bars beneath pivots
@@ -242,7 +247,7 @@ static double middle_depth(const pen *p, const hn_shape *shape) {
     return depth;
 }
 
-static int same_place(const pen *p, int a, int b) {
+static bool same_place(const pen *p, int a, int b) {
     const double *x = p->points + 3 * a, *y = p->points + 3 * b;
     return fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) < 1e-3 * p->s->scale_bar;
 }
@@ -360,7 +365,7 @@ void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     hn_canvas_end_layer(c);
 }
 
-// ---- names and loads --------------------------------------------------------------------------------------------
+// ---- names and loads ----
 
 static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
     const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
@@ -373,6 +378,8 @@ static double distance_to_segment(const double p[2], const double a[2], const do
 static double room_at(const hn_sheet *s, const hn_drawing *d, const double *points,
                       const double xy[2]) {
     double room = (double)INFINITY;
+
+    // each shape as the segment it covers
     for (int i = 0; i < d->n_shapes; i++) {
         const hn_shape *shape = &d->shapes[i];
         double a[2], b[2];
@@ -399,7 +406,8 @@ static double room_at(const hn_sheet *s, const hn_drawing *d, const double *poin
     return room;
 }
 
-/// From a text of this half width around `xy` to the nearest of those placed before; none is in the way from a line's height on.
+/// From a text of this half width around `xy` to the nearest of those placed before; none is in the
+/// way from a line's height on.
 static double room_beside(const hn_sheet *s, const label_places *placed, const double xy[2],
                           double half) {
     double room = HUGE_VAL;
@@ -412,7 +420,8 @@ static double room_beside(const hn_sheet *s, const label_places *placed, const d
     return room;
 }
 
-/// Of sixteen places around a point, the one with the most room; a place on another label only where all are.
+/// Of sixteen places around a point, the one with the most room; a place on another label only
+/// where all are.
 static void place_label(const hn_sheet *s, const hn_drawing *d, const double *points, int point,
                         const label_places *placed, double half, double out[2]) {
     enum { PLACES = 16 };
@@ -431,7 +440,8 @@ static void place_label(const hn_sheet *s, const hn_drawing *d, const double *po
     }
 }
 
-/// The names of all points that are seen where point `first` is, "B1 A2"; 0: an earlier one has told them.
+/// The names of all points that are seen where point `first` is, "B1 A2"; 0: an earlier one has
+/// told them.
 static int names_at(const hn_sheet *s, const hn_drawing *d, const double *points, int first,
                     char text[LABEL_TEXT]) {
     double here[2], there[2];
@@ -481,6 +491,8 @@ void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *
         hn_view_project(&s->look, opts->loads[i].force, seen);
         largest = fmax(largest, hypot(seen[0], seen[1]));
     }
+
+    // each arrow ends at its point, as long as its share of the largest
     const double view = s->scale * fmax(s->view[1] - s->view[0], s->view[3] - s->view[2]);
     for (int i = 0; i < opts->n_loads; i++) {
         const hn_snapshot_load *load = &opts->loads[i];

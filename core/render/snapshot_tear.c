@@ -1,5 +1,6 @@
-// Tears at cut joints: red in place where they are wide enough to be seen, and the widest one magnified.
-#include "render/snapshot_parts.h"
+// Tears at cut joints: red in place where they are wide enough to be seen, and the widest one
+// magnified.
+#include "render/snapshot_tear.h"
 
 #include "base/units.h"
 
@@ -23,7 +24,7 @@ static void draw_in_place(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
     }
 }
 
-// ---- the inset --------------------------------------------------------------------------------------------------
+// ---- the inset ----
 
 /// The inset looks at the middle between the half-joints through a glass.
 typedef struct glass {
@@ -45,17 +46,22 @@ static void through(const glass *g, int point, double out[2]) {
     out[1] = g->centre[1] - g->scale * (w[1] - g->middle[1]);
 }
 
-/// The ends of the bars that meet at `point`: as wide as they look well, not magnified, out to the border.
+/// The ends of the bars that meet at `point`: as wide as they look well, not magnified, out to the
+/// border.
 static void draw_bar_ends(const glass *g, int point) {
     const hn_theme theme = hn_canvas_theme(g->c);
     hn_stroke outline = hn_slot_stroke(theme, g->pose->slot, g->line);
     outline.n_dash = 0;
     outline.closed = 1;
+
+    // bars that end at the point
     for (int i = 0; i < g->d->n_shapes; i++) {
         const hn_shape *shape = &g->d->shapes[i];
         if (shape->kind != HN_SHAPE_BAR || (shape->p != point && shape->q != point)) {
             continue;
         }
+
+        // from the point on, far beyond the border of the inset
         double a[2], b[2], xy[2 * HN_CAPSULE_POINTS];
         through(g, point, a);
         through(g, shape->p == point ? shape->q : shape->p, b);

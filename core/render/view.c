@@ -1,5 +1,6 @@
 #include "render/view.h"
 
+#include <stdbool.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,11 +42,11 @@ void hn_view_project(const hn_view *view, const double world[3], double out[2]) 
     }
 }
 
-static int parse_angles(const char *text, double angles[2]) {
+static bool parse_angles(const char *text, double angles[2]) {
     char *end;
     angles[0] = strtod(text, &end);
     if (end == text || *end != ',') {
-        return 0;
+        return false;
     }
     const char *second = end + 1;
     angles[1] = strtod(second, &end);
@@ -57,6 +58,8 @@ hn_status hn_view_parse(const char *text, hn_view *out, hn_diag *diag) {
         const char *name;
         double azimuth, elevation; ///< [degrees]
     } named[] = {{"front", 0, 0}, {"side", 90, 0}, {"top", 0, 90}};
+
+    // views with a name
     for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
         if (strcmp(text, named[i].name) == 0) {
             *out = hn_view_look(named[i].azimuth * DEGREE, named[i].elevation * DEGREE);
@@ -68,6 +71,8 @@ hn_status hn_view_parse(const char *text, hn_view *out, hn_diag *diag) {
         *out = hn_view_space();
         return HN_OK;
     }
+
+    // azimuth and elevation
     if (parse_angles(text, angles)) {
         *out = hn_view_look(angles[0] * DEGREE, angles[1] * DEGREE);
         return HN_OK;

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// where we are, what is wrong --------------------------------------------------------------------
+// ---- where we are, what is wrong ----
 
 size_t hn_rd_enter(hn_reader *r, const char *key) {
     size_t mark = strlen(r->path), at = mark;
@@ -36,8 +36,8 @@ void hn_rd_leave(hn_reader *r, size_t mark) {
     r->path[mark] = '\0';
 }
 
-static int add_fault(hn_reader *r, hn_status status, const char *hint, const char *format,
-                     va_list args) {
+static bool add_fault(hn_reader *r, hn_status status, const char *hint, const char *format,
+                      va_list args) {
     char message[HN_DIAG_MESSAGE], where[HN_RD_MAX_NAME + 48] = "";
     vsnprintf(message, sizeof message, format, args);
     if (r->loop_name) {
@@ -47,36 +47,36 @@ static int add_fault(hn_reader *r, hn_status status, const char *hint, const cha
     if (r->n_faults++ == 0) {
         r->status = status;
     }
-    return 0;
+    return false;
 }
 
-int hn_rd_fault(hn_reader *r, const char *hint, const char *format, ...) {
+bool hn_rd_fault(hn_reader *r, const char *hint, const char *format, ...) {
     va_list args;
     va_start(args, format);
     add_fault(r, HN_ERR_INPUT, hint, format, args);
     va_end(args);
-    return 0;
+    return false;
 }
 
-int hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...) {
+bool hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...) {
     va_list args;
     size_t mark = hn_rd_enter(r, key);
     va_start(args, format);
     add_fault(r, HN_ERR_INPUT, hint, format, args);
     va_end(args);
     hn_rd_leave(r, mark);
-    return 0;
+    return false;
 }
 
-int hn_rd_limit(hn_reader *r, const char *format, ...) {
+bool hn_rd_limit(hn_reader *r, const char *format, ...) {
     va_list args;
     va_start(args, format);
     add_fault(r, HN_ERR_LIMIT, NULL, format, args);
     va_end(args);
-    return 0;
+    return false;
 }
 
-int hn_rd_stopped(const hn_reader *r) {
+bool hn_rd_stopped(const hn_reader *r) {
     return r->oom || r->n_faults >= HN_RD_MAX_FAULTS;
 }
 
@@ -104,7 +104,7 @@ const char *hn_rd_kind(const cJSON *node) {
                                   : "null";
 }
 
-// memory -----------------------------------------------------------------------------------------
+// ---- memory ----
 
 void *hn_rd_grow(hn_reader *r, void *items, int n, size_t size, int limit, const char *what) {
     if (n >= limit) {
@@ -119,7 +119,7 @@ void *hn_rd_grow(hn_reader *r, void *items, int n, size_t size, int limit, const
     }
     void *more = hn_arena_get(r->arena, size * (size_t)(n == 0 ? 8 : 2 * n));
     if (!more) {
-        r->oom = 1;
+        r->oom = true;
         return NULL;
     }
     if (n > 0) {
@@ -131,7 +131,7 @@ void *hn_rd_grow(hn_reader *r, void *items, int n, size_t size, int limit, const
 const char *hn_rd_keep(hn_reader *r, const char *text) {
     const char *copy = hn_arena_strdup(r->arena, text);
     if (text && !copy) {
-        r->oom = 1;
+        r->oom = true;
     }
     return copy;
 }
@@ -140,19 +140,19 @@ const char *hn_rd_pointer(hn_reader *r) {
     return hn_rd_keep(r, r->path);
 }
 
-// the tree ----------------------------------------------------------------------------------------
+// ---- the tree ----
 
 const cJSON *hn_rd_get(const cJSON *object, const char *key) {
     return cJSON_IsObject(object) ? cJSON_GetObjectItemCaseSensitive(object, key) : NULL;
 }
 
-int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
-                 int n_fields) {
+bool hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
+                  int n_fields) {
     if (!cJSON_IsObject(node)) {
         return hn_rd_fault(r, NULL, "expected an object for %s, found %s", what, hn_rd_kind(node));
     }
     for (const cJSON *m = node->child; m && !hn_rd_stopped(r); m = m->next) {
-        int known = 0;
+        bool known = 0;
         for (int i = 0; i < n_fields && !known; i++) {
             known = strcmp(m->string, fields[i]) == 0;
         }
@@ -162,21 +162,21 @@ int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *
             hn_rd_fault_at(r, m->string, hint, "unknown field '%.60s' in %s", m->string, what);
         }
     }
-    return 1;
+    return true;
 }
 
-int hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what) {
+bool hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what) {
     return !node || cJSON_IsArray(node) ||
            hn_rd_fault(r, NULL, "expected a list of %s, found %s", what, hn_rd_kind(node));
 }
 
 /// One bound of a repetition: a whole number.
-static int read_bound(hn_reader *r, const cJSON *node, int index, long long *out) {
+static bool read_bound(hn_reader *r, const cJSON *node, int index, long long *out) {
     size_t mark = hn_rd_enter_index(r, index);
     hn_quantity q;
-    r->mark_structural = 1;
-    int ok = hn_rd_quantity(r, node, &q, HN_RD_CONST);
-    r->mark_structural = 0;
+    r->mark_structural = true;
+    bool ok = hn_rd_quantity(r, node, &q, HN_RD_CONST);
+    r->mark_structural = false;
     if (ok && !(fabs(q.value) <= 1e6 && q.value == floor(q.value))) {
         ok = hn_rd_fault(r, NULL, "expected a whole number up to a million, found %g", q.value);
     }
@@ -186,7 +186,7 @@ static int read_bound(hn_reader *r, const cJSON *node, int index, long long *out
 }
 
 /// The member "for" of an item: {"i": [first, last]}, both included.
-static int read_for(hn_reader *r, const cJSON *node, const char **name, long long bounds[2]) {
+static bool read_for(hn_reader *r, const cJSON *node, const char **name, long long bounds[2]) {
     const cJSON *range = cJSON_IsObject(node) ? node->child : NULL;
     if (!range || range->next) {
         return hn_rd_fault(
@@ -195,8 +195,10 @@ static int read_for(hn_reader *r, const cJSON *node, const char **name, long lon
             cJSON_IsObject(node) ? (range ? "several names" : "an empty object")
                                  : hn_rd_kind(node));
     }
+
+    // the name of the repetition, then its two bounds
     size_t mark = hn_rd_enter(r, range->string);
-    int ok = hn_rd_check_identifier(r, range->string);
+    bool ok = hn_rd_check_identifier(r, range->string);
     if (cJSON_GetArraySize(range) != 2 || !cJSON_IsArray(range)) {
         ok = hn_rd_fault(r, "as in [1, \"N\"]", "expected the first and the last value, found %s",
                          hn_rd_kind(range));
@@ -204,6 +206,8 @@ static int read_for(hn_reader *r, const cJSON *node, const char **name, long lon
         ok &= read_bound(r, range->child, 0, &bounds[0]);
         ok &= read_bound(r, range->child->next, 1, &bounds[1]);
     }
+
+    // a bound far too high is a slip of the pen
     if (ok && bounds[1] - bounds[0] >= HN_RD_MAX_REPEAT) {
         ok = hn_rd_limit(r, "more than the %d repetitions allowed", HN_RD_MAX_REPEAT);
     }
@@ -218,14 +222,18 @@ static void repeat(hn_reader *r, const cJSON *node, const char *key, hn_rd_item 
         item(r, node, key);
         return;
     }
+
+    // the range, read at its own place
     long long bounds[2] = {0, -1};
     const char *name = NULL;
     size_t mark = hn_rd_enter(r, "for");
-    int ok = read_for(r, loop, &name, bounds);
+    bool ok = read_for(r, loop, &name, bounds);
     hn_rd_leave(r, mark);
     if (!ok) {
         return;
     }
+
+    // one item for each value
     int faults = r->n_faults;
     r->loop_name = name;
     // one faulty repetition is enough to tell

@@ -1,13 +1,15 @@
 #ifndef HN_SCENE_READER_H
 #define HN_SCENE_READER_H
-// Inside scene/ only: what all parts of the loader share. A reader walks the JSON tree, knows where it is (path), which
-// repetition it is in ("for"), which names a formula may use, and gathers faults instead of stopping at the first.
+// Inside scene/ only: what all parts of the loader share. A reader walks the JSON tree, knows where
+// it is (path), which repetition it is in ("for"), which names a formula may use, and gathers
+// faults instead of stopping at the first.
 
 #include "expr/graph.h"
 #include "expr/parse.h"
 #include "scene/scene.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 
 enum {
     HN_RD_MAX_REPEAT = 5000, ///< repetitions of one "for"
@@ -51,7 +53,8 @@ typedef struct hn_reader {
     hn_graph *graph;
     hn_diags *diags;
     hn_status status; ///< of the first fault
-    int n_faults, oom;
+    int n_faults;
+    bool oom;
     char path[512]; ///< JSON pointer of the place
     // the repetition that is being read
     const char *loop_name;
@@ -59,84 +62,93 @@ typedef struct hn_reader {
     // parameters while they are being evaluated
     hn_rd_param *param_src;
     const hn_setting *settings;
-    int n_settings, use_settings, mark_structural;
+    int n_settings;
+    bool use_settings, mark_structural;
     int chain[HN_SCENE_MAX_PARAMS], n_chain;
-    int bodies_faulty; ///< some body could not be read: a name that is not found may be its
-    int body_at;       ///< the body whose drawing is read
-    int shape_kind;    ///< the kind whose list is read
-    hn_rd_scope scope; ///< of the formula that is being parsed
-    int turn_refused;  ///< 1 + the entry of a rotation vector that a formula asked for in vain
+    bool bodies_faulty; ///< some body could not be read: a name that is not found may be its
+    int body_at;        ///< the body whose drawing is read
+    int shape_kind;     ///< the kind whose list is read
+    hn_rd_scope scope;  ///< of the formula that is being parsed
+    int turn_refused;   ///< 1 + the entry of a rotation vector that a formula asked for in vain
     struct {
         unsigned char meaning;
         int index;
     } slot[HN_RD_SLOTS]; ///< names of parameters, coordinates, rates: open addressing by hash
 } hn_reader;
 
-// where we are, what is wrong --------------------------------------------------------------------
+// ---- where we are, what is wrong ----
 size_t hn_rd_enter(hn_reader *r, const char *key); ///< returns what hn_rd_leave() wants
 size_t hn_rd_enter_index(hn_reader *r, int index);
 void hn_rd_leave(hn_reader *r, size_t mark);
-/// Adds a fault at the present place (and names the repetition); returns 0, so that `return hn_rd_fault(...)` reads well.
-int hn_rd_fault(hn_reader *r, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
-int hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...)
+/// Adds a fault at the present place (and names the repetition); returns 0, so that `return
+/// hn_rd_fault(...)` reads well.
+bool hn_rd_fault(hn_reader *r, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
+bool hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char *format, ...)
     HN_PRINTF(4, 5);
-int hn_rd_limit(hn_reader *r, const char *format, ...)
-    HN_PRINTF(2, 3);                   ///< the same with HN_ERR_LIMIT
-int hn_rd_stopped(const hn_reader *r); ///< out of memory, or enough faults told
+/// the same with HN_ERR_LIMIT
+bool hn_rd_limit(hn_reader *r, const char *format, ...) HN_PRINTF(2, 3);
+bool hn_rd_stopped(const hn_reader *r); ///< out of memory, or enough faults told
 /// "did you mean 'x'?" into out, or the list of what is allowed.
 void hn_rd_suggest(char *out, size_t size, const char *word, const char *const *names, int n);
 const char *hn_rd_kind(const cJSON *node); ///< "a number", "a list", ...
 
-// memory: all from the scene's arena -----------------------------------------------------------------
-/// Room for one more item behind n; old items are kept. NULL (and oom or a limit fault) if there is none.
+// ---- memory: all from the scene's arena ----
+/// Room for one more item behind n; old items are kept. NULL (and oom or a limit fault) if there is
+/// none.
 void *hn_rd_grow(hn_reader *r, void *items, int n, size_t size, int limit, const char *what);
 const char *hn_rd_keep(hn_reader *r, const char *text);
 const char *hn_rd_pointer(hn_reader *r); ///< the present path, kept
 
-// the tree ----------------------------------------------------------------------------------------
-/// 1 if node is an object whose members are all among `fields`; faults otherwise (0 only if it is no object).
-int hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
-                 int n_fields);
+// ---- the tree ----
+/// 1 if node is an object whose members are all among `fields`; faults otherwise (0 only if it is
+/// no object).
+bool hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
+                  int n_fields);
 typedef void (*hn_rd_item)(hn_reader *r, const cJSON *item, const char *key);
-/// Calls `item` for each entry of a list, or each member of an object (key: its name), repeated where it says "for".
+/// Calls `item` for each entry of a list, or each member of an object (key: its name), repeated
+/// where it says "for".
 void hn_rd_each(hn_reader *r, const cJSON *node, hn_rd_item item);
-const cJSON *hn_rd_get(const cJSON *object, const char *key);         ///< member or NULL
-int hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what); ///< absent counts as one
+const cJSON *hn_rd_get(const cJSON *object, const char *key);          ///< member or NULL
+bool hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what); ///< absent counts as one
 /// The member `key` through hn_rd_each(): a list, or an object if `object`.
 void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item);
 
-// values --------------------------------------------------------------------------------------------
+// ---- values ----
 /// Text as it stands (title, about); NULL if absent.
 const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int required);
 /// A name: {..} filled in, checked for length; NULL (and a fault if required) when absent.
 const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int required);
 /// `raw` with every {formula} replaced by its whole-number value; NULL after a fault.
 const char *hn_rd_fill(hn_reader *r, const char *raw);
-int hn_rd_flag(hn_reader *r, const cJSON *object, const char *key);
+bool hn_rd_flag(hn_reader *r, const cJSON *object, const char *key);
 /// A number or a formula. On a fault *out is 0 and 0 is returned.
-int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope);
+bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope);
 /// The member `key`: absent gives `fallback` (a fault when `required`).
-int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
-                 hn_quantity *out, hn_rd_scope scope);
+bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
+                  hn_quantity *out, hn_rd_scope scope);
 /// Two (z = 0) or three entries.
-int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
-/// The member `key` as a direction: two or three numbers of any length but zero, made unit. 0 after a fault.
-int hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]);
-/// Checks that `ref` (written under `key`) is perpendicular to `axis`; what rounding left of the axis in it is taken out.
-int hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]);
-/// The direction nobody gave: the coordinate axis least aligned with `axis` (x before y before z), made perpendicular.
+bool hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
+/// The member `key` as a direction: two or three numbers of any length but zero, made unit. 0 after
+/// a fault.
+bool hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]);
+/// Checks that `ref` (written under `key`) is perpendicular to `axis`; what rounding left of the
+/// axis in it is taken out.
+bool hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]);
+/// The direction nobody gave: the coordinate axis least aligned with `axis` (x before y before z),
+/// made perpendicular.
 void hn_rd_default_normal(const double axis[3], double ref[3]);
 /// Value of a formula in parameters, for braces and "for".
-int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out);
+bool hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out);
 
-// names in formulas: found in constant time, for a scene may hold thousands and use them a million times
+// names in formulas: found in constant time, for a scene may hold thousands and use them a million
+// times
 void hn_rd_put_name(hn_reader *r, hn_rd_meaning meaning,
                     int index); ///< of a parameter or coordinate that stands in the scene
 hn_rd_meaning hn_rd_find_name(const hn_reader *r, const char *name, int *index);
 
-// parts of a scene ------------------------------------------------------------------------------------
+// ---- parts of a scene ----
 void hn_rd_params(hn_reader *r, const cJSON *root);
-int hn_rd_param_value(hn_reader *r, int k, double *value); ///< evaluates on demand
+bool hn_rd_param_value(hn_reader *r, int k, double *value); ///< evaluates on demand
 void hn_rd_bodies(hn_reader *r, const cJSON *root);
 void hn_rd_joints(hn_reader *r, const cJSON *root);
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root);
@@ -152,17 +164,11 @@ void hn_rd_draw_default(hn_reader *r, const cJSON *root); ///< what the scene le
 /// Adds a coordinate after checking its names; `rate` NULL: made from the name. Index or -1.
 int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_unit_kind kind,
                          int joint, int actuated);
-/// Reads and adds the coordinates of a joint that will be the next, with what drives and limits them.
+/// Reads and adds the coordinates of a joint that will be the next, with what drives and limits
+/// them.
 void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j);
-/// The coordinate of "joint" (a joint with one only) or "coordinate"; -1 after a fault. `position`: its value is needed, so
-/// that an entry of a rotation vector is refused.
-int hn_rd_target(hn_reader *r, const cJSON *node, int position);
 /// A body by name ("ground" too), -2 after a fault.
 int hn_rd_body(hn_reader *r, const cJSON *object, const char *key);
-/// A coordinate by its own or (if `rates`) its rate's name at node; -1 after a fault.
-int hn_rd_coordinate(hn_reader *r, const char *name, int rates);
-/// The point under `key`, which must be there; -1 after a fault.
-int hn_rd_end(hn_reader *r, const cJSON *node, const char *key);
 /// A point: a name, numbers in `body`'s frame, or {"body","at"}; index or -1 after a fault.
 int hn_rd_point(hn_reader *r, const cJSON *node, int body);
 /// The index of this unnamed point, made if there is none like it; -1 without memory.
@@ -170,16 +176,17 @@ int hn_rd_place(hn_reader *r, int body, const hn_quantity at[3]);
 int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity at[3]);
 hn_shape *hn_rd_add_shape(hn_reader *r, hn_shape_kind kind, int p, int q, int body);
 
-// scene_check.c: facts about the whole scene ------------------------------------------------------------
+// ---- scene_check.c: facts about the whole scene ----
 void hn_rd_check_tree(hn_reader *r,
                       const cJSON *node); ///< names used twice in one object, numbers not finite
 void hn_rd_check_inertia(hn_reader *r, const hn_body *body);
 void hn_rd_check_connected(hn_reader *r);
 /// 1 unless `taken_by` says where the name stands already.
-int hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by);
-/// 1 unless the coordinate is an entry of a rotation vector, whose value is used nowhere but inside its joint.
-int hn_rd_check_no_turn(hn_reader *r, int coordinate);
+bool hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by);
+/// 1 unless the coordinate is an entry of a rotation vector, whose value is used nowhere but inside
+/// its joint.
+bool hn_rd_check_no_turn(hn_reader *r, int coordinate);
 /// 1 if `name` can be used in formulas and is still free there; otherwise a fault.
-int hn_rd_check_identifier(hn_reader *r, const char *name);
+bool hn_rd_check_identifier(hn_reader *r, const char *name);
 
 #endif

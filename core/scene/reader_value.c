@@ -10,11 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static int is_name_start(char c) {
+static bool is_name_start(char c) {
     return isalpha((unsigned char)c) || c == '_';
 }
 
-static int is_name(char c) {
+static bool is_name(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
@@ -53,6 +53,8 @@ static int lookup(void *user, const char *name, hn_ex *out) {
         *out = hn_num((double)r->loop_value);
         return 1;
     }
+
+    // a parameter is a number from here on
     int k;
     hn_rd_meaning meaning = hn_rd_find_name(r, name, &k);
     if (meaning == HN_RD_PARAM) {
@@ -61,11 +63,15 @@ static int lookup(void *user, const char *name, hn_ex *out) {
         *out = hn_num(value);
         return 1;
     }
+
+    // an entry of a rotation vector is no value that a formula could use
     if (r->scope >= HN_RD_POSE && meaning == HN_RD_COORDINATE &&
         r->scene->coordinates[k].turn >= 0) {
         r->turn_refused = 1 + k;
         return 0;
     }
+
+    // what the scope allows besides
     int found = r->scope >= HN_RD_TIME && strcmp(name, "t") == 0;
     found |= r->scope >= HN_RD_POSE && meaning == HN_RD_COORDINATE;
     found |= r->scope == HN_RD_STATE && meaning == HN_RD_RATE;
@@ -119,12 +125,14 @@ static int know_any(void *user, const char *name, hn_ex *out) {
     return 1;
 }
 
-static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
+static bool tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
     static const char *const allowed[] = {"only parameters may be used here",
                                           "only parameters and t may be used here",
                                           "only parameters, t and coordinates may be used here",
                                           "parameters, t, coordinates and rates may be used here"};
     static const char *const other_kind[] = {"the state or time", "the state", "a rate", ""};
+
+    // a formula that would do in a wider scope: say which names are too many
     hn_diag diag = {0};
     hn_ex ignored;
     if (r->turn_refused == 0 && scope != HN_RD_STATE &&
@@ -135,11 +143,13 @@ static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
     if (r->turn_refused > 0) {
         return hn_rd_check_no_turn(r, r->turn_refused - 1);
     }
+
+    // otherwise the parser says where, with names that are near
     memset(&diag, 0, sizeof diag);
     hn_status status = parse(r, text, scope, 1, &ignored, &diag);
     if (status == HN_ERR_MEMORY || hn_graph_failed(r->graph)) {
-        r->oom = 1;
-        return 0;
+        r->oom = true;
+        return false;
     }
     // it is about names only if any name would do
     hn_diag other = {0};
@@ -150,37 +160,43 @@ static int tell_parse_fault(hn_reader *r, const char *text, hn_rd_scope scope) {
                        diag.message);
 }
 
-int hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out) {
+bool hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out) {
     hn_diag diag = {0};
     hn_ex e = {0};
     hn_status status = parse(r, text, scope, 0, &e, &diag);
     if (status == HN_ERR_MEMORY || hn_graph_failed(r->graph)) {
-        r->oom = 1;
-        return 0;
+        r->oom = true;
+        return false;
     }
     if (status != HN_OK) {
         return tell_parse_fault(r, text, scope);
     }
+
+    // a constant has its value now; anything else varies with the state
     double value = 0;
     if (!hn_is_number(e, &value)) {
-        out->varies = 1;
+        out->varies = true;
         if (scope == HN_RD_CONST) { // constant, but left unfolded by the graph
-            out->varies = 0;
+            out->varies = false;
             value = hn_graph_eval(r->graph, e, NULL);
         }
     }
+
+    // a division by zero ends here
     if (!isfinite(value)) {
         return hn_rd_fault(r, NULL, "the formula '%.80s' has no finite value here", text);
     }
     out->value = value;
-    return 1;
+    return true;
 }
 
 /// `raw` with every {formula} replaced by its whole value.
 const char *hn_rd_fill(hn_reader *r, const char *raw) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    int ok = 1;
+    bool ok = 1;
+
+    // text goes over as it is, each {formula} as its whole number
     for (const char *c = raw; *c && ok; c++) {
         const char *end = *c == '{' ? strchr(c, '}') : NULL;
         if (*c != '{') {
@@ -204,19 +220,24 @@ const char *hn_rd_fill(hn_reader *r, const char *raw) {
         hn_strbuf_printf(&b, "%lld", ok ? (long long)q.value : 0LL);
         c = end;
     }
+
+    // kept, unless memory ran out on the way
     r->oom |= b.failed;
     const char *out = ok && !r->oom ? hn_rd_keep(r, hn_strbuf_text(&b)) : NULL;
     hn_strbuf_reset(&b);
     return out;
 }
 
-/// A formula with the repetition's name replaced by its number, so that it can be read outside the repetition too.
+/// A formula with the repetition's name replaced by its number, so that it can be read outside the
+/// repetition too.
 static const char *settle_loop(hn_reader *r, const char *text) {
     if (!r->loop_name) {
         return hn_rd_keep(r, text);
     }
     hn_strbuf b;
     hn_strbuf_init(&b);
+
+    // word by word: a name, a number with its exponent, or one other character
     for (const char *c = text; *c;) {
         const char *end = c + 1;
         if (is_name_start(*c)) {
@@ -240,13 +261,15 @@ static const char *settle_loop(hn_reader *r, const char *text) {
         }
         c = end;
     }
+
+    // kept, unless memory ran out on the way
     r->oom |= b.failed;
     const char *out = r->oom ? NULL : hn_rd_keep(r, hn_strbuf_text(&b));
     hn_strbuf_reset(&b);
     return out;
 }
 
-int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope) {
+bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope) {
     *out = (hn_quantity){.pointer = hn_rd_pointer(r)};
     if (cJSON_IsNumber(node)) {
         out->value = node->valuedouble;
@@ -260,26 +283,26 @@ int hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scop
         strchr(node->valuestring, '{') ? hn_rd_fill(r, node->valuestring) : node->valuestring;
     const char *text = filled ? settle_loop(r, filled) : NULL;
     if (!text || !hn_rd_formula(r, text, scope, out)) {
-        return 0;
+        return false;
     }
     out->formula = text;
-    return 1;
+    return true;
 }
 
-int hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
-                 hn_quantity *out, hn_rd_scope scope) {
+bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
+                  hn_quantity *out, hn_rd_scope scope) {
     const cJSON *node = hn_rd_get(object, key);
     *out = (hn_quantity){.value = fallback};
     if (!node) {
         return required ? hn_rd_fault(r, NULL, "the field '%s' is missing", key) : 1;
     }
     size_t mark = hn_rd_enter(r, key);
-    int ok = hn_rd_quantity(r, node, out, scope);
+    bool ok = hn_rd_quantity(r, node, out, scope);
     hn_rd_leave(r, mark);
     return ok;
 }
 
-int hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope) {
+bool hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope) {
     memset(out, 0, 3 * sizeof *out);
     int n = cJSON_IsArray(node) ? cJSON_GetArraySize(node) : 0;
     if (n != 2 && n != 3) {
@@ -316,6 +339,8 @@ const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int r
     if (!node || !cJSON_IsString(node)) {
         return hn_rd_text(r, object, key, required);
     }
+
+    // braces are filled in before the length counts
     size_t mark = hn_rd_enter(r, key);
     const char *name = hn_rd_fill(r, node->valuestring);
     if (name && (name[0] == '\0' || strlen(name) > HN_RD_MAX_NAME)) {
@@ -323,6 +348,8 @@ const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int r
                     strlen(name));
         name = NULL;
     }
+
+    // names appear in tables and links: no line breaks in them
     for (const char *c = name; c && *c; c++) {
         if ((unsigned char)*c < 0x20) {
             hn_rd_fault(r, NULL, "a name holds a control character");
@@ -334,7 +361,7 @@ const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int r
     return name;
 }
 
-int hn_rd_flag(hn_reader *r, const cJSON *object, const char *key) {
+bool hn_rd_flag(hn_reader *r, const cJSON *object, const char *key) {
     const cJSON *node = hn_rd_get(object, key);
     if (node && !cJSON_IsBool(node)) {
         return hn_rd_fault_at(r, key, NULL, "expected true or false, found %s", hn_rd_kind(node));

@@ -1,17 +1,19 @@
 #ifndef HN_SCENE_SCENE_H
 #define HN_SCENE_SCENE_H
-// A scene: a mechanism as a person writes it down, checked. Plain data, owned by the scene's arena and constant
-// after loading. Two kinds: bodies and joints, or a Lagrangian; a scene of bodies may have a Lagrangian's terms beside them. The compiler (dynamics/) turns either into
-// equations; nothing here knows about trees, loops that were cut, or methods.
+// A scene is a mechanism as a person writes it down, checked. It is plain data, owned by its arena
+// and constant after loading. There are two kinds: bodies and joints, or a Lagrangian; a scene of
+// bodies may add the terms of a Lagrangian. The compiler (dynamics/compile) turns either into
+// equations. Nothing here knows of trees, cut loops or methods.
 //
-// Body frame: any frame fixed to the body. A joint sits at `parent_at` in the parent's frame and at `child_at`
-// in the child's; `axis` is given in both frames, and `ref` is a direction perpendicular to it in both, which
-// coincide when the coordinate is 0. Ground is body HN_GROUND; its frame is the world: x right, y up, z to the viewer.
-// SI units: m, kg, s, rad, N.
+// Body frame: any frame fixed to the body. A joint sits at `parent_at` in the parent's frame and at
+// `child_at` in the child's; `axis` is given in both frames, and `ref` is a direction perpendicular
+// to it in both, which coincide when the coordinate is 0. Ground is body HN_GROUND; its frame is
+// the world: x right, y up, z to the viewer. SI units: m, kg, s, rad, N.
 
 #include "base/arena.h"
 #include "base/diag.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { HN_GROUND = -1 };
@@ -22,20 +24,21 @@ enum {
     HN_SCENE_MAX_PARAMS = 200
 };
 
-/// A number, or a formula in the parameters (then `formula` is its text and `value` its present value). A
-/// formula that depends on the state (loads, Lagrangian, drawn points) has value 0 and `varies` 1.
+/// A number, or a formula in the parameters (then `formula` is its text and `value` its present
+/// value). A formula that depends on the state (loads, Lagrangian, drawn points) has value 0 and
+/// `varies` 1.
 typedef struct hn_quantity {
     double value;
     const char *formula; ///< NULL for a plain number
-    int varies;
+    bool varies;
     const char *pointer; ///< JSON pointer, for messages of later stages; may be NULL for defaults
 } hn_quantity;
 
 typedef struct hn_param {
     const char *name, *unit, *about; ///< unit "" when dimensionless
     double value, initial, min, max; ///< initial: as the scene file says
-    int integer;                     ///< must stay whole (numbers of loops, links)
-    int structural;                  ///< changes how many bodies there are
+    bool integer;                    ///< must stay whole (numbers of loops, links)
+    bool structural;                 ///< changes how many bodies there are
 } hn_param;
 
 typedef struct hn_body {
@@ -45,12 +48,17 @@ typedef struct hn_body {
     hn_quantity inertia[6]; ///< xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
 } hn_body;
 
-/// Freedoms of the child against the parent, in the order of the joint's coordinates; z is `axis`, x is `ref`, y = z cross x:
-///   revolute     angle about z                     prismatic    way along z
-///   cylindrical  angle about z, way along z        universal    angle about the parent's z, then about the child's x
-///   spherical    orientation: three entries of its rotation vector; their rates are the angular velocity in the child's axes
-///   planar       ways along the parent's x and y, angle about z
-///   fixed        none                              free         ways along the parent's x, y, z, then orientation
+/// Degrees of freedom of the child against the parent, in the order of the joint's coordinates.
+/// z is `axis`, x is `ref`, y = z cross x.
+///   revolute     angle about z
+///   prismatic    distance along z
+///   cylindrical  angle about z, distance along z
+///   universal    angle about the parent's z, then about the child's x
+///   spherical    orientation: three entries of its rotation vector; their rates are the angular
+///                velocity in the child's axes
+///   planar       distances along the parent's x and y, angle about z
+///   fixed        none
+///   free         distances along the parent's x, y, z, then orientation
 #define HN_JOINT_TYPE_LIST(X)              \
     X(HN_JOINT_REVOLUTE, "revolute")       \
     X(HN_JOINT_PRISMATIC, "prismatic")     \
@@ -75,10 +83,12 @@ typedef struct hn_joint {
     hn_quantity parent_at[3], child_at[3];
     double parent_axis[3], child_axis[3]; ///< unit
     double parent_ref[3], child_ref[3];   ///< unit, perpendicular to the axis
-    int cut;           ///< asked to close a loop rather than to carry a coordinate
+    bool cut;          ///< asked to close a loop rather than to carry a coordinate
     int coordinate;    ///< index of its first coordinate, -1 for a fixed joint
-    int n_coordinates; ///< they stand in a row
-    int is_formal; ///< carries a coordinate of the Lagrangian's own in a scene of bodies: its body has no mass, nothing is drawn
+    int n_coordinates; ///< their indices follow each other
+    /// carries a coordinate of the Lagrangian's own in a scene of bodies: its body has no mass,
+    /// nothing is drawn
+    bool is_formal;
 } hn_joint;
 
 typedef enum hn_unit_kind { HN_ANGLE, HN_LENGTH, HN_OTHER } hn_unit_kind;
@@ -88,17 +98,19 @@ typedef struct hn_coordinate {
     const char *name, *rate; ///< th1, w1: as used in formulas; rate defaults to d_<name>
     hn_unit_kind kind;
     int joint; ///< index, or -1 (Lagrangian)
-    int part;  ///< which freedom of its joint: 0 .. n_coordinates - 1
-    int turn; ///< 0, 1, 2: entry of a rotation vector (spherical and free joints), -1: a coordinate of its own
-    int actuated;
-    double min, max; ///< limits that are told when passed, -HUGE_VAL and HUGE_VAL: none
+    int part;  ///< which degree of freedom of its joint: 0 .. n_coordinates - 1
+    /// 0, 1, 2: entry of a rotation vector (spherical and free joints), -1: a coordinate of its own
+    int turn;
+    bool actuated;
+    double min, max; ///< limits whose crossing is reported, -HUGE_VAL and HUGE_VAL: none
     // start: a pinned value is kept, a guess is where assembly begins
     double q0, v0;
-    int q0_given, q0_pinned, v0_given, v0_pinned;
+    bool q0_given, q0_pinned, v0_given, v0_pinned;
     const char *q0_pointer, *v0_pointer;
 } hn_coordinate;
 
-/// A point fixed to a body, or (body HN_GROUND) a world point whose entries may depend on coordinates in a Lagrangian scene.
+/// A point fixed to a body, or (body HN_GROUND) a world point whose entries may depend on
+/// coordinates in a Lagrangian scene.
 typedef struct hn_point {
     const char *name; ///< label, or NULL
     int body;
@@ -108,19 +120,22 @@ typedef struct hn_point {
 typedef enum hn_load_kind {
     HN_LOAD_SPRING, ///< between points p and q: stiffness [N/m], rest length [m], damping [N s/m]
     HN_LOAD_JOINT_SPRING, ///< along a coordinate: stiffness, rest value, damping
-    HN_LOAD_COORDINATE, ///< generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
+    /// generalised force `value[0]` on a coordinate (torque, motor, ...), formula of t, q, v
+    HN_LOAD_COORDINATE,
     HN_LOAD_FORCE,  ///< force `value[3]` in world axes at point p, formula of t, q, v
     HN_LOAD_MOMENT, ///< moment `value[3]` [N m] in world axes on the body of point p
     HN_LOAD_FOLLOW, ///< actuator on a coordinate x that follows value[0] = target(t):
-    ///< stiffness (target - x) + damping (target' - x'), no more than value[1] either way if that is > 0
+    /// < stiffness (target - x) + damping (target' - x'), no more than value[1] either way if that
+    /// is > 0
     HN_LOAD_TABLE ///< on a coordinate: `table` over time
 } hn_load_kind;
 
-/// Values over time, times strictly increasing; before the first and after the last time the end values hold.
+/// Values over time, times strictly increasing; before the first and after the last time the end
+/// values hold.
 typedef struct hn_profile {
     int n;
     const double *t, *value; ///< [s]
-    int steps;               ///< 1: each value holds until the next time, 0: straight lines between
+    bool steps;              ///< 1: each value holds until the next time, 0: straight lines between
 } hn_profile;
 
 typedef struct hn_load {
@@ -133,15 +148,19 @@ typedef struct hn_load {
     hn_profile table;
 } hn_load;
 
-/// Constraints beside the joints, in a scene of bodies. A point's body gives the frame of directions.
+/// Constraints beside the joints, in a scene of bodies. A point's body gives the frame of
+/// directions.
 typedef enum hn_constraint_kind {
     HN_CONSTRAINT_DISTANCE, ///< a rod without mass: points p and q stay `value` apart [m]
     HN_CONSTRAINT_LINE,     ///< p stays on the line through q along `direction`
-    HN_CONSTRAINT_PLANE, ///< p stays in the plane through q with normal `direction`, at the distance `value` [m]
-    HN_CONSTRAINT_GEAR,    ///< x + ratio y = value, x and y the two coordinates
-    HN_CONSTRAINT_ROLLING, ///< a wheel with centre p and radius `value` rolls on the line through q along `direction`; its centre
-    ///< stays on the side `up` of the line, its axle parallel to direction cross up
-    HN_CONSTRAINT_FORMULA ///< value = 0, a formula of t and coordinates (a prescribed motion: "th1 - w*t")
+    /// p stays in the plane through q with normal `direction`, at the distance `value` [m]
+    HN_CONSTRAINT_PLANE,
+    HN_CONSTRAINT_GEAR, ///< x + ratio y = value, x and y the two coordinates
+    /// a wheel with centre p and radius `value` rolls on the line through q along `direction`; its
+    /// centre stays on the side `up` of the line, its axle parallel to direction cross up
+    HN_CONSTRAINT_ROLLING,
+    /// value = 0, a formula of t and coordinates (a prescribed motion: "th1 - w*t")
+    HN_CONSTRAINT_FORMULA
 } hn_constraint_kind;
 
 typedef struct hn_constraint {
@@ -154,8 +173,8 @@ typedef struct hn_constraint {
     hn_quantity ratio, value;
 } hn_constraint;
 
-/// Formulas of a Lagrangian in coordinates, rates, t and parameters. Beside bodies the energies are added to theirs, and
-/// the constraints stand among the scene's.
+/// Formulas of a Lagrangian in coordinates, rates, t and parameters. Beside bodies the energies are
+/// added to theirs, and the constraints stand among the scene's.
 typedef struct hn_lagrangian {
     hn_quantity kinetic, potential;
     int n_constraints;
@@ -187,9 +206,9 @@ typedef struct hn_shape {
 typedef struct hn_scene {
     hn_arena *arena; ///< owns everything below
     const char *id, *name, *title, *about,
-        *look_for;     ///< id: file name without .json, or the "id" field
-    int is_lagrangian; ///< no bodies at all
-    int has_formulas;  ///< a scene of bodies to which `lagrangian` adds energies
+        *look_for;      ///< id: file name without .json, or the "id" field
+    bool is_lagrangian; ///< no bodies at all
+    bool has_formulas;  ///< a scene of bodies to which `lagrangian` adds energies
     int n_params, n_bodies, n_joints, n_coordinates, n_points, n_loads, n_constraints, n_shapes;
     hn_param *params;
     hn_body *bodies;
@@ -203,13 +222,13 @@ typedef struct hn_scene {
     int (*tears)[2];
     hn_quantity gravity[3]; ///< acceleration of gravity [m/s^2], world axes; Lagrangian: 0
     hn_lagrangian lagrangian;
-    const char *
-        mode; ///< assembly mode asked for: "open", "crossed", "+", "-" (one sign per loop: "+-+"), NULL: any
+    /// assembly mode asked for: "open", "crossed", "+", "-" (one sign per loop: "+-+"), NULL: any
+    const char *mode;
     double duration, step;      ///< suggested [s]
     const char *const *methods; ///< suggested method spellings
     int n_methods;
-    const char *
-        text; ///< the scene file without its spaces: with the parameter values it is this very scene
+    /// the scene file without its spaces: with the parameter values it is this very scene
+    const char *text;
     uint64_t hash; ///< of what moves and the present parameter values: not of words or drawing
 } hn_scene;
 
@@ -219,14 +238,19 @@ typedef struct hn_setting {
     double value;
 } hn_setting;
 
-/// Reads a scene from JSON text (n bytes, need not be terminated). `settings` override parameters. Every fault that
-/// can be told from the text alone is told (up to HN_DIAG_MAX): syntax with line and column, unknown or missing
-/// fields with a near-miss suggestion, wrong types, units, ranges, names used twice, bodies not connected, inertia that no body has.
-/// Returns owned in *out (hn_scene_free). Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY.
+/// Reads a scene from JSON text (n bytes; it need not be terminated).
+///
+/// id        in  name of the scene, or NULL: its own "id" or "name"
+/// settings  in  values that replace those of parameters
+/// out       out owned; free with hn_scene_free()
+/// diags     out every fault that the text alone shows, up to HN_DIAG_MAX: syntax with line and
+///               column, unknown or missing fields with a near name, wrong types, units, ranges,
+///               names used twice, bodies that are not connected, inertia that no body has
+/// Fails: HN_ERR_INPUT, HN_ERR_LIMIT (too large), HN_ERR_MEMORY
 HN_MUST_CHECK hn_status hn_scene_load_json(const char *text, size_t n, const char *id,
                                            const hn_setting *settings, int n_settings,
                                            hn_scene **out, hn_diags *diags);
-/// The same from a file.
+/// Reads a scene from a file. Fails also: HN_ERR_IO
 HN_MUST_CHECK hn_status hn_scene_load_file(const char *path, const hn_setting *settings,
                                            int n_settings, hn_scene **out, hn_diags *diags);
 void hn_scene_free(hn_scene *scene); ///< NULL is legal

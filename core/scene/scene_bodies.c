@@ -6,15 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
-// bodies -------------------------------------------------------------------------------------------
+// ---- bodies ----
 
-int hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by) {
+bool hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by) {
     return taken_by ? hn_rd_fault_at(r, "name", NULL, "the name '%s' is used twice (also at %s)",
                                      name, taken_by)
                     : 1;
 }
 
-/// The tensor about the centre of mass. zz alone means a thin rod along the body's x: xx = 0, yy = zz.
+/// The tensor about the centre of mass. zz alone means a thin rod along the body's x: xx = 0, yy =
+/// zz.
 static void read_inertia(hn_reader *r, const cJSON *node, hn_body *b) {
     static const char *const fields[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     if (!node) {
@@ -40,6 +41,8 @@ static void read_body(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a body", fields, 7)) {
         return;
     }
+
+    // the name, which no other body has
     int faults = r->n_faults;
     hn_body b = {.name = hn_rd_name(r, node, "name", 1), .pointer = hn_rd_pointer(r)};
     hn_rd_text(r, node, "about", 0);
@@ -49,6 +52,8 @@ static void read_body(hn_reader *r, const cJSON *node, const char *key) {
         int other = hn_scene_find_body(s, b.name);
         hn_rd_check_new_name(r, b.name, other >= 0 ? s->bodies[other].pointer : NULL);
     }
+
+    // mass, centre of mass and inertia
     if (hn_rd_member(r, node, "mass", 1, 0, &b.mass, HN_RD_CONST) && b.mass.value < 0) {
         hn_rd_fault_at(r, "mass", NULL, "a mass of %g kg is negative", b.mass.value);
     }
@@ -59,6 +64,8 @@ static void read_body(hn_reader *r, const cJSON *node, const char *key) {
         hn_rd_leave(r, mark);
     }
     read_inertia(r, hn_rd_get(node, "inertia"), &b);
+
+    // a fault above would only be repeated
     if (r->n_faults == faults) {
         hn_rd_check_inertia(r, &b);
     }

@@ -1,4 +1,5 @@
-// Facts about the scene as a whole: names that clash, inertia that no body has, bodies that hang in the air.
+// Facts about the scene as a whole: names that clash, inertia that no body has, bodies that hang in
+// the air.
 
 #include "scene/reader.h"
 
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// the tree ------------------------------------------------------------------------------------------
+// ---- the tree ----
 
 static int compare_names(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -51,7 +52,7 @@ void hn_rd_check_tree(hn_reader *r, const cJSON *node) {
     }
 }
 
-// names ---------------------------------------------------------------------------------------------
+// ---- names ----
 
 static const char *taken(const hn_reader *r, const char *name) {
     static const char *const by[] = {NULL, "a parameter", "a coordinate", "a rate"};
@@ -62,8 +63,8 @@ static const char *taken(const hn_reader *r, const char *name) {
     return hn_op_find(name) != HN_OP_COUNT ? "a function" : by[hn_rd_find_name(r, name, &index)];
 }
 
-int hn_rd_check_identifier(hn_reader *r, const char *name) {
-    int ok = isalpha((unsigned char)name[0]) || name[0] == '_';
+bool hn_rd_check_identifier(hn_reader *r, const char *name) {
+    bool ok = isalpha((unsigned char)name[0]) || name[0] == '_';
     for (const char *c = name; *c && ok; c++) {
         ok = isalnum((unsigned char)*c) || *c == '_';
     }
@@ -76,7 +77,7 @@ int hn_rd_check_identifier(hn_reader *r, const char *name) {
     return by ? hn_rd_fault(r, NULL, "the name '%s' is taken already (%s)", name, by) : 1;
 }
 
-int hn_rd_check_no_turn(hn_reader *r, int coordinate) {
+bool hn_rd_check_no_turn(hn_reader *r, int coordinate) {
     const hn_coordinate *c = &r->scene->coordinates[coordinate];
     return c->turn < 0 ||
            hn_rd_fault(r, "its rate can be used; for angles of their own take a universal joint",
@@ -85,11 +86,12 @@ int hn_rd_check_no_turn(hn_reader *r, int coordinate) {
                        c->name, r->scene->joints[c->joint].name);
 }
 
-// inertia -------------------------------------------------------------------------------------------
+// ---- inertia ----
 
-/// A tensor belongs to a body of positive mass exactly when S = (trace I / 2) 1 - I, the second moments of its mass, has
-/// no negative eigenvalue: that contains both I >= 0 and the triangle inequality of the principal moments. All
-/// principal minors of S are looked at, with room for rounding.
+/// A tensor belongs to a body of positive mass exactly when S = (trace I / 2) 1 - I, the second
+/// moments of its mass, has no negative eigenvalue: that contains both I >= 0 and the triangle
+/// inequality of the principal moments. All principal minors of S are looked at, with room for
+/// rounding.
 void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     const hn_quantity *I = b->inertia;
     double xx = I[0].value, yy = I[1].value, zz = I[2].value, half = (xx + yy + zz) / 2;
@@ -98,6 +100,8 @@ void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     if (size == 0) {
         return;
     }
+
+    // inertia without mass and a negative moment have plainer messages of their own
     if (b->mass.value == 0) {
         hn_rd_fault_at(r, "inertia", "give it a mass, or leave 'inertia' out",
                        "the body '%s' has inertia but no mass", b->name);
@@ -112,6 +116,8 @@ void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
             return;
         }
     }
+
+    // the entries of S in units of the tensor, and its principal minors
     double a = (half - xx) / size, e = (half - yy) / size, c = (half - zz) / size;
     double d = -I[3].value / size, f = -I[4].value / size, g = -I[5].value / size;
     const double tol = 1e-9; // [-] of the tensor's size: formulas written with 10 digits pass
@@ -128,7 +134,7 @@ void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     }
 }
 
-// connection ----------------------------------------------------------------------------------------
+// ---- connection ----
 
 static int find_root(int *up, int i) {
     while (up[i] != i) {
@@ -138,7 +144,8 @@ static int find_root(int *up, int i) {
     return i;
 }
 
-/// Which bodies hang together through the joints (only those that may carry a coordinate, or all); node 0 is ground.
+/// Which bodies hang together through the joints (only those that may carry a coordinate, or all);
+/// node 0 is ground.
 static void join(const hn_scene *s, int with_cut, int *up) {
     for (int i = 0; i <= s->n_bodies; i++) {
         up[i] = i;
@@ -157,9 +164,11 @@ void hn_rd_check_connected(hn_reader *r) {
     int *up = hn_arena_ints(r->arena, 2 * (size_t)(s->n_bodies + 1)),
         *all = up ? up + s->n_bodies + 1 : NULL;
     if (!up) {
-        r->oom = 1;
+        r->oom = true;
         return;
     }
+
+    // connected by joints that carry coordinates, and by any joint at all
     join(s, 0, up);
     join(s, 1, all);
     for (int i = 0; i < s->n_bodies && !hn_rd_stopped(r); i++) {
@@ -168,6 +177,8 @@ void hn_rd_check_connected(hn_reader *r) {
         }
         r->path[0] = '\0';
         snprintf(r->path, sizeof r->path, "%s", s->bodies[i].pointer);
+
+        // two different faults: all joints are cut, or there is none
         if (find_root(all, i + 1) == 0) {
             hn_rd_fault(r, "let one of these joints keep its coordinate (\"cut\": false)",
                         "the body '%s' is joined to ground by cut joints alone", s->bodies[i].name);

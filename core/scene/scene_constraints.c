@@ -1,7 +1,8 @@
-// Constraints beside the joints of a scene of bodies. Each entry of "constraints" is an object with one member that
-// names the kind, and perhaps a name.
+// Constraints beside the joints of a scene of bodies. Each entry of "constraints" is an object with
+// one member that names the kind, and perhaps a name.
 
 #include "scene/reader.h"
+#include "scene/scene_refs.h"
 
 #include "base/strbuf.h"
 
@@ -9,21 +10,21 @@
 #include <string.h>
 
 /// The value under `key`, which must be a length above 0.
-static int read_length(hn_reader *r, const cJSON *node, const char *key, hn_quantity *out) {
+static bool read_length(hn_reader *r, const cJSON *node, const char *key, hn_quantity *out) {
     if (!hn_rd_member(r, node, key, 1, 0, out, HN_RD_CONST)) {
-        return 0;
+        return false;
     }
     return out->value > 0 ||
            hn_rd_fault_at(r, key, NULL, "a %s of %g m, expected more than 0", key, out->value);
 }
 
 /// Both points under their keys, which must not sit on one body.
-static int read_ends(hn_reader *r, const cJSON *node, const char *p, const char *q,
-                     hn_constraint *c) {
+static bool read_ends(hn_reader *r, const cJSON *node, const char *p, const char *q,
+                      hn_constraint *c) {
     c->p = hn_rd_end(r, node, p);
     c->q = hn_rd_end(r, node, q);
     if (c->p < 0 || c->q < 0) {
-        return 0;
+        return false;
     }
     int body = r->scene->points[c->p].body;
     return body != r->scene->points[c->q].body ||
@@ -35,21 +36,21 @@ static int read_ends(hn_reader *r, const cJSON *node, const char *p, const char 
 }
 
 /// A direction that must be there.
-static int read_required_direction(hn_reader *r, const cJSON *node, const char *key,
-                                   double out[3]) {
+static bool read_required_direction(hn_reader *r, const cJSON *node, const char *key,
+                                    double out[3]) {
     return hn_rd_get(node, key)
                ? hn_rd_direction(r, node, key, out)
                : hn_rd_fault(r, "as in [1, 0, 0]", "the field '%s' is missing", key);
 }
 
-static int read_distance(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_distance(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"from", "to", "length"};
     c->kind = HN_CONSTRAINT_DISTANCE;
     return hn_rd_object(r, node, "a distance", fields, 3) && read_ends(r, node, "from", "to", c) &&
            read_length(r, node, "length", &c->value);
 }
 
-static int read_line(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_line(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"point", "through", "direction"};
     c->kind = HN_CONSTRAINT_LINE;
     return hn_rd_object(r, node, "a line", fields, 3) &&
@@ -57,7 +58,7 @@ static int read_line(hn_reader *r, const cJSON *node, hn_constraint *c) {
            read_required_direction(r, node, "direction", c->direction);
 }
 
-static int read_plane(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_plane(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"point", "through", "direction", "offset"};
     c->kind = HN_CONSTRAINT_PLANE;
     return hn_rd_object(r, node, "a plane", fields, 4) &&
@@ -76,12 +77,14 @@ static int read_coordinate_name(hn_reader *r, const cJSON *node) {
     return k >= 0 && hn_rd_check_no_turn(r, k) ? k : -1;
 }
 
-static int read_gear(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_gear(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"coordinates", "ratio", "phase"};
     c->kind = HN_CONSTRAINT_GEAR;
     if (!hn_rd_object(r, node, "a gear", fields, 3)) {
-        return 0;
+        return false;
     }
+
+    // two coordinates, and not the same one twice
     const cJSON *pair = hn_rd_get(node, "coordinates");
     if (!cJSON_IsArray(pair) || cJSON_GetArraySize(pair) != 2) {
         return hn_rd_fault_at(r, "coordinates", "as in [\"th1\", \"th2\"]",
@@ -96,20 +99,22 @@ static int read_gear(hn_reader *r, const cJSON *node, hn_constraint *c) {
     }
     hn_rd_leave(r, mark);
     if (c->coordinate[0] < 0 || c->coordinate[1] < 0) {
-        return 0;
+        return false;
     }
     if (c->coordinate[0] == c->coordinate[1]) {
         return hn_rd_fault_at(r, "coordinates", NULL, "a gear couples two different coordinates");
     }
+
+    // x + ratio y = phase
     if (!hn_rd_member(r, node, "ratio", 1, 0, &c->ratio, HN_RD_CONST) ||
         !hn_rd_member(r, node, "phase", 0, 0, &c->value, HN_RD_CONST)) {
-        return 0;
+        return false;
     }
     return c->ratio.value != 0 ||
            hn_rd_fault_at(r, "ratio", "x + ratio y = phase", "a ratio of 0 couples nothing");
 }
 
-static int read_rolling(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_rolling(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"centre", "through", "direction", "up", "radius"};
     c->kind = HN_CONSTRAINT_ROLLING;
     return hn_rd_object(r, node, "a rolling wheel", fields, 5) &&
@@ -120,10 +125,10 @@ static int read_rolling(hn_reader *r, const cJSON *node, hn_constraint *c) {
            read_length(r, node, "radius", &c->value);
 }
 
-static int read_formula(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_formula(hn_reader *r, const cJSON *node, hn_constraint *c) {
     c->kind = HN_CONSTRAINT_FORMULA;
     if (!hn_rd_quantity(r, node, &c->value, HN_RD_POSE)) {
-        return 0;
+        return false;
     }
     return c->value.varies || hn_rd_fault(r, "as in \"th1 - w*t\"",
                                           "this constraint is the constant %g: it holds no "
@@ -132,17 +137,19 @@ static int read_formula(hn_reader *r, const cJSON *node, hn_constraint *c) {
 }
 
 /// coordinate = value over time, kept as the formula coordinate - (value).
-static int read_motion(hn_reader *r, const cJSON *node, hn_constraint *c) {
+static bool read_motion(hn_reader *r, const cJSON *node, hn_constraint *c) {
     static const char *const fields[] = {"joint", "coordinate", "value"};
     hn_quantity value;
     c->kind = HN_CONSTRAINT_FORMULA;
     if (!hn_rd_object(r, node, "a motion", fields, 3)) {
-        return 0;
+        return false;
     }
     int k = hn_rd_target(r, node, 1);
     if (k < 0 || !hn_rd_member(r, node, "value", 1, 0, &value, HN_RD_TIME)) {
-        return 0;
+        return false;
     }
+
+    // the text "coordinate - (value)"
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_strbuf_printf(&text, "%s - (", r->scene->coordinates[k].name);
@@ -152,6 +159,8 @@ static int read_motion(hn_reader *r, const cJSON *node, hn_constraint *c) {
         hn_json_number(&text, value.value);
     }
     hn_strbuf_add(&text, ")");
+
+    // parsed like a formula of the scene's own
     r->oom |= text.failed;
     c->value.pointer = value.pointer;
     c->value.formula = r->oom ? NULL : hn_rd_keep(r, hn_strbuf_text(&text));
@@ -161,7 +170,7 @@ static int read_motion(hn_reader *r, const cJSON *node, hn_constraint *c) {
 
 static const struct {
     const char *name;
-    int (*read)(hn_reader *, const cJSON *, hn_constraint *);
+    bool (*read)(hn_reader *, const cJSON *, hn_constraint *);
 } KINDS[] = {{"distance", read_distance}, {"line", read_line},       {"plane", read_plane},
              {"gear", read_gear},         {"rolling", read_rolling}, {"formula", read_formula},
              {"motion", read_motion}};
@@ -217,6 +226,8 @@ void hn_rd_formula_constraint(hn_reader *r, const char *name, const hn_quantity 
 static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     const char *fields[N_KINDS + 2] = {"name", "for"};
     (void)key;
+
+    // the member that names the kind, and how many there are
     int kind = -1, n = 0;
     for (int k = 0; k < N_KINDS; k++) {
         fields[k + 2] = KINDS[k].name;
@@ -229,6 +240,8 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a constraint", fields, N_KINDS + 2)) {
         return;
     }
+
+    // no kind, or two at once
     if (n != 1) {
         if (r->n_faults == faults) {
             hn_rd_fault(r, "allowed: distance, line, plane, gear, rolling, formula, motion",
@@ -236,6 +249,8 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
         }
         return;
     }
+
+    // the kind reads the rest
     hn_constraint c = {.name = read_own_name(r, node, KINDS[kind].name),
                        .pointer = hn_rd_pointer(r),
                        .p = -1,

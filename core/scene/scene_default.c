@@ -1,7 +1,10 @@
-// The drawing of a scene of bodies and joints that says nothing about it. Each part is made where it was left out:
-// * a body that draws nothing itself gets bars through its joints and the ends of its rods (to its centre of mass if
-//   there is one only; along its principal extents if there is none), unless the scene's "draw" has bars or polygons;
-// * joints get their symbols and show their names unless "draw" has any of pivots, ground, sliders, guides;
+// The drawing of a scene of bodies and joints that says nothing about it. Each part is made where
+// it was left out:
+// * a body that draws nothing itself gets bars through its joints and the ends of its rods (to its
+//   centre of mass if there is one only; along its principal extents if there is none), unless the
+//   scene's "draw" has bars or polygons;
+// * joints get their symbols and show their names unless "draw" has any of pivots, ground, sliders,
+//   guides;
 // * constraints beside the joints get theirs under the same condition;
 // * springs, dampers and forces get theirs unless "draw" has any of springs, dampers, arrows.
 
@@ -10,17 +13,17 @@
 #include <math.h>
 #include <string.h>
 
-static int draw_has(const cJSON *root, const char *const *keys, int n) {
+static bool draw_has(const cJSON *root, const char *const *keys, int n) {
     const cJSON *draw = hn_rd_get(root, "draw");
     for (int i = 0; i < n; i++) {
         if (hn_rd_get(draw, keys[i])) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
-static int same_place(const hn_quantity *a, const hn_quantity *b) {
+static bool same_place(const hn_quantity *a, const hn_quantity *b) {
     return a[0].value == b[0].value && a[1].value == b[1].value && a[2].value == b[2].value;
 }
 
@@ -58,12 +61,14 @@ static int collect_places(hn_reader *r, int body, int p[PLACES]) {
     return n;
 }
 
-/// A body that nothing holds: bars through its centre of mass as long as the edges of the block that has its mass and its
-/// moments about the body's axes; a pin for a point mass.
+/// A body that nothing holds: bars through its centre of mass as long as the edges of the block
+/// that has its mass and its moments about the body's axes; a pin for a point mass.
 static void draw_extents(hn_reader *r, int body) {
     const hn_body *b = &r->scene->bodies[body];
     double trace = b->inertia[0].value + b->inertia[1].value + b->inertia[2].value;
     int drawn = 0;
+
+    // a bar along each axis that has an extent
     for (int k = 0; k < 3 && b->mass.value > 0; k++) {
         double half = sqrt(fmax(0, 1.5 * (trace - 2 * b->inertia[k].value) / b->mass.value));
         hn_quantity end[2][3];
@@ -79,6 +84,8 @@ static void draw_extents(hn_reader *r, int body) {
             drawn |= p >= 0 && q >= 0 && hn_rd_add_shape(r, HN_SHAPE_BAR, p, q, body);
         }
     }
+
+    // a point mass is a pin
     int p = drawn ? -1 : hn_rd_place(r, body, b->com);
     if (p >= 0) {
         hn_rd_add_shape(r, HN_SHAPE_PIVOT, p, p, body);
@@ -107,7 +114,7 @@ static void draw_bars(hn_reader *r) {
     hn_scene *s = r->scene;
     char *drawn = hn_arena_get(r->arena, (size_t)s->n_bodies + 1);
     if (!drawn) {
-        r->oom = 1;
+        r->oom = true;
         return;
     }
     for (int i = 0; i < s->n_shapes; i++) {
@@ -135,7 +142,7 @@ static int along(hn_reader *r, int body, const hn_quantity at[3], const double a
 enum { MAX_NAMED_JOINTS = 12 };
 
 static void draw_pin(hn_reader *r, const hn_joint *j, int parent) {
-    int grounded = j->parent == HN_GROUND || j->child == HN_GROUND;
+    bool grounded = j->parent == HN_GROUND || j->child == HN_GROUND;
     int ground = j->child == HN_GROUND ? hn_rd_place(r, j->child, j->child_at) : parent;
     hn_rd_add_shape(r, grounded ? HN_SHAPE_GROUND : HN_SHAPE_PIVOT, ground, ground,
                     grounded ? HN_GROUND : j->parent);
@@ -182,7 +189,7 @@ static void draw_joint(hn_reader *r, const hn_joint *j) {
     DRAW_JOINT[j->type](r, j, parent);
 }
 
-// constraints ---------------------------------------------------------------------------------------
+// ---- constraints ----
 
 static void draw_rod(hn_reader *r, const hn_constraint *c) {
     hn_shape *bar = hn_rd_add_shape(r, HN_SHAPE_BAR, c->p, c->q, HN_GROUND);
@@ -220,7 +227,8 @@ static void draw_plane(hn_reader *r, const hn_constraint *c) {
     draw_guide(r, c, line, n, c->value.value);
 }
 
-/// The line that a wheel rolls on, as a bar beneath it as long as three turns to each side of its point.
+/// The line that a wheel rolls on, as a bar beneath it as long as three turns to each side of its
+/// point.
 static void draw_road(hn_reader *r, const hn_constraint *c) {
     const hn_point line = r->scene->points[c->q];
     double radius = c->value.value, width = radius / 20;
@@ -247,6 +255,8 @@ static void draw_wheel(hn_reader *r, const hn_constraint *c) {
     const double turn = 2 * acos(-1) / CORNERS;
     const hn_point centre = r->scene->points[c->p];
     int first = -1;
+
+    // corners of the rim
     for (int i = 0; i < CORNERS; i++) {
         hn_quantity at[3];
         for (int k = 0; k < 3; k++) {
@@ -260,6 +270,8 @@ static void draw_wheel(hn_reader *r, const hn_constraint *c) {
         }
         first = i == 0 ? p : first;
     }
+
+    // rim, spoke and road
     hn_shape *rim = hn_rd_add_shape(r, HN_SHAPE_POLYGON, first, first, centre.body);
     if (rim) {
         rim->n = CORNERS;
@@ -274,7 +286,7 @@ static void (*const DRAW_CONSTRAINT[])(hn_reader *, const hn_constraint *) = {
     [HN_CONSTRAINT_ROLLING] = draw_wheel, [HN_CONSTRAINT_FORMULA] = NULL,
 };
 
-// loads ---------------------------------------------------------------------------------------------
+// ---- loads ----
 
 static void draw_load(hn_reader *r, const hn_load *load) {
     if (load->kind == HN_LOAD_SPRING) {
@@ -297,6 +309,8 @@ void hn_rd_draw_default(hn_reader *r, const cJSON *root) {
     if (s->is_lagrangian) {
         return;
     }
+
+    // each group is drawn by the scene, or made here
     if (!draw_has(root, bars, 2)) {
         draw_bars(r);
     }

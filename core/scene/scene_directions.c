@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-int hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]) {
+bool hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]) {
     const cJSON *node = hn_rd_get(object, key);
     hn_quantity v[3];
     size_t mark = hn_rd_enter(r, key);
-    int ok = hn_rd_vector(r, node, v, HN_RD_CONST);
+    bool ok = hn_rd_vector(r, node, v, HN_RD_CONST);
     if (ok) {
         // hypot-like scaling keeps 1e-200 and 1e200 alive
         double big = fmax(fabs(v[0].value), fmax(fabs(v[1].value), fabs(v[2].value))), length = 0;
@@ -37,7 +37,7 @@ void hn_rd_default_normal(const double axis[3], double ref[3]) {
     }
 }
 
-int hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]) {
+bool hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]) {
     double along = axis[0] * ref[0] + axis[1] * ref[1] + axis[2] * ref[2];
     if (fabs(along) > 1e-6) {
         return hn_rd_fault_at(r, key, NULL,
@@ -47,5 +47,5 @@ int hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], doubl
     for (int k = 0; k < 3; k++) {
         ref[k] -= along * axis[k];
     }
-    return 1;
+    return true;
 }

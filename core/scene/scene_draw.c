@@ -1,11 +1,13 @@
-// Points and shapes: what to draw, as the scene says it. What it leaves open is made in scene_default.c.
+// Points and shapes: what to draw, as the scene says it. What it leaves open is made in
+// scene_default.c.
 
 #include "scene/reader.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/// How each shape is written: on a body ("draw": [{"bar": [..]}]) and in the scene's "draw" block, and its points.
+/// How each shape is written: on a body ("draw": [{"bar": [..]}]) and in the scene's "draw" block,
+/// and its points.
 typedef struct shape_row {
     const char *one, *many;
     int min, max; ///< number of points
@@ -30,7 +32,7 @@ const char *hn_shape_kind_name(hn_shape_kind kind) {
     return ROWS[kind].one;
 }
 
-// points ----------------------------------------------------------------------------------------------
+// ---- points ----
 
 int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity at[3]) {
     hn_scene *s = r->scene;
@@ -47,7 +49,7 @@ int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity 
 
 int hn_rd_place(hn_reader *r, int body, const hn_quantity at[3]) {
     const hn_scene *s = r->scene;
-    int varies = at[0].varies || at[1].varies || at[2].varies;
+    bool varies = at[0].varies || at[1].varies || at[2].varies;
     for (int i = 0; i < s->n_points && !varies; i++) {
         const hn_point *p = &s->points[i];
         if (p->body == body && p->at[0].value == at[0].value && p->at[1].value == at[1].value &&
@@ -87,14 +89,14 @@ static int named_point(hn_reader *r, const char *raw) {
 }
 
 /// {"body": .., "at": [..]} -> body and place; 0 after a fault.
-static int read_on_body(hn_reader *r, const cJSON *node, int *body, hn_quantity at[3]) {
+static bool read_on_body(hn_reader *r, const cJSON *node, int *body, hn_quantity at[3]) {
     static const char *const fields[] = {"body", "at", "for"};
     if (r->scene->is_lagrangian) {
         return hn_rd_fault(r, "as in [\"l1*cos(th1)\", \"l1*sin(th1)\"]",
                            "a Lagrangian scene has no bodies: its points are lists of formulas");
     }
     if (!hn_rd_object(r, node, "a point", fields, 3)) {
-        return 0;
+        return false;
     }
     *body = hn_rd_body(r, node, "body");
     const cJSON *where = hn_rd_get(node, "at");
@@ -130,6 +132,8 @@ static void read_named(hn_reader *r, const cJSON *node, const char *key) {
     hn_quantity at[3] = {0};
     int body = HN_GROUND, ok;
     const cJSON *list = node;
+
+    // on a body, or in world axes (of a Lagrangian: with formulas in coordinates)
     if (cJSON_IsObject(node) && (hn_rd_get(node, "body") || !hn_rd_get(node, "for"))) {
         ok = read_on_body(r, node, &body, at);
     } else {
@@ -139,6 +143,8 @@ static void read_named(hn_reader *r, const cJSON *node, const char *key) {
         }
         ok = hn_rd_vector(r, list, at, r->scene->is_lagrangian ? HN_RD_POSE : HN_RD_CONST);
     }
+
+    // a fault above was reported there
     if (!name || !ok) {
         return;
     }
@@ -165,7 +171,7 @@ void hn_rd_points(hn_reader *r, const cJSON *root) {
     hn_rd_leave(r, mark);
 }
 
-// shapes ----------------------------------------------------------------------------------------------
+// ---- shapes ----
 
 hn_shape *hn_rd_add_shape(hn_reader *r, hn_shape_kind kind, int p, int q, int body) {
     hn_scene *s = r->scene;
@@ -189,7 +195,8 @@ static int common_body(const hn_scene *s, const int *points, int n) {
     return body;
 }
 
-/// A polygon's points stand in a row: copies of those resolved, one behind the other. The first, or -1.
+/// A polygon's points stand in a row: copies of those resolved, one behind the other. The first, or
+/// -1.
 static int line_up(hn_reader *r, const int *points, int n) {
     int first = r->scene->n_points;
     for (int i = 0; i < n; i++) {
@@ -201,7 +208,8 @@ static int line_up(hn_reader *r, const int *points, int n) {
     return first;
 }
 
-/// Resolves the points of one shape (one: the node itself; more: a list) and adds it. `body`: lists are places on it.
+/// Resolves the points of one shape (one: the node itself; more: a list) and adds it. `body`: lists
+/// are places on it.
 static void read_one(hn_reader *r, const cJSON *node, hn_shape_kind kind, int body, double width) {
     const shape_row *row = &ROWS[kind];
     int n = row->max == 1 ? 1 : cJSON_IsArray(node) ? cJSON_GetArraySize(node) : 0;
@@ -211,9 +219,11 @@ static void read_one(hn_reader *r, const cJSON *node, hn_shape_kind kind, int bo
                     cJSON_IsArray(node) ? " of another length" : "");
         return;
     }
+
+    // the points, each found or made
     int *p = hn_arena_ints(r->arena, (size_t)n);
     if (!p) {
-        r->oom = 1;
+        r->oom = true;
         return;
     }
     const cJSON *item = row->max == 1 ? node : node->child;
@@ -225,6 +235,8 @@ static void read_one(hn_reader *r, const cJSON *node, hn_shape_kind kind, int bo
             return;
         }
     }
+
+    // the body that owns them gives the colour
     int owner = body != HN_GROUND ? body : common_body(r->scene, p, n);
     int first = kind == HN_SHAPE_POLYGON ? line_up(r, p, n) : p[0];
     hn_shape *shape = first >= 0
@@ -250,6 +262,8 @@ static void read_on_own_body(hn_reader *r, const cJSON *node, const char *key) {
     const char *fields[N_ROWS + 2] = {"width", "for"};
     int kind = -1, n = 0;
     (void)key;
+
+    // the member that names the kind, and how many there are
     for (int k = 0; k < N_ROWS; k++) {
         fields[k + 2] = ROWS[k].one;
         if (hn_rd_get(node, ROWS[k].one)) {
@@ -259,6 +273,8 @@ static void read_on_own_body(hn_reader *r, const cJSON *node, const char *key) {
     }
     int faults = r->n_faults;
     hn_rd_object(r, node, "a shape", fields, N_ROWS + 2);
+
+    // no kind, or two at once
     if (n != 1 || r->n_faults > faults) {
         if (r->n_faults == faults) {
             hn_rd_fault(r, "as in {\"bar\": [[0, 0], [\"l1\", 0]]}",
@@ -266,6 +282,8 @@ static void read_on_own_body(hn_reader *r, const cJSON *node, const char *key) {
         }
         return;
     }
+
+    // the kind reads its points
     double width = read_width(r, node);
     size_t mark = hn_rd_enter(r, ROWS[kind].one);
     read_one(r, hn_rd_get(node, ROWS[kind].one), (hn_shape_kind)kind, r->body_at, width);
@@ -293,7 +311,8 @@ static void read_body_draw(hn_reader *r, const cJSON *node, const char *key) {
     r->body_at++;
 }
 
-/// An entry of a list of the scene's "draw": the point(s), or {"points": .., "width": .., "for": ..}.
+/// An entry of a list of the scene's "draw": the point(s), or {"points": .., "width": .., "for":
+/// ..}.
 static void read_listed(hn_reader *r, const cJSON *node, const char *key) {
     static const char *const fields[] = {"points", "width", "for"};
     hn_shape_kind kind = (hn_shape_kind)r->shape_kind;
@@ -347,12 +366,16 @@ static void read_list(hn_reader *r, const cJSON *draw, const char *key, hn_rd_it
 void hn_rd_shapes(hn_reader *r, const cJSON *root) {
     const char *fields[N_ROWS + 2] = {"points", "tears"};
     const cJSON *bodies = hn_rd_get(root, "bodies"), *draw = hn_rd_get(root, "draw");
+
+    // what bodies draw themselves
     size_t mark = hn_rd_enter(r, "bodies");
     r->body_at = 0;
     if (cJSON_IsArray(bodies)) {
         hn_rd_each(r, bodies, read_body_draw);
     }
     hn_rd_leave(r, mark);
+
+    // what the scene draws
     mark = hn_rd_enter(r, "draw");
     for (int k = 0; k < N_ROWS; k++) {
         fields[k + 2] = ROWS[k].many;

@@ -1,12 +1,14 @@
-// Joints as a plain list: what they join, where, along which axes, and the names of their coordinates.
+// Joints as a plain list: what they join, where, along which axes, and the names of their
+// coordinates.
 
 #include "scene/reader.h"
 
 #include <string.h>
 
-// where it sits --------------------------------------------------------------------------------------
+// ---- where it sits ----
 
-/// A reference direction must be perpendicular to the axis; what rounding left of the axis in it is taken out.
+/// A reference direction must be perpendicular to the axis; what rounding left of the axis in it is
+/// taken out.
 static void read_ref(hn_reader *r, const cJSON *object, const char *key, const double axis[3],
                      double ref[3]) {
     if (hn_rd_direction(r, object, key, ref)) {
@@ -24,6 +26,8 @@ static int read_side(hn_reader *r, const cJSON *joint, const char *key, hn_quant
                     "the field '%s' is missing", key);
         return body;
     }
+
+    // only the child may have directions of its own
     size_t mark = hn_rd_enter(r, key);
     if (hn_rd_object(r, node, "a side of a joint", fields, strcmp(key, "child") == 0 ? 5 : 2)) {
         body = hn_rd_body(r, node, "body");
@@ -39,7 +43,7 @@ static int read_side(hn_reader *r, const cJSON *joint, const char *key, hn_quant
 }
 
 /// Types whose axis goes without saying: z.
-static int has_default_axis(hn_joint_type type) {
+static bool has_default_axis(hn_joint_type type) {
     return type != HN_JOINT_PRISMATIC && type != HN_JOINT_CYLINDRICAL && type != HN_JOINT_UNIVERSAL;
 }
 
@@ -53,12 +57,15 @@ static void read_second(hn_reader *r, const cJSON *side, const char *key, const 
     }
 }
 
-/// Axis and reference direction in both bodies. A universal joint calls the latter 'axis2': it turns about it too.
+/// Axis and reference direction in both bodies. A universal joint calls the latter 'axis2': it
+/// turns about it too.
 static void read_frames(hn_reader *r, const cJSON *node, hn_joint *j) {
     static const double z[3] = {0, 0, 1};
     const cJSON *child = hn_rd_get(node, "child");
-    int universal = j->type == HN_JOINT_UNIVERSAL;
+    bool universal = j->type == HN_JOINT_UNIVERSAL;
     const char *second = universal ? "axis2" : "ref";
+
+    // the axis, which some types need not say
     if (hn_rd_get(node, "axis")) {
         hn_rd_direction(r, node, "axis", j->parent_axis);
     } else if (has_default_axis(j->type)) {
@@ -73,11 +80,13 @@ static void read_frames(hn_reader *r, const cJSON *node, hn_joint *j) {
                     "a universal joint needs its 'axis2'");
         return;
     }
+
+    // the second direction; the child has the parent's unless it says otherwise
     read_second(r, node, second, j->parent_axis, 1, j->parent_ref);
     memcpy(j->child_axis, j->parent_axis, sizeof j->child_axis);
     memcpy(j->child_ref, j->parent_ref, sizeof j->child_ref);
     size_t mark = hn_rd_enter(r, "child");
-    int own = hn_rd_get(child, "axis") && hn_rd_direction(r, child, "axis", j->child_axis);
+    bool own = hn_rd_get(child, "axis") && hn_rd_direction(r, child, "axis", j->child_axis);
     if (own && universal && !hn_rd_get(child, second)) {
         hn_rd_fault(r, "as in [0, 1, 0], perpendicular to 'axis'",
                     "a universal joint whose child has its own 'axis' needs the child's 'axis2'");
@@ -85,6 +94,8 @@ static void read_frames(hn_reader *r, const cJSON *node, hn_joint *j) {
         read_second(r, child, second, j->child_axis, own, j->child_ref);
     }
     hn_rd_leave(r, mark);
+
+    // universal joints have two axes, the others an axis and a reference direction
     const char *wrong = universal ? "ref" : "axis2";
     if (hn_rd_get(node, wrong) || hn_rd_get(child, wrong)) {
         hn_rd_fault(r, universal ? "write 'axis2'" : "write 'ref'", "a %s joint has no '%s'",
@@ -92,14 +103,14 @@ static void read_frames(hn_reader *r, const cJSON *node, hn_joint *j) {
     }
 }
 
-static int read_type(hn_reader *r, const cJSON *node, hn_joint_type *type) {
+static bool read_type(hn_reader *r, const cJSON *node, hn_joint_type *type) {
     const char *names[HN_JOINT_TYPE_COUNT];
     const char *name = hn_rd_text(r, node, "type", 1);
     for (int k = 0; k < HN_JOINT_TYPE_COUNT; k++) {
         names[k] = hn_joint_type_name((hn_joint_type)k);
         if (name && strcmp(name, names[k]) == 0) {
             *type = (hn_joint_type)k;
-            return 1;
+            return true;
         }
     }
     if (name) {
@@ -107,7 +118,7 @@ static int read_type(hn_reader *r, const cJSON *node, hn_joint_type *type) {
         hn_rd_suggest(hint, sizeof hint, name, names, HN_JOINT_TYPE_COUNT);
         hn_rd_fault_at(r, "type", hint, "unknown joint type '%.60s'", name);
     }
-    return 0;
+    return false;
 }
 
 static void check_joint_name(hn_reader *r, const hn_joint *j) {
@@ -137,17 +148,23 @@ static void read_joint(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a joint", fields, sizeof fields / sizeof *fields)) {
         return;
     }
+
+    // its name and type
     int faults = r->n_faults;
     hn_joint j = {.name = hn_rd_name(r, node, "name", 1), .pointer = hn_rd_pointer(r)};
     hn_rd_text(r, node, "about", 0);
     check_joint_name(r, &j);
-    int typed = read_type(r, node, &j.type);
+    bool typed = read_type(r, node, &j.type);
+
+    // what it joins
     j.parent = read_side(r, node, "parent", j.parent_at);
     j.child = read_side(r, node, "child", j.child_at);
     if (j.parent != -2 && j.parent == j.child) {
         hn_rd_fault_at(r, "child", NULL, "the joint joins '%s' to itself",
                        j.parent == HN_GROUND ? "ground" : s->bodies[j.parent].name);
     }
+
+    // directions, cut and coordinates depend on the type
     if (typed) {
         read_frames(r, node, &j);
         read_cut(r, node, &j);

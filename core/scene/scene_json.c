@@ -1,5 +1,6 @@
-// The loader: text -> checked tree -> scene. The order of the parts is the order in which names become known:
-// parameters, bodies, joints or Lagrangian (coordinates), points, loads, shapes, start.
+// The loader: text -> checked tree -> scene. The order of the parts is the order in which names
+// become known: parameters, bodies, joints or Lagrangian (coordinates), points, loads, shapes,
+// start.
 
 #include "scene/reader.h"
 
@@ -12,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// head ----------------------------------------------------------------------------------------------
+// ---- head ----
 
 static void read_version(hn_reader *r, const cJSON *root) {
     const cJSON *version = hn_rd_get(root, "holonom");
@@ -46,6 +47,8 @@ static void read_methods(hn_reader *r, const cJSON *root) {
         hn_rd_fault(r, "as in [\"index1@rk4:h=1e-3\"]", "expected a list of methods, found %s",
                     hn_rd_kind(node));
     }
+
+    // each is checked for its form only: scene/ knows no methods
     for (const cJSON *m = cJSON_IsArray(node) ? node->child : NULL; m && !hn_rd_stopped(r);
          m = m->next, index++) {
         size_t inner = hn_rd_enter_index(r, index);
@@ -75,7 +78,7 @@ static void read_head(hn_reader *r, const cJSON *root, const char *id) {
     read_methods(r, root);
 }
 
-// body ----------------------------------------------------------------------------------------------
+// ---- body ----
 
 static void read_gravity(hn_reader *r, const cJSON *root) {
     const cJSON *node = hn_rd_get(root, "gravity");
@@ -89,7 +92,7 @@ static void read_gravity(hn_reader *r, const cJSON *root) {
 }
 
 /// Which of the two kinds it is; 0 after a fault.
-static int read_kind(hn_reader *r, const cJSON *root) {
+static bool read_kind(hn_reader *r, const cJSON *root) {
     const cJSON *bodies = hn_rd_get(root, "bodies"), *joints = hn_rd_get(root, "joints");
     const int formulas = hn_rd_get(root, "lagrangian") != NULL;
     r->scene->is_lagrangian = formulas && !bodies && !joints;
@@ -101,10 +104,11 @@ static int read_kind(hn_reader *r, const cJSON *root) {
                            : joints ? "'bodies' is"
                                     : "all three are");
     }
-    return 1;
+    return true;
 }
 
 static void read_mechanism(hn_reader *r, const cJSON *root) {
+    // what moves
     if (r->scene->is_lagrangian) {
         hn_rd_lagrangian(r, root);
     } else {
@@ -119,6 +123,7 @@ static void read_mechanism(hn_reader *r, const cJSON *root) {
             hn_rd_lagrangian(r, root);
         }
     }
+
     // what refers to names that a fault kept out would only repeat that fault
     if (r->n_faults == 0 && !r->oom) {
         hn_rd_points(r, root);
@@ -139,11 +144,15 @@ static void read_root(hn_reader *r, const cJSON *root, const char *id) {
         "holonom",    "id",      "name",   "title",    "about",       "look_for",
         "parameters", "gravity", "bodies", "joints",   "constraints", "loads",
         "lagrangian", "draw",    "start",  "duration", "step",        "methods"};
+
+    // faults of JSON first: names used twice, numbers not finite
     hn_rd_check_tree(r, root);
     if (r->n_faults > 0 ||
         !hn_rd_object(r, root, "a scene", fields, sizeof fields / sizeof fields[0])) {
         return;
     }
+
+    // parameters before everything that uses them
     read_version(r, root);
     int faults = r->n_faults;
     hn_rd_params(r, root);
@@ -157,7 +166,7 @@ static void read_root(hn_reader *r, const cJSON *root, const char *id) {
     }
 }
 
-// the whole -----------------------------------------------------------------------------------------
+// ---- the whole ----
 
 /// Removes what is only said or shown, at any depth.
 static void strip_words(cJSON *node) {
@@ -173,11 +182,13 @@ static void strip_words(cJSON *node) {
     }
 }
 
-/// Of what moves, normalised, and the present values of the parameters: not of words, drawing, what is compared by default, or bounds
-/// of parameters.
-static int calc_hash(hn_reader *r, const cJSON *root) {
+/// Of what moves, normalised, and the present values of the parameters: not of words, drawing, what
+/// is compared by default, or bounds of parameters.
+static bool calc_hash(hn_reader *r, const cJSON *root) {
     static const char *const shown[] = {"id",       "name", "look_for",  "methods",
                                         "duration", "step", "parameters"};
+
+    // the tree without what is only shown
     cJSON *meaning = cJSON_Duplicate(root, 1);
     for (size_t i = 0; meaning && i < sizeof shown / sizeof *shown; i++) {
         cJSON_DeleteItemFromObjectCaseSensitive(meaning, shown[i]);
@@ -188,8 +199,10 @@ static int calc_hash(hn_reader *r, const cJSON *root) {
     char *text = meaning ? cJSON_PrintUnformatted(meaning) : NULL;
     cJSON_Delete(meaning);
     if (!text) {
-        return 0;
+        return false;
     }
+
+    // its text, then the names and values of the parameters
     uint64_t hash = hn_hash_text(HN_HASH_START, text);
     for (int i = 0; i < r->scene->n_params; i++) {
         hash = hn_hash_text(hash, r->scene->params[i].name);
@@ -197,10 +210,10 @@ static int calc_hash(hn_reader *r, const cJSON *root) {
     }
     r->scene->hash = hn_hash_mix(hash);
     cJSON_free(text);
-    return 1;
+    return true;
 }
 
-static int keep_text(hn_reader *r, const cJSON *root) {
+static bool keep_text(hn_reader *r, const cJSON *root) {
     char *text = cJSON_PrintUnformatted(root);
     r->scene->text = hn_arena_strdup(r->arena, text);
     cJSON_free(text);
@@ -214,7 +227,7 @@ static hn_status read_tree(hn_reader *r, const cJSON *root, const char *id) {
     }
     read_root(r, root, id);
     if (r->n_faults == 0 && !r->oom && !(calc_hash(r, root) && keep_text(r, root))) {
-        r->oom = 1;
+        r->oom = true;
     }
     if (r->oom || hn_arena_failed(r->arena) || hn_graph_failed(r->graph)) {
         return HN_ERR_MEMORY;
@@ -245,6 +258,8 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
     *out = NULL;
     cJSON *root;
     hn_status status = parse_text(text, n, &root, diags);
+
+    // the scene lives in an arena, the reader only as long as this call
     hn_arena *arena = status == HN_OK ? hn_arena_create(1 << 16) : NULL;
     hn_scene *scene = arena ? hn_arena_get(arena, sizeof *scene) : NULL;
     hn_reader *r = scene ? calloc(1, sizeof *r) : NULL;
@@ -260,6 +275,8 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
         r->n_settings = n_settings;
         status = read_tree(r, root, id);
     }
+
+    // all or nothing
     if (status == HN_OK) {
         *out = scene;
     } else {

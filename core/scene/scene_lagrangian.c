@@ -1,30 +1,13 @@
-// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas. Beside bodies each of its own
-// coordinates is carried by a body without mass on a joint of its own, so that everything knows it as any other.
+// A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas. Beside
+// bodies each of its own coordinates is carried by a body without mass on a joint of its own, so
+// that everything knows it as any other.
 
 #include "scene/reader.h"
+#include "scene/scene_refs.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-int hn_rd_coordinate(hn_reader *r, const char *name, int rates) {
-    enum { ROOM = 512 };
-    const hn_scene *s = r->scene;
-    const char *names[ROOM];
-    int n = 0;
-    int k;
-    hn_rd_meaning meaning = hn_rd_find_name(r, name, &k);
-    if (meaning == HN_RD_COORDINATE || (rates && meaning == HN_RD_RATE)) {
-        return k;
-    }
-    for (int i = 0; i < s->n_coordinates && n < ROOM; i++) {
-        names[n++] = s->coordinates[i].name;
-    }
-    char hint[HN_DIAG_HINT];
-    hn_rd_suggest(hint, sizeof hint, name, names, n);
-    hn_rd_fault(r, hint, "there is no coordinate named '%.60s'", name);
-    return -1;
-}
 
 /// The body and joint that carry the coordinate of that index, which is the scene's last.
 static void carry(hn_reader *r, int k) {
@@ -33,6 +16,8 @@ static void carry(hn_reader *r, int k) {
         hn_rd_grow(r, s->bodies, s->n_bodies, sizeof *bodies, HN_SCENE_MAX_BODIES, "bodies");
     hn_joint *joints =
         hn_rd_grow(r, s->joints, s->n_joints, sizeof *joints, HN_SCENE_MAX_JOINTS, "joints");
+
+    // body and joint have the same name, which no other body may have
     const hn_coordinate *c = &s->coordinates[k];
     char name[HN_RD_MAX_NAME + 16];
     snprintf(name, sizeof name, "coordinate %s", c->name);
@@ -45,6 +30,8 @@ static void carry(hn_reader *r, int k) {
                     "the name '%s' is needed for a coordinate, and a body has it", kept);
         return;
     }
+
+    // both lists grow together
     s->bodies = bodies;
     s->joints = joints;
     joints[s->n_joints++] =
@@ -59,7 +46,7 @@ static void carry(hn_reader *r, int k) {
                    .child_ref = {1, 0, 0},
                    .coordinate = k,
                    .n_coordinates = 1,
-                   .is_formal = 1};
+                   .is_formal = true};
     bodies[s->n_bodies++] = (hn_body){.name = kept, .pointer = pointer};
 }
 
@@ -71,6 +58,8 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a coordinate", fields, 6)) {
         return;
     }
+
+    // the unit says whether it is an angle or a length
     const char *name = hn_rd_name(r, node, "name", 1), *rate = hn_rd_name(r, node, "rate", 0),
                *unit = hn_rd_text(r, node, "unit", 0);
     hn_rd_text(r, node, "about", 0);
@@ -87,8 +76,10 @@ static void read_coordinate(hn_reader *r, const cJSON *node, const char *key) {
             kind = kinds[k];
         }
     }
+
+    // beside bodies the coordinate gets a body that carries it
     size_t mark = hn_rd_enter(r, "name");
-    const int mixed = r->scene->has_formulas;
+    const bool mixed = r->scene->has_formulas;
     const int k = hn_rd_add_coordinate(r, name, rate, kind, mixed ? r->scene->n_joints : -1,
                                        hn_rd_flag(r, node, "actuated"));
     if (mixed && k >= 0) {
@@ -103,6 +94,8 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     hn_quantity q = {0};
     const char *name = NULL;
     (void)key;
+
+    // an object with a name, or a bare formula
     if (cJSON_IsObject(node)) {
         hn_rd_object(r, node, "a constraint", fields, 3);
         name = hn_rd_name(r, node, "name", 0);
@@ -113,6 +106,8 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
     if (q.formula && !q.varies && q.value != 0) {
         hn_rd_fault(r, NULL, "this constraint is the constant %g and can never be 0", q.value);
     }
+
+    // beside bodies it is one of the scene's own constraints
     if (r->scene->has_formulas) {
         hn_rd_formula_constraint(r, name, &q);
         return;
@@ -122,6 +117,8 @@ static void read_constraint(hn_reader *r, const cJSON *node, const char *key) {
         snprintf(made, sizeof made, "constraint %d", l->n_constraints + 1);
         name = hn_rd_keep(r, made);
     }
+
+    // both lists grow together
     hn_quantity *all = hn_rd_grow(r, l->constraints, l->n_constraints, sizeof *all,
                                   HN_SCENE_MAX_JOINTS, "constraints");
     const char **names = all ? hn_rd_grow(r, l->constraint_names, l->n_constraints, sizeof *names,
@@ -166,18 +163,24 @@ void hn_rd_lagrangian(hn_reader *r, const cJSON *root) {
     hn_lagrangian *l = &r->scene->lagrangian;
     size_t mark = hn_rd_enter(r, "lagrangian");
     if (hn_rd_object(r, node, "a lagrangian", fields, 5)) {
-        const int mixed = r->scene->has_formulas;
+        const bool mixed = r->scene->has_formulas;
+
+        // coordinates first: the formulas use them
         hn_rd_list(r, node, "coordinates", 0, read_coordinate);
         if (r->scene->n_coordinates == 0 && r->n_faults == 0) {
             hn_rd_fault(r, "as in [{\"name\": \"th1\", \"rate\": \"w1\", \"unit\": \"rad\"}]",
                         "'coordinates' is missing or empty");
         }
+
+        // energies, constraints and forces
         if (r->n_faults == 0) {
             hn_rd_member(r, node, "kinetic", !mixed, 0, &l->kinetic, HN_RD_STATE);
             hn_rd_member(r, node, "potential", 0, 0, &l->potential, HN_RD_POSE);
             hn_rd_list(r, node, "constraints", 0, read_constraint);
             hn_rd_list(r, node, "forces", 1, read_force);
         }
+
+        // a Lagrangian that says nothing, or has no masses
         if (r->n_faults == 0 && mixed && !node->child) {
             hn_rd_fault(r, "it adds 'kinetic', 'potential', 'constraints', 'forces' to the bodies",
                         "this lagrangian is empty");

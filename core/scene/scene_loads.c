@@ -1,40 +1,26 @@
-// Springs, dampers, torques and forces of a scene of bodies and joints. Each entry of "loads" is an object with one
-// member that names the kind, and perhaps a name.
+// Springs, dampers, torques and forces of a scene of bodies and joints. Each entry of "loads" is an
+// object with one member that names the kind, and perhaps a name.
 
 #include "scene/reader.h"
+#include "scene/scene_refs.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static int add_load(hn_reader *r, const hn_load *load) {
+static bool add_load(hn_reader *r, const hn_load *load) {
     hn_scene *s = r->scene;
     hn_load *loads = hn_rd_grow(r, s->loads, s->n_loads, sizeof *loads, HN_RD_MAX_LOADS, "loads");
     if (!loads) {
-        return 0;
+        return false;
     }
     s->loads = loads;
     loads[s->n_loads++] = *load;
-    return 1;
-}
-
-int hn_rd_end(hn_reader *r, const cJSON *node, const char *key) {
-    const cJSON *point = hn_rd_get(node, key);
-    if (!point) {
-        hn_rd_fault(r,
-                    "a point: a name of draw.points, {\"body\": .., \"at\": [..]} or a fixed place "
-                    "[x, y, z]",
-                    "the field '%s' is missing", key);
-        return -1;
-    }
-    size_t mark = hn_rd_enter(r, key);
-    int p = hn_rd_point(r, point, HN_GROUND);
-    hn_rd_leave(r, mark);
-    return p;
+    return true;
 }
 
 /// Stiffness, rest value and damping; never negative, and not both absent.
-static int read_spring_numbers(hn_reader *r, const cJSON *node, hn_load *load) {
-    int ok = hn_rd_member(r, node, "stiffness", 0, 0, &load->stiffness, HN_RD_CONST);
+static bool read_spring_numbers(hn_reader *r, const cJSON *node, hn_load *load) {
+    bool ok = hn_rd_member(r, node, "stiffness", 0, 0, &load->stiffness, HN_RD_CONST);
     ok &= hn_rd_member(r, node, "rest", 0, 0, &load->rest, HN_RD_CONST);
     ok &= hn_rd_member(r, node, "damping", 0, 0, &load->damping, HN_RD_CONST);
     if (!hn_rd_get(node, "stiffness") && !hn_rd_get(node, "damping")) {
@@ -51,15 +37,15 @@ static int read_spring_numbers(hn_reader *r, const cJSON *node, hn_load *load) {
     return ok;
 }
 
-static int read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"from", "to", "stiffness", "rest", "damping"};
     load->kind = HN_LOAD_SPRING;
     if (!hn_rd_object(r, node, "a spring", fields, 5)) {
-        return 0;
+        return false;
     }
     load->p = hn_rd_end(r, node, "from");
     load->q = hn_rd_end(r, node, "to");
-    int ok = read_spring_numbers(r, node, load);
+    bool ok = read_spring_numbers(r, node, load);
     if (ok && load->rest.value < 0) {
         return hn_rd_fault_at(r, "rest", NULL, "a rest length of %g m is negative",
                               load->rest.value);
@@ -70,71 +56,22 @@ static int read_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     return ok && load->p >= 0 && load->q >= 0;
 }
 
-/// The one coordinate of a joint, or -1 after a fault.
-static int only_coordinate(hn_reader *r, const hn_joint *j) {
-    if (j->n_coordinates != 1) {
-        hn_rd_fault_at(r, "joint", j->n_coordinates > 1 ? "name one with 'coordinate'" : NULL,
-                       "the joint '%s' has %d coordinates", j->name, j->n_coordinates);
-        return -1;
-    }
-    return j->coordinate;
-}
-
-static int find_joint(hn_reader *r, const char *name) {
-    enum { ROOM = 256 };
-    const hn_scene *s = r->scene;
-    const char *names[ROOM];
-    for (int i = 0; i < s->n_joints; i++) {
-        if (strcmp(s->joints[i].name, name) == 0) {
-            return only_coordinate(r, &s->joints[i]);
-        }
-        names[i < ROOM ? i : ROOM - 1] = s->joints[i].name;
-    }
-    char hint[HN_DIAG_HINT];
-    hn_rd_suggest(hint, sizeof hint, name, names, s->n_joints < ROOM ? s->n_joints : ROOM);
-    hn_rd_fault_at(r, "joint", hint, "there is no joint named '%s'", name);
-    return -1;
-}
-
-int hn_rd_target(hn_reader *r, const cJSON *node, int position) {
-    if (!hn_rd_get(node, "joint") == !hn_rd_get(node, "coordinate")) {
-        hn_rd_fault(r, NULL, "expected either 'joint' or 'coordinate', found %s",
-                    hn_rd_get(node, "joint") ? "both" : "neither");
-        return -1;
-    }
-    const char *key = hn_rd_get(node, "joint") ? "joint" : "coordinate";
-    const char *name = hn_rd_name(r, node, key, 1);
-    if (!name) {
-        return -1;
-    }
-    if (key[0] == 'j') {
-        return find_joint(r, name);
-    }
-    size_t mark = hn_rd_enter(r, key);
-    int k = hn_rd_coordinate(r, name, 0);
-    if (k >= 0 && position && !hn_rd_check_no_turn(r, k)) {
-        k = -1;
-    }
-    hn_rd_leave(r, mark);
-    return k;
-}
-
-static int read_joint_spring(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_joint_spring(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"joint", "coordinate", "stiffness", "rest", "damping"};
     load->kind = HN_LOAD_JOINT_SPRING;
     if (!hn_rd_object(r, node, "a joint spring", fields, 5)) {
-        return 0;
+        return false;
     }
     load->coordinate = hn_rd_target(r, node, hn_rd_get(node, "stiffness") != NULL);
     return read_spring_numbers(r, node, load) && load->coordinate >= 0;
 }
 
-static int read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const char *what,
-                           hn_unit_kind kind) {
+static bool read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const char *what,
+                            hn_unit_kind kind) {
     static const char *const fields[] = {"joint", "coordinate", "value"};
     load->kind = HN_LOAD_COORDINATE;
     if (!hn_rd_object(r, node, what, fields, 3)) {
-        return 0;
+        return false;
     }
     load->coordinate = hn_rd_target(r, node, 0);
     int ok =
@@ -149,19 +86,19 @@ static int read_joint_load(hn_reader *r, const cJSON *node, hn_load *load, const
     return ok;
 }
 
-static int read_torque(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_torque(hn_reader *r, const cJSON *node, hn_load *load) {
     return read_joint_load(r, node, load, "a torque", HN_ANGLE);
 }
 
 /// A force along a prismatic joint, or at a point in world axes.
-static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_force(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"at", "value"};
     if (hn_rd_get(node, "joint") || hn_rd_get(node, "coordinate")) {
         return read_joint_load(r, node, load, "a force", HN_LENGTH);
     }
     load->kind = HN_LOAD_FORCE;
     if (!hn_rd_object(r, node, "a force", fields, 2)) {
-        return 0;
+        return false;
     }
     load->p = hn_rd_end(r, node, "at");
     const cJSON *value = hn_rd_get(node, "value");
@@ -173,12 +110,12 @@ static int read_force(hn_reader *r, const cJSON *node, hn_load *load) {
 }
 
 /// On a whole body, in world axes.
-static int read_moment(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_moment(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"body", "value"};
     static const hn_quantity origin[3];
     load->kind = HN_LOAD_MOMENT;
     if (!hn_rd_object(r, node, "a moment", fields, 2)) {
-        return 0;
+        return false;
     }
     int body = hn_rd_body(r, node, "body");
     if (body == HN_GROUND) {
@@ -194,15 +131,15 @@ static int read_moment(hn_reader *r, const cJSON *node, hn_load *load) {
 }
 
 /// An actuator that follows a target over time.
-static int read_follow(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_follow(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"joint",   "coordinate", "stiffness",
                                          "damping", "target",     "limit"};
     load->kind = HN_LOAD_FOLLOW;
     if (!hn_rd_object(r, node, "a follower", fields, 6)) {
-        return 0;
+        return false;
     }
     load->coordinate = hn_rd_target(r, node, 1);
-    int ok = read_spring_numbers(r, node, load);
+    bool ok = read_spring_numbers(r, node, load);
     ok &= hn_rd_member(r, node, "target", 1, 0, &load->value[0], HN_RD_TIME);
     ok &= hn_rd_member(r, node, "limit", 0, 0, &load->value[1], HN_RD_CONST);
     if (ok && hn_rd_get(node, "limit") && !(load->value[1].value > 0)) {
@@ -220,6 +157,8 @@ static const double *read_column(hn_reader *r, const cJSON *node, const char *ke
                     key, hn_rd_kind(list), cJSON_IsArray(list) ? " that is empty" : "");
         return NULL;
     }
+
+    // as many numbers as the list has
     *n = cJSON_GetArraySize(list);
     if (*n > HN_RD_MAX_TABLE) {
         hn_rd_limit(r, "a table of %d times, at most %d are allowed", *n, HN_RD_MAX_TABLE);
@@ -228,6 +167,8 @@ static const double *read_column(hn_reader *r, const cJSON *node, const char *ke
     double *column = hn_arena_get(r->arena, (size_t)*n * sizeof *column);
     r->oom |= !column;
     int ok = column != NULL, i = 0;
+
+    // each is a number or a formula in parameters
     size_t mark = hn_rd_enter(r, key);
     for (const cJSON *m = list->child; m && ok && !hn_rd_stopped(r); m = m->next, i++) {
         hn_quantity q;
@@ -240,7 +181,7 @@ static const double *read_column(hn_reader *r, const cJSON *node, const char *ke
     return ok ? column : NULL;
 }
 
-static int check_times(hn_reader *r, const hn_profile *table) {
+static bool check_times(hn_reader *r, const hn_profile *table) {
     for (int i = 1; i < table->n; i++) {
         if (!(table->t[i] > table->t[i - 1])) {
             char key[24];
@@ -249,17 +190,17 @@ static int check_times(hn_reader *r, const hn_profile *table) {
             hn_rd_fault_at(r, key, NULL, "the time %g s does not come after %g s", table->t[i],
                            table->t[i - 1]);
             hn_rd_leave(r, mark);
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int read_table(hn_reader *r, const cJSON *node, hn_load *load) {
+static bool read_table(hn_reader *r, const cJSON *node, hn_load *load) {
     static const char *const fields[] = {"joint", "coordinate", "t", "value", "steps"};
     load->kind = HN_LOAD_TABLE;
     if (!hn_rd_object(r, node, "a table", fields, 5)) {
-        return 0;
+        return false;
     }
     int n = 0;
     load->coordinate = hn_rd_target(r, node, 0);
@@ -267,7 +208,7 @@ static int read_table(hn_reader *r, const cJSON *node, hn_load *load) {
     load->table.value = read_column(r, node, "value", &n);
     load->table.steps = hn_rd_flag(r, node, "steps");
     if (!load->table.t || !load->table.value) {
-        return 0;
+        return false;
     }
     if (n != load->table.n) {
         return hn_rd_fault_at(r, "value", NULL, "%d values for %d times", n, load->table.n);
@@ -277,7 +218,7 @@ static int read_table(hn_reader *r, const cJSON *node, hn_load *load) {
 
 static const struct {
     const char *name;
-    int (*read)(hn_reader *, const cJSON *, hn_load *);
+    bool (*read)(hn_reader *, const cJSON *, hn_load *);
 } KINDS[] = {{"spring", read_spring}, {"joint_spring", read_joint_spring},
              {"torque", read_torque}, {"force", read_force},
              {"moment", read_moment}, {"follow", read_follow},
@@ -287,6 +228,8 @@ enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
 static void read_load(hn_reader *r, const cJSON *node, const char *key) {
     const char *fields[N_KINDS + 2] = {"name", "for"};
     (void)key;
+
+    // the member that names the kind, and how many there are
     int kind = -1, n = 0;
     for (int k = 0; k < N_KINDS; k++) {
         fields[k + 2] = KINDS[k].name;
@@ -299,6 +242,8 @@ static void read_load(hn_reader *r, const cJSON *node, const char *key) {
     if (!hn_rd_object(r, node, "a load", fields, N_KINDS + 2)) {
         return;
     }
+
+    // no kind, or two at once
     if (n != 1) {
         if (r->n_faults == faults) {
             hn_rd_fault(r, "allowed: spring, joint_spring, torque, force, moment, follow, table",
@@ -306,6 +251,8 @@ static void read_load(hn_reader *r, const cJSON *node, const char *key) {
         }
         return;
     }
+
+    // the kind reads the rest
     hn_load load = {.name = hn_rd_name(r, node, "name", 0),
                     .pointer = hn_rd_pointer(r),
                     .p = -1,

@@ -41,6 +41,8 @@ static void check_unit(hn_reader *r, const char *unit) {
             return;
         }
     }
+
+    // units of other systems come with their conversion
     for (size_t i = 0; i < sizeof FOREIGN / sizeof FOREIGN[0]; i++) {
         if (strcmp(unit, FOREIGN[i].unit) == 0) {
             hn_rd_fault_at(r, "unit", FOREIGN[i].hint,
@@ -48,27 +50,33 @@ static void check_unit(hn_reader *r, const char *unit) {
             return;
         }
     }
+
+    // anything else may be a slip of the pen
     char hint[HN_DIAG_HINT];
     hn_rd_suggest(hint, sizeof hint, unit, UNITS + 1, N_UNITS - 1);
     hn_rd_fault_at(r, "unit", hint, "unknown unit '%.40s'", unit);
 }
 
-/// Name, unit and words of one parameter; its value comes once all names are known.
-static void read_param(hn_reader *r, const cJSON *node, const char *key) {
+/// The value as written: a number or the text of a formula; NULL after a fault.
+static const cJSON *find_value(hn_reader *r, const cJSON *node) {
     static const char *const fields[] = {"value", "unit", "min", "max", "integer", "about"};
-    hn_scene *s = r->scene;
     const cJSON *value = cJSON_IsObject(node) ? hn_rd_get(node, "value") : node;
-    int ok = hn_rd_check_identifier(r, key);
     if (cJSON_IsObject(node)) {
         hn_rd_object(r, node, "a parameter", fields, 6);
-        if (!value) {
-            ok = hn_rd_fault(r, NULL, "the field 'value' is missing");
-        }
     }
-    if (value && !cJSON_IsNumber(value) && !cJSON_IsString(value)) {
-        ok = hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
-                         hn_rd_kind(value));
+    if (!value) {
+        hn_rd_fault(r, NULL, "the field 'value' is missing");
+    } else if (!cJSON_IsNumber(value) && !cJSON_IsString(value)) {
+        hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
+                    hn_rd_kind(value));
+        value = NULL;
     }
+    return value;
+}
+
+/// Adds a parameter and its source to their lists.
+static void add_param(hn_reader *r, const hn_param *p, const hn_rd_param *source) {
+    hn_scene *s = r->scene;
     hn_param *params =
         hn_rd_grow(r, s->params, s->n_params, sizeof *params, HN_SCENE_MAX_PARAMS, "parameters");
     hn_rd_param *src = params ? hn_rd_grow(r, r->param_src, s->n_params, sizeof *src,
@@ -77,6 +85,20 @@ static void read_param(hn_reader *r, const cJSON *node, const char *key) {
     if (!src) {
         return;
     }
+    s->params = params;
+    r->param_src = src;
+    params[s->n_params] = *p;
+    src[s->n_params] = *source;
+    if (p->name) {
+        s->n_params++;
+        hn_rd_put_name(r, HN_RD_PARAM, s->n_params - 1);
+    }
+}
+
+/// Name, unit and words of one parameter; its value comes once all names are known.
+static void read_param(hn_reader *r, const cJSON *node, const char *key) {
+    bool named = hn_rd_check_identifier(r, key);
+    const cJSON *value = find_value(r, node);
     const char *unit = hn_rd_text(r, node, "unit", 0), *about = hn_rd_text(r, node, "about", 0);
     hn_param p = {.name = hn_rd_keep(r, key),
                   .unit = unit && strcmp(unit, "1") != 0 ? unit : "",
@@ -86,23 +108,18 @@ static void read_param(hn_reader *r, const cJSON *node, const char *key) {
                   .max = HUGE_VAL,
                   .value = 1,
                   .initial = 1};
-    hn_rd_param source = {.number = 1, .state = ok ? 0 : 2};
-    if (ok && cJSON_IsString(value)) {
-        source.formula = hn_rd_keep(r, value->valuestring);
-    } else if (ok) {
-        source.number = value->valuedouble;
-    }
     if (unit) {
         check_unit(r, unit);
     }
-    s->params = params;
-    r->param_src = src;
-    params[s->n_params] = p;
-    src[s->n_params] = source;
-    if (p.name) {
-        s->n_params++;
-        hn_rd_put_name(r, HN_RD_PARAM, s->n_params - 1);
+
+    // after a fault it counts as evaluated, so that formulas that use it do not report it again
+    hn_rd_param source = {.number = 1, .state = named && value ? 0 : 2};
+    if (named && cJSON_IsString(value)) {
+        source.formula = hn_rd_keep(r, value->valuestring);
+    } else if (named && value) {
+        source.number = value->valuedouble;
     }
+    add_param(r, &p, &source);
 }
 
 static const hn_setting *find_setting(const hn_reader *r, const char *name) {
@@ -136,18 +153,22 @@ static void tell_cycle(hn_reader *r, int k) {
     memcpy(r->path, path, sizeof path);
 }
 
-int hn_rd_param_value(hn_reader *r, int k, double *value) {
+bool hn_rd_param_value(hn_reader *r, int k, double *value) {
     hn_param *p = &r->scene->params[k];
     hn_rd_param *src = &r->param_src[k];
     const hn_setting *set = r->use_settings ? find_setting(r, p->name) : NULL;
     int walk = r->mark_structural && !p->structural && !set && src->formula && src->state == 2;
     p->structural |= r->mark_structural;
+
+    // met again before its own evaluation has ended: a ring
     if (src->state == 1) {
         tell_cycle(r, k);
         src->state = 2;
         p->value = 1;
-        return 0;
+        return false;
     }
+
+    // evaluated at its own place in the file, outside of any repetition
     if (src->state == 0 || walk) {
         src->state = 1;
         r->chain[r->n_chain++] = k;
@@ -159,7 +180,7 @@ int hn_rd_param_value(hn_reader *r, int k, double *value) {
         memcpy(path, r->path, sizeof path);
         snprintf(r->path, sizeof r->path, "/parameters");
         hn_rd_enter(r, p->name);
-        int ok = set || !src->formula || hn_rd_formula(r, src->formula, HN_RD_CONST, &q);
+        bool ok = set || !src->formula || hn_rd_formula(r, src->formula, HN_RD_CONST, &q);
         memcpy(r->path, path, sizeof path);
         r->loop_name = loop;
         r->n_chain--;
@@ -167,7 +188,7 @@ int hn_rd_param_value(hn_reader *r, int k, double *value) {
         src->state = 2;
     }
     *value = p->value;
-    return 1;
+    return true;
 }
 
 static void evaluate_all(hn_reader *r) {
@@ -237,7 +258,7 @@ void hn_rd_params(hn_reader *r, const cJSON *root) {
         for (int k = 0; k < r->scene->n_params; k++) {
             r->param_src[k].state = 0;
         }
-        r->use_settings = 1;
+        r->use_settings = true;
         evaluate_all(r);
     }
     for (const cJSON *m = node ? node->child : NULL;

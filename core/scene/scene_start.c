@@ -1,18 +1,20 @@
-// The start of a run, of either kind of scene: values that are kept, guesses, the assembly mode asked for.
+// The start of a run, of either kind of scene: values that are kept, guesses, the assembly mode
+// asked for.
 
 #include "scene/reader.h"
+#include "scene/scene_refs.h"
 
 #include <string.h>
 
 /// A start entry: a number or formula is pinned, {"guess": ..} is where assembly begins.
-static int read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pinned) {
+static bool read_entry(hn_reader *r, const cJSON *node, hn_quantity *q, int *pinned) {
     static const char *const fields[] = {"value", "guess", "for"};
     *pinned = 1;
     if (!cJSON_IsObject(node)) {
         return hn_rd_quantity(r, node, q, HN_RD_CONST);
     }
     if (!hn_rd_object(r, node, "a start value", fields, 3)) {
-        return 0;
+        return false;
     }
     const cJSON *value = hn_rd_get(node, "value"), *guess = hn_rd_get(node, "guess");
     if (!value == !guess) {
@@ -42,7 +44,7 @@ static void read_position(hn_reader *r, const cJSON *node, const char *key) {
         return;
     }
     c->q0 = q.value;
-    c->q0_given = 1;
+    c->q0_given = true;
     c->q0_pinned = pinned;
     c->q0_pointer = hn_rd_pointer(r);
 }
@@ -59,7 +61,7 @@ static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
         return;
     }
     c->v0 = q.value;
-    c->v0_given = 1;
+    c->v0_given = true;
     c->v0_pinned = pinned;
     c->v0_pointer = hn_rd_pointer(r);
 }

@@ -1,8 +1,11 @@
-#ifndef HN_RENDER_SNAPSHOT_PARTS_H
-#define HN_RENDER_SNAPSHOT_PARTS_H
-// What the files of the snapshot share; not for others.
+#ifndef HN_RENDER_SNAPSHOT_SHEET_H
+#define HN_RENDER_SNAPSHOT_SHEET_H
+// The sheet of a snapshot: where drawing, inset and legend go, and how metres become pixels. Inside
+// render/ only.
 
 #include "render/snapshot.h"
+
+#include <stdbool.h>
 
 typedef struct hn_box {
     double x, y, width, height; ///< [px], upper left corner
@@ -35,28 +38,23 @@ typedef struct hn_sheet {
     double scale_bar;     ///< [m]
 } hn_sheet;
 
+/// Finds boxes, view and scale for the poses. `shapes` and `depth` stay NULL: the caller provides
+/// them.
+/// Fails: HN_ERR_INPUT, when no pose has finite points.
+HN_MUST_CHECK hn_status hn_sheet_make(hn_sheet *s, int width, int height, const hn_drawing *d,
+                                      const hn_snapshot_pose *poses, int n_poses,
+                                      const hn_snapshot_opts *opts, hn_diag *diag);
+
+/// Pixel of a place in the world [m].
 void hn_sheet_pixel(const hn_sheet *s, const double *world, double out[2]);
 /// Pixel of a place given along right and up [m].
 void hn_sheet_place(const hn_sheet *s, const double plane[2], double out[2]);
 /// 1 if every point the pose needs is finite.
-int hn_pose_is_drawable(const hn_drawing *drawing, const hn_snapshot_pose *pose);
+bool hn_pose_is_drawable(const hn_drawing *drawing, const hn_snapshot_pose *pose);
 double hn_tear_gap(const hn_drawing *drawing, const hn_snapshot_pose *pose, int tear);
 /// Draws the line in the slot's dash; `scale` stretches the dash with thicker lines.
 hn_stroke hn_slot_stroke(hn_theme theme, int slot, double width);
 /// `colour` laid over the paper with this share.
 uint32_t hn_tint(hn_theme theme, uint32_t colour, double share);
-
-/// Ground, guides: what belongs to no pose, from the selected one.
-void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose);
-void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                           const hn_snapshot_pose *pose, int is_selected);
-void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                        const hn_snapshot_pose *pose);
-void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
-                       const hn_snapshot_opts *opts);
-/// Red segments in place, and the inset.
-void hn_snapshot_tears(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                       const hn_snapshot_pose *poses, int n_poses);
 
 #endif

@@ -1,4 +1,5 @@
-// The coordinates of a joint: how many its type has, how they are called, which are driven, how far they may go.
+// The coordinates of a joint: how many its type has, how they are called, which are driven, how far
+// they may go.
 
 #include "scene/reader.h"
 
@@ -8,7 +9,8 @@
 
 enum { MAX_FREEDOMS = 6 };
 
-/// One freedom: what stands behind the joint's name in its coordinate's, its unit, its entry of a rotation vector.
+/// One freedom: what stands behind the joint's name in its coordinate's, its unit, its entry of a
+/// rotation vector.
 typedef struct freedom {
     const char *suffix;
     hn_unit_kind kind;
@@ -44,7 +46,9 @@ int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_un
     if (!name) {
         return -1;
     }
-    int ok = hn_rd_check_identifier(r, name);
+
+    // the name of the rate follows from that of the coordinate, unless it is given
+    bool ok = hn_rd_check_identifier(r, name);
     if (!rate) {
         snprintf(made, sizeof made, "d_%s", name);
         rate = hn_rd_keep(r, made);
@@ -54,6 +58,8 @@ int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_un
     if (!all || !ok || !rate) {
         return -1;
     }
+
+    // no start, no limits: others read them later
     s->coordinates = all;
     int k = s->n_coordinates++;
     all[k] = (hn_coordinate){.name = name, .rate = rate, .kind = kind, .joint = joint};
@@ -61,6 +67,8 @@ int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_un
     all[k].min = -HUGE_VAL;
     all[k].max = HUGE_VAL;
     all[k].actuated = actuated;
+
+    // both names can be used in formulas from here on
     hn_rd_put_name(r, HN_RD_COORDINATE, k);
     ok = hn_rd_check_identifier(r, rate);
     if (ok) {
@@ -69,7 +77,7 @@ int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_un
     return ok ? k : -1;
 }
 
-// names ---------------------------------------------------------------------------------------------
+// ---- names ----
 
 /// A name of a list: filled in, or NULL after a fault.
 static const char *listed_name(hn_reader *r, const cJSON *node) {
@@ -80,13 +88,16 @@ static const char *listed_name(hn_reader *r, const cJSON *node) {
     return hn_rd_fill(r, node->valuestring);
 }
 
-/// The names under `many` (a list, one for each freedom), or for a single freedom under `one`. Those left out stay NULL.
-static int read_names(hn_reader *r, const cJSON *node, const char *one, const char *many, int n,
-                      const char *names[MAX_FREEDOMS]) {
+/// The names under `many` (a list, one for each freedom), or for a single freedom under `one`.
+/// Those left out stay NULL.
+static bool read_names(hn_reader *r, const cJSON *node, const char *one, const char *many, int n,
+                       const char *names[MAX_FREEDOMS]) {
     const cJSON *list = hn_rd_get(node, many), *single = hn_rd_get(node, one);
     if (list && single) {
         return hn_rd_fault(r, "leave one of them out", "both '%s' and '%s' are given", one, many);
     }
+
+    // a single name serves joints with one coordinate
     if (single && n != 1) {
         char hint[HN_DIAG_HINT];
         snprintf(hint, sizeof hint, "a list '%s' of %d names", many, n);
@@ -97,12 +108,14 @@ static int read_names(hn_reader *r, const cJSON *node, const char *one, const ch
         names[0] = hn_rd_name(r, node, one, 1);
         return names[0] != NULL;
     }
+
+    // a list names all of them
     if (list && (!cJSON_IsArray(list) || cJSON_GetArraySize(list) != n)) {
         return hn_rd_fault_at(r, many, NULL, "expected a list of %d name%s, found %s%s", n,
                               n == 1 ? "" : "s", hn_rd_kind(list),
                               cJSON_IsArray(list) ? " of another length" : "");
     }
-    int ok = 1;
+    bool ok = 1;
     size_t mark = hn_rd_enter(r, many);
     for (int i = 0; i < n && list; i++) {
         size_t inner = hn_rd_enter_index(r, i);
@@ -121,7 +134,7 @@ static const char *default_name(hn_reader *r, const char *joint, const char *suf
     return hn_rd_keep(r, made);
 }
 
-// driven, limited ------------------------------------------------------------------------------------
+// ---- driven, limited ----
 
 /// The joint's own coordinate of that name, or -1 after a fault.
 static int own_coordinate(hn_reader *r, const hn_joint *j, const char *name) {
@@ -142,12 +155,16 @@ static int own_coordinate(hn_reader *r, const hn_joint *j, const char *name) {
 static void read_actuated(hn_reader *r, const cJSON *node, const hn_joint *j) {
     const cJSON *driven = hn_rd_get(node, "actuated");
     size_t mark = hn_rd_enter(r, "actuated");
+
+    // true or false for all coordinates
     if (cJSON_IsTrue(driven) && j->n_coordinates == 0) {
         hn_rd_fault(r, "leave it out", "a fixed joint has nothing that could be driven");
     }
     for (int i = 0; i < j->n_coordinates; i++) {
         r->scene->coordinates[j->coordinate + i].actuated = cJSON_IsTrue(driven);
     }
+
+    // or a list of those that are driven
     int index = 0;
     for (const cJSON *m = cJSON_IsArray(driven) ? driven->child : NULL; m && !hn_rd_stopped(r);
          m = m->next, index++) {
@@ -155,7 +172,7 @@ static void read_actuated(hn_reader *r, const cJSON *node, const hn_joint *j) {
         const char *name = listed_name(r, m);
         int k = name ? own_coordinate(r, j, name) : -1;
         if (k >= 0) {
-            r->scene->coordinates[k].actuated = 1;
+            r->scene->coordinates[k].actuated = true;
         }
         hn_rd_leave(r, inner);
     }
@@ -169,6 +186,8 @@ static void read_actuated(hn_reader *r, const cJSON *node, const hn_joint *j) {
 /// [least, most]; null leaves a side open.
 static void read_limit(hn_reader *r, const cJSON *node, hn_coordinate *c) {
     double bound[2] = {-HUGE_VAL, HUGE_VAL};
+
+    // an entry of a rotation vector has no limit of its own
     if (c->turn >= 0) {
         hn_rd_fault(r, "limit the coordinates of a universal or revolute joint instead",
                     "'%s' is an entry of a rotation vector and cannot be limited", c->name);
@@ -180,6 +199,8 @@ static void read_limit(hn_reader *r, const cJSON *node, hn_coordinate *c) {
                     hn_rd_kind(node), cJSON_IsArray(node) ? " of another length" : "");
         return;
     }
+
+    // null leaves a side open
     for (int i = 0; i < 2; i++) {
         const cJSON *item = cJSON_GetArrayItem(node, i);
         size_t mark = hn_rd_enter_index(r, i);
@@ -203,6 +224,8 @@ static void read_limits(hn_reader *r, const cJSON *node, const hn_joint *j) {
     const cJSON *limits = hn_rd_get(node, "limits");
     hn_coordinate *all = r->scene->coordinates;
     size_t mark = hn_rd_enter(r, "limits");
+
+    // by the names of its coordinates, or as one pair where there is one coordinate
     if (cJSON_IsObject(limits)) {
         for (const cJSON *m = limits->child; m && !hn_rd_stopped(r); m = m->next) {
             size_t inner = hn_rd_enter(r, m->string);
@@ -222,22 +245,26 @@ static void read_limits(hn_reader *r, const cJSON *node, const hn_joint *j) {
     hn_rd_leave(r, mark);
 }
 
-// a joint's ------------------------------------------------------------------------------------------
+// ---- a joint's ----
 
 void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j) {
     const char *names[MAX_FREEDOMS] = {NULL}, *rates[MAX_FREEDOMS] = {NULL};
     int n = FREEDOMS[j->type].n, first = r->scene->n_coordinates;
     j->coordinate = -1;
     j->n_coordinates = 0;
+
+    // names that the scene gives
     if (!read_names(r, node, "coordinate", "coordinates", n, names) ||
         !read_names(r, node, "rate", "rates", n, rates) || !j->name) {
         return;
     }
+
+    // a fault of a made-up name is reported at the joint's own
     const char *at = hn_rd_get(node, "coordinate")    ? "coordinate"
                      : hn_rd_get(node, "coordinates") ? "coordinates"
                                                       : "name";
     size_t mark = hn_rd_enter(r, at);
-    int ok = 1;
+    bool ok = 1;
     for (int i = 0; i < n && ok; i++) {
         const freedom *f = &FREEDOMS[j->type].of[i];
         const char *name = names[i] ? names[i] : default_name(r, j->name, f->suffix);
@@ -252,6 +279,8 @@ void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j) {
     if (!ok) {
         return;
     }
+
+    // what drives and limits them needs their names
     j->coordinate = n > 0 ? first : -1;
     j->n_coordinates = n;
     read_actuated(r, node, j);

@@ -1,0 +1,10 @@
+#ifndef HN_IMPORT_URDF_H
+#define HN_IMPORT_URDF_H
+// URDF, the robot description of ROS: a tree of links and joints that stands on the ground.
+
+#include "import/build.h"
+
+/// Reads the element <robot> into `b`; returns 0 after a fault.
+bool hn_im_read_urdf(hn_build *b, const xmlNode *root);
+
+#endif

@@ -1,0 +1,17 @@
+#ifndef HN_RENDER_SNAPSHOT_SHAPES_H
+#define HN_RENDER_SNAPSHOT_SHAPES_H
+// The mechanism itself on a sheet. Inside render/ only.
+
+#include "render/snapshot_sheet.h"
+
+/// Ground, guides: what belongs to no pose, from the selected one.
+void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose);
+void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                           const hn_snapshot_pose *pose, int is_selected);
+void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
+                        const hn_snapshot_pose *pose);
+void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,
+                       const hn_snapshot_opts *opts);
+
+#endif
