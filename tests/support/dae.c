@@ -5,6 +5,8 @@
 
 #include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -14,9 +16,9 @@
 
 enum { MAX_TEXT = 256 };
 
-static void read_settings(const char *text, const hn_setting_info *table, int n, double *set) {
+static void read_options(const char *text, const hn_option *table, int n, double *set) {
     char words[MAX_TEXT];
-    for (int i = 0; i < HN_MAX_SETTINGS; i++) {
+    for (int i = 0; i < HN_MAX_OPTIONS; i++) {
         set[i] = i < n ? table[i].initial : 0;
     }
     snprintf(words, sizeof words, "%s", text ? text : "");
@@ -30,19 +32,19 @@ static void read_settings(const char *text, const hn_setting_info *table, int n,
             i++;
         }
         assert_true(i < n);
-        assert_int_equal(hn_setting_parse(&table[i], equals + 1, &set[i], NULL), HN_OK);
+        assert_int_equal(hn_option_parse(&table[i], equals + 1, &set[i], NULL), HN_OK);
     }
 }
 
 static void open_with(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
-                      hn_dae_form form, const double *form_set, const char *settings) {
-    double set[HN_MAX_SETTINGS];
+                      hn_dae_form form, const double *form_set, const char *options) {
+    double set[HN_MAX_OPTIONS];
     hn_diag diag = {0};
     const hn_accel_opts opts = {.want_lambda = 1};
     const size_t n = (size_t)(m->info.nq + m->info.nv);
     *d = (hn_test_dae){.model = m, .table = stepper->dae, .arena = hn_arena_create(0)};
     assert_true(stepper->forms & 1u << form);
-    read_settings(settings, stepper->settings, stepper->n_settings, set);
+    read_options(options, stepper->options, stepper->n_options, set);
     d->y = hn_arena_doubles(d->arena, n);
     d->y_new = hn_arena_doubles(d->arena, n);
     d->err = hn_arena_doubles(d->arena, n);
@@ -65,17 +67,17 @@ static void open_with(hn_test_dae *d, const hn_model *m, const hn_stepper *stepp
 }
 
 void hn_test_dae_open(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
-                      hn_dae_form form, const char *settings) {
-    const double none[HN_MAX_SETTINGS] = {0};
-    open_with(d, m, stepper, form, none, settings);
+                      hn_dae_form form, const char *options) {
+    const double none[HN_MAX_OPTIONS] = {0};
+    open_with(d, m, stepper, form, none, options);
 }
 
 void hn_test_dae_open_as(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
-                         const hn_formulation *formulation, const char *formulation_settings,
-                         const char *settings) {
-    double form_set[HN_MAX_SETTINGS];
-    read_settings(formulation_settings, formulation->settings, formulation->n_settings, form_set);
-    open_with(d, m, stepper, formulation->form, form_set, settings);
+                         const hn_formulation *formulation, const char *formulation_options,
+                         const char *options) {
+    double form_set[HN_MAX_OPTIONS];
+    read_options(formulation_options, formulation->options, formulation->n_options, form_set);
+    open_with(d, m, stepper, formulation->form, form_set, options);
 }
 
 void hn_test_dae_close(hn_test_dae *d) {
@@ -92,7 +94,7 @@ hn_status hn_test_dae_steps(hn_test_dae *d, double h, long long n) {
         if (status != HN_OK) {
             return status;
         }
-        d->table->accepted(d->self, 0);
+        d->table->on_accepted(d->self, 0);
         double *const y = d->y;
         d->y = d->y_new;
         d->y_new = y;
@@ -124,7 +126,7 @@ void hn_test_reference(const hn_model *m, double T, hn_test_state *out) {
     const hn_formulation *f = hn_formulation_find("projection");
     const hn_stepper *s = hn_stepper_find("dop853");
     const int steps = (int)ceil(T * 400), n = m->info.nq + m->info.nv;
-    const double none[HN_MAX_SETTINGS] = {0};
+    const double none[HN_MAX_OPTIONS] = {0};
     const hn_accel_opts opts = {.want_lambda = 1};
     double y[64], y_new[64], err[64], a[32];
     hn_arena *arena = hn_arena_create(0);
@@ -141,7 +143,7 @@ void hn_test_reference(const hn_model *m, double T, hn_test_state *out) {
         const double h = T / steps;
         assert_int_equal(s->step(stepper, &ode, i * h, h, y, y_new, err), HN_OK);
         assert_int_equal(f->after_step(self, (i + 1) * h, y_new, &changed), HN_OK);
-        s->accepted(stepper, 1);
+        s->on_accepted(stepper, 1);
         memcpy(y, y_new, sizeof y);
     }
     memcpy(out->q, y, (size_t)m->info.nq * sizeof *y);
@@ -162,7 +164,7 @@ static double distance(int n, const double *x, const double *y) {
 }
 
 hn_test_orders hn_test_dae_orders(const hn_model *m, const hn_stepper *stepper, hn_dae_form form,
-                                  const char *settings, double T, int base_steps, int n,
+                                  const char *options, double T, int base_steps, int n,
                                   const hn_test_state *exact) {
     hn_test_orders o = {0};
     double h[8];
@@ -171,7 +173,7 @@ hn_test_orders hn_test_dae_orders(const hn_model *m, const hn_stepper *stepper, 
         hn_test_dae d;
         const int steps = base_steps << i;
         h[i] = T / steps;
-        hn_test_dae_open(&d, m, stepper, form, settings);
+        hn_test_dae_open(&d, m, stepper, form, options);
         if (hn_test_dae_steps(&d, h[i], steps) != HN_OK) {
             fail_msg("%s with h = %g: %s", stepper->name, h[i], d.table->why(d.self));
         }

@@ -21,13 +21,13 @@ typedef struct hn_test_dae {
     double gap, speed_gap, energy;
 } hn_test_dae;
 
-/// A stepper on the model's assembled state. `settings` is NULL or "rho=0.9 a0=zero"; names of choices are understood. The
-/// formulation's settings (hn_test_dae_open_as) are given likewise. Failures stop the test with their reason.
+/// A stepper on the model's assembled state. `options` is NULL or "rho=0.9 a0=zero"; names of choices are understood. The
+/// formulation's options (hn_test_dae_open_as) are given likewise. Failures stop the test with their reason.
 void hn_test_dae_open(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
-                      hn_dae_form form, const char *settings);
+                      hn_dae_form form, const char *options);
 void hn_test_dae_open_as(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
-                         const hn_formulation *formulation, const char *formulation_settings,
-                         const char *settings);
+                         const hn_formulation *formulation, const char *formulation_options,
+                         const char *options);
 void hn_test_dae_close(hn_test_dae *d);
 /// n steps of size h; returns the first failure.
 hn_status hn_test_dae_steps(hn_test_dae *d, double h, long long n);
@@ -47,7 +47,7 @@ typedef struct hn_test_state {
 /// The state at T by dop853 of a formulation without drift, rtol 1e-13.
 void hn_test_reference(const hn_model *m, double T, hn_test_state *out);
 hn_test_orders hn_test_dae_orders(const hn_model *m, const hn_stepper *stepper, hn_dae_form form,
-                                  const char *settings, double T, int base_steps, int n,
+                                  const char *options, double T, int base_steps, int n,
                                   const hn_test_state *exact);
 
 #endif

@@ -5,6 +5,8 @@
 
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 #include "linalg/saddle.h"
 
 #include <math.h>
@@ -121,7 +123,7 @@ static void integrate(controlled *c, double end) {
     while (c->t < end) {
         for (int rejected = 0;; rejected = 1) {
             const double h = fmin(c->h, end - c->t);
-            c->stepper->accepted(c->self, 1);
+            c->stepper->on_accepted(c->self, 1);
             assert_int_equal(c->stepper->step(c->self, &c->ode, c->t, h, c->y, y_new, err), HN_OK);
             scales(c, c->y, y_new, scale);
             const double norm = rms(NY, err, scale);
@@ -144,7 +146,7 @@ typedef struct ending {
 
 static ending library_default(const hn_model *m, double rtol, double atol, double t) {
     const hn_formulation *form = hn_formulation_find("index1");
-    const double settings[HN_MAX_SETTINGS] = {0};
+    const double settings[HN_MAX_OPTIONS] = {0};
     hn_arena *arena = hn_arena_create(0);
     controlled c = {.stepper = hn_stepper_find("dopri5"), .rtol = rtol, .atol = atol};
     void *self = NULL;
@@ -357,7 +359,7 @@ static void masked_multipliers(hn_figures *f) {
     memcpy(y + NV, m.v, NV * sizeof *y);
     for (int i = 1; i <= 20000 && lost == 0; i++) {
         const hn_status status = rk4->step(self, &ode, (i - 1) * h, h, y, next, err);
-        rk4->accepted(self, 0);
+        rk4->on_accepted(self, 0);
         memcpy(y, next, sizeof y);
         if (status != HN_OK || !(hn_norm_max(NV, y + NV) < 1e6)) {
             lost = i * h;

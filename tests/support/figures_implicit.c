@@ -6,6 +6,7 @@
 #include "dynamics/assembly/project.h"
 #include "dynamics/evaluate/accel.h"
 #include "integrators/implicit/implicit_linear.h"
+#include "integrators/list/stepper_list.h"
 #include "linalg/svd.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 #include "support/figures_sets.h"
+#include "integrators/list/stepper_list.h"
 
 #include "support/near.h"
 #include "support/odes.h"

@@ -6,6 +6,7 @@
 
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -141,7 +141,7 @@ static void repeated_rows(hn_figures *f) {
 
 /// Largest difference of the accelerations by the method's right-hand side from those of the saddle system.
 static double by_udwadia_kalaba(const hn_model *m, const double *a) {
-    const double settings[HN_MAX_SETTINGS] = {0};
+    const double settings[HN_MAX_OPTIONS] = {0};
     return hn_motion_acceleration_error(m, "udwadia-kalaba", settings, a);
 }
 

@@ -32,6 +32,6 @@ void hn_turns_eigenvalues(const hn_model *m, double s[2]) {
 }
 
 double hn_turns_error(const hn_model *m, double a, int turns) {
-    const double settings[HN_MAX_SETTINGS] = {a, 10, 1, turns};
+    const double settings[HN_MAX_OPTIONS] = {a, 10, 1, turns};
     return hn_motion_acceleration_error(m, "augmented-lagrangian", settings, m->a);
 }

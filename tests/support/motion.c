@@ -1,4 +1,5 @@
 #include "support/motion.h"
+#include "formulations/list/formulation_list.h"
 
 #include "support/near.h"
 

@@ -79,7 +79,7 @@ hn_status hn_test_integrate(const hn_stepper *stepper, const hn_ode *ode, double
         if (status != HN_OK) {
             return status;
         }
-        stepper->accepted(self, 0);
+        stepper->on_accepted(self, 0);
         memcpy(y, next, (size_t)size * sizeof *y);
     }
     return HN_OK;

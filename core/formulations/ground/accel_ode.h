@@ -18,13 +18,13 @@ typedef struct hn_accel_ode {
 
 HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
                                           hn_solver solver, hn_arena *arena, hn_diag *diag);
-/// The setting "solver" of the formulations that use this; the value is an hn_solver.
-#define HN_ACCEL_ODE_SOLVER_SETTING                                                             \
-    {                                                                                           \
-        "solver", 0, 0, HN_SOLVER_COUNT - 1, "",                                                \
-            "who solves for the accelerations; auto: the tape, refined or least-norm where it " \
-            "must be",                                                                          \
-            hn_solver_names, HN_SOLVER_COUNT, 0                                                 \
+/// The option "solver" of the formulations that use this; the value is an hn_solver.
+#define HN_ACCEL_ODE_SOLVER_OPTION                                                            \
+    {                                                                                         \
+        .key = "solver", .max = HN_SOLVER_COUNT - 1, .choices = hn_solver_names,              \
+        .n_choices = HN_SOLVER_COUNT,                                                         \
+        .about = "linear solver of the accelerations; auto: the tape, refined or least-norm " \
+                 "where needed"                                                               \
     }
 void hn_accel_ode_destroy(void *self);
 void hn_accel_ode_get(void *self, hn_ode *out);

@@ -65,16 +65,16 @@ static int make_pattern(hn_penalised *p, hn_arena *arena) {
     return p->spd && p->G;
 }
 
-hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double *settings,
+hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double *options,
                             hn_arena *arena, hn_diag *diag) {
     const hn_status status = hn_dense_ode_init(&p->ode, sys, 1, arena, diag);
     if (status != HN_OK) {
         return status;
     }
     const size_t nv = (size_t)p->ode.base.nv, nc = (size_t)p->ode.base.nc;
-    p->a = settings[HN_PENALISED_A];
-    p->omega = settings[HN_PENALISED_OMEGA];
-    p->xi = settings[HN_PENALISED_XI];
+    p->a = options[HN_PENALISED_A];
+    p->omega = options[HN_PENALISED_OMEGA];
+    p->xi = options[HN_PENALISED_XI];
     p->scale = hn_arena_doubles(arena, nv);
     p->pull = hn_arena_doubles(arena, nc);
     p->work = hn_arena_doubles(arena, nc);
@@ -140,9 +140,9 @@ void hn_penalised_solve(hn_penalised *p, double *x) {
     p->ode.base.cost.ops += 2.0 * nv + hn_sparse_spd_solve_ops(p->spd);
 }
 
-hn_status hn_penalised_set(void *self, int setting, double value) {
+hn_status hn_penalised_set(void *self, int option, double value) {
     hn_penalised *p = self;
-    switch (setting) {
+    switch (option) {
     case HN_PENALISED_A:
         p->a = value;
         return HN_OK;

@@ -7,8 +7,8 @@
 #include "linalg/sparse_spd.h"
 #include "formulations/ground/dense_ode.h"
 
-/// Settings of both, in this order in their tables; live.
-enum { HN_PENALISED_A, HN_PENALISED_OMEGA, HN_PENALISED_XI };
+/// Options of both formulations, the first in their tables; they can be changed while running.
+enum { HN_PENALISED_A, HN_PENALISED_OMEGA, HN_PENALISED_XI, HN_PENALISED_OPTIONS };
 
 typedef struct hn_penalised {
     hn_dense_ode ode; ///< first: see dense_ode.h
@@ -23,13 +23,13 @@ typedef struct hn_penalised {
     double *work;            ///< nc
 } hn_penalised;
 
-/// Memory and terms; `settings` begin with the three above.
+/// Memory and terms; `options` begin with the three above.
 HN_MUST_CHECK hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys,
-                                          const double *settings, hn_arena *arena, hn_diag *diag);
+                                          const double *options, hn_arena *arena, hn_diag *diag);
 /// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in ode.base.why.
 HN_MUST_CHECK hn_status hn_penalised_factor(hn_penalised *p, double t, double weight);
 /// x <- (M + weight J' J)^-1 x, x (nv).
 void hn_penalised_solve(hn_penalised *p, double *x);
-hn_status hn_penalised_set(void *self, int setting, double value);
+hn_status hn_penalised_set(void *self, int option, double value);
 
 #endif

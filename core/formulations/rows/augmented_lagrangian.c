@@ -1,6 +1,6 @@
 #include "linalg/dense.h"
 #include "formulations/ground/penalised.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 //
 // a = 0 on the card asks for 1e5 / s with s the median of J_i diag(M)^-1 J_i', the scale of J M^-1 J' without a solve.
 
-enum { SET_ITERATIONS = HN_PENALISED_XI + 1 };
+enum { OPT_ITERATIONS = HN_PENALISED_OPTIONS, N_OPTIONS };
 #define AUTO_WEIGHT 1e5
 
 typedef struct augmented {
@@ -111,7 +111,7 @@ static hn_accel_law law(const void *self) {
     return (hn_accel_law){p->xi * p->omega, p->omega, 0};
 }
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     augmented *al = hn_arena_get(arena, sizeof *al);
     if (!al) {
@@ -120,8 +120,8 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     *self = al;
     al->p.ode.accelerate = accelerate;
     al->p.ode.base.law = law;
-    al->iterations = (int)settings[SET_ITERATIONS];
-    const hn_status status = hn_penalised_init(&al->p, sys, settings, arena, diag);
+    al->iterations = (int)options[OPT_ITERATIONS];
+    const hn_status status = hn_penalised_init(&al->p, sys, options, arena, diag);
     if (status != HN_OK) {
         return status;
     }
@@ -132,39 +132,54 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
                                   : HN_OK;
 }
 
-static hn_status set(void *self, int setting, double value) {
+static hn_status set(void *self, int option, double value) {
     augmented *al = self;
-    if (setting == SET_ITERATIONS) {
+    if (option == OPT_ITERATIONS) {
         al->iterations = (int)value;
         return HN_OK;
     }
-    return hn_penalised_set(self, setting, value);
+    return hn_penalised_set(self, option, value);
 }
 
 const hn_formulation hn_formulation_augmented_lagrangian = {
     .name = "augmented-lagrangian",
     .title = "augmented Lagrangian",
     .short_name = "augm. Lagr.",
-    .rule = "Take the penalty's answer, read off the loop force it implies, apply that force, and "
-            "repeat: a few turns with a mild penalty give what the penalty alone never reaches.",
-    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
-    .drift = "as Baumgarte with alpha = xi omega and beta = omega: bounded, fed by truncation",
-    .when =
-        "redundant rows, passing through poses where the loop loses rank; multipliers stay bounded",
-    .when_not = "very different masses in one loop (more iterations are needed); close to a pose "
-                "where the loop loses rank (energy is lost there); omega h "
-                "beyond the integrator's stability limit",
+    .rule = "Solve with a mild penalty, read off the loop force that it implies, apply "
+            "that force and repeat: a few iterations give what the penalty alone never "
+            "reaches.",
+    .drift = "as Baumgarte with alpha = xi omega and beta = omega: bounded, fed by "
+             "truncation error",
+    .when = "redundant constraints, motions through singular configurations; the "
+            "multipliers stay bounded",
+    .when_not = "very different masses in one loop (needs more iterations); close to a "
+                "singular configuration (energy is lost there); omega h beyond the "
+                "integrator's stability limit",
     .source = "Bayo, Garcia de Jalon & Serna 1988; Bayo & Avello 1994",
     .needs = "M f phi J gamma",
     .index = 1,
-    .n_settings = 4,
-    .settings =
+    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
+    .n_options = N_OPTIONS,
+    .options =
         {
-            {"a", 0, 0, 1e15, "", "weight of the gap; 0: 1e5 times the typical mass at the loop",
-             NULL, 0, 0},
-            {"omega", 10, 0, 1e6, "1/s", "natural rate of the gap", NULL, 0, 0},
-            {"xi", 1, 0, 100, "", "damping of the gap; 1: critical", NULL, 0, 0},
-            {"iterations", 3, 1, 50, "", "turns; a whole number", NULL, 0, 0},
+            [HN_PENALISED_A] = {.key = "a",
+                                .max = 1e15,
+                                .about =
+                                    "penalty weight; 0: 1e5 times the typical mass at the loop"},
+            [HN_PENALISED_OMEGA] = {.key = "omega",
+                                    .initial = 10,
+                                    .max = 1e6,
+                                    .unit = "1/s",
+                                    .about = "natural frequency of the gap"},
+            [HN_PENALISED_XI] = {.key = "xi",
+                                 .initial = 1,
+                                 .max = 100,
+                                 .about = "damping ratio of the gap; 1: critical"},
+            [OPT_ITERATIONS] = {.key = "iterations",
+                                .initial = 3,
+                                .min = 1,
+                                .max = 50,
+                                .about = "number of iterations (a whole number)"},
         },
     .create = create,
     .destroy = hn_dense_ode_destroy,

@@ -1,7 +1,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <math.h>
 
@@ -12,8 +12,6 @@
 // rms of the largest rate. Tying alpha to 1/h alone would bring any integrator down to order 2, because inner stages
 // leave a gap of O(h^2) that alpha^2 then multiplies.
 
-enum { SET_ALPHA, SET_BETA, SET_RULE, SET_SOLVER };
-enum { RULE_GIVEN, RULE_AUTO };
 #define AUTO_RATE 1.3
 #define AUTO_STEP 0.1
 
@@ -26,7 +24,7 @@ typedef struct baumgarte {
     double t_last, sum_square, sum_time;
 } baumgarte;
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     baumgarte *b = hn_arena_get(arena, sizeof *b);
     if (!b) {
@@ -34,9 +32,9 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = b;
     const hn_scene *scene = hn_system_scene(sys);
-    b->rule = (int)settings[SET_RULE];
-    b->ode.alpha = settings[SET_ALPHA];
-    b->ode.beta = settings[SET_BETA];
+    b->rule = (int)options[HN_STABILISED_RULE];
+    b->ode.alpha = options[HN_STABILISED_ALPHA];
+    b->ode.beta = options[HN_STABILISED_BETA];
     b->n_user = hn_system_get_info(sys).n_user;
     b->user_rates = hn_arena_doubles(arena, (size_t)b->n_user);
     b->rate_scale = hn_arena_doubles(arena, (size_t)b->n_user);
@@ -47,7 +45,8 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
         const hn_coordinate *c = &scene->coordinates[hn_system_user_coordinate(sys, i)];
         b->rate_scale[i] = c->kind == HN_LENGTH ? 1 / hn_system_length(sys) : 1;
     }
-    return hn_accel_ode_init(&b->ode, sys, 1, (hn_solver)settings[SET_SOLVER], arena, diag);
+    return hn_accel_ode_init(&b->ode, sys, 1, (hn_solver)options[HN_STABILISED_SOLVER], arena,
+                             diag);
 }
 
 static hn_status set_state(void *self, double t, const double *q, const double *v, double *y) {
@@ -55,7 +54,7 @@ static hn_status set_state(void *self, double t, const double *q, const double *
     b->t_last = t;
     b->sum_square = b->sum_time = 0;
     // before the first step neither h nor the motion's rate is known; the start is consistent
-    if (b->rule == RULE_AUTO) {
+    if (b->rule == HN_BAUMGARTE_AUTO) {
         b->ode.alpha = b->ode.beta = 0;
     }
     return hn_state_ode_set_state(self, t, q, v, y);
@@ -75,7 +74,7 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     const double h = t - b->t_last;
     (void)hn_state_ode_after_step(self, t, y, changed);
     b->t_last = t;
-    if (b->rule != RULE_AUTO || !(h > 0)) {
+    if (b->rule != HN_BAUMGARTE_AUTO || !(h > 0)) {
         return HN_OK;
     }
     const double rate = fastest_rate(b, y + b->ode.base.nq);
@@ -87,16 +86,16 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     return HN_OK;
 }
 
-static hn_status set(void *self, int setting, double value) {
+static hn_status set(void *self, int option, double value) {
     baumgarte *b = self;
-    if (setting == SET_SOLVER) {
+    if (option == HN_STABILISED_SOLVER) {
         return HN_ERR_UNSUPPORTED; // compiled in
     }
-    if (setting == SET_RULE) {
+    if (option == HN_STABILISED_RULE) {
         b->rule = (int)value;
-    } else if (b->rule == RULE_AUTO) {
+    } else if (b->rule == HN_BAUMGARTE_AUTO) {
         return HN_ERR_UNSUPPORTED; // the rule would overwrite it at the next step
-    } else if (setting == SET_ALPHA) {
+    } else if (option == HN_STABILISED_ALPHA) {
         b->ode.alpha = value;
     } else {
         b->ode.beta = value;
@@ -104,35 +103,52 @@ static hn_status set(void *self, int setting, double value) {
     return HN_OK;
 }
 
-static const char *const rules[] = {"given", "auto"};
+static const char *const rules[] = {[HN_BAUMGARTE_GIVEN] = "given", [HN_BAUMGARTE_AUTO] = "auto"};
 
 const hn_formulation hn_formulation_baumgarte = {
     .name = "baumgarte",
     .title = "Baumgarte stabilisation",
     .short_name = "Baumgarte",
     .rule = "Replace zero acceleration error by a damped oscillator: the gap decays like "
-            "exp(-alpha t) instead of "
-            "growing, and the force that closes it also disturbs the motion.",
-    .traits = HN_TRAIT_PULLS_GAP,
-    .drift =
-        "bounded: truncation feeds the gap, alpha and beta drain it; alpha = beta damps critically",
+            "exp(-alpha t) instead of growing, but the force that closes it also disturbs "
+            "the motion.",
+    .drift = "bounded: truncation error opens the gap, alpha and beta close it; alpha = "
+             "beta is critically damped",
     .when = "a small gap at almost the price of index-1; real time",
-    .when_not =
-        "near a singular pose (the correction is divided by a vanishing singular value); alpha h "
-        "beyond the "
-        "integrator's stability limit; alpha tied to 1/h with an integrator of order above 1",
+    .when_not = "near a singular configuration (the correction is divided by a vanishing "
+                "singular value); alpha h beyond the integrator's stability limit; alpha "
+                "proportional to 1/h with an integrator of order above 1",
     .source = "Baumgarte 1972; Ascher, Chin, Petzold & Reich 1995",
     .needs = "M f phi J gamma",
-    .also = HN_FORM_STABILISED,
+    .alternative_form = HN_FORM_STABILISED,
     .index = 1,
-    .n_settings = 4,
-    .settings =
+    .traits = HN_TRAIT_PULLS_GAP,
+    .n_options = HN_STABILISED_OPTIONS,
+    .options =
         {
-            {"alpha", 5, -1e6, 1e6, "1/s", "damping of the gap", NULL, 0, 1},
-            {"beta", 5, -1e6, 1e6, "1/s", "natural rate of the gap", NULL, 0, 1},
-            {"rule", 0, 0, 1, "",
-             "given: alpha and beta as set; auto: min(1.3 x rms rate, 0.1 / step)", rules, 2, 0},
-            HN_ACCEL_ODE_SOLVER_SETTING,
+            [HN_STABILISED_ALPHA] = {.key = "alpha",
+                                     .initial = 5,
+                                     .min = -1e6,
+                                     .max = 1e6,
+                                     .unit = "1/s",
+                                     .about = "damping of the gap",
+                                     .warn_below_zero = true},
+            [HN_STABILISED_BETA] = {.key = "beta",
+                                    .initial = 5,
+                                    .min = -1e6,
+                                    .max = 1e6,
+                                    .unit = "1/s",
+                                    .about = "natural frequency of the gap",
+                                    .warn_below_zero = true},
+            [HN_STABILISED_RULE] =
+                {.key = "rule",
+                 .max = 1,
+                 .about =
+                     "given: alpha and beta as set; auto: alpha = beta = min(1.3 x rms rate, 0.1 / "
+                     "step)",
+                 .choices = rules,
+                 .n_choices = 2},
+            [HN_STABILISED_SOLVER] = HN_ACCEL_ODE_SOLVER_OPTION,
         },
     .create = create,
     .destroy = hn_accel_ode_destroy,

@@ -1,4 +1,4 @@
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 // q' = G (v + M^-1 J' mu),   M v' = f + J' lambda,   phi = 0,   J v + phi_t = 0                                   (1)
 //
@@ -7,20 +7,19 @@ const hn_formulation hn_formulation_ggl = {
     .name = "ggl",
     .title = "Gear-Gupta-Leimkuhler, stabilised index 2",
     .short_name = "GGL",
-    .rule = "Ask for the loop and for its speed at once; a second multiplier, zero in the exact "
-            "motion, "
-            "makes room for the extra rows. Nothing drifts.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
-    .drift = "none: loop gap and speed gap stay at rounding",
-    .when =
-        "stiff springs and dampers, long runs, tight tolerances; the default among implicit ones",
-    .when_not =
-        "cheap short runs without stiffness: an explicit method with projection costs less; a "
-        "massless link: its equations have M^-1 in them (index2 and index3 serve that)",
+    .rule = "Require the constraints and their time derivative at once; a second "
+            "multiplier, zero in the exact motion, makes room for the extra equations. "
+            "Nothing drifts.",
+    .drift = "none: gap and velocity violation stay at rounding level",
+    .when = "stiff springs and dampers, long runs, tight tolerances; the first choice "
+            "among implicit methods",
+    .when_not = "short runs without stiffness: an explicit method with projection costs less; "
+                "massless links: its equations contain M^-1 (index2 and index3 serve them)",
     .source =
         "Gear, Leimkuhler & Gupta 1985; Fuehrer & Leimkuhler 1991; Hairer & Wanner 1996, VII.2",
     .needs = "M f phi J and derivatives",
     .order_note = "q and v as the integrator; its own multipliers lower (radau5: 3)",
     .form = HN_FORM_GGL,
     .index = 2,
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
 };

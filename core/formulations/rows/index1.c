@@ -1,34 +1,38 @@
 #include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+enum { OPT_SOLVER, N_OPTIONS };
+
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     hn_accel_ode *ode = hn_arena_get(arena, sizeof *ode);
     if (!ode) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = ode;
-    return hn_accel_ode_init(ode, sys, 0, (hn_solver)settings[0], arena, diag);
+    return hn_accel_ode_init(ode, sys, 0, (hn_solver)options[OPT_SOLVER], arena, diag);
 }
 
 const hn_formulation hn_formulation_index1 = {
     .name = "index1",
     .title = "index-1, not stabilised",
     .short_name = "index-1",
-    .rule = "Ask that the loop's acceleration error is zero and integrate twice. Nothing pulls "
-            "back what "
-            "truncation and rounding let through: the gap grows.",
-    .drift =
-        "speed gap grows like h^p t, loop gap like h^p t^2; an inconsistent start stays for ever",
-    .when = "short runs, small steps; the baseline that the others are judged against; the "
-            "cheapest per stage",
-    .when_not = "long runs: the loop falls apart and in the end the solution blows up",
+    .rule = "Require zero acceleration of the gap and integrate twice. Nothing corrects "
+            "truncation and rounding errors, so the gap grows.",
+    .drift = "the velocity violation grows like h^p t, the gap like h^p t^2; an "
+             "inconsistent start is never corrected",
+    .when = "short runs, small steps; the baseline for all other methods; the cheapest "
+            "right-hand side",
+    .when_not = "long runs: the loop opens and in the end the solution blows up",
     .source = "Brenan, Campbell & Petzold 1996; Ascher & Petzold 1998, ch. 9",
     .needs = "M f J gamma",
-    .also = HN_FORM_INDEX1,
-    .n_settings = 1,
-    .settings = {HN_ACCEL_ODE_SOLVER_SETTING},
+    .alternative_form = HN_FORM_INDEX1,
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_SOLVER] = HN_ACCEL_ODE_SOLVER_OPTION,
+        },
     .index = 1,
     .create = create,
     .destroy = hn_accel_ode_destroy,

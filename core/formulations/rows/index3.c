@@ -1,4 +1,4 @@
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 static const char *const projects[] = {"no", "yes"};
 
@@ -6,14 +6,13 @@ static const char *const projects[] = {"no", "yes"};
 // (in M^-1 J'), so that a projection at the end of a step gives back the order that positions have.
 const hn_formulation hn_formulation_index3 = {
     .name = "index3",
-    .title = "index 3, the loop as it is",
+    .title = "index 3, position constraints",
     .short_name = "index-3",
-    .rule = "Ask that the loop is closed at the end of the step, nothing else. The gap stays at "
-            "rounding; speeds and multipliers pay for it with orders.",
-    .traits = HN_TRAIT_CLOSES_POSITION,
-    .drift = "loop gap at rounding, speed gap of the order of the speeds",
+    .rule = "Require closed loops at the end of each step, and nothing else. The gap stays "
+            "at rounding level; velocities and multipliers converge with a lower order.",
+    .drift = "gap at rounding level; the velocity violation has the order of the velocities",
     .when = "to see what the index costs; implicit Euler for robust first-order runs",
-    .when_not = "accurate speeds or reactions, variable steps at tight tolerances: take ggl",
+    .when_not = "accurate velocities or reactions, variable steps at tight tolerances: use ggl",
     .source =
         "Hairer, Lubich & Roche 1989; Hairer & Wanner 1996, VII; Bottasso, Dopico & Trainelli 2008",
     .needs = "M f phi J and derivatives",
@@ -22,9 +21,17 @@ const hn_formulation hn_formulation_index3 = {
     .limits = "Gauss methods do not converge on it",
     .form = HN_FORM_INDEX3,
     .index = 3,
-    .n_settings = 1,
-    .settings = {{"project", 0, 0, 1, "",
-                  "speeds are taken to what the loops allow at the end of each step; radau5, "
-                  "radau3 and implicit-euler only",
-                  projects, 2, 0}},
+    .traits = HN_TRAIT_CLOSES_POSITION,
+    .n_options = HN_INDEX3_OPTIONS,
+    .options =
+        {
+            [HN_INDEX3_PROJECT] =
+                {.key = "project",
+                 .max = 1,
+                 .about =
+                     "project the velocities onto the constraints at the end of each step; radau5, "
+                     "radau3 and implicit-euler only",
+                 .choices = projects,
+                 .n_choices = 2},
+        },
 };

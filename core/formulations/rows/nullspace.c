@@ -1,12 +1,12 @@
 #include "formulations/chart/orthonormal_state.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_state.h"
 
 // (N' M N) u' + N' (M N' u + h) = N' Q    with the rate of the basis (the prime is a transpose to the left of M, a rate to its
 // right). Two bases: the partition N = [I; -J_d^-1 J_i], for which N' u = [0; -J_d^-1 gamma] (tangent_state.h), and an
 // orthonormal one that is carried along with the motion (orthonormal_state.h).
 
-enum { SET_BASIS };
+enum { OPT_BASIS, N_OPTIONS };
 enum { BASIS_PARTITION, BASIS_ORTHONORMAL };
 
 typedef struct nullspace {
@@ -17,14 +17,14 @@ typedef struct nullspace {
     } state;
 } nullspace;
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     nullspace *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    s->basis = (int)settings[SET_BASIS];
+    s->basis = (int)options[OPT_BASIS];
     return s->basis == BASIS_PARTITION
                ? hn_tangent_init(&s->state.partition, sys, 1, 0, arena, diag)
                : hn_orthonormal_init(&s->state.orthonormal, sys, 1, arena, diag);
@@ -92,22 +92,28 @@ const hn_formulation hn_formulation_nullspace = {
     .name = "nullspace",
     .title = "null-space, full form",
     .short_name = "null-space",
-    .rule = "Write the speeds as v = N u with J N = 0 and project the equations on N: the "
-            "multipliers vanish. N turns "
-            "with the mechanism, so its rate belongs in the equation.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
-              HN_TRAIT_HAS_BASIS,
-    .drift = "none: J v = 0 by construction, positions are closed after each step",
-    .when = "any mechanism off its singular poses; multipliers not needed; basis=orthonormal for "
-            "many freedoms in one loop",
-    .when_not = "poses where the rank of J drops: N changes its width there",
+    .rule = "Write the velocities as v = N u with J N = 0 and project the equations on N: "
+            "the multipliers vanish. N changes with the configuration, so its rate belongs "
+            "in the equation.",
+    .drift = "none: J v = 0 by construction, and the position is closed after each step",
+    .when = "any mechanism away from singular configurations, if multipliers are not "
+            "needed; basis=orthonormal for many degrees of freedom in one loop",
+    .when_not = "singular configurations: N changes its number of columns there",
     .source = "Kim & Vanderploeg 1986; Liang & Lance 1987; Potra & Rheinboldt 1991",
     .needs = "M f phi J gamma",
-    .n_settings = 1,
-    .settings = {{"basis", 0, 0, 1, "",
-                  "N from as many coordinates as there are freedoms, or an orthonormal N carried "
-                  "along",
-                  bases, 2, 0}},
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_HAS_BASIS,
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_BASIS] = {.key = "basis",
+                           .max = 1,
+                           .about = "partition: N from independent coordinates; orthonormal: an "
+                                    "orthonormal N that "
+                                    "turns with the motion",
+                           .choices = bases,
+                           .n_choices = 2},
+        },
     .create = create,
     .destroy = destroy,
     .ode = ode,

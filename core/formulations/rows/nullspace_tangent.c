@@ -1,5 +1,5 @@
 #include "dynamics/compile/coordinates.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_space.h"
 
 #include <math.h>
@@ -40,9 +40,9 @@ static int init(nullspace_tangent *s, const hn_system *sys, hn_arena *arena) {
     return 1;
 }
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
-    (void)settings;
+    (void)options;
     nullspace_tangent *s = hn_arena_get(arena, sizeof *s);
     if (!s || !init(s, sys, arena)) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -206,17 +206,18 @@ const hn_formulation hn_formulation_nullspace_tangent = {
     .name = "nullspace-tangent",
     .title = "tangent-space coordinates",
     .short_name = "tangent space",
-    .rule = "For one step, describe the motion by its shadow on the tangent space at the step's "
-            "beginning, with the loops closed at every evaluation; then begin again from where "
-            "the step has led.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
-              HN_TRAIT_HAS_BASIS,
-    .drift = "none: every right-hand side closes the loops",
-    .when = "any number of freedoms, no drift wanted, no coordinate good for the whole motion",
-    .when_not = "poses where the rank of J drops; many loops (dense); integrators that live on "
-                "their history: it ends with every step",
+    .rule = "Within one step, describe the motion by its projection onto the tangent space "
+            "at the start of the step, with closed loops at every evaluation; the next "
+            "step uses a new tangent space.",
+    .drift = "none: every evaluation closes the loops",
+    .when = "any number of degrees of freedom, no drift, no coordinate that serves for the "
+            "whole motion",
+    .when_not = "singular configurations; many loops (dense algebra); multistep integrators: "
+                "their history ends with every step",
     .source = "Potra & Rheinboldt 1991",
     .needs = "M f phi J gamma",
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_HAS_BASIS,
     .create = create,
     .destroy = destroy,
     .ode = ode,

@@ -1,13 +1,13 @@
 #include "formulations/chart/orthonormal_state.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 // v = N u with an orthonormal N from a factorisation of J at each right-hand side. J N = 0 leaves N free up to a rotation, and
 // the factorisation chooses: when it changes its mind, a column changes its sign (or turns) from one evaluation to the next, u
 // does not, and so v does. The loop stays closed. An exhibit; nullspace:basis=orthonormal is the same with the basis carried.
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
-    (void)settings;
+    (void)options;
     hn_orthonormal_state *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -20,18 +20,19 @@ const hn_formulation hn_formulation_nullspace_untracked = {
     .name = "nullspace-untracked",
     .title = "null-space, basis not tracked",
     .short_name = "untracked",
-    .rule = "Take an orthonormal basis of the free speeds anew at every evaluation. The "
-            "factorisation may change its sign at any time; the speeds along it then turn round "
-            "in the middle of the motion.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_BASIS |
-              HN_TRAIT_COUNTER_EXAMPLE,
-    .drift = "none in the gap; the motion is wrong by radians after the first change of sign",
-    .when = "to see why a basis has to be carried along",
-    .when_not = "for any result that matters: nullspace:basis=orthonormal carries its basis",
-    .source = "Kim & Vanderploeg 1986; Liang & Lance 1987, the remedy",
+    .rule = "Compute a new orthonormal basis of the free velocities at every evaluation. "
+            "The factorisation may flip a column's sign at any time; the velocity along "
+            "that column then reverses.",
+    .drift = "none in the gap; the motion is wrong by radians after the first flipped sign",
+    .when = "to see why a basis must follow the motion continuously",
+    .when_not = "any result that matters: use nullspace:basis=orthonormal, whose basis follows "
+                "the motion",
+    .source = "Kim & Vanderploeg 1986; the remedy: Liang & Lance 1987",
     .needs = "M f phi J gamma",
     .order_note = "none: the basis jumps",
-    .model_error = 1,
+    .model_error = true,
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_BASIS |
+              HN_TRAIT_COUNTER_EXAMPLE,
     .create = create,
     .destroy = hn_orthonormal_destroy,
     .ode = hn_orthonormal_ode,

@@ -1,21 +1,21 @@
 #include "formulations/chart/minimal_state.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
-enum { SET_TAU };
+enum { OPT_TAU, N_OPTIONS };
 
 typedef struct partitioning {
     hn_minimal_state state; // first: see minimal_state.h
     double tau;
 } partitioning;
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     partitioning *p = hn_arena_get(arena, sizeof *p);
     if (!p) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = p;
-    p->tau = settings[SET_TAU];
+    p->tau = options[OPT_TAU];
     return hn_minimal_init(&p->state, sys, arena, diag);
 }
 
@@ -44,19 +44,26 @@ const hn_formulation hn_formulation_partitioning = {
     .name = "partitioning",
     .title = "coordinate partitioning",
     .short_name = "partitioning",
-    .rule = "Integrate as many coordinates as there are freedoms; the others follow from the "
-            "closed loops. Near a "
-            "dead point of the chosen ones, others are chosen.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART,
-    .drift = "none: every right-hand side closes the loops",
-    .when = "one or two freedoms, no drift wanted, motions that pass dead points",
-    .when_not = "poses where the rank of J drops: no choice of coordinates is regular there",
+    .rule = "Integrate as many independent coordinates as there are degrees of freedom; "
+            "the loops determine the others. Near a dead point of the independent "
+            "coordinates, others are chosen.",
+    .drift = "none: every evaluation closes the loops",
+    .when = "one or two degrees of freedom, no drift, motions through dead points",
+    .when_not = "singular configurations: no choice of coordinates is regular there",
     .source = "Wehage & Haug 1982",
     .needs = "M f phi J gamma",
-    .n_settings = 1,
-    .settings = {{"tau", HN_CHART_TAU, 0, 1, "",
-                  "change coordinates when |det J_d| falls below tau times the best choice", NULL,
-                  0, 0}},
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART,
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_TAU] =
+                {.key = "tau",
+                 .initial = HN_CHART_TAU,
+                 .max = 1,
+                 .about =
+                     "change coordinates when |det J_d| falls below tau times that of the best "
+                     "choice"},
+        },
     .create = create,
     .destroy = hn_minimal_destroy,
     .ode = hn_minimal_ode,

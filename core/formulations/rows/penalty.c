@@ -1,5 +1,5 @@
 #include "formulations/ground/penalised.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <string.h>
 
@@ -31,7 +31,7 @@ static hn_accel_law law(const void *self) {
     return (hn_accel_law){p->xi * p->omega, p->omega, 1 / p->a};
 }
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     hn_penalised *p = hn_arena_get(arena, sizeof *p);
     if (!p) {
@@ -40,31 +40,43 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     *self = p;
     p->ode.accelerate = accelerate;
     p->ode.base.law = law;
-    return hn_penalised_init(p, sys, settings, arena, diag);
+    return hn_penalised_init(p, sys, options, arena, diag);
 }
 
 const hn_formulation hn_formulation_penalty = {
     .name = "penalty",
     .title = "penalty",
     .short_name = "penalty",
-    .rule =
-        "Replace the closed loop by a very strong spring, damper and mass acting on the gap. The "
-        "stronger they are, the nearer the motion comes to the true one, until rounding wins.",
-    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
-    .drift = "bounded: the gap follows the loop force, |lambda| / (a omega^2), whatever the step",
-    .when = "redundant rows, massless links, joints that do give",
-    .when_not = "more than a few digits: the error falls only as 1 / a, and a beyond 1e10 meets "
-                "rounding; poses where the loop loses rank; omega h beyond the integrator's "
+    .rule = "Replace the closed loop by a very stiff spring, damper and mass acting on the "
+            "gap. The stiffer they are, the closer the motion is to the true one, until "
+            "rounding dominates.",
+    .drift = "bounded: the gap follows the loop force, |lambda| / (a omega^2), at any step "
+             "size",
+    .when = "redundant constraints, massless links, joints with real compliance",
+    .when_not = "more than a few digits: the error falls only as 1 / a, and rounding dominates "
+                "for a above 1e10; singular configurations; omega h beyond the integrator's "
                 "stability limit",
     .source = "Bayo, Garcia de Jalon & Serna 1988",
     .needs = "M f phi J gamma",
-    .model_error = 1,
-    .n_settings = 3,
-    .settings =
+    .model_error = true,
+    .traits = HN_TRAIT_PULLS_GAP | HN_TRAIT_ADDS_VIBRATIONS,
+    .n_options = HN_PENALISED_OPTIONS,
+    .options =
         {
-            {"a", 1e7, 1e-3, 1e15, "", "weight of the gap against the masses", NULL, 0, 0},
-            {"omega", 10, 0, 1e6, "1/s", "natural rate of the gap", NULL, 0, 0},
-            {"xi", 1, 0, 100, "", "damping of the gap; 1: critical", NULL, 0, 0},
+            [HN_PENALISED_A] = {.key = "a",
+                                .initial = 1e7,
+                                .min = 1e-3,
+                                .max = 1e15,
+                                .about = "penalty weight relative to the masses"},
+            [HN_PENALISED_OMEGA] = {.key = "omega",
+                                    .initial = 10,
+                                    .max = 1e6,
+                                    .unit = "1/s",
+                                    .about = "natural frequency of the gap"},
+            [HN_PENALISED_XI] = {.key = "xi",
+                                 .initial = 1,
+                                 .max = 100,
+                                 .about = "damping ratio of the gap; 1: critical"},
         },
     .create = create,
     .destroy = hn_dense_ode_destroy,

@@ -1,12 +1,12 @@
 #include "dynamics/assembly/project.h"
 #include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { SET_WEIGHT, SET_WHAT, SET_SOLVER };
+enum { OPT_WEIGHT, OPT_WHAT, OPT_SOLVER, N_OPTIONS };
 enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
 // of the characteristic length: rounding level times sqrt(rows), and what is accepted where rounding is coarser
 #define GAP_TOL 3e-16
@@ -18,20 +18,20 @@ typedef struct projection {
     int what;
 } projection;
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     projection *p = hn_arena_get(arena, sizeof *p);
     if (!p) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = p;
-    p->what = (int)settings[SET_WHAT];
+    p->what = (int)options[OPT_WHAT];
     hn_status status =
-        hn_accel_ode_init(&p->ode, sys, 0, (hn_solver)settings[SET_SOLVER], arena, diag);
+        hn_accel_ode_init(&p->ode, sys, 0, (hn_solver)options[OPT_SOLVER], arena, diag);
     if (status != HN_OK || p->ode.base.nc == 0) {
         return status;
     }
-    const hn_weight weight = settings[SET_WEIGHT] > 0 ? HN_WEIGHT_EUCLIDEAN : HN_WEIGHT_MASS;
+    const hn_weight weight = options[OPT_WEIGHT] > 0 ? HN_WEIGHT_EUCLIDEAN : HN_WEIGHT_MASS;
     status = hn_projector_create(sys, weight, arena, &p->projector);
     return status == HN_OK
                ? HN_OK
@@ -107,24 +107,33 @@ const hn_formulation hn_formulation_projection = {
     .name = "projection",
     .title = "projection after each step",
     .short_name = "projection",
-    .rule = "Step as index-1, then move the state to the nearest one that closes the loop: "
-            "positions first, then "
-            "speeds. Measured with the mass matrix, it can only take kinetic energy away.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY,
-    .drift = "none: gap and speed gap at rounding level after every step; energy may still drift",
-    .when = "the accurate and cheap default for short and medium runs",
-    .when_not =
-        "very long conservative runs (energy drifts linearly); a massless link with weight=mass",
+    .rule = "Step as index-1, then move the state to the nearest one with closed loops: "
+            "first positions, then velocities. Measured with the mass matrix, this can "
+            "only remove kinetic energy.",
+    .drift = "none: gap and velocity violation at rounding level after every step; energy "
+             "may still drift",
+    .when = "short and medium runs: accurate and cheap, the default",
+    .when_not = "very long conservative runs (energy drifts linearly); massless links with "
+                "weight=mass",
     .source = "Eich 1993; Ascher, Chin & Reich 1994; Blajer 2002",
     .needs = "M f phi J gamma",
     .index = 1,
-    .n_settings = 3,
-    .settings =
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY,
+    .n_options = N_OPTIONS,
+    .options =
         {
-            {"weight", 0, 0, 1, "", "what nearest means: kinetic energy, or plain squares", weights,
-             2, 0},
-            {"what", 0, 0, 2, "", "which part of the state is projected", whats, 3, 0},
-            HN_ACCEL_ODE_SOLVER_SETTING,
+            [OPT_WEIGHT] =
+                {.key = "weight",
+                 .max = 1,
+                 .about = "metric for the nearest state: kinetic energy, or the sum of squares",
+                 .choices = weights,
+                 .n_choices = 2},
+            [OPT_WHAT] = {.key = "what",
+                          .max = 2,
+                          .about = "part of the state that is projected",
+                          .choices = whats,
+                          .n_choices = 3},
+            [OPT_SOLVER] = HN_ACCEL_ODE_SOLVER_OPTION,
         },
     .create = create,
     .destroy = destroy,

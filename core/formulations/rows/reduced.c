@@ -1,5 +1,5 @@
 #include "formulations/chart/minimal_state.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 // q = f(q_r) for a fixed choice q_r, with B = df/dq_r:
 //
@@ -10,7 +10,7 @@
 // nothing is iterated; else it is found by Newton's method. Neither is always cheaper: a parallelogram moves along its tangent, where
 // Newton's method has nothing to do.
 
-enum { SET_COORDINATE, SET_POSITION };
+enum { OPT_COORDINATE, OPT_POSITION, N_OPTIONS };
 
 static const char *const positions[] = {"auto", "newton", "dyads"}; // as hn_position counts them
 enum { N_POSITIONS = sizeof positions / sizeof positions[0] };
@@ -20,7 +20,7 @@ typedef struct reduced {
     int first;              // column that has to be independent, -1: any
 } reduced;
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
     reduced *red = hn_arena_get(arena, sizeof *red);
     if (!red) {
@@ -28,14 +28,14 @@ static hn_status create(const hn_system *sys, const double *settings, hn_arena *
     }
     *self = red;
     // 0 is "the best choice": HN_CHART_PREFERRED
-    red->first = (int)settings[SET_COORDINATE] - 1;
+    red->first = (int)options[OPT_COORDINATE] - 1;
     const int nv = hn_system_get_info(sys).nv;
     if (red->first >= nv) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "coordinate=%d: this scene has coordinates 1 to %d", red->first + 1, nv);
     }
     const hn_status status = hn_minimal_init(&red->state, sys, arena, diag);
-    red->state.position = (hn_position)settings[SET_POSITION];
+    red->state.position = (hn_position)options[OPT_POSITION];
     return status;
 }
 
@@ -54,26 +54,37 @@ const hn_formulation hn_formulation_reduced = {
     .name = "reduced",
     .title = "reduced coordinates",
     .short_name = "reduced",
-    .rule = "Write all coordinates as functions of as many as there are freedoms and integrate "
-            "only those; the loops "
-            "are closed by construction, as far as the chosen coordinates reach.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
-              HN_TRAIT_FIXED_CHART,
-    .drift = "none: every right-hand side closes the loops",
-    .when = "teaching, closed-form loops, a driven crank that turns all the way round",
+    .rule = "Write all coordinates as functions of as many as there are degrees of freedom "
+            "and integrate only those; the loops are closed by construction, within the "
+            "range of the chosen coordinates.",
+    .drift = "none: every evaluation closes the loops",
+    .when = "teaching, loops with a closed-form solution, a driven crank that turns all "
+            "the way round",
     .when_not = "motions through a dead point of the chosen coordinate: the run stops there "
-                "(partitioning goes on)",
+                "(partitioning continues)",
     .source = "Wehage & Haug 1982; Featherstone 2008, ch. 8",
     .needs = "M f phi J gamma",
-    .n_settings = 2,
-    .settings = {{"coordinate", 0, 0, 4000, "",
-                  "number of the joint coordinate to keep, as inspect lists them; 0: the best "
-                  "choice at the start",
-                  NULL, 0, 0},
-                 {"position", HN_POSITION_AUTO, 0, N_POSITIONS - 1, "",
-                  "who closes the loops: dyads in closed form, Newton's method, or auto: dyads "
-                  "once they are seen to cost fewer operations than Newton's method did",
-                  positions, N_POSITIONS, 0}},
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_HAS_CHART |
+              HN_TRAIT_FIXED_CHART,
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_COORDINATE] =
+                {.key = "coordinate",
+                 .max = 4000,
+                 .about =
+                     "number of the joint coordinate to keep, as inspect lists them; 0: the best "
+                     "choice at the start"},
+            [OPT_POSITION] =
+                {.key = "position",
+                 .initial = HN_POSITION_AUTO,
+                 .max = N_POSITIONS - 1,
+                 .about =
+                     "how the loops are closed: dyads in closed form, Newton's method, or auto: "
+                     "dyads once they have cost fewer operations than Newton's method",
+                 .choices = positions,
+                 .n_choices = N_POSITIONS},
+        },
     .create = create,
     .destroy = hn_minimal_destroy,
     .ode = hn_minimal_ode,

@@ -4,7 +4,7 @@
 #include "linalg/saddle.h"
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/flops.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <float.h>
 #include <math.h>
@@ -44,9 +44,9 @@ static hn_status fail_memory(hn_diag *diag) {
     return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
 }
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
-    (void)settings;
+    (void)options;
     symmetric *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return fail_memory(diag);
@@ -279,19 +279,20 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .name = "symmetric-projection",
     .title = "symmetric projection",
     .short_name = "symm. proj.",
-    .rule = "Push the state off the closed loop by the same amount before the step as it is pushed "
-            "back after it. Forwards and backwards are then the same, and energy does not wander.",
-    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
-    .drift = "none: gap and speed gap at rounding; with a symmetric integrator the energy error "
-             "stays bounded",
+    .rule = "Push the state off the closed loops before the step and back on after it by "
+            "the same amount. The step is then symmetric in time, and the energy error "
+            "stays bounded.",
+    .drift = "none: gap and velocity violation at rounding level; with a symmetric "
+             "integrator the energy error stays bounded",
     .when = "long conservative runs with midpoint or Gauss methods",
-    .when_not = "short runs (each step costs several of the integrator's); a massless link; steps "
-                "chosen by an error estimate",
+    .when_not = "short runs (each step costs several of the integrator's); massless links; "
+                "steps chosen by an error estimate",
     .source = "Hairer 2000; Hairer, Lubich & Wanner 2006, V.4.1",
     .needs = "M f phi J gamma",
     .order_note = "the integrator's in q, v and recomputed lambda",
-    .limits = "the energy stays bounded with a symmetric integrator only",
+    .limits = "the energy error stays bounded with symmetric integrators only",
     .index = 1,
+    .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
     .create = create,
     .destroy = destroy,
     .ode = hn_accel_ode_get,

@@ -3,7 +3,7 @@
 #include "linalg/qr.h"
 #include "formulations/ground/dense_ode.h"
 #include "formulations/ground/flops.h"
-#include "formulations/ground/registry.h"
+#include "formulations/ground/formulation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -221,9 +221,9 @@ static hn_status accelerate(void *self, double t, const double *v, double *a) {
     return HN_OK;
 }
 
-static hn_status create(const hn_system *sys, const double *settings, hn_arena *arena, void **self,
+static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {
-    (void)settings;
+    (void)options;
     udwadia_kalaba *u = hn_arena_get(arena, sizeof *u);
     if (!u) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -254,18 +254,18 @@ const hn_formulation hn_formulation_udwadia_kalaba = {
     .name = "udwadia-kalaba",
     .title = "Udwadia-Kalaba",
     .short_name = "Udwadia-Kalaba",
-    .rule =
-        "Let every body move as if free, then add the smallest correction, measured by the mass "
-        "matrix, that meets the constraints: one formula with a pseudo-inverse, no "
-        "multipliers.",
-    .traits = HN_TRAIT_NEEDS_MASS_INVERSE,
-    .drift = "as index-1: speed gap grows like h^p t, loop gap like h^p t^2",
-    .when = "redundant closure rows, a start at a pose where the loop loses rank, massless links",
-    .when_not = "long runs (nothing closes the gap); large mechanisms (dense, cost grows with the "
-                "cube of the size); near a singular pose, where the rank tolerance decides",
+    .rule = "Let every body move as if free, then add the smallest correction, measured by "
+            "the mass matrix, that meets the constraints: one formula with a "
+            "pseudo-inverse, no multipliers.",
+    .drift = "as index-1: the velocity violation grows like h^p t, the gap like h^p t^2",
+    .when = "redundant constraints, a start at a singular configuration, massless links",
+    .when_not = "long runs (nothing closes the gap); large mechanisms (dense, cost grows with "
+                "the cube of the size); near a singular configuration, where the rank "
+                "tolerance decides",
     .source = "Udwadia & Kalaba 1992; Udwadia & Phohomsiri 2006",
     .needs = "M f phi J gamma",
     .index = 1,
+    .traits = HN_TRAIT_NEEDS_MASS_INVERSE,
     .create = create,
     .destroy = hn_dense_ode_destroy,
     .ode = hn_dense_ode_get,

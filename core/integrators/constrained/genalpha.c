@@ -1,6 +1,6 @@
 #include "dynamics/compile/coordinates.h"
 #include "integrators/constrained/newmark.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include "linalg/dense.h"
 
@@ -18,7 +18,7 @@
 // with v' itself the order stays 2, begun with 0 it falls to 1.
 // Source: Chung & Hulbert 1993; Arnold & Bruls 2007; Arnold, Bruls & Cardona 2015.
 
-enum { SET_RHO = 1, SET_A0 }; // after h
+enum { OPT_STEP, OPT_RHO, OPT_A0, N_OPTIONS };
 enum { A0_SHIFTED, A0_CONSISTENT, A0_ZERO };
 static const double SHIFT_STEP =
     1e-2; // of h: for the rate of v' at the start, by central differences
@@ -52,9 +52,9 @@ static void choose_coefficients(genalpha *s, double rho) {
     s->n.weight = (1 - s->alpha_m) / (1 - s->alpha_f);
 }
 
-static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
-                        const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "genalpha", diag);
+static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
+                        const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
+    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "genalpha", diag);
     if (refused != HN_OK) {
         return refused;
     }
@@ -68,8 +68,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
         return status;
     }
     const size_t nv = (size_t)s->n.base.nv, nc = (size_t)s->n.base.nc;
-    choose_coefficients(s, settings[SET_RHO]);
-    s->a0 = (int)settings[SET_A0];
+    choose_coefficients(s, options[OPT_RHO]);
+    s->a0 = (int)options[OPT_A0];
     s->q = hn_arena_doubles(arena, (size_t)s->n.base.nq);
     s->v = hn_arena_doubles(arena, nv);
     s->before = hn_arena_doubles(arena, nv);
@@ -166,7 +166,7 @@ static const hn_dae_stepper dae = {
     .destroy = destroy,
     .start = start,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
     .raw_lambda = raw_lambda,
     .add_cost = hn_newmark_add_cost,
     .why = hn_newmark_why,
@@ -186,11 +186,21 @@ const hn_stepper hn_stepper_genalpha = {
     .stages = 1,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 3,
-    .settings = {HN_SETTING_STEP,
-                 {"rho", 0.8, 0, 1, "", "what is left of infinitely fast oscillations after a step",
-                  NULL, 0, 0},
-                 {"a0", 0, 0, 2, "", "the auxiliary acceleration to begin with", starts, 3, 0}},
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_STEP] = HN_OPTION_STEP,
+            [OPT_RHO] =
+                {.key = "rho",
+                 .initial = 0.8,
+                 .max = 1,
+                 .about = "fraction of an infinitely fast oscillation that remains after a step"},
+            [OPT_A0] = {.key = "a0",
+                        .max = 2,
+                        .about = "start value of the auxiliary acceleration",
+                        .choices = starts,
+                        .n_choices = 3},
+        },
     .forms = 1u << HN_FORM_INDEX3 | 1u << HN_FORM_GGL,
     .dae = &dae,
 };

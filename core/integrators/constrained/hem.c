@@ -1,24 +1,24 @@
 #include "integrators/step/dae_base.h"
 #include "integrators/constrained/half_explicit.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
-#define HALF_EXPLICIT(name, scheme, doubled)                                                       \
-    static hn_status create_##name(const hn_system *sys, hn_dae_form form, const double *settings, \
-                                   const double *form_settings, hn_arena *arena, void **self,      \
-                                   hn_diag *diag) {                                                \
-        (void)settings;                                                                            \
-        const int close = hn_dae_close_setting(form, form_settings);                               \
-        return hn_half_explicit_create(&(scheme), doubled, close, sys, arena, self, diag);         \
-    }                                                                                              \
-    static const hn_dae_stepper dae_##name = {                                                     \
-        .create = create_##name,                                                                   \
-        .destroy = hn_half_explicit_destroy,                                                       \
-        .start = hn_half_explicit_start,                                                           \
-        .step = hn_half_explicit_step,                                                             \
-        .accepted = hn_half_explicit_accepted,                                                     \
-        .raw_lambda = hn_half_explicit_raw_lambda,                                                 \
-        .add_cost = hn_half_explicit_add_cost,                                                     \
-        .why = hn_half_explicit_why,                                                               \
+#define HALF_EXPLICIT(name, scheme, doubled)                                                      \
+    static hn_status create_##name(const hn_system *sys, hn_dae_form form, const double *options, \
+                                   const double *form_options, hn_arena *arena, void **self,      \
+                                   hn_diag *diag) {                                               \
+        (void)options;                                                                            \
+        const int close = hn_dae_close_option(form, form_options);                                \
+        return hn_half_explicit_create(&(scheme), doubled, close, sys, arena, self, diag);        \
+    }                                                                                             \
+    static const hn_dae_stepper dae_##name = {                                                    \
+        .create = create_##name,                                                                  \
+        .destroy = hn_half_explicit_destroy,                                                      \
+        .start = hn_half_explicit_start,                                                          \
+        .step = hn_half_explicit_step,                                                            \
+        .on_accepted = hn_half_explicit_accepted,                                                 \
+        .raw_lambda = hn_half_explicit_raw_lambda,                                                \
+        .add_cost = hn_half_explicit_add_cost,                                                    \
+        .why = hn_half_explicit_why,                                                              \
     }
 
 HALF_EXPLICIT(hem3, hn_half_explicit_hem3, 0);
@@ -36,8 +36,8 @@ const hn_stepper hn_stepper_hem3 = {
     .stages = 3,
     .real_limit = 2.513,
     .imag_limit = 1.732,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = 1u << HN_FORM_INDEX2,
     .dae = &dae_hem3,
 };
@@ -53,8 +53,8 @@ const hn_stepper hn_stepper_hem4 = {
     .stages = 5,
     .real_limit = 5.364,
     .imag_limit = 3.275,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = 1u << HN_FORM_INDEX2,
     .dae = &dae_hem4,
 };
@@ -70,11 +70,11 @@ const hn_stepper hn_stepper_hem4_adaptive = {
     .order = 4,
     .control_order = 5,
     .stages = 15,
-    .adaptive = 1,
+    .adaptive = true,
     .real_limit = 10.729,
     .imag_limit = 6.551,
-    .n_settings = 4,
-    .settings = {HN_SETTINGS_ADAPTIVE},
+    .n_options = HN_ADAPTIVE_OPTIONS,
+    .options = {HN_OPTIONS_ADAPTIVE},
     .forms = 1u << HN_FORM_INDEX2,
     .dae = &dae_hem4a,
 };
@@ -89,8 +89,8 @@ const hn_stepper hn_stepper_half_explicit_rk4 = {
     .stages = 4,
     .real_limit = 2.785,
     .imag_limit = 2.828,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = 1u << HN_FORM_INDEX2,
     .dae = &dae_hrk4,
 };

@@ -1,5 +1,5 @@
 #include "integrators/constrained/newmark.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include "linalg/dense.h"
 
@@ -15,7 +15,7 @@
 // of the order h in each step: order 2 for constant M, little more than 1 in angles.
 // Source: Negrut et al. 2007; Jay & Negrut 2007.
 
-enum { SET_DAMPING = 1 }; // after h
+enum { OPT_STEP, OPT_DAMPING, N_OPTIONS };
 
 typedef struct carried {
     double *a, *force; // nv
@@ -35,9 +35,9 @@ static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
     return c->a && c->force && c->lambda;
 }
 
-static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
-                        const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "hht", diag);
+static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
+                        const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
+    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "hht", diag);
     if (refused != HN_OK) {
         return refused;
     }
@@ -50,7 +50,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
     if (status != HN_OK) {
         return status;
     }
-    s->alpha = -settings[SET_DAMPING];
+    s->alpha = -options[OPT_DAMPING];
     s->n.gamma = (1 - 2 * s->alpha) / 2;
     s->n.beta = (1 - s->alpha) * (1 - s->alpha) / 4;
     s->n.weight = 1 / (1 + s->alpha);
@@ -122,7 +122,7 @@ static const hn_dae_stepper dae = {
     .destroy = destroy,
     .start = start,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
     .raw_lambda = raw_lambda,
     .add_cost = hn_newmark_add_cost,
     .why = hn_newmark_why,
@@ -140,10 +140,15 @@ const hn_stepper hn_stepper_hht = {
     .stages = 1,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 2,
-    .settings = {HN_SETTING_STEP,
-                 {"damping", 0.05, 0, 1.0 / 3, "", "numerical damping, -alpha of the papers", NULL,
-                  0, 0}},
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_STEP] = HN_OPTION_STEP,
+            [OPT_DAMPING] = {.key = "damping",
+                             .initial = 0.05,
+                             .max = 1.0 / 3,
+                             .about = "numerical damping, -alpha of the papers"},
+        },
     .forms = 1u << HN_FORM_INDEX3,
     .dae = &dae,
 };

@@ -2,7 +2,7 @@
 #include "integrators/step/ball_step.h"
 #include "integrators/step/dae_base.h"
 #include "integrators/step/lagrange_terms.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@
 // Sources: Andersen 1983; Leimkuhler & Skeel 1994; Marsden & West 2001; Hairer, Lubich & Wanner 2006, sections VII.1 and VIII.5;
 // Bou-Rabee & Marsden 2009, Hamilton-Pontryagin integrators on Lie groups.
 
-enum { SET_SPEED_FORCES = 1 }; // after h
+enum { OPT_STEP, OPT_SPEED_FORCES, N_OPTIONS };
 enum { REFUSE, SPLIT };
 
 static const double HALF_TURN = 3.141592653589793; // [rad]
@@ -82,9 +82,9 @@ static hn_status allocate(rattle *s, hn_arena *arena) {
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
-static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
-                        const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "rattle", diag);
+static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
+                        const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
+    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "rattle", diag);
     if (refused != HN_OK) {
         return refused;
     }
@@ -110,7 +110,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
     }
     s->constant = hn_lagrange_mass_is_constant(s->terms) && s->balls.n == 0;
     s->split = hn_lagrange_has_dissipation(s->terms);
-    if (s->split && (int)settings[SET_SPEED_FORCES] == REFUSE) {
+    if (s->split && (int)options[OPT_SPEED_FORCES] == REFUSE) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "rattle:speed-forces=split",
                            "a force depends on speed (a damper, friction, a formula in v): rattle "
                            "takes it only in half-steps of its own");
@@ -416,7 +416,7 @@ static const hn_dae_stepper dae = {
     .destroy = destroy,
     .start = start,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
     .raw_lambda = raw_lambda,
     .add_cost = add_cost,
     .why = why,
@@ -438,12 +438,18 @@ const hn_stepper hn_stepper_rattle = {
     .stages = 1,
     .real_limit = 2,
     .imag_limit = 2,
-    .n_settings = 2,
-    .settings = {HN_SETTING_STEP,
-                 {"speed-forces", 0, 0, 1, "",
-                  "dampers and other forces that depend on speed: refused, or in half-steps of "
-                  "their own",
-                  speed_forces, 2, 0}},
+    .n_options = N_OPTIONS,
+    .options =
+        {
+            [OPT_STEP] = HN_OPTION_STEP,
+            [OPT_SPEED_FORCES] =
+                {.key = "speed-forces",
+                 .max = 1,
+                 .about = "dampers and other velocity-dependent forces: refused, or applied in "
+                          "half-steps of their own (split)",
+                 .choices = speed_forces,
+                 .n_choices = 2},
+        },
     .forms = 1u << HN_FORM_INDEX3,
     .dae = &dae,
 };

@@ -1,6 +1,6 @@
 #include "dynamics/compile/coordinates.h"
 #include "integrators/step/dae_base.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 #include "linalg/dense.h"
 #include "linalg/newton_matrix.h"
 #include "linalg/square.h"
@@ -27,8 +27,6 @@
 // Rows may depend on each other: T is positive definite all the same.
 // Sources: Bayo & Ledesma 1996; Cuadrado, Cardenal & Bayo 1997; Cardona & Geradin 1989 (instability).
 
-enum { FORM_WEIGHT, FORM_PROJECTIONS };
-enum { PROJECTIONS_ON, PROJECTIONS_OFF };
 enum {
     SPARSE_FROM = 16
 }; // size of T; it holds no zeros on its diagonal and is half as large as other Newton matrices
@@ -103,13 +101,13 @@ static hn_status allocate(trapezoidal *s, hn_arena *arena) {
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
-static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
-                        const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_settings, "trapezoidal", diag);
+static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
+                        const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
+    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "trapezoidal", diag);
     if (refused != HN_OK) {
         return refused;
     }
-    (void)settings;
+    (void)options;
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_PHI;
     trapezoidal *s = hn_arena_get(arena, sizeof *s);
@@ -123,8 +121,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *se
     }
     // on index3 it is the bare rule
     const int augmented = form == HN_FORM_AUGMENTED;
-    s->given_weight = augmented ? form_settings[FORM_WEIGHT] : 0;
-    s->project = augmented && (int)form_settings[FORM_PROJECTIONS] == PROJECTIONS_ON;
+    s->given_weight = augmented ? form_options[HN_AUGMENTED_WEIGHT] : 0;
+    s->project = augmented && (int)form_options[HN_AUGMENTED_PROJECTIONS] == HN_PROJECTIONS_ON;
     status = hn_linear_create(sys, terms, arena, &s->matrices);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &s->rate);
@@ -388,7 +386,7 @@ static const hn_dae_stepper dae = {
     .destroy = destroy,
     .start = start,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
     .raw_lambda = raw_lambda,
     .add_cost = add_cost,
     .why = why,
@@ -405,8 +403,8 @@ const hn_stepper hn_stepper_trapezoidal = {
     .stages = 1,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = 1u << HN_FORM_AUGMENTED | 1u << HN_FORM_INDEX3,
     .dae = &dae,
 };

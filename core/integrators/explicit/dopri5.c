@@ -1,5 +1,5 @@
 #include "integrators/explicit/explicit_rk.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {
     return hn_explicit_rk_create(&hn_tableau_dopri5, n_pos + n_vel, arena);
@@ -14,14 +14,14 @@ const hn_stepper hn_stepper_dopri5 = {
     .source = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.4-II.6",
     .order = 5,
     .stages = 6,
-    .adaptive = 1,
+    .adaptive = true,
     .real_limit = 3.306567892634947,
     .imag_limit = 0.9971890086325299,
-    .n_settings = 5,
-    .settings = {HN_SETTINGS_ADAPTIVE, HN_SETTING_FIXED_STEP},
+    .n_options = HN_ADAPTIVE_OPTIONS_OR_FIXED,
+    .options = {HN_OPTIONS_ADAPTIVE_OR_FIXED},
     .create = create,
     .step = hn_explicit_rk_step,
-    .accepted = hn_explicit_rk_accepted,
+    .on_accepted = hn_explicit_rk_accepted,
     .dense = hn_explicit_rk_dense,
     .stiffness = hn_explicit_rk_stiffness,
     .dense_order = 4,

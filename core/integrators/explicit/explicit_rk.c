@@ -48,9 +48,9 @@ void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
     return hn_compensated_init(&rk->sum, n, arena) && !hn_arena_failed(arena) ? rk : NULL;
 }
 
-void hn_explicit_rk_configure(void *self, const double *settings) {
+void hn_explicit_rk_configure(void *self, const double *options) {
     explicit_rk *rk = self;
-    hn_compensated_switch(&rk->sum, settings[HN_SUM_SETTING] != 0);
+    hn_compensated_switch(&rk->sum, options[HN_FIXED_STEP_SUM] != 0);
 }
 
 // out = base + h sum_{i < n_terms} w_i k_i

@@ -18,7 +18,7 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
                               double *y_new, double *err);
 hn_status hn_explicit_rk_finish(void *self, const hn_ode *ode); ///< tableau with extra stages only
 /// Settings of the fixed-step ones: h, sum.
-void hn_explicit_rk_configure(void *self, const double *settings);
+void hn_explicit_rk_configure(void *self, const double *options);
 void hn_explicit_rk_accepted(void *self, int changed);
 void hn_explicit_rk_dense(void *self, double theta, double *y); ///< tableau with d only
 

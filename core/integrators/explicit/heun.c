@@ -1,6 +1,6 @@
 #include "integrators/step/compensated.h"
 #include "integrators/explicit/explicit_rk.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 static void *create(int n_pos, int n_vel, hn_arena *arena) {
     return hn_explicit_rk_create(&hn_tableau_heun, n_pos + n_vel, arena);
@@ -15,10 +15,10 @@ const hn_stepper hn_stepper_heun = {
     .stages = 2,
     .real_limit = 2,
     .imag_limit = 0,
-    .n_settings = 2,
-    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
+    .n_options = HN_FIXED_STEP_OPTIONS,
+    .options = {HN_OPTIONS_FIXED_STEP},
     .create = create,
     .configure = hn_explicit_rk_configure,
     .step = hn_explicit_rk_step,
-    .accepted = hn_explicit_rk_accepted,
+    .on_accepted = hn_explicit_rk_accepted,
 };

@@ -1,5 +1,5 @@
 #include "integrators/step/compensated.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include <string.h>
 
@@ -28,9 +28,9 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
                                                                                           : NULL;
 }
 
-static void configure(void *self, const double *settings) {
+static void configure(void *self, const double *options) {
     symplectic_euler *se = self;
-    hn_compensated_switch(&se->sum, settings[HN_SUM_SETTING] != 0);
+    hn_compensated_switch(&se->sum, options[HN_FIXED_STEP_SUM] != 0);
 }
 
 static hn_status step(void *self, const hn_ode *ode, double t, double h, const double *y,
@@ -73,13 +73,13 @@ const hn_stepper hn_stepper_symplectic_euler = {
     .source = "Hairer, Lubich & Wanner 2006, I.1.2",
     .order = 1,
     .stages = 1,
-    .partitioned = 1,
+    .partitioned = true,
     .real_limit = 0.8284271247461903, // of x'' + 2 a x' + a^2 x = 0: a h < 2 (sqrt 2 - 1)
     .imag_limit = 2,
-    .n_settings = 2,
-    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
+    .n_options = HN_FIXED_STEP_OPTIONS,
+    .options = {HN_OPTIONS_FIXED_STEP},
     .create = create,
     .configure = configure,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
 };

@@ -1,5 +1,5 @@
 #include "integrators/step/compensated.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include <string.h>
 
@@ -34,9 +34,9 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
     return hn_compensated_init(&s->sum, n_pos + n_vel, arena) && !hn_arena_failed(arena) ? s : NULL;
 }
 
-static void configure(void *self, const double *settings) {
+static void configure(void *self, const double *options) {
     verlet *s = self;
-    hn_compensated_switch(&s->sum, settings[HN_SUM_SETTING] != 0);
+    hn_compensated_switch(&s->sum, options[HN_FIXED_STEP_SUM] != 0);
 }
 
 // the middle line of (1): new positions from s->slope = y' at y and the kicked speeds in s->half
@@ -104,13 +104,13 @@ const hn_stepper hn_stepper_verlet = {
     .source = "Swope, Andersen, Berens & Wilson 1982; Hairer, Lubich & Wanner 2003",
     .order = 2,
     .stages = 2,
-    .partitioned = 1,
+    .partitioned = true,
     .real_limit = 1.0, // of x'' + 2 a x' + a^2 x = 0: a h < 1
     .imag_limit = 2,
-    .n_settings = 2,
-    .settings = {HN_SETTING_STEP, HN_SETTING_SUM},
+    .n_options = HN_FIXED_STEP_OPTIONS,
+    .options = {HN_OPTIONS_FIXED_STEP},
     .create = create,
     .configure = configure,
     .step = step,
-    .accepted = accepted,
+    .on_accepted = accepted,
 };

@@ -1,5 +1,5 @@
 #include "integrators/step/control.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -18,7 +18,6 @@
 // A trial that was refused outright adds REFUSED_TRIAL, a step without takes 1 away: steps that keep running into the end of
 // a chart shrink for ever without reaching it, and stop here.
 enum { REFUSED_TRIAL = 8, TROUBLE_LIMIT = 200 };
-enum { SETTING_RTOL, SETTING_ATOL, SETTING_H0, SETTING_HMAX };
 
 typedef struct gsl_stepper {
     const gsl_odeiv2_step_type *type;
@@ -129,12 +128,12 @@ static void destroy(void *self) {
     }
 }
 
-static void configure(void *self, const double *settings) {
+static void configure(void *self, const double *options) {
     gsl_stepper *s = self;
-    s->rtol = settings[SETTING_RTOL];
-    s->atol = settings[SETTING_ATOL] > 0 ? settings[SETTING_ATOL] : s->rtol;
-    s->h0 = settings[SETTING_H0];
-    s->hmax = settings[SETTING_HMAX] > 0 ? settings[SETTING_HMAX] : FAR_STEP;
+    s->rtol = options[HN_ADAPTIVE_RTOL];
+    s->atol = options[HN_ADAPTIVE_ATOL] > 0 ? options[HN_ADAPTIVE_ATOL] : s->rtol;
+    s->h0 = options[HN_ADAPTIVE_FIRST_STEP];
+    s->hmax = options[HN_ADAPTIVE_LARGEST_STEP] > 0 ? options[HN_ADAPTIVE_LARGEST_STEP] : FAR_STEP;
     if (s->driver) {
         // |error| <= atol + rtol |y|, entry by entry
         gsl_odeiv2_control_init(s->driver->c, s->atol, s->rtol, 1, 0);
@@ -248,46 +247,51 @@ static void *create_bsimp(int n_pos, int n_vel, hn_arena *arena) {
 }
 
 #define GSL_SOURCE "GNU Scientific Library, gsl_odeiv2; "
+// clang-format off
 #define GSL_STEPPER(NAME, TITLE, ABOUT, SOURCE, ORDER, MULTISTEP, STAGES, REAL, IMAG) \
-    const hn_stepper hn_stepper_gsl_##NAME = {.name = "gsl-" #NAME,                   \
-                                              .title = TITLE,                         \
-                                              .about = ABOUT,                         \
-                                              .source = GSL_SOURCE SOURCE,            \
-                                              .order = ORDER,                         \
-                                              .multistep = MULTISTEP,                 \
-                                              .stages = STAGES,                       \
-                                              .adaptive = 1,                          \
-                                              .real_limit = REAL,                     \
-                                              .imag_limit = IMAG,                     \
-                                              .n_settings = 4,                        \
-                                              .settings = {HN_SETTINGS_ADAPTIVE},     \
-                                              .create = create_##NAME,                \
-                                              .destroy = destroy,                     \
-                                              .configure = configure,                 \
-                                              .prepare = prepare,                     \
-                                              .advance = advance,                     \
-                                              .accepted = accepted,                   \
-                                              .add_cost = add_cost,                   \
-                                              .why = why}
+    const hn_stepper hn_stepper_gsl_##NAME = {                                        \
+        .name = "gsl-" #NAME,                                                         \
+        .title = TITLE,                                                               \
+        .about = ABOUT,                                                               \
+        .source = GSL_SOURCE SOURCE,                                                  \
+        .order = ORDER,                                                               \
+        .multistep = MULTISTEP,                                                       \
+        .stages = STAGES,                                                             \
+        .adaptive = true,                                                             \
+        .real_limit = REAL,                                                           \
+        .imag_limit = IMAG,                                                           \
+        .n_options = HN_ADAPTIVE_OPTIONS,                                             \
+        .options = {HN_OPTIONS_ADAPTIVE},                                             \
+        .create = create_##NAME,                                                      \
+        .destroy = destroy,                                                           \
+        .configure = configure,                                                       \
+        .prepare = prepare,                                                           \
+        .advance = advance,                                                           \
+        .on_accepted = accepted,                                                         \
+        .add_cost = add_cost,                                                         \
+        .why = why,                                                                   \
+    }
+// clang-format on
 
-GSL_STEPPER(rk8pd, "GSL Prince-Dormand 8(9)",
-            "A library's explicit Runge-Kutta pair under the library's own step control, to "
-            "compare dop853 with. No dense output: a look between steps is a step of its own.",
-            "Prince & Dormand 1981", 8, 0, 13, HUGE_VAL, HUGE_VAL);
+GSL_STEPPER(
+    rk8pd, "GSL Prince-Dormand 8(9)",
+    "A library's explicit Runge-Kutta pair under the library's own step control, to "
+    "compare dop853 with. No dense output: each sample between steps costs a step of its own.",
+    "Prince & Dormand 1981", 8, false, 13, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(msadams, "GSL Adams 1-12",
             "A library's multistep method for smooth motion, order 1 to 12, two right-hand sides a "
             "step. A state changed after the step (projection, a new chart) makes it start again "
             "at order 1: pair it with formulations that leave the state alone.",
-            "Byrne & Hindmarsh 1975", 12, 1, 2, HUGE_VAL, HUGE_VAL);
+            "Byrne & Hindmarsh 1975", 12, true, 2, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(msbdf, "GSL BDF 1-5",
             "A library's stiff multistep method, order 1 to 5, with a Jacobian. A state changed "
             "after the step (projection, a new chart) makes it start again at order 1: pair it "
             "with formulations that leave the state alone.",
-            "Byrne & Hindmarsh 1975", 5, 1, 2, HUGE_VAL, HUGE_VAL);
+            "Byrne & Hindmarsh 1975", 5, true, 2, HUGE_VAL, HUGE_VAL);
 
 GSL_STEPPER(bsimp, "GSL Bader-Deuflhard",
             "A library's linearly implicit extrapolation for stiff motion: many right-hand sides "
             "and a Jacobian in a long step of high order.",
-            "Bader & Deuflhard 1983", 12, 0, 30, HUGE_VAL, HUGE_VAL);
+            "Bader & Deuflhard 1983", 12, false, 30, HUGE_VAL, HUGE_VAL);

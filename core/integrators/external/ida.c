@@ -1,7 +1,7 @@
 #include "integrators/step/dae_base.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 #include "formulations/ground/flops.h"
 
@@ -24,18 +24,19 @@
 //     loosen=1e6             the Newton test counts the multipliers with an absolute tolerance 1e6 times as large
 //
 // a first step that is not as small as rtol, which is what the library would choose (h0=-1), and a start with consistent
-// accelerations. Written out as settings so that their lack can be seen as well.
+// accelerations. Written out as options so that their lack can be seen as well.
 // The library allocates when an instance is made and started, and nothing in a step.
 
 enum {
-    SETTING_RTOL,
-    SETTING_ATOL,
-    SETTING_H0,
-    SETTING_HMAX,
-    SETTING_SUPPRESS,
-    SETTING_LOOSEN,
-    SETTING_ORDER,
-    SETTING_JACOBIAN
+    OPT_RTOL,
+    OPT_ATOL,
+    OPT_H0,
+    OPT_HMAX,
+    OPT_SUPPRESS,
+    OPT_LOOSEN,
+    OPT_ORDER,
+    OPT_JACOBIAN,
+    N_OPTIONS
 };
 enum { JACOBIAN_EXACT, JACOBIAN_DIFFERENCES };
 enum { SUPPRESS_NONE, SUPPRESS_MULTIPLIERS, SUPPRESS_SPEEDS };
@@ -156,38 +157,38 @@ static void destroy(void *self) {
     hn_ida_problem_free(&s->problem);
 }
 
-static void take_settings(ida_stepper *s, hn_dae_form form, const double *settings) {
-    s->rtol = settings[SETTING_RTOL];
-    s->atol = settings[SETTING_ATOL] > 0 ? settings[SETTING_ATOL] : s->rtol;
-    s->h0 = settings[SETTING_H0];
-    s->hmax = settings[SETTING_HMAX];
-    s->suppress = (int)settings[SETTING_SUPPRESS];
-    s->loosen = settings[SETTING_LOOSEN];
+static void take_options(ida_stepper *s, hn_dae_form form, const double *options) {
+    s->rtol = options[OPT_RTOL];
+    s->atol = options[OPT_ATOL] > 0 ? options[OPT_ATOL] : s->rtol;
+    s->h0 = options[OPT_H0];
+    s->hmax = options[OPT_HMAX];
+    s->suppress = (int)options[OPT_SUPPRESS];
+    s->loosen = options[OPT_LOOSEN];
     if (!(s->loosen > 0)) {
         s->loosen = form == HN_FORM_INDEX1 || form == HN_FORM_STABILISED ? 1 : LOOSEN_HIGH_INDEX;
     }
-    s->max_order = (int)settings[SETTING_ORDER];
-    s->by_differences = settings[SETTING_JACOBIAN] == JACOBIAN_DIFFERENCES;
+    s->max_order = (int)options[OPT_ORDER];
+    s->by_differences = options[OPT_JACOBIAN] == JACOBIAN_DIFFERENCES;
 }
 
-static hn_status create(const hn_system *sys, hn_dae_form form, const double *settings,
-                        const double *form_settings, hn_arena *arena, void **self, hn_diag *diag) {
+static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
+                        const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
     ida_stepper *s = hn_arena_get(arena, sizeof *s);
     if (!s) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    if (hn_dae_close_setting(form, form_settings) > 0) {
+    if (hn_dae_close_option(form, form_options) > 0) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use ggl@ida, or index2@radau5",
                            "ida cannot take projected positions (close): its history of steps "
                            "would begin anew each time");
     }
-    take_settings(s, form, settings);
-    hn_status status = hn_dae_refuse_projecting(form, form_settings, "ida", diag);
+    take_options(s, form, options);
+    hn_status status = hn_dae_refuse_projecting(form, form_options, "ida", diag);
     if (status != HN_OK) {
         return status;
     }
-    status = hn_ida_problem_init(&s->problem, sys, form, form_settings, arena, diag);
+    status = hn_ida_problem_init(&s->problem, sys, form, form_options, arena, diag);
     if (status != HN_OK) {
         return status;
     }
@@ -422,7 +423,7 @@ static const hn_dae_stepper dae = {
     .destroy = destroy,
     .start = start,
     .advance = advance,
-    .accepted = accepted,
+    .on_accepted = accepted,
     .dense = dense,
     .raw_lambda = raw_lambda,
     .add_cost = add_cost,
@@ -442,27 +443,48 @@ const hn_stepper hn_stepper_ida = {
     .source = "Hindmarsh et al. 2005; Brenan, Campbell & Petzold 1996",
     .order = 5,
     .stages = 1,
-    .adaptive = 1,
+    .adaptive = true,
     .real_limit = HUGE_VAL,
     .imag_limit = 0, // order 3 and above are unstable next to the imaginary axis
-    .n_settings = 8,
-    .settings =
+    .n_options = N_OPTIONS,
+    .options =
         {
-            HN_SETTING_TOLERANCES,
-            {"h0", 0, H0_OF_LIBRARY, 100, "s",
-             "first step; 0: where order 1 errs by the tolerance; -1: the library's own choice",
-             NULL, 0, 0},
-            HN_SETTING_LARGEST_STEP,
-            {"suppress", SUPPRESS_MULTIPLIERS, 0, 2, "",
-             "what the error test leaves out: none, the multipliers, or speeds too", suppressions,
-             3, 0},
-            {"loosen", 0, 0, 1e12, "",
-             "absolute tolerance of the multipliers over atol; 0: 1 for index 1, 1e6 above", NULL,
-             0, 0},
-            {"order", 5, 1, 5, "", "highest order of the formula", NULL, 0, 0},
-            {"jacobian", 0, 0, 1, "",
-             "exact: from the equations; differences: the library's own difference quotients",
-             jacobians, 2, 0},
+            [OPT_RTOL] = HN_OPTION_RTOL,
+            [OPT_ATOL] = HN_OPTION_ATOL,
+            [OPT_H0] =
+                {.key = "h0",
+                 .min = H0_OF_LIBRARY,
+                 .max = 100,
+                 .unit = "s",
+                 .about = "first step; 0: the step at which order 1 errs by the tolerance; -1: the "
+                          "library's own choice"},
+            [OPT_HMAX] = HN_OPTION_LARGEST_STEP,
+            [OPT_SUPPRESS] =
+                {.key = "suppress",
+                 .initial = SUPPRESS_MULTIPLIERS,
+                 .max = 2,
+                 .about = "variables left out of the error test: none, the multipliers, or the "
+                          "velocities too",
+                 .choices = suppressions,
+                 .n_choices = 3},
+            [OPT_LOOSEN] =
+                {.key = "loosen",
+                 .max = 1e12,
+                 .about =
+                     "absolute tolerance of the multipliers divided by atol; 0: 1 for index 1, 1e6 "
+                     "above"},
+            [OPT_ORDER] = {.key = "order",
+                           .initial = 5,
+                           .min = 1,
+                           .max = 5,
+                           .about = "highest order of the formula"},
+            [OPT_JACOBIAN] =
+                {.key = "jacobian",
+                 .max = 1,
+                 .about = "exact: from the equations; differences: the library's own difference "
+                          "quotients",
+                 .choices = jacobians,
+                 .n_choices = 2},
         },
     .forms = 1u << HN_FORM_INDEX1 | 1u << HN_FORM_STABILISED | 1u << HN_FORM_INDEX2 |
              1u << HN_FORM_GGL | 1u << HN_FORM_INDEX3,

@@ -54,17 +54,17 @@ static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
 }
 
 hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys, hn_dae_form form,
-                              const double *form_settings, hn_arena *arena, hn_diag *diag) {
+                              const double *form_options, hn_arena *arena, hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     *p = (hn_ida_problem){.sys = sys, .form = form, .nq = info.nq, .nv = info.nv, .nc = info.nc};
-    if (is_stabilised(p) && form_settings[2] != 0) {
+    if (is_stabilised(p) && form_options[HN_STABILISED_RULE] == HN_BAUMGARTE_AUTO) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "rule=given with alpha and beta",
                            "rule=auto follows the steps of an integrator that takes the ordinary "
                            "differential equation; ida takes alpha and beta as given");
     }
     if (is_stabilised(p)) {
-        p->alpha = form_settings[0];
-        p->beta = form_settings[1];
+        p->alpha = form_options[HN_STABILISED_ALPHA];
+        p->beta = form_options[HN_STABILISED_BETA];
     }
     if (has_mu(p) && p->nq != p->nv) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "index2@ida serves it",

@@ -39,10 +39,10 @@ typedef struct hn_ida_problem {
     long long residuals;       ///< evaluated so far
 } hn_ida_problem;
 
-/// `form_settings` are those of the formulation (STABILISED: alpha, beta, ...). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT,
+/// `form_options` are those of the formulation (STABILISED: alpha, beta, ...). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT,
 /// HN_ERR_UNSUPPORTED, told in diag.
 HN_MUST_CHECK hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys,
-                                            hn_dae_form form, const double *form_settings,
+                                            hn_dae_form form, const double *form_options,
                                             hn_arena *arena, hn_diag *diag);
 void hn_ida_problem_free(hn_ida_problem *p);
 /// The largest n that any choice of rows leads to.

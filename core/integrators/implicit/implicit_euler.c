@@ -16,12 +16,12 @@ static void *create_implicit_euler(int n_pos, int n_vel, hn_arena *arena) {
 }
 
 static hn_status create_implicit_euler_dae(const hn_system *sys, hn_dae_form form,
-                                           const double *settings, const double *form_settings,
+                                           const double *options, const double *form_options,
                                            hn_arena *arena, void **self, hn_diag *diag) {
     const hn_collocation col = nodes_of_implicit_euler();
-    const hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
-                                       .projects = hn_dae_projects_speeds(form, form_settings)};
-    (void)settings;
+    const hn_implicit_dae_opts opts = {.close = hn_dae_close_option(form, form_options),
+                                       .projects = hn_dae_projects_speeds(form, form_options)};
+    (void)options;
     return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
 }
 
@@ -38,8 +38,8 @@ const hn_stepper hn_stepper_implicit_euler = {
     .stages = 1,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = HN_FORMS_STIFFLY_ACCURATE,
     .dae = &implicit_euler_dae,
     .create = create_implicit_euler,

@@ -4,17 +4,17 @@
 
 #include "integrators/implicit/implicit_dae.h"
 #include "integrators/implicit/implicit_ode.h"
-#include "integrators/step/registry.h"
+#include "integrators/step/options.h"
 
 /// Slots of both engines that need nothing of the method itself.
-#define HN_IMPLICIT_ODE_SLOTS                                             \
-    .prepare = hn_implicit_ode_prepare, .step = hn_implicit_ode_step,     \
-    .accepted = hn_implicit_ode_accepted, .dense = hn_implicit_ode_dense, \
+#define HN_IMPLICIT_ODE_SLOTS                                                \
+    .prepare = hn_implicit_ode_prepare, .step = hn_implicit_ode_step,        \
+    .on_accepted = hn_implicit_ode_accepted, .dense = hn_implicit_ode_dense, \
     .add_cost = hn_implicit_ode_add_cost, .why = hn_implicit_ode_why
 
 #define HN_IMPLICIT_DAE_SLOTS                                                 \
     .destroy = hn_implicit_dae_destroy, .start = hn_implicit_dae_start,       \
-    .step = hn_implicit_dae_step, .accepted = hn_implicit_dae_accepted,       \
+    .step = hn_implicit_dae_step, .on_accepted = hn_implicit_dae_accepted,    \
     .dense = hn_implicit_dae_dense, .raw_lambda = hn_implicit_dae_raw_lambda, \
     .add_cost = hn_implicit_dae_add_cost, .why = hn_implicit_dae_why
 

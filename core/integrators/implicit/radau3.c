@@ -15,13 +15,13 @@ static void *create_radau3(int n_pos, int n_vel, hn_arena *arena) {
     return hn_implicit_ode_create(&col, n_pos + n_vel, arena);
 }
 
-static hn_status create_radau3_dae(const hn_system *sys, hn_dae_form form, const double *settings,
-                                   const double *form_settings, hn_arena *arena, void **self,
+static hn_status create_radau3_dae(const hn_system *sys, hn_dae_form form, const double *options,
+                                   const double *form_options, hn_arena *arena, void **self,
                                    hn_diag *diag) {
     const hn_collocation col = nodes_of_radau3();
-    const hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
-                                       .projects = hn_dae_projects_speeds(form, form_settings)};
-    (void)settings;
+    const hn_implicit_dae_opts opts = {.close = hn_dae_close_option(form, form_options),
+                                       .projects = hn_dae_projects_speeds(form, form_options)};
+    (void)options;
     return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
 }
 
@@ -37,8 +37,8 @@ const hn_stepper hn_stepper_radau3 = {
     .stages = 2,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 1,
-    .settings = {HN_SETTING_STEP},
+    .n_options = 1,
+    .options = {HN_OPTION_STEP},
     .forms = HN_FORMS_STIFFLY_ACCURATE,
     .dae = &radau3_dae,
     .create = create_radau3,

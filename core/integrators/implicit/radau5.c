@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-enum { RTOL, ATOL, H0, HMAX, FIXED };
-
 // Nodes, and the weights of the error estimate: eq. (8.19) with gamma_0 = 1 / gamma.
 static hn_collocation nodes(void) {
     hn_collocation col;
@@ -22,20 +20,22 @@ static void *create(int n_pos, int n_vel, hn_arena *arena) {
     return hn_implicit_ode_create(&col, n_pos + n_vel, arena);
 }
 
-static void configure(void *self, const double *settings) {
-    const int fixed = settings[FIXED] > 0;
-    hn_implicit_ode_set_tolerance(self, fixed ? 0 : settings[RTOL], settings[ATOL]);
+static void configure(void *self, const double *options) {
+    const int fixed = options[HN_ADAPTIVE_FIXED_STEP] > 0;
+    hn_implicit_ode_set_tolerance(self, fixed ? 0 : options[HN_ADAPTIVE_RTOL],
+                                  options[HN_ADAPTIVE_ATOL]);
 }
 
-static hn_status create_dae(const hn_system *sys, hn_dae_form form, const double *settings,
-                            const double *form_settings, hn_arena *arena, void **self,
+static hn_status create_dae(const hn_system *sys, hn_dae_form form, const double *options,
+                            const double *form_options, hn_arena *arena, void **self,
                             hn_diag *diag) {
     const hn_collocation col = nodes();
-    hn_implicit_dae_opts opts = {.close = hn_dae_close_setting(form, form_settings),
-                                 .projects = hn_dae_projects_speeds(form, form_settings)};
-    if (!(settings[FIXED] > 0)) {
-        opts.rtol = settings[RTOL];
-        opts.atol = settings[ATOL] > 0 ? settings[ATOL] : settings[RTOL];
+    hn_implicit_dae_opts opts = {.close = hn_dae_close_option(form, form_options),
+                                 .projects = hn_dae_projects_speeds(form, form_options)};
+    if (!(options[HN_ADAPTIVE_FIXED_STEP] > 0)) {
+        opts.rtol = options[HN_ADAPTIVE_RTOL];
+        opts.atol =
+            options[HN_ADAPTIVE_ATOL] > 0 ? options[HN_ADAPTIVE_ATOL] : options[HN_ADAPTIVE_RTOL];
     }
     return hn_implicit_dae_create(sys, form, &col, &opts, arena, self, diag);
 }
@@ -53,11 +53,11 @@ const hn_stepper hn_stepper_radau5 = {
     .order = 5,
     .control_order = 4,
     .stages = 3,
-    .adaptive = 1,
+    .adaptive = true,
     .real_limit = HUGE_VAL,
     .imag_limit = HUGE_VAL,
-    .n_settings = 5,
-    .settings = {HN_SETTINGS_ADAPTIVE, HN_SETTING_FIXED_STEP},
+    .n_options = HN_ADAPTIVE_OPTIONS_OR_FIXED,
+    .options = {HN_OPTIONS_ADAPTIVE_OR_FIXED},
     .forms = HN_FORMS_STIFFLY_ACCURATE,
     .dae = &dae,
     .create = create,

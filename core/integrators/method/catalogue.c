@@ -1,10 +1,12 @@
 #include "integrators/method/method_spec.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 
 // The catalogue of methods as JSON: the cards that the page, the terminal and `holonom list methods` show.
 
-static void put_setting(hn_strbuf *b, const hn_setting_info *info) {
+static void put_option(hn_strbuf *b, const hn_option *info) {
     hn_json_object(b);
     hn_json_put_string(b, "key", info->key);
     hn_json_put_string(b, "unit", info->unit ? info->unit : "");
@@ -22,11 +24,11 @@ static void put_setting(hn_strbuf *b, const hn_setting_info *info) {
     hn_json_end_object(b);
 }
 
-static void put_settings(hn_strbuf *b, const hn_setting_info *table, int n) {
+static void put_options(hn_strbuf *b, const hn_option *table, int n) {
     hn_json_key(b, "settings");
     hn_json_array(b);
     for (int i = 0; i < n; i++) {
-        put_setting(b, &table[i]);
+        put_option(b, &table[i]);
     }
     hn_json_end_array(b);
 }
@@ -83,7 +85,7 @@ static void put_formulation(hn_strbuf *b, const hn_formulation *f) {
     put_integrators_of(b, f);
     hn_json_put_bool(b, "model_error", f->model_error);
     hn_json_put_bool(b, "keeps_gap", (f->traits & HN_TRAIT_CLOSES_POSITION) != 0);
-    put_settings(b, f->settings, f->n_settings);
+    put_options(b, f->options, f->n_options);
     hn_json_end_object(b);
 }
 
@@ -102,7 +104,7 @@ static void put_stepper(hn_strbuf *b, const hn_stepper *s) {
     hn_json_put_number(b, "imag_limit", s->imag_limit);
     hn_json_put_int(b, "dense_order", s->dense_order);
     put_served_by(b, s);
-    put_settings(b, s->settings, s->n_settings);
+    put_options(b, s->options, s->n_options);
     hn_json_end_object(b);
 }
 

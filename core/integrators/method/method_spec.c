@@ -1,4 +1,6 @@
 #include "integrators/method/method_spec.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -101,10 +103,10 @@ static hn_status find_stepper(piece p, const hn_stepper **out, hn_diag *diag) {
 }
 
 // One "key=value"; `given` has a bit per setting already seen.
-static hn_status parse_setting(piece p, const hn_setting_info *table, int n, double *set,
-                               unsigned *given, hn_diag *diag) {
+static hn_status parse_option(piece p, const hn_option *table, int n, double *set, unsigned *given,
+                              hn_diag *diag) {
     char key[MAX_WORD], value[MAX_WORD];
-    const char *keys[HN_MAX_SETTINGS];
+    const char *keys[HN_MAX_OPTIONS];
     const size_t equals = find_char(p, '=');
     const piece left = {p.text, p.from, equals};
     if (equals == p.to) {
@@ -126,13 +128,13 @@ static hn_status parse_setting(piece p, const hn_setting_info *table, int n, dou
             return at_column(diag, left, HN_ERR_INPUT);
         }
         *given |= 1u << i;
-        return at_column(diag, right, hn_setting_parse(&table[i], value, &set[i], diag));
+        return at_column(diag, right, hn_option_parse(&table[i], value, &set[i], diag));
     }
     return unknown_name(diag, left, "setting", key, keys, n);
 }
 
 // A comma followed by bare digits and no '=' is a decimal comma: "h=0,02" is one setting.
-static size_t end_of_setting(piece p) {
+static size_t end_of_option(piece p) {
     size_t comma = find_char(p, ',');
     while (comma < p.to) {
         const piece rest = {p.text, comma + 1, p.to};
@@ -149,13 +151,12 @@ static size_t end_of_setting(piece p) {
     return p.to;
 }
 
-static hn_status parse_settings(piece p, const hn_setting_info *table, int n, double *set,
-                                hn_diag *diag) {
+static hn_status parse_options(piece p, const hn_option *table, int n, double *set, hn_diag *diag) {
     unsigned given = 0;
     for (;;) {
-        const size_t end = end_of_setting(p);
+        const size_t end = end_of_option(p);
         const hn_status status =
-            parse_setting((piece){p.text, p.from, end}, table, n, set, &given, diag);
+            parse_option((piece){p.text, p.from, end}, table, n, set, &given, diag);
         if (status != HN_OK || end == p.to) {
             return status;
         }
@@ -163,8 +164,7 @@ static hn_status parse_settings(piece p, const hn_setting_info *table, int n, do
     }
 }
 
-static hn_status fill_defaults(piece p, const hn_setting_info *table, int n, double *set,
-                               hn_diag *diag) {
+static hn_status fill_defaults(piece p, const hn_option *table, int n, double *set, hn_diag *diag) {
     for (int i = 0; i < n; i++) {
         if (isnan(set[i])) {
             hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s is required", table[i].key);
@@ -174,15 +174,15 @@ static hn_status fill_defaults(piece p, const hn_setting_info *table, int n, dou
     return HN_OK;
 }
 
-// name[:settings] after the name was found; `colon` is where its settings begin
-static hn_status parse_side(piece side, size_t colon, const hn_setting_info *table, int n,
-                            double *set, hn_diag *diag) {
-    for (int i = 0; i < HN_MAX_SETTINGS; i++) {
+// name[:options] after the name was found; `colon` is where its options begin
+static hn_status parse_side(piece side, size_t colon, const hn_option *table, int n, double *set,
+                            hn_diag *diag) {
+    for (int i = 0; i < HN_MAX_OPTIONS; i++) {
         set[i] = i < n ? table[i].initial : 0;
     }
     if (colon < side.to) {
-        const piece settings = {side.text, colon + 1, side.to};
-        const hn_status status = parse_settings(settings, table, n, set, diag);
+        const piece options = {side.text, colon + 1, side.to};
+        const hn_status status = parse_options(options, table, n, set, diag);
         if (status != HN_OK) {
             return status;
         }
@@ -190,7 +190,7 @@ static hn_status parse_side(piece side, size_t colon, const hn_setting_info *tab
     return fill_defaults(side, table, n, set, diag);
 }
 
-static void warn_below_zero(const hn_setting_info *table, int n, const double *set, hn_diag *diag) {
+static void warn_below_zero(const hn_option *table, int n, const double *set, hn_diag *diag) {
     for (int i = 0; i < n && diag; i++) {
         if (table[i].warn_below_zero && set[i] < 0) {
             snprintf(diag->message, sizeof diag->message,
@@ -201,9 +201,9 @@ static void warn_below_zero(const hn_setting_info *table, int n, const double *s
 }
 
 hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper) {
-    const int own =
-        formulation->also == HN_FORM_ODE || hn_stepper_serves(stepper, formulation->form);
-    return own ? formulation->form : formulation->also;
+    const int own = formulation->alternative_form == HN_FORM_ODE ||
+                    hn_stepper_serves(stepper, formulation->form);
+    return own ? formulation->form : formulation->alternative_form;
 }
 
 int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper) {
@@ -280,11 +280,11 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
         status = check_pair(right, &spec, diag);
     }
     if (status == HN_OK) {
-        status = parse_side(left, left_colon, spec.formulation->settings,
-                            spec.formulation->n_settings, spec.formulation_set, diag);
+        status = parse_side(left, left_colon, spec.formulation->options,
+                            spec.formulation->n_options, spec.formulation_set, diag);
     }
     if (status == HN_OK) {
-        status = parse_side(right, right_colon, spec.stepper->settings, spec.stepper->n_settings,
+        status = parse_side(right, right_colon, spec.stepper->options, spec.stepper->n_options,
                             spec.stepper_set, diag);
     }
     if (status != HN_OK) {
@@ -293,50 +293,49 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     if (diag) {
         *diag = (hn_diag){0};
     }
-    warn_below_zero(spec.formulation->settings, spec.formulation->n_settings, spec.formulation_set,
+    warn_below_zero(spec.formulation->options, spec.formulation->n_options, spec.formulation_set,
                     diag);
     *out = spec;
     return HN_OK;
 }
 
 /// The place of a key in a table; n where it is not.
-static int place_of(const hn_setting_info *settings, int n, const char *key) {
+static int place_of(const hn_option *options, int n, const char *key) {
     int i = 0;
-    while (i < n && strcmp(settings[i].key, key) != 0) {
+    while (i < n && strcmp(options[i].key, key) != 0) {
         i++;
     }
     return i;
 }
 
-double *hn_method_find_setting(hn_method_spec *spec, const char *key,
-                               const hn_setting_info **info) {
+double *hn_method_find_option(hn_method_spec *spec, const char *key, const hn_option **info) {
     const hn_formulation *f = spec->formulation;
     const hn_stepper *s = spec->stepper;
-    const int i = place_of(f->settings, f->n_settings, key);
-    const int k = place_of(s->settings, s->n_settings, key);
-    if (i == f->n_settings && k == s->n_settings) {
+    const int i = place_of(f->options, f->n_options, key);
+    const int k = place_of(s->options, s->n_options, key);
+    if (i == f->n_options && k == s->n_options) {
         return NULL;
     }
     if (info) {
-        *info = i < f->n_settings ? &f->settings[i] : &s->settings[k];
+        *info = i < f->n_options ? &f->options[i] : &s->options[k];
     }
-    return i < f->n_settings ? &spec->formulation_set[i] : &spec->stepper_set[k];
+    return i < f->n_options ? &spec->formulation_set[i] : &spec->stepper_set[k];
 }
 
-double hn_method_setting(const hn_method_spec *spec, const char *key, double otherwise) {
+double hn_method_option(const hn_method_spec *spec, const char *key, double otherwise) {
     hn_method_spec copy = *spec;
-    const double *value = hn_method_find_setting(&copy, key, NULL);
+    const double *value = hn_method_find_option(&copy, key, NULL);
     return value ? *value : otherwise;
 }
 
 int hn_method_is_adaptive(const hn_method_spec *spec) {
-    return spec->stepper->adaptive && !(hn_method_setting(spec, "h", 0) > 0);
+    return spec->stepper->adaptive && !(hn_method_option(spec, "h", 0) > 0);
 }
 
 // --- writing ----------------------------------------------------------------------------------------------
 
 // a short text that reads back to the same double; six digits write 20 as 20, not as 2e+01
-static void format_value(const hn_setting_info *info, double value, char *out, size_t n) {
+static void format_value(const hn_option *info, double value, char *out, size_t n) {
     if (info->choices) {
         snprintf(out, n, "%s", info->choices[(int)value]);
         return;
@@ -358,7 +357,7 @@ static const char *key_of_accuracy(const hn_method_spec *spec) {
     return hn_method_is_adaptive(spec) ? "rtol" : "h";
 }
 
-static size_t format_side(const char *name, const hn_setting_info *table, int n, const double *set,
+static size_t format_side(const char *name, const hn_option *table, int n, const double *set,
                           const char *always, char *out, size_t room) {
     size_t used = 0;
     int wrote = snprintf(out, room, "%s", name);
@@ -380,16 +379,16 @@ static size_t format_side(const char *name, const hn_setting_info *table, int n,
 void hn_method_format(const hn_method_spec *spec, char out[HN_SPEC_MAX]) {
     const char *always = key_of_accuracy(spec);
     size_t used =
-        format_side(spec->formulation->name, spec->formulation->settings,
-                    spec->formulation->n_settings, spec->formulation_set, always, out, HN_SPEC_MAX);
+        format_side(spec->formulation->name, spec->formulation->options,
+                    spec->formulation->n_options, spec->formulation_set, always, out, HN_SPEC_MAX);
     HN_ASSERT(used + 1 < HN_SPEC_MAX);
     out[used++] = '@';
-    used += format_side(spec->stepper->name, spec->stepper->settings, spec->stepper->n_settings,
+    used += format_side(spec->stepper->name, spec->stepper->options, spec->stepper->n_options,
                         spec->stepper_set, always, out + used, HN_SPEC_MAX - used);
     HN_ASSERT(used < HN_SPEC_MAX);
 }
 
-static void put_values(hn_strbuf *b, const hn_setting_info *table, int n, const double *set) {
+static void put_values(hn_strbuf *b, const hn_option *table, int n, const double *set) {
     for (int i = 0; i < n; i++) {
         if (table[i].choices) {
             hn_json_put_string(b, table[i].key, table[i].choices[(int)set[i]]);
@@ -412,9 +411,8 @@ void hn_method_json(hn_strbuf *b, const hn_method_spec *spec) {
     hn_json_put_bool(b, "model_error", spec->formulation->model_error);
     hn_json_key(b, "settings");
     hn_json_object(b);
-    put_values(b, spec->formulation->settings, spec->formulation->n_settings,
-               spec->formulation_set);
-    put_values(b, spec->stepper->settings, spec->stepper->n_settings, spec->stepper_set);
+    put_values(b, spec->formulation->options, spec->formulation->n_options, spec->formulation_set);
+    put_values(b, spec->stepper->options, spec->stepper->n_options, spec->stepper_set);
     hn_json_end_object(b);
     hn_json_end_object(b);
 }

@@ -28,14 +28,15 @@ void hn_compensated_add(hn_compensated *c, int first, int n, const double *y,
 /// After every accepted step; `changed` 1: the state is not the one the sum left.
 void hn_compensated_accepted(hn_compensated *c, int changed);
 
-/// The setting, second in the table of the steppers that have it, after the step size.
-#define HN_SETTING_SUM                                                                     \
-    {                                                                                      \
-        "sum", 0, 0, 1, "",                                                                \
-            "plain, or compensated: rounding of millions of small steps is carried along", \
-            hn_compensated_choices, 2, 0                                                   \
+/// The option "sum" of explicit integrators with a fixed step, and the table it stands in.
+#define HN_OPTION_SUM                                                                          \
+    {                                                                                          \
+        .key = "sum", .max = 1, .choices = hn_compensated_choices, .n_choices = 2,             \
+        .about = "plain, or compensated: keeps the rounding errors of millions of small steps" \
     }
+enum { HN_FIXED_STEP_H, HN_FIXED_STEP_SUM, HN_FIXED_STEP_OPTIONS };
+#define HN_OPTIONS_FIXED_STEP \
+    [HN_FIXED_STEP_H] = HN_OPTION_STEP, [HN_FIXED_STEP_SUM] = HN_OPTION_SUM
 extern const char *const hn_compensated_choices[2];
-enum { HN_SUM_SETTING = 1 };
 
 #endif

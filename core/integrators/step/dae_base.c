@@ -324,17 +324,17 @@ void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char 
              t, name);
 }
 
-int hn_dae_close_setting(hn_dae_form form, const double *form_settings) {
-    return form == HN_FORM_INDEX2 ? (int)form_settings[0] : HN_CLOSE_NEVER;
+int hn_dae_close_option(hn_dae_form form, const double *form_options) {
+    return form == HN_FORM_INDEX2 ? (int)form_options[HN_INDEX2_CLOSE] : HN_CLOSE_NEVER;
 }
 
-int hn_dae_projects_speeds(hn_dae_form form, const double *form_settings) {
-    return form == HN_FORM_INDEX3 && form_settings[0] > 0;
+int hn_dae_projects_speeds(hn_dae_form form, const double *form_options) {
+    return form == HN_FORM_INDEX3 && form_options[HN_INDEX3_PROJECT] > 0;
 }
 
-hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_settings,
+hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
                                    const char *integrator, hn_diag *diag) {
-    if (!hn_dae_projects_speeds(form, form_settings)) {
+    if (!hn_dae_projects_speeds(form, form_options)) {
         return HN_OK;
     }
     return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "take radau5, radau3 or implicit-euler",

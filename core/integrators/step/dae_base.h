@@ -91,11 +91,11 @@ void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char 
 /// When integrators on index 2 close the position at the end of a step: every so many steps, or one of these.
 enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
 /// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.
-int hn_dae_close_setting(hn_dae_form form, const double *form_settings);
+int hn_dae_close_option(hn_dae_form form, const double *form_options);
 /// 1 when index 3 asks for speeds that are projected at the end of each step.
-int hn_dae_projects_speeds(hn_dae_form form, const double *form_settings);
+int hn_dae_projects_speeds(hn_dae_form form, const double *form_options);
 /// The refusal of an integrator that does not do that; HN_OK where it is not asked for.
-HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_settings,
+HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
                                                  const char *integrator, hn_diag *diag);
 /// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent` says that rows were left out.
 int hn_dae_closes(int close, long long n, int dependent);

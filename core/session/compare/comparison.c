@@ -1,4 +1,5 @@
 #include "session/compare/comparison.h"
+#include "formulations/list/formulation_list.h"
 
 #include "render/look.h"
 #include "study/run/pace.h"
@@ -70,7 +71,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
         return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
     }
     entry *e = &c->entries[c->n];
-    e->h = hn_method_is_adaptive(&spec) ? 0 : hn_method_setting(&spec, "h", 0);
+    e->h = hn_method_is_adaptive(&spec) ? 0 : hn_method_option(&spec, "h", 0);
     e->slot = choose_slot(c, spec.formulation);
     c->n++;
     return HN_OK;
@@ -219,8 +220,8 @@ void hn_comparison_reset(hn_comparison *c) {
 /// 1 if the formulation of this method has the setting.
 static int has_setting(const hn_run *run, const char *key) {
     const hn_formulation *f = hn_run_spec(run)->formulation;
-    for (int i = 0; i < f->n_settings; i++) {
-        if (strcmp(f->settings[i].key, key) == 0) {
+    for (int i = 0; i < f->n_options; i++) {
+        if (strcmp(f->options[i].key, key) == 0) {
             return 1;
         }
     }

@@ -214,7 +214,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
 }
 
 static double fixed_step(const hn_method_spec *spec) {
-    return hn_method_is_adaptive(spec) ? 0 : hn_method_setting(spec, "h", 0);
+    return hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
 }
 
 /// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.

@@ -133,10 +133,10 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
 hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
     hn_method_spec spec = map->specs[m];
     if (map->x.name[0] && !map->x.is_param) {
-        *hn_method_find_setting(&spec, map->x.name, NULL) = map->x.value[column];
+        *hn_method_find_option(&spec, map->x.name, NULL) = map->x.value[column];
     }
     if (!map->y.is_param) {
-        *hn_method_find_setting(&spec, map->y.name, NULL) = y;
+        *hn_method_find_option(&spec, map->y.name, NULL) = y;
     }
     return spec;
 }

@@ -45,15 +45,15 @@ static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high,
     // a setting: every method has to have it
     a->is_step = strcmp(a->name, "h") == 0;
     for (int m = 0; m < map->n_methods; m++) {
-        const hn_setting_info *info = NULL;
-        if (!hn_method_find_setting(&map->specs[m], a->name, &info) || info->choices) {
+        const hn_option *info = NULL;
+        if (!hn_method_find_option(&map->specs[m], a->name, &info) || info->choices) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over",
                                 "name a parameter of the scene, h, or a setting of every method",
                                 "'%s' is no parameter of the scene and no number that %s takes",
                                 a->name, map->names[m]);
         }
-        if (hn_setting_check(info, low, &diag) != HN_OK ||
-            hn_setting_check(info, high, &diag) != HN_OK) {
+        if (hn_option_check(info, low, &diag) != HN_OK ||
+            hn_option_check(info, high, &diag) != HN_OK) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "%s", diag.message);
         }
         snprintf(a->unit, sizeof a->unit, "%s", info->unit ? info->unit : "");
@@ -209,7 +209,7 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
 }
 
 static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
-    const double h = hn_method_setting(&map->specs[0], "h", 1e-3);
+    const double h = hn_method_option(&map->specs[0], "h", 1e-3);
     hn_status status =
         make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->request.columns, 'l', diags);
     if (status == HN_OK) {
@@ -321,7 +321,7 @@ static void name_methods(hn_map *map) {
 static hn_status check_sizes(hn_map *map, hn_diags *diags) {
     double h = HUGE_VAL;
     for (int m = 0; m < map->n_methods && !map->y.is_step; m++) {
-        const double own = hn_method_setting(&map->specs[m], "h", 0);
+        const double own = hn_method_option(&map->specs[m], "h", 0);
         if (!(own > 0)) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/methods", "give it one, as in :h=1e-3",
                                 "%s has no fixed step", map->names[m]);

@@ -64,7 +64,7 @@ static void predict_cells(hn_map *map, int m, int column) {
         }
         const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[j]);
         const hn_stability_forecast f = hn_stability_predict(scene->path, &spec, 1);
-        const double h = hn_method_setting(&spec, "h", (double)NAN);
+        const double h = hn_method_option(&spec, "h", (double)NAN);
         map->forecasts[m] = f;
         hn_map_cell_at(map, m, column, j)->margin = f.limit > 0 ? h / f.limit
                                                     : f.why     ? (double)NAN

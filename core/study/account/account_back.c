@@ -162,7 +162,7 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
 static double told_by(const hn_books *b, const char *key, double value, double T) {
     hn_method_spec spec = *hn_run_spec(b->run);
     double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;
-    double *setting = hn_method_find_setting(&spec, key, NULL);
+    double *setting = hn_method_find_option(&spec, key, NULL);
     if (!setting || *setting == value || b->run->adaptive) {
         return (double)NAN;
     }

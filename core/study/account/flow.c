@@ -1,7 +1,7 @@
 #include "study/account/flow.h"
 
 #include "integrators/step/control.h"
-#include "integrators/step/registry.h"
+#include "integrators/list/stepper_list.h"
 #include "integrators/explicit/tableau.h"
 #include "linalg/dense.h"
 
@@ -90,7 +90,7 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
     double refused = 0,
            refused_part = h; // error and size of the trial before, where that was turned down
     memcpy(f->y, y, (size_t)f->n * sizeof *y);
-    dop853->accepted(f->stepper, 1); // slopes kept from another flow belong to another y
+    dop853->on_accepted(f->stepper, 1); // slopes kept from another flow belong to another y
     for (int trial = 0; h - done > LANDED * h; trial++) {
         if (trial == MOST_TRIALS) {
             return HN_ERR_NO_CONVERGENCE;
@@ -116,7 +116,7 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
             }
             done += part;
             memcpy(f->y, f->y_new, (size_t)f->n * sizeof *y);
-            dop853->accepted(f->stepper, 0);
+            dop853->on_accepted(f->stepper, 0);
         } else if (next < SMALLEST * h) {
             return status != HN_OK ? status : HN_ERR_STEP_UNDERFLOW;
         }

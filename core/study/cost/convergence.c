@@ -30,7 +30,7 @@ static double max_difference(int n, const double *x, const double *y) {
 
 /// What the error is set by.
 static double *accuracy(hn_method_spec *spec) {
-    return hn_method_find_setting(spec, hn_method_is_adaptive(spec) ? "rtol" : "h", NULL);
+    return hn_method_find_option(spec, hn_method_is_adaptive(spec) ? "rtol" : "h", NULL);
 }
 
 static hn_status run_one(const hn_system *sys, const hn_method_spec *spec, const double *q,

@@ -44,7 +44,7 @@ static void strip_size(char *spelling, const char *key) {
 
 hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size) {
     hn_method_spec spec = wp->methods[m].spec;
-    *hn_method_find_setting(&spec, size_key(&wp->methods[m]), NULL) = size;
+    *hn_method_find_option(&spec, size_key(&wp->methods[m]), NULL) = size;
     return spec;
 }
 
@@ -76,7 +76,7 @@ static hn_status set_up_method(hn_wp *wp, const hn_method_spec *spec, int i, hn_
     m->spec = *spec;
     m->adaptive = hn_method_is_adaptive(spec);
     hn_method_format(spec, m->spelling);
-    if (!hn_method_find_setting(&m->spec, size_key(m), NULL)) {
+    if (!hn_method_find_option(&m->spec, size_key(m), NULL)) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "%s has neither a step nor a tolerance to vary", m->spelling);
     }

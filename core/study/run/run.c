@@ -169,18 +169,18 @@ static hn_status step_fixed(hn_run *run) {
 }
 
 static double absolute_tolerance(const hn_run *run, double rtol) {
-    const double atol = hn_method_setting(&run->spec, "atol", 0);
+    const double atol = hn_method_option(&run->spec, "atol", 0);
     return atol > 0 ? atol : rtol;
 }
 
 static double largest_step(const hn_run *run) {
-    const double hmax = hn_method_setting(&run->spec, "hmax", 0);
+    const double hmax = hn_method_option(&run->spec, "hmax", 0);
     return hmax > 0 ? hmax : HUGE_VAL;
 }
 
 static hn_status choose_first_step(hn_run *run, double rtol, double atol) {
     hn_run_engine *e = &run->main;
-    const double h0 = hn_method_setting(&run->spec, "h0", 0);
+    const double h0 = hn_method_option(&run->spec, "h0", 0);
     if (h0 > 0) {
         run->h_next = fmin(h0, largest_step(run));
         return HN_OK;
@@ -228,7 +228,7 @@ static hn_status underflow(hn_run *run, hn_status cause) {
 }
 
 static hn_status step_adaptive(hn_run *run) {
-    const double rtol = hn_method_setting(&run->spec, "rtol", 1e-6);
+    const double rtol = hn_method_option(&run->spec, "rtol", 1e-6);
     const double atol = absolute_tolerance(run, rtol);
     const int order = run->spec.stepper->control_order;
     const int k = order > 0 ? order : run->spec.stepper->order;
@@ -419,7 +419,7 @@ static void clear(hn_run *run) {
     run->n_incidents = 0;
     run->has_step = run->dense_valid = run->trouble = run->held = run->free = 0;
     run->control = (hn_step_control){.last = 1};
-    run->h_next = run->adaptive ? 0 : hn_method_setting(&run->spec, "h", 0);
+    run->h_next = run->adaptive ? 0 : hn_method_option(&run->spec, "h", 0);
     run->now.t = run->opts.t0;
     memcpy(run->now.q, run->start.q, (size_t)run->info.nq * sizeof(double));
     memcpy(run->now.v, run->start.v, (size_t)run->info.nv * sizeof(double));
@@ -541,18 +541,18 @@ const hn_method_spec *hn_run_spec(const hn_run *run) {
 // --- settings while running -------------------------------------------------------------------------------
 
 static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) {
-    const char *keys[2 * HN_MAX_SETTINGS];
+    const char *keys[2 * HN_MAX_OPTIONS];
     char hint[64] = "";
     int n = 0;
-    for (int i = 0; i < run->spec.formulation->n_settings; i++) {
-        keys[n++] = run->spec.formulation->settings[i].key;
+    for (int i = 0; i < run->spec.formulation->n_options; i++) {
+        keys[n++] = run->spec.formulation->options[i].key;
     }
-    for (int i = 0; i < run->spec.stepper->n_settings; i++) {
-        if (strcmp(run->spec.stepper->settings[i].key, key) == 0) {
+    for (int i = 0; i < run->spec.stepper->n_options; i++) {
+        if (strcmp(run->spec.stepper->options[i].key, key) == 0) {
             return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "make the run anew with it",
                                "%s belongs to the integrator and stays as it is during a run", key);
         }
-        keys[n++] = run->spec.stepper->settings[i].key;
+        keys[n++] = run->spec.stepper->options[i].key;
     }
     const char *near = hn_nearest_name(key, keys, n);
     if (near) {
@@ -565,13 +565,13 @@ static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) 
 hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag) {
     const hn_formulation *f = run->spec.formulation;
     int i = 0;
-    while (i < f->n_settings && strcmp(f->settings[i].key, key) != 0) {
+    while (i < f->n_options && strcmp(f->options[i].key, key) != 0) {
         i++;
     }
-    if (i == f->n_settings) {
+    if (i == f->n_options) {
         return unknown_key(run, key, diag);
     }
-    hn_status status = hn_setting_check(&f->settings[i], value, diag);
+    hn_status status = hn_option_check(&f->options[i], value, diag);
     if (status != HN_OK) {
         return status;
     }

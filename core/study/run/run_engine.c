@@ -76,7 +76,7 @@ static hn_status start_ode(hn_run *run, hn_run_engine *e, double t, const double
     }
     f->ode(e->formulation, &e->ode);
     if (e->stepper) {
-        stepper->accepted(e->stepper, 1);
+        stepper->on_accepted(e->stepper, 1);
         return HN_OK;
     }
     e->stepper = stepper->create(e->ode.n_pos, e->ode.n_vel, run->arena);
@@ -104,7 +104,7 @@ hn_status hn_engine_step(hn_run *run, hn_run_engine *e, double t, double h) {
     const hn_dae_stepper *dae = dae_of(run);
     const hn_stepper *stepper = run->spec.stepper;
     if (!dae && run->spec.formulation->around_step) {
-        const hn_step_call call = {e->stepper, &e->ode, stepper->step, stepper->accepted};
+        const hn_step_call call = {e->stepper, &e->ode, stepper->step, stepper->on_accepted};
         return run->spec.formulation->around_step(e->formulation, &call, t, h, e->y, e->y_new,
                                                   e->err);
     }
@@ -147,9 +147,9 @@ hn_status hn_engine_mend(hn_run *run, hn_run_engine *e, double t, double *y, int
 void hn_engine_accepted(hn_run *run, hn_run_engine *e, int changed) {
     const hn_dae_stepper *dae = dae_of(run);
     if (dae) {
-        dae->accepted(e->stepper, changed);
+        dae->on_accepted(e->stepper, changed);
     } else {
-        run->spec.stepper->accepted(e->stepper, changed);
+        run->spec.stepper->on_accepted(e->stepper, changed);
     }
 }
 

@@ -11,7 +11,7 @@ enum { STEPS_HELD = 15, STEPS_FREE = 6 };
 
 static void tell(hn_run *run, double size, double h) {
     const hn_stepper *stepper = run->spec.stepper;
-    const double rtol = hn_method_setting(&run->spec, "rtol", 1e-6);
+    const double rtol = hn_method_option(&run->spec, "rtol", 1e-6);
     hn_incident *i = hn_run_tell(
         run, HN_INCIDENT_STIFF, "|h lambda|", size, stepper->real_limit,
         "stability, not accuracy, holds the steps at %.2g s: something dies away at %.3g 1/s, and "
@@ -64,7 +64,7 @@ void hn_run_tell_restart(hn_run *run) {
     if (!i) {
         return;
     }
-    const double rtol = hn_method_setting(&run->spec, "rtol", 1e-6);
+    const double rtol = hn_method_option(&run->spec, "rtol", 1e-6);
     snprintf(i->remedy[0], sizeof i->remedy[0], "%s@dop853:rtol=%.3g", run->spec.formulation->name,
              rtol);
     if (run->info.nq == run->info.nv) { // no quaternion that is brought back to length 1

@@ -1,5 +1,6 @@
 #include "dynamics/evaluate/accel.h"
 #include "study/run/run_internal.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -25,8 +26,8 @@ void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy ou
                  spec.formulation->form == HN_FORM_ODE ? "dopri5" : "radau5");
         return;
     }
-    for (int i = 0; i < spec.formulation->n_settings; i++) {
-        spec.formulation_set[i] = spec.formulation->settings[i].initial;
+    for (int i = 0; i < spec.formulation->n_options; i++) {
+        spec.formulation_set[i] = spec.formulation->options[i].initial;
     }
     hn_method_format(&spec, text);
     const char *at = strchr(text, '@');
@@ -36,7 +37,7 @@ void hn_run_remedy_formulation(const hn_run *run, const char *name, hn_remedy ou
 void hn_run_remedy_finer(const hn_run *run, double factor, hn_remedy out) {
     const char *key = run->adaptive ? "rtol" : "h";
     snprintf(out, sizeof(hn_remedy), "%s=%.4g", key,
-             hn_method_setting(&run->spec, key, 0) * factor);
+             hn_method_option(&run->spec, key, 0) * factor);
 }
 
 int hn_run_has_formulation(const hn_run *run, const char *name) {
@@ -48,7 +49,7 @@ void hn_run_remedy_robust(const hn_run *run, hn_remedy out) {
         0.01; // [s]: survives the flat poses of the ladder for every h up to twice this
     const double mean =
         run->summary.steps > 0 ? (run->now.t - run->opts.t0) / (double)run->summary.steps : longest;
-    const double fixed = hn_method_setting(&run->spec, "h", 0);
+    const double fixed = hn_method_option(&run->spec, "h", 0);
     const double h = fixed > 0 ? fixed : fmin(fmax(mean, 1e-4), longest);
     const int fits = hn_method_fits(hn_formulation_find("projection"), run->spec.stepper);
     const char *stepper = fixed > 0 && fits ? run->spec.stepper->name : "rk4";
@@ -99,14 +100,14 @@ void hn_run_tell_charts(hn_run *run, long long changes) {
 // The faster rate at which the method itself pulls the gap to zero, 0 where it does not: of s^2 + 2 damping s + rate^2 the
 // larger root, or its size alone when the pair is complex.
 static double pulling_rate(const hn_run *run) {
-    double damping = hn_method_setting(&run->spec, "alpha", 0);
-    double rate = hn_method_setting(&run->spec, "beta", 0);
+    double damping = hn_method_option(&run->spec, "alpha", 0);
+    double rate = hn_method_option(&run->spec, "beta", 0);
     if (hn_run_has_formulation(run, "penalty") ||
         hn_run_has_formulation(run, "augmented-lagrangian")) {
-        rate = hn_method_setting(&run->spec, "omega", 0);
-        damping = rate * hn_method_setting(&run->spec, "xi", 0);
+        rate = hn_method_option(&run->spec, "omega", 0);
+        damping = rate * hn_method_option(&run->spec, "xi", 0);
     } else if (!hn_run_has_formulation(run, "baumgarte") ||
-               hn_method_setting(&run->spec, "rule", 0) != 0) {
+               hn_method_option(&run->spec, "rule", 0) != 0) {
         return 0;
     }
     const double square = damping * damping - rate * rate;
@@ -114,7 +115,7 @@ static double pulling_rate(const hn_run *run) {
 }
 
 void hn_run_tell_step_limit(hn_run *run) {
-    const double h = hn_method_setting(&run->spec, "h", 0);
+    const double h = hn_method_option(&run->spec, "h", 0);
     const double limit = run->spec.stepper->real_limit;
     const double rate = pulling_rate(run);
     hn_run_over(run, HN_INCIDENT_STEP_LIMIT);
@@ -177,7 +178,7 @@ static void remedy_of_mass(hn_run *run, hn_remedy out) {
         hn_run_remedy_formulation(run, "index2", out);
     } else if (hn_run_has_formulation(run, "symmetric-projection")) {
         hn_run_remedy_formulation(run, "projection", out);
-    } else if (hn_method_setting(&run->spec, "solver", HN_SOLVER_AUTO) != HN_SOLVER_AUTO) {
+    } else if (hn_method_option(&run->spec, "solver", HN_SOLVER_AUTO) != HN_SOLVER_AUTO) {
         hn_run_remedy_formulation(run, run->spec.formulation->name, out);
     }
 }

@@ -30,7 +30,7 @@ static hn_walk_end step_to(hn_run *run, double t, double started, hn_pace *pace,
 hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
                     void *user) {
     const hn_method_spec *spec = hn_run_spec(run);
-    const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_setting(spec, "h", 0);
+    const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
     hn_pace pace = hn_pace_begin();
     const double started = pace.last;
     for (int k = see ? 1 : n; k <= n; k++) {

@@ -211,7 +211,7 @@ static const char *why_not(const hn_method_spec *spec) {
     if (strcmp(name, "penalty") == 0 || strcmp(name, "augmented-lagrangian") == 0) {
         return "the penalty adds vibrations of its own, which the loops do not have";
     }
-    if (strcmp(name, "baumgarte") == 0 && hn_method_setting(spec, "rule", 0) != 0) {
+    if (strcmp(name, "baumgarte") == 0 && hn_method_option(spec, "rule", 0) != 0) {
         return "alpha and beta follow the motion";
     }
     return hn_stability_why_not(spec->stepper);
@@ -221,7 +221,7 @@ static int baumgarte_roots(const hn_method_spec *spec, hn_eigenvalue out[2]) {
     if (strcmp(spec->formulation->name, "baumgarte") != 0) {
         return 0;
     }
-    hn_stability_baumgarte(hn_method_setting(spec, "alpha", 0), hn_method_setting(spec, "beta", 0),
+    hn_stability_baumgarte(hn_method_option(spec, "alpha", 0), hn_method_option(spec, "beta", 0),
                            out);
     return 2;
 }
@@ -426,7 +426,7 @@ static hn_walk_end walk(trial *t, hn_run *run, double h, const hn_walk_limits *l
 
 int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
                      const hn_walk_limits *limits, hn_stability_trial *out) {
-    const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_setting(spec, "h", 0);
+    const double h = hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
     const double wanted = h > 0 ? p->T / h : 0;
     hn_arena *arena = hn_arena_create(0);
     hn_run *run = NULL;

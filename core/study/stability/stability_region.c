@@ -64,7 +64,7 @@ const char *hn_stability_why_not(const hn_stepper *stepper) {
 }
 
 static int open_probe(probe *p, const hn_stepper *stepper) {
-    double settings[HN_MAX_SETTINGS] = {0};
+    double settings[HN_MAX_OPTIONS] = {0};
     *p = (probe){.stepper = stepper};
     if (hn_stability_why_not(stepper)) {
         return 0;
@@ -75,8 +75,8 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
         hn_arena_free(p->arena);
         return 0;
     }
-    for (int i = 0; i < stepper->n_settings; i++) {
-        settings[i] = stepper->settings[i].initial;
+    for (int i = 0; i < stepper->n_options; i++) {
+        settings[i] = stepper->options[i].initial;
     }
     if (stepper->configure) {
         stepper->configure(p->self, settings);
@@ -101,7 +101,7 @@ static void close_probe(probe *p) {
 // one step of length 1 from (1, 0) or (0, 1); 0 when it fails or is not finite
 static int take_step(probe *p, int column, double y_new[2]) {
     double y[2] = {column == 0, column == 1}, err[2];
-    p->stepper->accepted(p->self, 1);
+    p->stepper->on_accepted(p->self, 1);
     return p->stepper->step(p->self, &p->ode, 0, 1, y, y_new, err) == HN_OK && isfinite(y_new[0]) &&
            isfinite(y_new[1]);
 }

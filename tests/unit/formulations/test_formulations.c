@@ -5,6 +5,7 @@
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/formulation.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,13 +39,13 @@ typedef struct instance {
 } instance;
 
 static void open_instance(instance *in, const hn_formulation *f, const hn_trial *trial) {
-    double settings[HN_MAX_SETTINGS] = {0};
+    double options[HN_MAX_OPTIONS] = {0};
     hn_diag diag = {0};
-    for (int i = 0; i < f->n_settings; i++) {
-        settings[i] = f->settings[i].initial;
+    for (int i = 0; i < f->n_options; i++) {
+        options[i] = f->options[i].initial;
     }
     *in = (instance){.f = f, .arena = hn_arena_create(0)};
-    assert_int_equal(f->create(trial->sys, settings, in->arena, &in->self, &diag), HN_OK);
+    assert_int_equal(f->create(trial->sys, options, in->arena, &in->self, &diag), HN_OK);
     assert_int_equal(f->set_state(in->self, 0, trial->q, trial->v, in->y), HN_OK);
     f->ode(in->self, &in->ode);
 }

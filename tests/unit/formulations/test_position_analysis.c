@@ -1,5 +1,6 @@
 // Reduced coordinates with loops closed by dyads against the same by Newton's method.
 #include "formulations/ground/formulation.h"
+#include "formulations/list/formulation_list.h"
 
 #include "support/model.h"
 #include "support/near.h"
@@ -20,13 +21,13 @@ typedef struct reduction {
 } reduction;
 
 static hn_status begin(reduction *red, const hn_model *m, int position) {
-    const double settings[HN_MAX_SETTINGS] = {0, position};
+    const double options[HN_MAX_OPTIONS] = {0, position};
     hn_diag diag = {0};
     memset(red, 0, sizeof *red);
     red->f = hn_formulation_find("reduced");
-    assert_string_equal(red->f->settings[1].key, "position");
+    assert_string_equal(red->f->options[1].key, "position");
     red->arena = hn_arena_create(0);
-    assert_int_equal(red->f->create(m->sys, settings, red->arena, &red->self, &diag), HN_OK);
+    assert_int_equal(red->f->create(m->sys, options, red->arena, &red->self, &diag), HN_OK);
     const hn_status status = red->f->set_state(red->self, 0, m->q, m->v, red->y);
     if (status == HN_OK) {
         red->f->ode(red->self, &red->ode);

@@ -1,4 +1,5 @@
 #include "support/near.h"
+#include "integrators/list/stepper_list.h"
 #include "support/odes.h"
 
 #include <math.h>
@@ -14,14 +15,14 @@ enum { STEPS = 10000000 };
 static double error_after(const hn_stepper *s, double sum, hn_arena *arena) {
     hn_test_oscillator o = {0, 1, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
-    const double h = T / STEPS, settings[2] = {h, sum};
+    const double h = T / STEPS, options[2] = {h, sum};
     double y[2] = {1, 0}, next[2];
     void *self = s->create(1, 1, arena);
     assert_non_null(self);
-    s->configure(self, settings);
+    s->configure(self, options);
     for (long i = 0; i < STEPS; i++) {
         assert_true(s->step(self, &ode, (double)i * h, h, y, next, NULL) == HN_OK);
-        s->accepted(self, 0);
+        s->on_accepted(self, 0);
         memcpy(y, next, sizeof y);
     }
     return fmax(fabs(y[0] - cos(T)), fabs(y[1] + sin(T)));

@@ -1,4 +1,5 @@
 #include "support/dae.h"
+#include "integrators/list/stepper_list.h"
 #include "support/near.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 #include "support/odes.h"
 
 #include "integrators/step/compensated.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,15 +66,15 @@ static void a_changed_state_starts_without_a_carry(void **state) {
 static void ten_steps(const hn_stepper *s, double sum, hn_arena *arena, double y[2]) {
     hn_test_oscillator o = {0, 1, 0};
     const hn_ode ode = hn_test_oscillator_ode(&o);
-    const double settings[2] = {0.01, sum};
+    const double options[2] = {0.01, sum};
     double next[2];
     void *self = s->create(1, 1, arena);
-    s->configure(self, settings);
+    s->configure(self, options);
     y[0] = 1;
     y[1] = 0.5;
     for (int i = 0; i < 10; i++) {
         assert_int_equal(s->step(self, &ode, i * 0.01, 0.01, y, next, NULL), HN_OK);
-        s->accepted(self, 0);
+        s->on_accepted(self, 0);
         memcpy(y, next, sizeof next);
     }
 }
@@ -84,7 +85,7 @@ static void it_is_the_same_method_but_for_rounding(void **state) {
     for (int i = 0; i < N_NAMES; i++) {
         const hn_stepper *s = hn_stepper_find(names[i]);
         double plain[2], compensated[2];
-        assert_string_equal(s->settings[HN_SUM_SETTING].key, "sum");
+        assert_string_equal(s->options[HN_FIXED_STEP_SUM].key, "sum");
         ten_steps(s, 0, arena, plain);
         ten_steps(s, 1, arena, compensated);
         assert_all_near(compensated, plain, 2, 3e-15); // ten roundings

@@ -2,6 +2,7 @@
 #include "support/odes.h"
 
 #include "integrators/step/control.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,7 +71,7 @@ static double controlled_error(double rtol, int *steps) {
         assert_int_equal(s->step(self, &ode, t, h, y, next, err), HN_OK);
         const double norm = hn_error_norm(4, err, y, next, rtol, rtol);
         if (norm <= 1) {
-            s->accepted(self, 0);
+            s->on_accepted(self, 0);
             memcpy(y, next, sizeof y);
             t += h;
             ++*steps;

@@ -4,6 +4,7 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,15 +31,15 @@ static int teardown(void **state) {
     return 0;
 }
 
-static hn_test_orders on_fb0(const char *name, hn_dae_form form, const char *settings) {
-    return hn_test_dae_orders(&fb0, hn_stepper_find(name), form, settings, T_END, 100, 4, &fb0_end);
+static hn_test_orders on_fb0(const char *name, hn_dae_form form, const char *options) {
+    return hn_test_dae_orders(&fb0, hn_stepper_find(name), form, options, T_END, 100, 4, &fb0_end);
 }
 
 static void order_is_2_in_positions_speeds_and_multipliers_below_rho_1(void **state) {
     (void)state;
-    static const char *const settings[] = {"rho=0.9", "rho=0.8", "rho=0.5", "a0=consistent"};
+    static const char *const options[] = {"rho=0.9", "rho=0.8", "rho=0.5", "a0=consistent"};
     for (int i = 0; i < 4; i++) {
-        const hn_test_orders o = on_fb0("genalpha", HN_FORM_INDEX3, settings[i]);
+        const hn_test_orders o = on_fb0("genalpha", HN_FORM_INDEX3, options[i]);
         assert_near(o.q, 2, ORDER_TOL);
         assert_near(o.v, 2, ORDER_TOL);
         assert_near(o.lambda, 2, ORDER_TOL);
@@ -84,14 +85,14 @@ static void stabilised_form_keeps_positions_and_speeds_at_rounding_and_order_2(v
 
 static void hht_is_of_order_2_for_a_constant_mass_and_little_more_than_1_in_angles(void **state) {
     (void)state;
-    static const char *const settings[] = {"damping=0.05", "damping=0.3"};
+    static const char *const options[] = {"damping=0.05", "damping=0.3"};
     for (int i = 0; i < 2; i++) {
         const hn_test_orders constant = hn_test_dae_orders(
-            &point, hn_stepper_find("hht"), HN_FORM_INDEX3, settings[i], T_END, 100, 4, &point_end);
+            &point, hn_stepper_find("hht"), HN_FORM_INDEX3, options[i], T_END, 100, 4, &point_end);
         assert_near(constant.q, 2, ORDER_TOL);
         assert_near(constant.v, 2, ORDER_TOL);
         assert_near(constant.raw, 2, ORDER_TOL);
-        const hn_test_orders turning = on_fb0("hht", HN_FORM_INDEX3, settings[i]);
+        const hn_test_orders turning = on_fb0("hht", HN_FORM_INDEX3, options[i]);
         assert_near(turning.q, 1.1, ORDER_TOL);
         assert_near(turning.v, 1.1, ORDER_TOL);
     }
@@ -126,14 +127,14 @@ static void an_infinitely_fast_oscillation_keeps_rho_of_itself_in_a_step(void **
         "\"potential\": \"0.5*1e6*x^2\"}, \"start\": {\"positions\": {\"x\": 1e-3}, \"rates\": "
         "{\"v\": 0}}}";
     static const struct {
-        const char *settings;
+        const char *options;
         double rho;
     } table[] = {{"rho=0.3 a0=consistent", 0.3}, {"rho=0.8 a0=consistent", 0.8}};
     hn_model m;
     hn_model_open_text(&m, text, NULL);
     for (int i = 0; i < 2; i++) {
         hn_test_dae d;
-        hn_test_dae_open(&d, &m, hn_stepper_find("genalpha"), HN_FORM_INDEX3, table[i].settings);
+        hn_test_dae_open(&d, &m, hn_stepper_find("genalpha"), HN_FORM_INDEX3, table[i].options);
         assert_int_equal(hn_test_dae_steps(&d, 1, 100), HN_OK);
         const double early = hn_norm2(1, d.y);
         assert_int_equal(hn_test_dae_steps(&d, 1, 100), HN_OK);

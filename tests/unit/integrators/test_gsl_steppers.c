@@ -1,4 +1,5 @@
 #include "support/alloc.h"
+#include "integrators/list/stepper_list.h"
 #include "support/near.h"
 #include "support/odes.h"
 
@@ -26,10 +27,10 @@ static int teardown(void **state) {
 }
 
 static void *create(const hn_stepper *s, int n_pos, int n_vel, double rtol, double hmax) {
-    const double settings[4] = {rtol, 0, 0, hmax};
+    const double options[4] = {rtol, 0, 0, hmax};
     void *self = s->create(n_pos, n_vel, arena);
     assert_non_null(self);
-    s->configure(self, settings);
+    s->configure(self, options);
     return self;
 }
 
@@ -42,7 +43,7 @@ static int integrate(const hn_stepper *s, void *self, const hn_ode *ode, double 
         double t_new = nan("");
         assert_int_equal(s->advance(self, ode, t, T, y, &t_new, next), HN_OK);
         assert_true(t_new > t);
-        s->accepted(self, 0);
+        s->on_accepted(self, 0);
         memcpy(y, next, (size_t)(ode->n_pos + ode->n_vel) * sizeof *y);
         t = t_new;
         n++;
@@ -159,7 +160,7 @@ static void a_refusal_of_the_right_hand_side_is_reached_and_handed_on(void **sta
         while (status == HN_OK && n < 10000) {
             status = s->advance(self, &ode, t, HUGE_VAL, y, &t_new, next);
             if (status == HN_OK) {
-                s->accepted(self, 0);
+                s->on_accepted(self, 0);
                 memcpy(y, next, sizeof y);
                 t = t_new;
             }
@@ -186,7 +187,7 @@ static void a_changed_state_is_gone_on_from(void **state) {
         // another motion from here: twice as large
         y[0] *= 2;
         y[1] *= 2;
-        s->accepted(self, 1);
+        s->on_accepted(self, 1);
         integrate(s, self, &ode, 1, 2, y);
         s->destroy(self);
         assert_near(y[0], 2 * cos(2), 1e-5);

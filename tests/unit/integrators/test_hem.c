@@ -1,4 +1,6 @@
 #include "support/dae.h"
+#include "formulations/list/formulation_list.h"
+#include "integrators/list/stepper_list.h"
 #include "support/near.h"
 #include "support/odes.h"
 #include "dynamics/compile/coordinates.h"

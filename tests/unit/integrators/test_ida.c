@@ -6,7 +6,7 @@
 #include "dynamics/evaluate/accel.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"
-#include "integrators/step/registry.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,26 +126,26 @@ typedef struct trial {
     double y[ROOM], next[ROOM], t;
 } trial;
 
-static const double never[HN_MAX_SETTINGS] = {-1}; // index 2: positions are not projected
-static const double none[HN_MAX_SETTINGS] = {0};   // index 3: nor are speeds
+static const double never[HN_MAX_OPTIONS] = {-1}; // index 2: positions are not projected
+static const double none[HN_MAX_OPTIONS] = {0};   // index 3: nor are speeds
 
 static const hn_dae_stepper *ida(void) {
     return hn_stepper_ida.dae;
 }
 
 static void open(trial *x, const char *scene, hn_dae_form form, double rtol) {
-    double settings[HN_MAX_SETTINGS];
+    double options[HN_MAX_OPTIONS];
     hn_diag diag = {0};
     hn_model_open_closed(&x->m, scene, NULL);
-    for (int i = 0; i < hn_stepper_ida.n_settings; i++) {
-        settings[i] = hn_stepper_ida.settings[i].initial;
+    for (int i = 0; i < hn_stepper_ida.n_options; i++) {
+        options[i] = hn_stepper_ida.options[i].initial;
     }
-    settings[0] = rtol;
+    options[0] = rtol;
     x->arena = hn_arena_create(0);
     x->t = 0;
     memcpy(x->y, x->m.q, (size_t)x->m.info.nq * sizeof *x->y);
     memcpy(x->y + x->m.info.nq, x->m.v, (size_t)x->m.info.nv * sizeof *x->y);
-    assert_int_equal(ida()->create(x->m.sys, form, settings,
+    assert_int_equal(ida()->create(x->m.sys, form, options,
                                    form == HN_FORM_INDEX2   ? never
                                    : form == HN_FORM_INDEX3 ? none
                                                             : stabilisation,
@@ -159,7 +159,7 @@ static void step(trial *x, double t_stop, int changed) {
     if (ida()->advance(x->self, x->t, t_stop, x->y, &t_new, x->next) != HN_OK) {
         fail_msg("%s", ida()->why(x->self));
     }
-    ida()->accepted(x->self, changed);
+    ida()->on_accepted(x->self, changed);
     memcpy(x->y, x->next, sizeof x->y);
     x->t = t_new;
 }
@@ -218,7 +218,7 @@ static void a_state_changed_beyond_the_tolerance_is_gone_on_from(void **state) {
     for (int i = 0; i < 20; i++) {
         step(&x, HUGE_VAL, 0);
     }
-    ida()->accepted(x.self, 1);
+    ida()->on_accepted(x.self, 1);
     x.y[0] += 0.5;
     const double there = x.y[0];
     step(&x, HUGE_VAL, 0);

@@ -1,5 +1,7 @@
 // Index 3 with speeds projected at the end of each step: what collocation loses of them comes back.
 #include "integrators/method/method_spec.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 #include "support/dae.h"
 #include "support/near.h"
 #include "support/odes.h"
@@ -22,7 +24,7 @@ static double distance(int n, const double *x, const double *y) {
     return most;
 }
 
-static slopes measure(const hn_model *m, const hn_test_state *exact, const char *settings) {
+static slopes measure(const hn_model *m, const hn_test_state *exact, const char *options) {
     double h[RUNS], q[RUNS], v[RUNS], lambda[RUNS];
     slopes out = {0};
     for (int i = 0; i < RUNS; i++) {
@@ -30,7 +32,7 @@ static slopes measure(const hn_model *m, const hn_test_state *exact, const char 
         const int steps = BASE_STEPS << i;
         h[i] = T_END / steps;
         hn_test_dae_open_as(&d, m, hn_stepper_find("radau5"), hn_formulation_find("index3"),
-                            settings, "h=1");
+                            options, "h=1");
         assert_int_equal(hn_test_dae_steps(&d, h[i], steps), HN_OK);
         hn_test_dae_measure(&d);
         q[i] = distance(m->info.nq, d.y, exact->q);
@@ -76,14 +78,14 @@ static void integrators_that_do_not_project_refuse_to_be_asked(void **state) {
     hn_model_open_closed(&m, "fb0", NULL);
     for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
         const hn_stepper *stepper = hn_stepper_find(others[k]);
-        const double form_settings[HN_MAX_SETTINGS] = {1};
-        double settings[HN_MAX_SETTINGS] = {0};
+        const double form_options[HN_MAX_OPTIONS] = {1};
+        double options[HN_MAX_OPTIONS] = {0};
         hn_diag diag = {0};
         void *self = NULL;
-        for (int i = 0; i < stepper->n_settings; i++) {
-            settings[i] = isnan(stepper->settings[i].initial) ? 1 : stepper->settings[i].initial;
+        for (int i = 0; i < stepper->n_options; i++) {
+            options[i] = isnan(stepper->options[i].initial) ? 1 : stepper->options[i].initial;
         }
-        assert_int_equal(stepper->dae->create(m.sys, HN_FORM_INDEX3, settings, form_settings,
+        assert_int_equal(stepper->dae->create(m.sys, HN_FORM_INDEX3, options, form_options,
                                               m.arena, &self, &diag),
                          HN_ERR_UNSUPPORTED);
         assert_non_null(strstr(diag.message, others[k]));

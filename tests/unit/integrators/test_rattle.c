@@ -5,6 +5,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/quaternion.h"
 #include "linalg/dense.h"
+#include "integrators/list/stepper_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,11 +27,11 @@ static const hn_stepper *rattle(void) {
     return hn_stepper_find("rattle");
 }
 
-static void check_order_2(const hn_model *m, const char *settings) {
+static void check_order_2(const hn_model *m, const char *options) {
     hn_test_state exact;
     hn_test_reference(m, 1, &exact);
     const hn_test_orders o =
-        hn_test_dae_orders(m, rattle(), HN_FORM_INDEX3, settings, 1, 100, 4, &exact);
+        hn_test_dae_orders(m, rattle(), HN_FORM_INDEX3, options, 1, 100, 4, &exact);
     assert_near(o.q, 2, ORDER_TOL);
     assert_near(o.v, 2, ORDER_TOL);
     assert_near(o.lambda, 2, ORDER_TOL);
@@ -162,11 +163,11 @@ static void a_damper_is_refused_with_the_way_to_take_it(void **state) {
     hn_model m;
     hn_diag diag = {0};
     void *self = NULL;
-    const double settings[HN_MAX_SETTINGS] = {1e-3, 0}, none[HN_MAX_SETTINGS] = {0};
+    const double options[HN_MAX_OPTIONS] = {1e-3, 0}, none[HN_MAX_OPTIONS] = {0};
     hn_arena *arena = hn_arena_create(0);
     hn_model_open_text(&m, damped_bob, NULL);
     assert_int_equal(
-        rattle()->dae->create(m.sys, HN_FORM_INDEX3, settings, none, arena, &self, &diag),
+        rattle()->dae->create(m.sys, HN_FORM_INDEX3, options, none, arena, &self, &diag),
         HN_ERR_UNSUPPORTED);
     assert_non_null(strstr(diag.message, "speed"));
     assert_non_null(strstr(diag.hint, "split"));
@@ -239,7 +240,7 @@ static void going_there_and_back_returns_to_the_start(void **state) {
         hn_test_dae_open(&d, &m, rattle(), HN_FORM_INDEX3, NULL);
         assert_int_equal(hn_test_dae_steps(&d, table[i].h, 50), HN_OK);
         assert_true(fabs(d.y[0] - m.q[0]) > 1e-2);
-        d.table->accepted(d.self, 1);
+        d.table->on_accepted(d.self, 1);
         assert_int_equal(hn_test_dae_steps(&d, -table[i].h, 50), HN_OK);
         // the map is symmetric; what is left is rounding, amplified by the motion there and back
         assert_all_near(d.y, m.q, (size_t)m.info.nq, table[i].tol);

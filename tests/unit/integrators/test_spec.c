@@ -1,6 +1,8 @@
 #include "support/near.h"
 
 #include "integrators/method/method_spec.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,21 +14,21 @@ static hn_status parse(const char *text, hn_method_spec *spec, hn_diag *diag) {
     return hn_method_parse(text, spec, diag);
 }
 
-static void settings_are_read_and_the_rest_keeps_its_default(void **state) {
+static void options_are_read_and_the_rest_keeps_its_default(void **state) {
     (void)state;
     hn_method_spec s;
     hn_diag d;
     assert_int_equal(parse("baumgarte:alpha=20@rk4:h=1e-3", &s, &d), HN_OK);
     assert_string_equal(s.formulation->name, "baumgarte");
     assert_string_equal(s.stepper->name, "rk4");
-    assert_near(hn_method_setting(&s, "alpha", 0), 20, 0);
-    assert_near(hn_method_setting(&s, "beta", 0), 5, 0);
-    assert_near(hn_method_setting(&s, "h", 0), 1e-3, 0);
-    assert_near(hn_method_setting(&s, "rtol", -7), -7, 0);
+    assert_near(hn_method_option(&s, "alpha", 0), 20, 0);
+    assert_near(hn_method_option(&s, "beta", 0), 5, 0);
+    assert_near(hn_method_option(&s, "h", 0), 1e-3, 0);
+    assert_near(hn_method_option(&s, "rtol", -7), -7, 0);
     assert_string_equal(d.message, "");
     assert_int_equal(parse("projection:weight=euclidean,what=velocity@dopri5", &s, &d), HN_OK);
-    assert_near(hn_method_setting(&s, "weight", -1), 1, 0);
-    assert_near(hn_method_setting(&s, "what", -1), 2, 0);
+    assert_near(hn_method_option(&s, "weight", -1), 1, 0);
+    assert_near(hn_method_option(&s, "what", -1), 2, 0);
 }
 
 static void step_sizes_may_carry_a_unit_or_a_decimal_comma(void **state) {
@@ -40,13 +42,13 @@ static void step_sizes_may_carry_a_unit_or_a_decimal_comma(void **state) {
         hn_method_spec s;
         hn_diag d;
         assert_int_equal(parse(texts[i], &s, &d), HN_OK);
-        assert_near(hn_method_setting(&s, "h", 0), 0.02, 0);
+        assert_near(hn_method_option(&s, "h", 0), 0.02, 0);
     }
     hn_method_spec s;
     hn_diag d;
     assert_int_equal(parse("baumgarte:alpha=0,5,beta=2,25@rk4:h=0,01", &s, &d), HN_OK);
-    assert_near(hn_method_setting(&s, "alpha", 0), 0.5, 0);
-    assert_near(hn_method_setting(&s, "beta", 0), 2.25, 0);
+    assert_near(hn_method_option(&s, "alpha", 0), 0.5, 0);
+    assert_near(hn_method_option(&s, "beta", 0), 2.25, 0);
 }
 
 static void each_fault_has_its_column_and_its_hint(void **state) {
@@ -100,7 +102,7 @@ static void a_negative_alpha_is_allowed_and_told(void **state) {
     hn_method_spec s;
     hn_diag d;
     assert_int_equal(parse("baumgarte:alpha=-5@rk4", &s, &d), HN_OK);
-    assert_near(hn_method_setting(&s, "alpha", 0), -5, 0);
+    assert_near(hn_method_option(&s, "alpha", 0), -5, 0);
     assert_non_null(strstr(d.message, "pushes the loop apart"));
 }
 
@@ -179,8 +181,8 @@ static void cards_keep_to_their_space_and_choices_to_their_range(void **state) {
         const hn_formulation *f = hn_formulation_at(i);
         assert_true(strlen(f->short_name) <= 14);
         assert_true(n_words(f->rule) <= 35);
-        for (int k = 0; k < f->n_settings; k++) {
-            const hn_setting_info *s = &f->settings[k];
+        for (int k = 0; k < f->n_options; k++) {
+            const hn_option *s = &f->options[k];
             assert_true(isnan(s->initial) || (s->initial >= s->min && s->initial <= s->max));
             assert_true(!s->choices || s->max == s->n_choices - 1);
         }
@@ -281,7 +283,7 @@ static void a_spelling_that_is_too_long_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(settings_are_read_and_the_rest_keeps_its_default),
+        cmocka_unit_test(options_are_read_and_the_rest_keeps_its_default),
         cmocka_unit_test(step_sizes_may_carry_a_unit_or_a_decimal_comma),
         cmocka_unit_test(each_fault_has_its_column_and_its_hint),
         cmocka_unit_test(a_negative_alpha_is_allowed_and_told),

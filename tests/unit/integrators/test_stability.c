@@ -1,4 +1,5 @@
 #include "support/near.h"
+#include "integrators/list/stepper_list.h"
 #include "support/odes.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ static double size_after(const hn_stepper *s, double a, double b, int n) {
     void *self = s->create(1, 1, arena);
     for (int i = 0; i < n && size < 1e100; i++) {
         assert_int_equal(s->step(self, &ode, 0, 1, y, next, err), HN_OK);
-        s->accepted(self, 0);
+        s->on_accepted(self, 0);
         memcpy(y, next, sizeof y);
         size = hypot(y[0], y[1]);
     }

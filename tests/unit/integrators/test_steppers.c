@@ -1,4 +1,5 @@
 #include "support/alloc.h"
+#include "integrators/list/stepper_list.h"
 #include "support/near.h"
 #include "support/odes.h"
 
@@ -98,7 +99,7 @@ static double dense_error(const hn_stepper *s, double h) {
     if (s->finish) {
         assert_int_equal(s->finish(self, &ode), HN_OK);
     }
-    s->accepted(self, 0);
+    s->on_accepted(self, 0);
     for (int i = 0; i <= 10; i++) {
         const double theta = i / 10.0;
         s->dense(self, theta, inner);
@@ -172,11 +173,11 @@ static void dense_stages_of_dop853_are_paid_once_and_serve_the_next_step(void **
     assert_int_equal(o.evals, 23);
     assert_int_equal(s->finish(self, &ode), HN_OK);
     assert_int_equal(o.evals, 27);
-    s->accepted(self, 0);
+    s->on_accepted(self, 0);
     assert_int_equal(s->step(self, &ode, 0.05, 0.1, next, y, err), HN_OK);
     assert_int_equal(o.evals, 38);
     assert_int_equal(s->finish(self, &ode), HN_OK);
-    s->accepted(self, 1); // moved: the slope at the new point is stale
+    s->on_accepted(self, 1); // moved: the slope at the new point is stale
     assert_int_equal(s->step(self, &ode, 0.15, 0.1, y, next, err), HN_OK);
     assert_int_equal(o.evals, 54);
 }
@@ -193,11 +194,11 @@ static void fsal_saves_a_stage_unless_the_state_was_changed(void **state) {
     // rejected: the same point again needs no new first slope
     assert_int_equal(s->step(self, &ode, 0, 0.05, y, next, err), HN_OK);
     assert_int_equal(o.evals, 13);
-    s->accepted(self, 0);
+    s->on_accepted(self, 0);
     memcpy(y, next, sizeof y);
     assert_int_equal(s->step(self, &ode, 0.05, 0.1, y, next, err), HN_OK);
     assert_int_equal(o.evals, 19);
-    s->accepted(self, 1);
+    s->on_accepted(self, 1);
     assert_int_equal(s->step(self, &ode, 0.15, 0.1, next, y, err), HN_OK);
     assert_int_equal(o.evals, 26);
 }
@@ -213,7 +214,7 @@ static void a_kept_slope_gives_the_same_bits_as_a_fresh_one(void **state) {
         hn_test_kepler_exact(0.3, 0, y);
         for (int i = 0; i < 20; i++) {
             assert_int_equal(s->step(self, &ode, i * 0.05, 0.05, y, next, err), HN_OK);
-            s->accepted(self, changed);
+            s->on_accepted(self, changed);
             memcpy(y, next, sizeof y);
         }
         memcpy(a[changed], y, sizeof y);
@@ -238,7 +239,7 @@ static void a_step_does_not_allocate(void **state) {
             if (s->finish) {
                 assert_int_equal(s->finish(self, &ode), HN_OK);
             }
-            s->accepted(self, i % 2);
+            s->on_accepted(self, i % 2);
             if (s->dense) {
                 s->dense(self, 0.5, next);
             }

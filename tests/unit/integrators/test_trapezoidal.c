@@ -4,6 +4,8 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,9 +28,9 @@ static int teardown(void **state) {
     return 0;
 }
 
-static void open_ali3p(hn_test_dae *d, const hn_model *m, const char *settings) {
+static void open_ali3p(hn_test_dae *d, const hn_model *m, const char *options) {
     hn_test_dae_open_as(d, m, hn_stepper_find("trapezoidal"), hn_formulation_find("ali3p"),
-                        settings, NULL);
+                        options, NULL);
 }
 
 static double turns_per_step(const hn_test_dae *d) {
@@ -71,12 +73,12 @@ static void turns_a_step_and_the_speed_gap_follow_the_weight(void **state) {
     // h = 0.0025, from an independent program: turns to |dq| < 1e-11, and |J v| about 70 / weight. We ask for a few digits
     // more, so a few turns more where each gains little
     static const struct {
-        const char *settings;
+        const char *options;
         double turns_least, turns_most, speed_gap;
     } table[] = {{"weight=1e9", 2, 3, 7e-8}, {"weight=1e7", 4, 6, 7e-6}};
     for (int i = 0; i < 2; i++) {
         hn_test_dae d;
-        open_ali3p(&d, &fb0, table[i].settings);
+        open_ali3p(&d, &fb0, table[i].options);
         assert_int_equal(hn_test_dae_steps(&d, 0.0025, 400), HN_OK);
         hn_test_dae_measure(&d);
         assert_rel(d.speed_gap, table[i].speed_gap, 0.1);

@@ -6,6 +6,8 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/assembly/project.h"
 #include "integrators/step/stepper.h"
+#include "integrators/list/stepper_list.h"
+#include "formulations/list/formulation_list.h"
 #include "linalg/dense.h"
 #include "formulations/ground/formulation.h"
 #include "session/model/model.h"
@@ -104,10 +106,10 @@ static void next_state(bench *b) {
 
 // 0: the scene is refused, or no derivatives are given
 static int open_formulation(bench *b, const hn_formulation *f) {
-    double settings[HN_MAX_SETTINGS] = {0};
+    double settings[HN_MAX_OPTIONS] = {0};
     hn_diag diag = {0};
-    for (int i = 0; i < f->n_settings; i++) {
-        settings[i] = f->settings[i].initial;
+    for (int i = 0; i < f->n_options; i++) {
+        settings[i] = f->options[i].initial;
     }
     if (strcmp(f->name, "penalty") == 0) {
         settings[0] = MILD;
@@ -305,7 +307,7 @@ static hn_cost cost_of_steps(bench *b, const char *formulation, int exact) {
         assert_int_equal(stepper->step(s, &b->ode, t, 2e-3, b->y, b->other, NULL), HN_OK);
         memcpy(b->y, b->other, (size_t)b->n * sizeof *b->y);
         assert_int_equal(b->f->after_step(b->self, t + 2e-3, b->y, &changed), HN_OK);
-        stepper->accepted(s, changed);
+        stepper->on_accepted(s, changed);
     }
     b->f->add_cost(b->self, &cost);
     cost.newton = 0; // of the stepper alone

@@ -2,6 +2,7 @@
 #include "support/trial.h"
 
 #include "study/cost/convergence.h"
+#include "formulations/list/formulation_list.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 #include "support/near.h"
+#include "formulations/list/formulation_list.h"
 #include "support/trial.h"
 
 #include "dynamics/evaluate/eval.h"

@@ -1,5 +1,6 @@
 // The spectrum of the motion on the loops, and what integrators make of its eigenvalues.
 #include "study/stability/spectrum.h"
+#include "integrators/list/stepper_list.h"
 
 #include "support/model.h"
 #include "support/near.h"

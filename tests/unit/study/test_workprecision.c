@@ -526,10 +526,10 @@ static void samples_of_time_are_batches_above_the_clocks_grain(void **state) {
     char spelling[HN_SPEC_MAX];
     hn_wp_spelling(wp, 0, 1, spelling);
     assert_string_equal(wp->methods[0].spelling, "projection@rk4");
-    assert_near(hn_method_setting(&wp->methods[0].spec, "h", 0), 1e-3, 0);
+    assert_near(hn_method_option(&wp->methods[0].spec, "h", 0), 1e-3, 0);
     assert_near(wp->methods[0].point[1].size, wp->methods[0].point[0].size / 2, 0);
     const hn_method_spec again = hn_trial_spec(spelling);
-    assert_near(hn_method_setting(&again, "h", 0), wp->methods[0].point[1].size, 0);
+    assert_near(hn_method_option(&again, "h", 0), wp->methods[0].point[1].size, 0);
     hn_wp_free(wp);
     hn_ref_free(ref);
     hn_trial_close(&trial);

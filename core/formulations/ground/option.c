@@ -1,4 +1,4 @@
-#include "integrators/method/method_spec.h"
+#include "formulations/ground/option.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -8,61 +8,62 @@
 
 enum { MAX_VALUE = 48 };
 
-static const char *unit_text(const hn_setting_info *info) {
-    return info->unit && info->unit[0] ? info->unit : NULL;
+static const char *unit_text(const hn_option *option) {
+    return option->unit && option->unit[0] ? option->unit : NULL;
 }
 
-hn_status hn_setting_check(const hn_setting_info *info, double value, hn_diag *diag) {
-    const char *unit = unit_text(info);
+hn_status hn_option_check(const hn_option *option, double value, hn_diag *diag) {
+    const char *unit = unit_text(option);
     if (!isfinite(value)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be a finite number", info->key);
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be a finite number",
+                           option->key);
     }
-    if (value <= 0 && info->min > 0) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be > 0, found %g", info->key,
+    if (value <= 0 && option->min > 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s must be > 0, found %g", option->key,
                            value);
     }
-    if (value < info->min || value > info->max) {
+    if (value < option->min || value > option->max) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s = %g is out of range: %g to %g%s%s",
-                           info->key, value, info->min, info->max, unit ? " " : "",
+                           option->key, value, option->min, option->max, unit ? " " : "",
                            unit ? unit : "");
     }
-    if (info->choices && value != floor(value)) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes a name, not %g", info->key,
+    if (option->choices && value != floor(value)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes a name, not %g", option->key,
                            value);
     }
     return HN_OK;
 }
 
-static hn_status find_choice(const hn_setting_info *info, const char *word, double *value,
+static hn_status find_choice(const hn_option *option, const char *word, double *value,
                              hn_diag *diag) {
-    for (int i = 0; i < info->n_choices; i++) {
-        if (strcmp(info->choices[i], word) == 0) {
+    for (int i = 0; i < option->n_choices; i++) {
+        if (strcmp(option->choices[i], word) == 0) {
             *value = i;
             return HN_OK;
         }
     }
     char list[160] = "", hint[96] = "";
     size_t n = 0;
-    for (int i = 0; i < info->n_choices && n < sizeof list; i++) {
+    for (int i = 0; i < option->n_choices && n < sizeof list; i++) {
         const int wrote =
-            snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", info->choices[i]);
+            snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", option->choices[i]);
         n += wrote > 0 ? (size_t)wrote : 0;
     }
-    const char *near = hn_nearest_name(word, info->choices, info->n_choices);
+    const char *near = hn_nearest_name(word, option->choices, option->n_choices);
     if (near) {
         snprintf(hint, sizeof hint, "did you mean '%s'?", near);
     }
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s = '%s' is not one of: %s", info->key,
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "%s = '%s' is not one of: %s", option->key,
                        word, list);
 }
 
-// 1 when the unit that follows a number is known; *parts of it make the setting's own unit
-static int read_unit(const hn_setting_info *info, const char *unit, double *parts) {
+// 1 when the unit that follows a number is known; *parts of it make the option's own unit
+static int read_unit(const hn_option *option, const char *unit, double *parts) {
     *parts = 1;
-    if (unit[0] == '\0' || (info->unit && strcmp(unit, info->unit) == 0)) {
+    if (unit[0] == '\0' || (option->unit && strcmp(unit, option->unit) == 0)) {
         return 1;
     }
-    const int is_time = info->unit && strcmp(info->unit, "s") == 0;
+    const int is_time = option->unit && strcmp(option->unit, "s") == 0;
     if (is_time && strcmp(unit, "ms") == 0) {
         *parts = 1e3;
         return 1;
@@ -102,8 +103,7 @@ static size_t number_length(const char *s) {
     return i;
 }
 
-hn_status hn_setting_parse(const hn_setting_info *info, const char *text, double *value,
-                           hn_diag *diag) {
+hn_status hn_option_parse(const hn_option *option, const char *text, double *value, hn_diag *diag) {
     char word[MAX_VALUE];
     size_t n = 0;
     while (isspace((unsigned char)*text)) {
@@ -117,29 +117,29 @@ hn_status hn_setting_parse(const hn_setting_info *info, const char *text, double
         n--;
     }
     word[n] = '\0';
-    if (info->choices && !too_long) {
-        return find_choice(info, word, value, diag);
+    if (option->choices && !too_long) {
+        return find_choice(option, word, value, diag);
     }
     const size_t length = too_long ? 0 : number_length(word);
     if (length == 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs a number, found '%s'",
-                           info->key, word);
+                           option->key, word);
     }
     const char *unit = word + length;
     while (isspace((unsigned char)*unit)) {
         unit++;
     }
     double parts = 1;
-    if (!read_unit(info, unit, &parts)) {
-        const char *own = unit_text(info);
+    if (!read_unit(option, unit, &parts)) {
+        const char *own = unit_text(option);
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s: '%s' is not understood, %s%s",
-                           info->key, unit, own ? "its unit is " : "it has no unit",
+                           option->key, unit, own ? "its unit is " : "it has no unit",
                            own ? own : "");
     }
     word[length] = '\0';
     // dividing by a power of ten keeps "20 ms" equal to 0.02 to the last bit
     const double number = strtod(word, NULL) / parts;
-    const hn_status status = hn_setting_check(info, number, diag);
+    const hn_status status = hn_option_check(option, number, diag);
     if (status == HN_OK) {
         *value = number;
     }

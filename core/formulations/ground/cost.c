@@ -1,0 +1,31 @@
+#include "formulations/ground/cost.h"
+
+void hn_cost_add(hn_cost *sum, const hn_cost *part) {
+    sum->evals += part->evals;
+    sum->factorisations += part->factorisations;
+    sum->solves += part->solves;
+    sum->newton += part->newton;
+    sum->ops += part->ops;
+    sum->fallbacks += part->fallbacks;
+    sum->refinements += part->refinements;
+    sum->projections += part->projections;
+    sum->energy_removed += part->energy_removed;
+    sum->chart_changes += part->chart_changes;
+    sum->rejected += part->rejected;
+}
+
+hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
+    return (hn_cost){
+        .evals = after->evals - before->evals,
+        .factorisations = after->factorisations - before->factorisations,
+        .solves = after->solves - before->solves,
+        .newton = after->newton - before->newton,
+        .ops = after->ops - before->ops,
+        .fallbacks = after->fallbacks - before->fallbacks,
+        .refinements = after->refinements - before->refinements,
+        .projections = after->projections - before->projections,
+        .energy_removed = after->energy_removed - before->energy_removed,
+        .chart_changes = after->chart_changes - before->chart_changes,
+        .rejected = after->rejected - before->rejected,
+    };
+}
