@@ -1,6 +1,7 @@
 #include "import/build.h"
 
 #include "expr/ops.h"
+#include "linalg/small3.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -358,7 +359,7 @@ hn_im_frame hn_im_axis_frame(const double at[3], const double axis[3]) {
     double x[3], y[3];
     hn_im_frame out;
     hn_im_across(axis, x);
-    hn_im_cross(axis, x, y);
+    hn_num3_cross(axis, x, y);
     for (int i = 0; i < 3; i++) {
         out.R[i][0] = x[i];
         out.R[i][1] = y[i] + 0.0;

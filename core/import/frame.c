@@ -1,5 +1,7 @@
 #include "import/frame.h"
 
+#include "linalg/small3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -12,25 +14,8 @@ hn_im_frame hn_im_frame_unit(void) {
     return (hn_im_frame){.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 }
 
-void hn_im_mul(double a[3][3], double b[3][3], double out[3][3]) {
-    double c[3][3];
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-        }
-    }
-    memcpy(out, c, sizeof c);
-}
-
 void hn_im_snap(double R[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            double whole = round(R[i][j]);
-            if (fabs(R[i][j] - whole) < ROUNDING) {
-                R[i][j] = whole + 0.0;
-            }
-        }
-    }
+    hn_num3_snap(R, ROUNDING);
 }
 
 void hn_im_turn(const hn_im_frame *a, const double x[3], double out[3]) {
@@ -50,7 +35,7 @@ void hn_im_place(const hn_im_frame *a, const double x[3], double out[3]) {
 
 hn_im_frame hn_im_frame_mul(const hn_im_frame *a, const hn_im_frame *b) {
     hn_im_frame out = *a, inner = *b;
-    hn_im_mul(out.R, inner.R, out.R);
+    hn_num3_mul(out.R, inner.R, out.R);
     hn_im_snap(out.R);
     hn_im_place(a, b->p, out.p);
     return out;
@@ -70,17 +55,8 @@ hn_im_frame hn_im_frame_inverse(const hn_im_frame *a) {
     return out;
 }
 
-double hn_im_norm(const double a[3]) {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
-void hn_im_cross(const double a[3], const double b[3], double out[3]) {
-    double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, c, sizeof c);
-}
-
 bool hn_im_normalise(double a[3]) {
-    double n = hn_im_norm(a);
+    double n = hn_num3_norm(a);
     if (!(n >= NO_LENGTH) || !isfinite(n)) {
         return false;
     }
@@ -145,7 +121,7 @@ void hn_im_rotation_vector(double R[3][3], double out[3]) {
     }
 
     // the half turn that is at most pi
-    double sign = q[0] < 0 ? -1 : 1, s = hn_im_norm(q + 1), angle = 2 * atan2(s, sign * q[0]);
+    double sign = q[0] < 0 ? -1 : 1, s = hn_num3_norm(q + 1), angle = 2 * atan2(s, sign * q[0]);
     angle = fmin(angle, PI);
     for (int i = 0; i < 3; i++) {
         out[i] = s > 0 ? sign * q[1 + i] / s * angle + 0.0 : 0;
@@ -164,13 +140,13 @@ hn_im_mass hn_im_mass_moved(const hn_im_mass *a, const hn_im_frame *at) {
     double M[3][3], R[3][3], T[3][3];
     to_matrix(a->I, M);
     memcpy(R, at->R, sizeof R);
-    hn_im_mul(R, M, M);
+    hn_num3_mul(R, M, M);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             T[i][j] = R[j][i];
         }
     }
-    hn_im_mul(M, T, M);
+    hn_num3_mul(M, T, M);
     double I[6] = {M[0][0], M[1][1], M[2][2], M[0][1], M[0][2], M[1][2]};
     double size = fabs(I[0]) + fabs(I[1]) + fabs(I[2]);
     for (int k = 0; k < 6; k++) {

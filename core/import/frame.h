@@ -17,8 +17,6 @@ hn_im_frame hn_im_frame_inverse(const hn_im_frame *a);
 void hn_im_place(const hn_im_frame *a, const double x[3], double out[3]); ///< p + R x
 void hn_im_turn(const hn_im_frame *a, const double x[3], double out[3]);  ///< R x
 
-double hn_im_norm(const double a[3]);
-void hn_im_cross(const double a[3], const double b[3], double out[3]);
 /// 0 when there is no direction in it (length below 1e-10).
 bool hn_im_normalise(double a[3]);
 /// A unit vector across the unit vector `axis`: the coordinate axis least aligned with it, x before
@@ -31,7 +29,6 @@ void hn_im_rotation(const double axis[3], double angle, double R[3][3]); ///< ax
 void hn_im_from_quaternion(const double q[4], double R[3][3]);           ///< w x y z of length 1
 /// Rotation vector (axis times angle, angle at most pi) of a rotation.
 void hn_im_rotation_vector(double R[3][3], double out[3]);
-void hn_im_mul(double a[3][3], double b[3][3], double out[3][3]);
 void hn_im_snap(double R[3][3]);
 
 /// Mass [kg], centre of mass [m] and tensor about it [kg m^2]: xx yy zz xy xz yz.

@@ -1,6 +1,8 @@
 // Attributes of MJCF elements: defaults by class, angles, orientations in five spellings.
 #include "import/mjcf.h"
 
+#include "linalg/small3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -203,7 +205,7 @@ static bool from_xy_axes(hn_mj *m, const hn_mj_element *e, const double *v, doub
     if (!hn_im_normalise(y)) {
         return fault_no_direction(m, e, "xyaxes");
     }
-    hn_im_cross(x, y, z);
+    hn_num3_cross(x, y, z);
     for (int i = 0; i < 3; i++) {
         R[i][0] = x[i];
         R[i][1] = y[i];
@@ -219,7 +221,7 @@ static bool from_z_axis(hn_mj *m, const hn_mj_element *e, const double *v, doubl
     if (!hn_im_normalise(z)) {
         return fault_no_direction(m, e, "zaxis");
     }
-    double axis[3] = {-z[1], z[0], 0}, angle = atan2(hn_im_norm(axis), z[2]);
+    double axis[3] = {-z[1], z[0], 0}, angle = atan2(hn_num3_norm(axis), z[2]);
     if (!hn_im_normalise(axis)) {
         axis[0] = 1;
     }
@@ -238,9 +240,9 @@ static bool from_euler(hn_mj *m, const hn_mj_element *e, const double *x, double
         axis[c - (capital ? 'X' : 'x')] = 1;
         hn_im_rotation(axis, x[k] * m->per_angle, turn);
         if (capital) {
-            hn_im_mul(turn, out.R, out.R);
+            hn_num3_mul(turn, out.R, out.R);
         } else {
-            hn_im_mul(out.R, turn, out.R);
+            hn_num3_mul(out.R, turn, out.R);
         }
     }
     hn_im_snap(out.R);

@@ -1,6 +1,8 @@
 // Mass of bodies: an `inertial` element, or the geoms as homogeneous solids.
 #include "import/mjcf.h"
 
+#include "linalg/small3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +38,7 @@ static bool place_between(hn_mj *m, const hn_mj_element *e, int kind, const doub
         z[i] = ends[i + 3] - ends[i];
         at->p[i] = (ends[i] + ends[i + 3]) / 2;
     }
-    double half = hn_im_norm(z) / 2;
+    double half = hn_num3_norm(z) / 2;
     if (!hn_im_normalise(z)) {
         return hn_im_fault(m->b, e->node, "fromto", NULL, "the two ends are the same point");
     }
@@ -47,7 +49,7 @@ static bool place_between(hn_mj *m, const hn_mj_element *e, int kind, const doub
 
     // any directions across will do: the solids are round
     hn_im_across(z, x);
-    hn_im_cross(z, x, y);
+    hn_num3_cross(z, x, y);
     for (int i = 0; i < 3; i++) {
         at->R[i][0] = x[i];
         at->R[i][1] = y[i];

@@ -2,6 +2,8 @@
 // mass between two of them.
 #include "import/mjcf.h"
 
+#include "linalg/small3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -100,7 +102,7 @@ static bool set_zero(hn_mj *m, const hn_mj_element *e, hn_im_joint *j, double un
     j->zero = j->q0[0] = ref * unit;
     if (j->type == HN_JOINT_REVOLUTE && ref != 0) {
         hn_im_rotation((double[]){0, 0, 1}, j->zero, turn);
-        hn_im_mul(in_child->R, turn, in_child->R);
+        hn_num3_mul(in_child->R, turn, in_child->R);
         hn_im_snap(in_child->R);
     } else if (j->type == HN_JOINT_PRISMATIC) {
         for (int i = 0; i < 3; i++) {

@@ -4,6 +4,8 @@
 
 #include "import/xml.h"
 
+#include "linalg/small3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -66,7 +68,7 @@ static bool read_origin(urdf *u, const xmlNode *around, hn_im_frame *out) {
     }
     for (int k = 0; k < 3; k++) {
         hn_im_rotation(axes[k], rpy[k], turn);
-        hn_im_mul(turn, out->R, out->R);
+        hn_num3_mul(turn, out->R, out->R);
     }
     hn_im_snap(out->R);
     return true;

@@ -1,6 +1,7 @@
 // Painting what a canvas has recorded: OSMesa for the pixels, libpng for the file.
 #include "render/canvas.h"
 
+#include "base/file.h"
 #include "render/canvas_record.h"
 
 #include <stdbool.h>
@@ -261,13 +262,7 @@ hn_status hn_canvas_save_png(const hn_canvas *c, const char *path, hn_diag *diag
     hn_strbuf_init(&png);
     hn_status status = hn_canvas_png(c, &png, diag);
     if (status == HN_OK) {
-        FILE *file = fopen(path, "wb");
-        const int wrote = file != NULL && fwrite(png.text, 1, png.n, file) == png.n;
-        const int closed = file != NULL && fclose(file) == 0;
-        if (!wrote || !closed) {
-            status = hn_diag_set(diag, HN_ERR_IO, path, NULL,
-                                 "the picture could not be written to %s", path);
-        }
+        status = hn_file_write(path, png.text, png.n, diag);
     }
     hn_strbuf_reset(&png);
     return status;

@@ -4,10 +4,10 @@
 
 #include "scene/reader.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -290,43 +290,14 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
     return status;
 }
 
-/// The file's bytes (owned) or NULL with *status set.
-static char *read_file(const char *path, size_t *n, hn_status *status, hn_diags *diags) {
-    FILE *file = fopen(path, "rb");
-    char *text = file ? malloc(HN_SCENE_MAX_BYTES + 1) : NULL;
-    *status = HN_OK;
-    if (!file) {
-        *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path,
-                               strerror(errno));
-    } else if (!text) {
-        *status = HN_ERR_MEMORY;
-    } else {
-        *n = fread(text, 1, HN_SCENE_MAX_BYTES + 1, file);
-        if (ferror(file)) {
-            *status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s", path,
-                                   strerror(errno));
-        }
-    }
-    if (file) {
-        fclose(file);
-    }
-    if (*status != HN_OK) {
-        free(text);
-        text = NULL;
-    }
-    return text;
-}
-
 hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n_settings,
                              hn_scene **out, hn_diags *diags) {
     HN_ASSERT(path && out);
     *out = NULL;
-    size_t n = 0;
-    hn_status status;
-    char *text = read_file(path, &n, &status, diags);
-    if (!text) {
-        return status;
-    }
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_load(path, HN_SCENE_MAX_BYTES, &text, diags);
+
     // id: the file's name without folder and .json
     const char *base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     size_t length = strlen(base);
@@ -335,7 +306,11 @@ hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n
         length -= 5;
     }
     snprintf(id, sizeof id, "%.*s", (int)(length < HN_RD_MAX_NAME ? length : HN_RD_MAX_NAME), base);
-    status = hn_scene_load_json(text, n, id, settings, n_settings, out, diags);
-    free(text);
+
+    if (status == HN_OK) {
+        status =
+            hn_scene_load_json(hn_strbuf_text(&text), text.n, id, settings, n_settings, out, diags);
+    }
+    hn_strbuf_reset(&text);
     return status;
 }

@@ -1,5 +1,6 @@
 #include "grade/exercise.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
 
@@ -214,26 +215,13 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
 hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *diags) {
     HN_ASSERT(path && out);
     *out = NULL;
-    FILE *file = fopen(path, "rb");
-    char *text = file ? malloc(HN_GRADE_MAX_BYTES + 1) : NULL;
-    hn_status status = HN_ERR_MEMORY;
-    if (!file) {
-        status = hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot open '%.200s': %s", path,
-                              strerror(errno));
-    } else if (text) {
-        size_t n = fread(text, 1, HN_GRADE_MAX_BYTES + 1, file);
-        status = ferror(file) ? hn_diags_add(diags, HN_ERR_IO, "", NULL, "cannot read '%.200s': %s",
-                                             path, strerror(errno))
-                 : n > HN_GRADE_MAX_BYTES
-                     ? hn_diags_add(diags, HN_ERR_LIMIT, "", NULL,
-                                    "the problem '%.200s' has more than %d bytes", path,
-                                    HN_GRADE_MAX_BYTES)
-                     : hn_exercise_load_json(text, n, out, diags);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_load(path, HN_GRADE_MAX_BYTES, &text, diags);
+    if (status == HN_OK) {
+        status = hn_exercise_load_json(hn_strbuf_text(&text), text.n, out, diags);
     }
-    if (file) {
-        fclose(file);
-    }
-    free(text);
+    hn_strbuf_reset(&text);
     return status;
 }
 

@@ -1,5 +1,6 @@
 #include "grade/grade.h"
 
+#include "base/file.h"
 #include "base/json_text.h"
 #include "expr/print.h"
 #include "grade/exercise.h"
@@ -390,23 +391,16 @@ hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t s
                         hn_verdict *out) {
     HN_ASSERT(problem && path && out);
     begin(out, problem, seed);
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        refuse(out, NULL, "cannot open '%.200s': %s", path, strerror(errno));
-        return HN_OK;
+    hn_strbuf text;
+    hn_diag diag;
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
+    if (status == HN_OK) {
+        status = hn_grade_json(problem, hn_strbuf_text(&text), text.n, seed, out);
+    } else if (status != HN_ERR_MEMORY) { // the submission is at fault, not the program
+        refuse(out, diag.hint, "%s", diag.message);
+        status = HN_OK;
     }
-    char *text = malloc(HN_GRADE_MAX_BYTES + 1);
-    hn_status status = HN_ERR_MEMORY;
-    if (text) {
-        size_t n = fread(text, 1, HN_GRADE_MAX_BYTES + 1, file);
-        if (ferror(file)) {
-            refuse(out, NULL, "cannot read '%.200s': %s", path, strerror(errno));
-            status = HN_OK;
-        } else {
-            status = hn_grade_json(problem, text, n, seed, out);
-        }
-    }
-    fclose(file);
-    free(text);
+    hn_strbuf_reset(&text);
     return status;
 }

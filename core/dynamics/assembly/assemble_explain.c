@@ -7,6 +7,7 @@
 
 #include "dynamics/assembly/assemble_pose.h"
 #include "linalg/dense.h"
+#include "linalg/small3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,8 +104,8 @@ static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
         }
         double axis[3];
         hn_body_pose at = hn_assemble_body_pose(s, parts[k].body);
-        hn_assemble_rotate(
-            at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis, axis);
+        hn_num3_apply(at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis,
+                      axis);
         if (!have) {
             memcpy(first, axis, sizeof first);
             have = 1;
@@ -129,8 +130,7 @@ static double side_length(const hn_assembler *s, const ring_part *first, const r
     hn_assemble_joint_position(s, last->joint_out, last->body, to);
     const hn_joint *joint = &s->scene->joints[first->joint_in];
     hn_body_pose at = hn_assemble_body_pose(s, first->body);
-    hn_assemble_rotate(at.R, joint->child == first->body ? joint->child_axis : joint->parent_axis,
-                       axis);
+    hn_num3_apply(at.R, joint->child == first->body ? joint->child_axis : joint->parent_axis, axis);
     double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
     hn_axpy(3, -hn_dot(3, d, axis), axis, d);
     return hn_norm2(3, d);

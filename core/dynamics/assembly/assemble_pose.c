@@ -3,43 +3,21 @@
 #include "dynamics/compile/quaternion.h"
 #include "dynamics/compile/tree.h"
 #include "linalg/dense.h"
+#include "linalg/small3.h"
 
 #include <math.h>
 #include <string.h>
 
 // ---- poses of bodies, straight from the scene ----
 
-void hn_assemble_rotate(const double R[9], const double x[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        out[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
-    }
-}
-
-static void multiply(const double A[9], const double B[9], double out[9]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
-        }
-    }
-}
-
-static void transpose(const double A[9], double out[9]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = A[3 * j + i];
-        }
-    }
-}
-
 /// Joint frame in body axes: columns ref, axis x ref, axis.
-static void joint_frame(const double axis[3], const double ref[3], double out[9]) {
-    const double side[3] = {axis[1] * ref[2] - axis[2] * ref[1],
-                            axis[2] * ref[0] - axis[0] * ref[2],
-                            axis[0] * ref[1] - axis[1] * ref[0]};
+static void joint_frame(const double axis[3], const double ref[3], double out[3][3]) {
+    double side[3];
+    hn_num3_cross(axis, ref, side);
     for (int i = 0; i < 3; i++) {
-        out[3 * i] = ref[i];
-        out[3 * i + 1] = side[i];
-        out[3 * i + 2] = axis[i];
+        out[i][0] = ref[i];
+        out[i][1] = side[i];
+        out[i][2] = axis[i];
     }
 }
 
@@ -51,13 +29,13 @@ static void place(const hn_quantity at[3], double out[3]) {
 
 /// Turn by one primitive of a joint at its coordinates x, in the joint's axes, and the way it
 /// moves.
-static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[9],
+static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[3][3],
                              double way[3]) {
     const int i = (primitive->along + 1) % 3, j = (primitive->along + 2) % 3;
     if (primitive->type == HN_JOINT_REVOLUTE) {
-        turn[4 * i] = turn[4 * j] = cos(x[0]);
-        turn[3 * j + i] = sin(x[0]);
-        turn[3 * i + j] = -turn[3 * j + i];
+        turn[i][i] = turn[j][j] = cos(x[0]);
+        turn[j][i] = sin(x[0]);
+        turn[i][j] = -turn[j][i];
     } else if (primitive->type == HN_JOINT_PRISMATIC) {
         way[primitive->along] = x[0];
     } else if (primitive->type == HN_JOINT_SPHERICAL) {
@@ -69,7 +47,7 @@ static void primitive_motion(const hn_primitive *primitive, const double *x, dou
             hn_quat_mul(q, e, out);
             hn_quat_mul(out, back, out);
             for (int r = 0; r < 3; r++) {
-                turn[3 * r + k] = out[r + 1];
+                turn[r][k] = out[r + 1];
             }
         }
     }
@@ -78,28 +56,27 @@ static void primitive_motion(const hn_primitive *primitive, const double *x, dou
 /// Rotation and shift from the joint's child to its parent at coordinate values x: p_parent = R
 /// p_child + shift.
 static void joint_transform(const hn_joint *joint, const double *x, hn_body_pose *out) {
-    double B[9], C[9], Ct[9], so_far[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, half[9], slid[3] = {0};
+    double B[3][3], C[3][3], so_far[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, slid[3] = {0};
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
     joint_frame(joint->parent_axis, joint->parent_ref, B);
     joint_frame(joint->child_axis, joint->child_ref, C);
     for (int k = 0; k < n; k++) {
-        double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, way[3] = {0, 0, 0}, gone[3];
+        double turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, way[3] = {0, 0, 0}, gone[3];
         primitive_motion(&chain[k], x + chain[k].part, turn, way);
-        hn_assemble_rotate(so_far, way, gone);
+        hn_num3_apply(so_far, way, gone);
         hn_axpy(3, 1, gone, slid);
-        multiply(so_far, turn, half);
-        memcpy(so_far, half, sizeof half);
+        hn_num3_mul(so_far, turn, so_far);
     }
-    transpose(C, Ct);
-    multiply(B, so_far, half);
-    multiply(half, Ct, out->R);
+    hn_num3_transpose(C, C);
+    hn_num3_mul(B, so_far, so_far);
+    hn_num3_mul(so_far, C, out->R);
 
     double at_parent[3], at_child[3], arm[3], gone[3];
     place(joint->parent_at, at_parent);
     place(joint->child_at, at_child);
-    hn_assemble_rotate(out->R, at_child, arm);
-    hn_assemble_rotate(B, slid, gone);
+    hn_num3_apply(out->R, at_child, arm);
+    hn_num3_apply(B, slid, gone);
     for (int i = 0; i < 3; i++) {
         out->p[i] = at_parent[i] + gone[i] - arm[i];
     }
@@ -117,7 +94,7 @@ static void coordinate_values(const hn_assembler *s, const hn_joint *joint, doub
 /// Pose of a body by its tree joints down to the ground. The tree is shallow and this runs once, on
 /// failure.
 hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body) {
-    hn_body_pose at = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    hn_body_pose at = {.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     while (body != HN_GROUND) {
         const hn_joint *joint = &s->scene->joints[hn_system_tree_joint(s->sys, body)];
         hn_body_pose step, next;
@@ -126,15 +103,15 @@ hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body) {
         joint_transform(joint, x, &step);
         if (joint->child != body) { // the tree runs through this joint backwards
             hn_body_pose inverse;
-            transpose(step.R, inverse.R);
-            hn_assemble_rotate(inverse.R, step.p, inverse.p);
+            hn_num3_transpose(step.R, inverse.R);
+            hn_num3_apply(inverse.R, step.p, inverse.p);
             for (int i = 0; i < 3; i++) {
                 inverse.p[i] = -inverse.p[i];
             }
             step = inverse;
         }
-        multiply(step.R, at.R, next.R);
-        hn_assemble_rotate(step.R, at.p, next.p);
+        hn_num3_mul(step.R, at.R, next.R);
+        hn_num3_apply(step.R, at.p, next.p);
         for (int i = 0; i < 3; i++) {
             next.p[i] += step.p[i];
         }
@@ -150,7 +127,7 @@ void hn_assemble_joint_position(const hn_assembler *s, int joint_index, int body
     double local[3];
     place(joint->parent == body ? joint->parent_at : joint->child_at, local);
     hn_body_pose at = hn_assemble_body_pose(s, body);
-    hn_assemble_rotate(at.R, local, out);
+    hn_num3_apply(at.R, local, out);
     for (int i = 0; i < 3; i++) {
         out[i] += at.p[i];
     }
@@ -159,8 +136,8 @@ void hn_assemble_joint_position(const hn_assembler *s, int joint_index, int body
 // ---- loops closed the wrong way round ----
 
 static void world_direction(const hn_assembler *s, int body, const double v[3], double out[3]) {
-    const hn_body_pose at = hn_assemble_body_pose(s, body);
-    hn_assemble_rotate(at.R, v, out);
+    hn_body_pose at = hn_assemble_body_pose(s, body);
+    hn_num3_apply(at.R, v, out);
 }
 
 /// Whether directions of the two halves that should agree are opposed. Joints that leave an

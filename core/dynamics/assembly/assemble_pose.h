@@ -6,14 +6,12 @@
 #include "dynamics/assembly/assemble_state.h"
 
 typedef struct hn_body_pose {
-    double R[9]; ///< body to world
-    double p[3]; ///< world position of the body's origin
+    double R[3][3]; ///< body to world
+    double p[3];    ///< world position of the body's origin
 } hn_body_pose;
 
 /// The pose of a body at s->x, by its tree joints down to the ground.
 hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body);
-/// out = R x.
-void hn_assemble_rotate(const double R[9], const double x[3], double out[3]);
 /// World position of a joint as seen from one of its two bodies.
 void hn_assemble_joint_position(const hn_assembler *s, int joint, int body, double out[3]);
 /// The first loop that is closed at s->x the wrong way round, or -1: its rows hold as well with the

@@ -61,7 +61,7 @@ hn_direction hn_closure_direction(const hn_closure *c, int end, const double v[3
     hn_mech *m = c->m;
     hn_direction d = {.end = end ? &c->rel.b : &c->rel.a};
     double in_E[3][3], column[3][3] = {{v[0], 0, 0}, {v[1], 0, 0}, {v[2], 0, 0}};
-    hn_num3_mul(m->tree->links[c->link[end]].C, column, in_E);
+    hn_num3_compose(m->tree->links[c->link[end]].C, column, in_E);
     d.v = hn_mat3_apply(m->g, &d.end->U,
                         hn_vec3_num((double[3]){in_E[0][0], in_E[1][0], in_E[2][0]}));
     d.d1 = hn_vec3_cross(m->g, d.end->w, d.v);

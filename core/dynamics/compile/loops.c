@@ -133,7 +133,7 @@ static int constant_in_group(const hn_tree *tree, int link, int group, double C[
     double X[3][3];
     memcpy(X, tree->groups[group].X, sizeof X);
     hn_num3_transpose(X, back);
-    hn_num3_mul(back, own, C);
+    hn_num3_compose(back, own, C);
     return hn_tree_is_still(tree, link) && tree->groups[group].base == tree->ground;
 }
 

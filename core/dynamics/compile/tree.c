@@ -84,7 +84,7 @@ static void joint_triad(const double axis[3], const double ref[3], double out[3]
         out[i][1] = y[i];
         out[i][2] = axis[i];
     }
-    hn_num3_snap(out);
+    hn_num3_snap(out, HN_NUM3_SNAP);
 }
 
 /// Columns of a triad turned round so that the last is the axis `along`.
@@ -303,7 +303,7 @@ static void frame_about(const double axis[3], const double *prefer, double R[3][
         R[i][1] = y[i];
         R[i][2] = z[i];
     }
-    hn_num3_snap(R);
+    hn_num3_snap(R, HN_NUM3_SNAP);
 }
 
 static int parallel(const double a[3], const double b[3]) {
@@ -334,7 +334,7 @@ static int find_group(const hn_scene *scene, hn_tree *tree, int base, const doub
     if (tree->n_groups == 0) { // the ground's own vectors use the first ground group's frame
         hn_num3_transpose(group->R, tree->links[tree->ground].C);
     }
-    hn_num3_mul(tree->links[base].C, group->R, group->X);
+    hn_num3_compose(tree->links[base].C, group->R, group->X);
     return tree->n_groups++;
 }
 
@@ -398,13 +398,13 @@ static void place_revolute(const hn_scene *scene, hn_link *link, int body, doubl
     double delta = atan2(N[1][0], N[0][0]);
     double D0[3][3] = {{1, 0, 0}, {0, sigma, 0}, {0, 0, sigma}}, back[3][3], D[3][3];
     hn_num3_transpose(child, back);
-    hn_num3_mul(D0, back, D);
+    hn_num3_compose(D0, back, D);
     link->sign = sigma * (link->reversed ? -1 : 1);
     choose_offset(scene, link, body, delta, D, align);
     double turn = delta - link->offset;
     double Rz[3][3] = {{cos(turn), -sin(turn), 0}, {sin(turn), cos(turn), 0}, {0, 0, 1}};
-    hn_num3_snap(Rz);
-    hn_num3_mul(Rz, D, link->C);
+    hn_num3_snap(Rz, HN_NUM3_SNAP);
+    hn_num3_compose(Rz, D, link->C);
 }
 
 /// A link that turns as its parent does; N is the primitive's axes in the parent's theta-free
@@ -418,7 +418,7 @@ static void place_rigid(hn_tree *tree, hn_link *link, double N[3][3]) {
     link->group = parent->group;
     link->root = parent->root;
     hn_num3_transpose(link->there, back);
-    hn_num3_mul(N, back, link->C);
+    hn_num3_compose(N, back, link->C);
 }
 
 /// A ball: a group of its own, in the joint's axes on the link.
@@ -438,7 +438,7 @@ static void place_ball(hn_tree *tree, int index, double N[3][3]) {
 static void place_link(const hn_scene *scene, hn_tree *tree, int index, int align) {
     hn_link *link = &tree->links[index], *parent = &tree->links[link->parent];
     double N[3][3], back[3][3];
-    hn_num3_mul(parent->C, link->here, N);
+    hn_num3_compose(parent->C, link->here, N);
     if (link->type == HN_JOINT_PRISMATIC || link->type == HN_JOINT_FIXED) {
         place_rigid(tree, link, N);
         return;
@@ -464,8 +464,8 @@ static void place_link(const hn_scene *scene, hn_tree *tree, int index, int alig
         link->group = find_group(scene, tree, parent->root, in_base);
         double turned[3][3];
         hn_num3_transpose(tree->groups[link->group].X, back);
-        hn_num3_mul(parent->C, link->here, N); // the ground's C may just have been chosen
-        hn_num3_mul(back, N, turned);
+        hn_num3_compose(parent->C, link->here, N); // the ground's C may just have been chosen
+        hn_num3_compose(back, N, turned);
         memcpy(N, turned, sizeof turned);
     }
     tree->groups[link->group].n_links++;
@@ -483,7 +483,7 @@ static void choose_ground_frame(const hn_scene *scene, hn_tree *tree) {
         }
         if (link->type == HN_JOINT_REVOLUTE) {
             double N[3][3]; // C is the world orientation so far
-            hn_num3_mul(parent->C, link->here, N);
+            hn_num3_compose(parent->C, link->here, N);
             double axis[3] = {N[0][2], N[1][2], N[2][2]};
             (void)find_group(scene, tree, tree->ground, axis);
             return;

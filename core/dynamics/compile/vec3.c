@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-static const double SNAP = 1e-14; ///< [-] rounding of a product of a few unit rotations
-
 hn_vec3 hn_vec3_zero(void) {
     return (hn_vec3){{hn_num(0), hn_num(0), hn_num(0)}};
 }
@@ -134,7 +132,7 @@ void hn_mat3_snap(hn_mat3 *m) {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             double value;
-            if (hn_is_number(m->x[i][j], &value) && fabs(value - round(value)) < SNAP) {
+            if (hn_is_number(m->x[i][j], &value) && fabs(value - round(value)) < HN_NUM3_SNAP) {
                 m->x[i][j] = hn_num(round(value));
             }
         }
@@ -229,42 +227,4 @@ hn_mat3 hn_mat3_accel(hn_graph *g, hn_vec3 w, hn_vec3 al) {
         out.x[j][i] = add(g, product, al.x[k]);
     }
     return out;
-}
-
-void hn_num3_mul(double a[3][3], double b[3][3], double out[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-        }
-    }
-    hn_num3_snap(out);
-}
-
-void hn_num3_transpose(double a[3][3], double out[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            out[i][j] = a[j][i];
-        }
-    }
-}
-
-void hn_num3_snap(double a[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            double nearest = round(a[i][j]);
-            if (fabs(a[i][j] - nearest) < SNAP) {
-                a[i][j] = nearest + 0.0; // no negative zero
-            }
-        }
-    }
-}
-
-void hn_num3_cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-double hn_num3_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -4,6 +4,7 @@
 // mechanism does not need is never built, not even to be thrown away.
 
 #include "expr/graph.h"
+#include "linalg/small3.h"
 
 typedef struct hn_vec3 {
     hn_ex x[3];
@@ -54,13 +55,4 @@ hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz);
 /// Of points fixed to a body with angular velocity w and angular acceleration al: [al x] + w w' -
 /// w^2 1, so that a point at r accelerates by B r relative to the body's origin.
 hn_mat3 hn_mat3_accel(hn_graph *g, hn_vec3 w, hn_vec3 al);
-
-// ---- numbers ----
-void hn_num3_mul(double a[3][3], double b[3][3], double out[3][3]);
-void hn_num3_transpose(double a[3][3], double out[3][3]);
-/// Entries within 1e-14 of 0, 1 and -1 become exactly that: an axis-aligned constant rotation must
-/// fold to zeros and ones.
-void hn_num3_snap(double a[3][3]);
-void hn_num3_cross(const double a[3], const double b[3], double out[3]);
-double hn_num3_dot(const double a[3], const double b[3]);
 #endif

@@ -226,7 +226,7 @@ static void read_axes(const hn_reactions *r, hn_reaction_body *b, int link) {
         }
     }
     memcpy(C, l->C, sizeof C);
-    hn_num3_mul(E, C, b->R);
+    hn_num3_compose(E, C, b->R);
 }
 
 /// I v with the body's own inertia, in the world.

@@ -1,7 +1,7 @@
 // Trials run, and what is seen compared with what is predicted.
 #include "session/extreme/extreme_internal.h"
 
-#include "study/run/timing.h"
+#include "base/clock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ int hn_extreme_is_stopped(void *user) {
         bench->opts->progress(bench->opts->user, bench->id, bench->share);
     }
     return (bench->opts->stop && bench->opts->stop(bench->opts->user)) ||
-           (bench->deadline > 0 && hn_wall_seconds() > bench->deadline);
+           (bench->deadline > 0 && hn_clock_wall() > bench->deadline);
 }
 
 // verdicts -----------------------------------------------------------------------------------------------------------
@@ -146,7 +146,7 @@ void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts) {
     hn_extreme_bench bench = {.lib = x->lib, .opts = opts};
     const int all = n_trials(x);
     int done = 0;
-    bench.deadline = opts->budget > 0 ? hn_wall_seconds() + opts->budget : 0;
+    bench.deadline = opts->budget > 0 ? hn_clock_wall() + opts->budget : 0;
     for (int i = 0; i < x->n_cases; i++) {
         hn_extreme_case *c = &x->cases[i];
         for (int k = 0; k < c->n_trials; k++) {

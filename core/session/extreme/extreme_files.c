@@ -1,6 +1,7 @@
 // The files of the extreme matrix: lessons/extreme/xNN-....json.
 #include "session/extreme/extreme_reader.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
 
@@ -83,18 +84,13 @@ static int is_case_file(const struct dirent *e) {
 static hn_status read_file(hn_extreme *x, const char *folder, const char *name, hn_diags *diags) {
     char path[4400];
     snprintf(path, sizeof path, "%.4096s/%.255s", folder, name);
-    FILE *f = fopen(path, "rb");
-    char *text = f ? malloc(MOST_BYTES + 1) : NULL;
-    const size_t n = text ? fread(text, 1, MOST_BYTES + 1, f) : 0;
-    hn_status status =
-        !f || !text || n > MOST_BYTES
-            ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL,
-                           "%s cannot be read, or holds more than %d bytes", path, (int)MOST_BYTES)
-            : add_case(x, name, text, n, diags);
-    free(text);
-    if (f) {
-        fclose(f);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status = hn_file_load(path, MOST_BYTES, &text, diags);
+    if (status == HN_OK) {
+        status = add_case(x, name, hn_strbuf_text(&text), text.n, diags);
     }
+    hn_strbuf_reset(&text);
     return status;
 }
 

@@ -2,25 +2,21 @@
 #include "session/extreme/extreme_internal.h"
 #include "session/store/stored_json.h"
 
+#include "base/file.h"
 #include "base/hash.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { FORMAT = 1, PIECE = 1 << 14 }; // FORMAT counts up when the meaning of a line changes
+enum { FORMAT = 1 }; // FORMAT counts up when the meaning of a line changes
 
 static hn_status hash_file(const char *path, uint64_t *hash, hn_diags *diags) {
-    char piece[PIECE];
-    size_t n;
-    FILE *f = fopen(path, "rb");
-    while (f && (n = fread(piece, 1, sizeof piece, f)) > 0) {
-        *hash = hn_hash_bytes(*hash, piece, n);
-    }
-    const int bad = !f || ferror(f);
-    if (f) {
-        fclose(f);
-    }
-    return bad ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s'", path) : HN_OK;
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    const hn_status status = hn_file_load(path, HN_SCENE_MAX_BYTES, &text, diags);
+    *hash = hn_hash_bytes(*hash, hn_strbuf_text(&text), text.n);
+    hn_strbuf_reset(&text);
+    return status;
 }
 
 /// All that decides what is seen: the files of the cases, the shipped scenes they name.

@@ -2,6 +2,7 @@
 #include "session/extreme/extreme_internal.h"
 
 #include "linalg/dense.h"
+#include "study/run/pace.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,41 +1,31 @@
 #include "session/model/lists.h"
 
+#include "base/file.h"
+
 #include <dirent.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { MAX_TEXT = 1 << 20, MAX_TITLE = 256 };
 
-/// The whole file, zero-terminated, owned by the caller; NULL when it cannot be read or is too long.
-static char *read_file(const char *path) {
-    FILE *f = fopen(path, "rb");
-    char *text = f ? malloc(MAX_TEXT + 1) : NULL;
-    size_t n = text ? fread(text, 1, MAX_TEXT + 1, f) : 0;
-    if (f) {
-        fclose(f);
-    }
-    if (!text || n > MAX_TEXT) {
-        free(text);
-        return NULL;
-    }
-    text[n] = 0;
-    return text;
-}
-
 /// The first heading of a lesson's text, or its id.
 static void find_title(const char *folder, const char *id, char title[MAX_TITLE]) {
-    hn_strbuf path;
+    hn_strbuf path, text;
     hn_strbuf_init(&path);
+    hn_strbuf_init(&text);
     hn_strbuf_printf(&path, "%s/text.md", folder);
-    char *text = path.failed ? NULL : read_file(hn_strbuf_text(&path));
-    hn_strbuf_reset(&path);
-    const char *heading = text ? strstr(text, "# ") : NULL;
+    const bool was_read =
+        !path.failed && hn_file_read(hn_strbuf_text(&path), MAX_TEXT, &text, NULL) == HN_OK;
+
+    const char *heading = was_read ? strstr(hn_strbuf_text(&text), "# ") : NULL;
     if (heading) {
         snprintf(title, MAX_TITLE, "%.*s", (int)strcspn(heading + 2, "\r\n"), heading + 2);
     } else {
         snprintf(title, MAX_TITLE, "%s", id);
     }
-    free(text);
+    hn_strbuf_reset(&path);
+    hn_strbuf_reset(&text);
 }
 
 static int lies_in(const char *path, const char *folder) {

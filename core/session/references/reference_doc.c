@@ -3,6 +3,7 @@
 #include "session/references/references.h"
 
 #include "base/hash.h"
+#include "study/run/pace.h"
 
 #include <float.h>
 #include <math.h>

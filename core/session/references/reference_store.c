@@ -1,5 +1,6 @@
 // Where references are kept. A file that does not fit is not used, never trusted halfway; one that is written appears whole.
 #include "session/references/references.h"
+#include "base/file.h"
 #include "session/store/stored_json.h"
 
 #include "base/hash.h"
@@ -106,24 +107,15 @@ void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
 
 hn_status hn_reference_save(const char *path, const hn_model *model, const hn_ref *ref,
                             hn_diag *diag) {
-    char beside[600];
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_reference_put(&b, model, ref);
     hn_strbuf_add(&b, "\n");
-    const int named =
-        snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid()) < (int)sizeof beside;
-    FILE *f = named && !b.failed ? fopen(beside, "wb") : NULL;
-    int ok = f && fwrite(hn_strbuf_text(&b), 1, b.n, f) == b.n;
-    ok = f && fclose(f) == 0 && ok && rename(beside, path) == 0;
-    const int why = errno;
-    if (f && !ok) {
-        remove(beside);
-    }
+    const hn_status status =
+        b.failed ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write '%.200s'", path)
+                 : hn_file_write(path, hn_strbuf_text(&b), b.n, diag);
     hn_strbuf_reset(&b);
-    return ok ? HN_OK
-              : hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot write '%.200s': %s", path,
-                            strerror(why));
+    return status;
 }
 
 // finding ----------------------------------------------------------------------------------------------------------

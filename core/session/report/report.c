@@ -1,6 +1,6 @@
 #include "session/report/report_internal.h"
 
-#include "study/run/timing.h"
+#include "base/clock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,7 +42,7 @@ hn_report_request hn_report_request_default(void) {
 // telling and asking -------------------------------------------------------------------------------------------------
 
 static double elapsed(const hn_report *r) {
-    return hn_wall_seconds() - r->started;
+    return hn_clock_wall() - r->started;
 }
 
 static void tell(hn_report *r, double part) {
@@ -63,7 +63,7 @@ static int ask_stop(void *user) {
 /// The same, and when the time for this part of a scene is over.
 static int ask_end(void *user) {
     hn_report *r = user;
-    return ask_stop(r) || hn_wall_seconds() > r->until;
+    return ask_stop(r) || hn_clock_wall() > r->until;
 }
 
 static void tell_study(void *user, double part) {
@@ -202,14 +202,14 @@ static void make_scene(hn_report *r, double seconds) {
     if (study_scene(r, s, seconds) != HN_OK || r->stopped) {
         return;
     }
-    r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
+    r->until = hn_clock_wall() + SURVIVAL_SHARE * seconds;
     find_singular(r, s);
     // where there is nothing to survive its time goes to the accounts, which take long in space
     const double share = s->singular ? ACCOUNT_SHARE : ACCOUNT_SHARE + SURVIVAL_SHARE;
-    r->until = hn_wall_seconds() + share * seconds;
+    r->until = hn_clock_wall() + share * seconds;
     account(r, s);
     if (s->singular) {
-        r->until = hn_wall_seconds() + SURVIVAL_SHARE * seconds;
+        r->until = hn_clock_wall() + SURVIVAL_SHARE * seconds;
         survive(r, s);
     }
 }
@@ -269,7 +269,7 @@ hn_status hn_report_make(const hn_report_request *request, hn_report **out, hn_d
     }
     r->request = q;
     r->n = q.n_models;
-    r->started = hn_wall_seconds();
+    r->started = hn_clock_wall();
     for (int i = 0; i < r->n; i++) {
         r->scenes[i].model = q.models[i];
         snprintf(r->scenes[i].reason, sizeof r->scenes[i].reason,

@@ -1,6 +1,6 @@
 #include "session/stability/stability_internal.h"
 
-#include "study/run/timing.h"
+#include "base/clock.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -145,7 +145,7 @@ int hn_map_must_end(hn_map *map) {
     if (map->request.stop && map->request.stop(map->request.user)) {
         map->stopped = 1;
     }
-    if (map->request.budget > 0 && hn_wall_seconds() - map->started > map->request.budget) {
+    if (map->request.budget > 0 && hn_clock_wall() - map->started > map->request.budget) {
         map->out_of_time = 1;
     }
     return map->stopped || map->out_of_time;
@@ -222,7 +222,7 @@ static int observe(hn_map *map) {
 }
 
 int hn_map_run(hn_map *map) {
-    map->started = hn_wall_seconds();
+    map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
     int going = 1;
     for (int stride = COARSEST_STRIDE; stride >= 1 && going; stride /= 2) {
@@ -235,7 +235,7 @@ int hn_map_run(hn_map *map) {
             hn_map_judge_column(map, m, i);
         }
     }
-    map->elapsed = hn_wall_seconds() - map->started;
+    map->elapsed = hn_clock_wall() - map->started;
     hn_journal_end(&map->journal, finished);
     return finished;
 }

@@ -1,6 +1,9 @@
 #include "session/store/stored_json.h"
 
+#include "base/file.h"
+
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum { MOST_BYTES = 256 << 20 };
@@ -20,14 +23,11 @@ char *hn_stored_text_of(FILE *f, size_t *n) {
 }
 
 cJSON *hn_stored_open(const char *path) {
-    size_t n = 0;
-    FILE *f = fopen(path, "rb");
-    char *text = f ? hn_stored_text_of(f, &n) : NULL;
-    cJSON *object = text ? cJSON_Parse(text) : NULL;
-    free(text);
-    if (f) {
-        fclose(f);
-    }
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    const bool was_read = hn_file_read(path, MOST_BYTES, &text, NULL) == HN_OK;
+    cJSON *object = was_read ? cJSON_Parse(hn_strbuf_text(&text)) : NULL;
+    hn_strbuf_reset(&text);
     return object;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/strbuf.h"
 #include "base/units.h"
+#include "base/word_list.h"
 #include "study/run/timing.h"
 
 #include <math.h>
@@ -331,16 +332,12 @@ static const char *spelling_of(const hn_wp *wp, hn_place place) {
     return wp->methods[place.method].spelling;
 }
 
-static const char *joint(int i, int n) {
-    return i + 1 < n ? ", " : " and ";
-}
-
 /// "A, 1.0 s to 4.0 s; next B at 2 times that": who is cheapest from one band to another, and by how much at the finer one.
 static void put_ranking(hn_strbuf *b, const hn_wp *wp, const hn_band *coarse, const hn_band *fine,
                         hn_cost_kind cost) {
     hn_strbuf_add(b, spelling_of(wp, coarse->best));
     for (int i = 0; i < coarse->n_close; i++) {
-        hn_strbuf_add(b, joint(i, coarse->n_close));
+        hn_strbuf_add(b, hn_word_joint(i + 1, coarse->n_close + 1, " and "));
         hn_strbuf_add(b, spelling_of(wp, coarse->close[i]));
     }
     hn_strbuf_add(b, coarse->n_close ? " alike, " : ", ");
@@ -371,7 +368,8 @@ static void put_doubt(hn_strbuf *b, const hn_wp *wp, const hn_band *fine) {
     hn_strbuf_printf(b, "%s ", spelling_of(wp, fine->best));
     put_amount(b, fine->best.cost, HN_COST_TIME);
     for (int i = 0; i < fine->n_close; i++) {
-        hn_strbuf_printf(b, "%s%s ", joint(i, fine->n_close), spelling_of(wp, fine->close[i]));
+        hn_strbuf_printf(b, "%s%s ", hn_word_joint(i + 1, fine->n_close + 1, " and "),
+                         spelling_of(wp, fine->close[i]));
         put_amount(b, fine->close[i].cost, HN_COST_TIME);
     }
     hn_strbuf_add(b, " are too close to rank");

@@ -1,5 +1,7 @@
 #include "study/cost/survival.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -57,11 +59,11 @@ static void set_stopped(const hn_run *run, hn_survival *out) {
 
 static int is_cut(const hn_walk_limits *l, double started) {
     return l && ((l->stop && l->stop(l->user)) ||
-                 (l->seconds > 0 && hn_thread_seconds() - started > l->seconds));
+                 (l->seconds > 0 && hn_clock_thread() - started > l->seconds));
 }
 
 int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
-    const double started = hn_thread_seconds();
+    const double started = hn_clock_thread();
     double left = j->T, folded_at = j->T;
     int folded = 0;
     *out = (hn_survival){.end = HN_SURVIVAL_SURVIVED, .t = j->T};

@@ -1,5 +1,6 @@
 #include "study/cost/workprecision.h"
 
+#include "base/clock.h"
 #include "study/cost/shards.h"
 #include "study/run/timing.h"
 
@@ -363,7 +364,7 @@ static int fits(hn_wp *wp, int m, int k, double started) {
     const double cpu = expected_cpu(wp, m, k);
     const double sampling = wp->opts.n_samples > 0 ? RESERVED_SAMPLES * sample_cost(cpu) : 0;
     const double needed = 2 * cpu + sampling;
-    const double left = wp->opts.budget - (hn_wall_seconds() - started) - reserved(wp);
+    const double left = wp->opts.budget - (hn_clock_wall() - started) - reserved(wp);
     char text[256];
     if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
         return 1;
@@ -484,7 +485,7 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
     }
     double share = all > 0 ? done / all : 0;
     if (wp->opts.budget > 0) { // whichever end comes first
-        share = fmax(share, (hn_wall_seconds() - started) / wp->opts.budget);
+        share = fmax(share, (hn_clock_wall() - started) / wp->opts.budget);
     }
     if (hooks->progress) {
         hooks->progress(hooks->user, fmin(1, share));
@@ -530,7 +531,7 @@ static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double star
             if (p->state != HN_WP_DONE || p->n_samples > round || !hn_wp_is_mine(wp, m, k)) {
                 continue;
             }
-            const double left = wp->opts.budget - (hn_wall_seconds() - started);
+            const double left = wp->opts.budget - (hn_clock_wall() - started);
             if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
                 wp->out_of_time = 1;
                 return 0;
@@ -547,7 +548,7 @@ static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double star
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     static const hn_wp_hooks nobody = {0};
     const hn_wp_hooks *h = hooks ? hooks : &nobody;
-    const double started = hn_wall_seconds();
+    const double started = hn_clock_wall();
     wp->out_of_time = 0;
     int going = run_points(wp, h, started);
     for (int round = 0; going && round < wp->opts.n_samples; round++) {
@@ -559,6 +560,6 @@ int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {
     }
     hn_wp_compare_ends(wp);
     wp->stopped = is_stopped(h);
-    wp->elapsed = hn_wall_seconds() - started;
+    wp->elapsed = hn_clock_wall() - started;
     return going && !wp->out_of_time;
 }

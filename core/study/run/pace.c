@@ -1,25 +1,19 @@
 #include "study/run/pace.h"
 
-#include <time.h>
+#include "base/clock.h"
 
 enum { MOST_BETWEEN = 512 };
 static const double SOON = 1e-3, LATE = 1e-2; // between two looks [s]
 
-double hn_thread_seconds(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 hn_pace hn_pace_begin(void) {
-    return (hn_pace){.last = hn_thread_seconds(), .every = 1};
+    return (hn_pace){.last = hn_clock_thread(), .every = 1};
 }
 
 int hn_pace_is_due(hn_pace *pace) {
     if (++pace->n < pace->every) {
         return 0;
     }
-    const double now = hn_thread_seconds(), took = now - pace->last;
+    const double now = hn_clock_thread(), took = now - pace->last;
     if (took < SOON) {
         pace->every = pace->every < MOST_BETWEEN / 2 ? 2 * pace->every : MOST_BETWEEN;
     } else if (took > LATE) {

@@ -14,6 +14,4 @@ typedef struct hn_pace {
 hn_pace hn_pace_begin(void);
 /// Counts one step; 1 when it is time to look.
 int hn_pace_is_due(hn_pace *pace);
-/// CPU time of this thread [s].
-double hn_thread_seconds(void);
 #endif

@@ -1,8 +1,8 @@
 #include "study/run/run_internal.h"
 
+#include "base/clock.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
-#include "study/run/pace.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,8 +30,8 @@ static double calc_clock_cost(void) {
     enum { PAIRS = 15 };
     double cost[PAIRS];
     for (int i = 0; i < PAIRS; i++) {
-        const double mark = hn_thread_seconds();
-        const double d = hn_thread_seconds() - mark;
+        const double mark = hn_clock_thread();
+        const double d = hn_clock_thread() - mark;
         int k = i;
         for (; k > 0 && cost[k - 1] > d; k--) {
             cost[k] = cost[k - 1];
@@ -44,11 +44,11 @@ static double calc_clock_cost(void) {
 // everything between start_clock and stop_clock is the method's own work
 static void start_clock(hn_run *run) {
     run->cost_mark = hn_engine_cost(run, &run->main);
-    run->cpu_mark = hn_thread_seconds();
+    run->cpu_mark = hn_clock_thread();
 }
 
 static void stop_clock(hn_run *run) {
-    run->summary.cpu_seconds += fmax(0, hn_thread_seconds() - run->cpu_mark - run->clock_cost);
+    run->summary.cpu_seconds += fmax(0, hn_clock_thread() - run->cpu_mark - run->clock_cost);
     const hn_cost now = hn_engine_cost(run, &run->main),
                   spent = hn_cost_between(&run->cost_mark, &now);
     hn_cost_add(&run->summary.cost, &spent);

@@ -1,14 +1,9 @@
 #include "study/run/timing.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
-
-double hn_wall_seconds(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
 
 int hn_timing_batch(hn_run *run, double T, double first_cpu, const hn_walk_limits *limits,
                     double *seconds, double *load) {
@@ -18,11 +13,11 @@ int hn_timing_batch(hn_run *run, double T, double first_cpu, const hn_walk_limit
         if (hn_run_reset(run) != HN_OK) {
             return 0;
         }
-        const double w = hn_wall_seconds(), c = hn_thread_seconds();
+        const double w = hn_clock_wall(), c = hn_clock_thread();
         // straight through: clocks between steps would be part of what is measured
         const hn_status status = hn_run_advance(run, T);
-        cpu += hn_thread_seconds() - c;
-        wall += hn_wall_seconds() - w;
+        cpu += hn_clock_thread() - c;
+        wall += hn_clock_wall() - w;
         *seconds = cpu / (i + 1);
         if (status != HN_OK || (limits->stop && limits->stop(limits->user))) {
             return 0;

@@ -6,8 +6,6 @@
 
 #define HN_TIMING_BATCH 0.02 ///< shortest sample [s]
 
-/// Wall clock, from some moment in the past [s].
-double hn_wall_seconds(void);
 /// One batch of whole runs to T, straight through: CPU seconds of one of them, and the batch's wall over CPU time in *load. `first_cpu` is what one
 /// takes, about [s]. Returns 0 when stopped, or when a run failed.
 int hn_timing_batch(hn_run *run, double T, double first_cpu, const hn_walk_limits *limits,

@@ -1,5 +1,8 @@
 #include "study/run/walk.h"
 
+#include "base/clock.h"
+#include "study/run/pace.h"
+
 #include <math.h>
 
 #define SAME_TIME 1e-14 // relative
@@ -9,8 +12,8 @@ hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started) {
     if (limits->stop && limits->stop(limits->user)) {
         return HN_WALK_STOPPED;
     }
-    return limits->seconds > 0 && hn_thread_seconds() - started > limits->seconds ? HN_WALK_OVER
-                                                                                  : HN_WALK_DONE;
+    return limits->seconds > 0 && hn_clock_thread() - started > limits->seconds ? HN_WALK_OVER
+                                                                                : HN_WALK_DONE;
 }
 
 static hn_walk_end step_to(hn_run *run, double t, double started, hn_pace *pace,

@@ -2,7 +2,6 @@
 #define HN_STUDY_WALK_H
 // A run taken to its end with a look at equal intervals, within a limit of computing time, and stopped on request.
 
-#include "study/run/pace.h"
 #include "study/run/run.h"
 
 typedef struct hn_walk_limits {
@@ -25,6 +24,6 @@ typedef int (*hn_walk_see)(void *user, int k, const hn_sample *sample);
 /// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed steps stay on their own grid.
 hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
                     void *user);
-/// Whether what began at `started` (hn_thread_seconds()) is within its limits: done while it may go on.
+/// Whether what began at `started` (hn_clock_thread()) is within its limits: done while it may go on.
 hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started);
 #endif

@@ -1,5 +1,6 @@
 #include "study/stability/stability.h"
 
+#include "base/clock.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"
@@ -406,13 +407,13 @@ static hn_walk_end walk(trial *t, hn_run *run, double h, const hn_walk_limits *l
         const int beyond = k > HN_STABILITY_LOOKS;
         const double time = beyond ? T + more * (k - HN_STABILITY_LOOKS) / HN_STABILITY_LOOKS
                                    : T * k / HN_STABILITY_LOOKS;
-        const double before = hn_thread_seconds();
+        const double before = hn_clock_thread();
         const hn_walk_end end = hn_walk(run, time, 1, &left, NULL, NULL);
         if (end != HN_WALK_DONE || look(t, run, k, time)) {
             return end;
         }
         if (limits->seconds > 0) {
-            left.seconds -= hn_thread_seconds() - before;
+            left.seconds -= hn_clock_thread() - before;
             if (left.seconds <= 0) {
                 return HN_WALK_OVER;
             }

@@ -1,5 +1,6 @@
 #include "study/truth/chaos.h"
 
+#include "base/clock.h"
 #include "dynamics/assembly/project.h"
 #include "dynamics/compile/coordinates.h"
 #include "study/truth/errors.h"
@@ -103,7 +104,7 @@ static void set_apart(twins *w) {
 static hn_status asked(const twins *w, hn_diag *diag) {
     const hn_walk_limits *l = w->limits;
     const int stop = (l && l->stop && l->stop(l->user)) ||
-                     (l && l->seconds > 0 && hn_thread_seconds() - w->started > l->seconds);
+                     (l && l->seconds > 0 && hn_clock_thread() - w->started > l->seconds);
     return stop ? hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request") : HN_OK;
 }
 
@@ -227,7 +228,7 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
     twins w = {.sys = sys,
                .info = hn_system_get_info(sys),
                .limits = limits,
-               .started = hn_thread_seconds()};
+               .started = hn_clock_thread()};
     w.arena = hn_arena_create(1 << 14);
     status = w.arena ? create(&w, q, v, out->windows) : HN_ERR_MEMORY;
     if (status == HN_OK) {

@@ -1,6 +1,8 @@
 #include "study/truth/precise.h"
 
+#include "base/clock.h"
 #include "dynamics/compile/coordinates.h"
+#include "study/run/pace.h"
 #include "study/truth/precise_solver.h"
 #include "study/truth/precise_stepper.h"
 
@@ -219,7 +221,7 @@ hn_status hn_precise_walk(hn_precise_kind kind, const hn_system *sys, const doub
                           hn_walk_see see, void *user, hn_walk_end *end, hn_diag *diag) {
     static const hn_walk_limits none;
     precise p = {
-        .limits = limits ? limits : &none, .started = hn_thread_seconds(), .pace = hn_pace_begin()};
+        .limits = limits ? limits : &none, .started = hn_clock_thread(), .pace = hn_pace_begin()};
     hn_arena *arena = hn_arena_create(0);
     hn_status status = arena ? create(&p, kind, sys, arena) : HN_ERR_MEMORY;
     const int made = status == HN_OK;

@@ -1,4 +1,5 @@
 // holonom problem and holonom grade. A wrong answer graded low is done (0); a submission that cannot be read is 2.
+#include "base/clock.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -11,7 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     hn_exercise *problem = NULL;
@@ -111,15 +111,9 @@ static hn_exit write_picture(const hn_library *lib, const hn_args *args, verdict
     return HN_EXIT_PROGRAM;
 }
 
-static double now(void) {
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-}
-
 static hn_exit grade_one(const hn_library *lib, const hn_args *args, const hn_exercise *problem,
                          verdict_form form, const char *submission) {
-    double start = now();
+    double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
     hn_diag diag = {0};
     uint64_t seed = isnan(args->seed) ? 0 : (uint64_t)args->seed;
@@ -136,7 +130,7 @@ static hn_exit grade_one(const hn_library *lib, const hn_args *args, const hn_ex
     if (args->words.n > 2 && form == FORM_TEXT && !args->out) {
         hn_strbuf_printf(&b, "== %s\n", submission);
     }
-    write_verdict(&b, v, form, now() - start);
+    write_verdict(&b, v, form, hn_clock_wall() - start);
     hn_exit result;
     if (args->out) {
         char path[2048];

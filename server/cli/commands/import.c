@@ -1,4 +1,5 @@
 // holonom import: a mechanism written for another program, as a scene; what of it is not in the scene is told.
+#include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -11,34 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Adds a file's bytes, at most one more than `most`. 0 where it cannot be read, with errno.
-static int add_bytes(FILE *f, size_t most, hn_strbuf *text) {
-    char piece[1 << 14];
-    size_t left = most + 1, n = 1;
-    while (f && left > 0 && n > 0) {
-        n = fread(piece, 1, left < sizeof piece ? left : sizeof piece, f);
-        hn_strbuf_add_n(text, piece, n);
-        left -= n;
-    }
-    return f && !ferror(f);
-}
-
-/// A file, or "-".
+/// Reads a file, or standard input where `path` is "-".
 static hn_status read_file(const char *path, hn_strbuf *text, hn_diags *diags) {
-    FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
-    const int ok = add_bytes(f, HN_IMPORT_MAX_BYTES, text);
-    hn_status status = text->failed ? HN_ERR_MEMORY : HN_OK;
-    if (!ok) {
-        status = hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s': %s", path,
-                              strerror(errno));
-    } else if (text->n > HN_IMPORT_MAX_BYTES) {
-        status = hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL, "'%.200s' has more than %d bytes",
-                              path, HN_IMPORT_MAX_BYTES);
-    }
-    if (f && f != stdin) {
-        (void)fclose(f);
-    }
-    return status;
+    return strcmp(path, "-") == 0 ? hn_file_read_stdin(HN_IMPORT_MAX_BYTES, text, diags)
+                                  : hn_file_load(path, HN_IMPORT_MAX_BYTES, text, diags);
 }
 
 /// A file below the folder `user` (as realpath tells it): a link that leads out of it is not followed.
@@ -50,20 +27,19 @@ static hn_status read_included(void *user, const char *name, size_t most, hn_str
     hn_strbuf_init(&path);
     hn_strbuf_printf(&path, "%s/%s", folder, name);
     char *real = path.failed ? NULL : realpath(hn_strbuf_text(&path), NULL);
+    const int why = errno;
     hn_status status = path.failed ? HN_ERR_MEMORY : HN_OK;
     const int below = real && strncmp(real, folder, n) == 0 && (real[n] == '/' || n == 1);
-    FILE *f = below ? fopen(real, "rb") : NULL;
-    if (status == HN_OK && real && !below) {
+    if (status == HN_OK && !real) {
+        status = hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot read '%.100s': %s", name,
+                             strerror(why));
+    } else if (status == HN_OK && !below) {
         status = hn_diag_set(diag, HN_ERR_IO, NULL, "copy it beside the model",
                              "'%.100s' is a link out of the model's folder, and files there are "
                              "not read",
                              name);
-    } else if (status == HN_OK && !add_bytes(f, most, text)) {
-        status = hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot read '%.100s': %s", name,
-                             strerror(errno));
-    }
-    if (f) {
-        (void)fclose(f);
+    } else if (status == HN_OK) {
+        status = hn_file_read(real, most, text, diag);
     }
     free(real);
     hn_strbuf_reset(&path);

@@ -1,5 +1,6 @@
 #include "cli/shell/forms.h"
 
+#include "base/word_list.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 
@@ -35,10 +36,7 @@ hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *d
     if (args->out && find(forms, args->out) < 0) {
         for (int i = 0; i < n; i++) {
             const size_t used = strlen(hint);
-            snprintf(hint + used, sizeof hint - used, "%s%s",
-                     i == 0       ? ""
-                     : i == n - 1 ? " or "
-                                  : ", ",
+            snprintf(hint + used, sizeof hint - used, "%s%s", hn_word_joint(i, n, " or "),
                      forms->form[i].suffix);
         }
         return hn_diags_add(diags, HN_ERR_INPUT, "/out", hint,

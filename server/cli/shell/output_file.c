@@ -1,5 +1,6 @@
 #include "cli/shell/output_file.h"
 
+#include "base/file.h"
 #include "cli/shell/args.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
@@ -14,23 +15,12 @@ hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *byte
         return hn_cli_print(bytes);
     }
     hn_diag diag;
-    FILE *f = bytes->failed ? NULL : fopen(path, "wb");
-    if (!f) {
-        hn_diag_set(&diag, bytes->failed ? HN_ERR_MEMORY : HN_ERR_IO, NULL, NULL,
-                    "cannot write '%.200s': %s", path,
-                    bytes->failed ? hn_status_text(HN_ERR_MEMORY) : strerror(errno));
-        hn_strbuf_reset(bytes);
-        return hn_report_diag(args, &diag);
-    }
-    int ok = fwrite(hn_strbuf_text(bytes), 1, bytes->n, f) == bytes->n;
-    ok = fclose(f) == 0 && ok;
+    const hn_status status =
+        bytes->failed ? hn_diag_set(&diag, HN_ERR_MEMORY, NULL, NULL, "cannot write '%.200s': %s",
+                                    path, hn_status_text(HN_ERR_MEMORY))
+                      : hn_file_write(path, hn_strbuf_text(bytes), bytes->n, &diag);
     hn_strbuf_reset(bytes);
-    if (!ok) {
-        hn_diag_set(&diag, HN_ERR_IO, NULL, NULL, "cannot write '%.200s': %s", path,
-                    strerror(errno));
-        return hn_report_diag(args, &diag);
-    }
-    return HN_EXIT_DONE;
+    return status == HN_OK ? HN_EXIT_DONE : hn_report_diag(args, &diag);
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {

@@ -1,6 +1,6 @@
 #include "cli/shell/progress.h"
 
-#include "study/run/timing.h"
+#include "base/clock.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ static void put_bar(const char *what, double share, double risen, double elapsed
 
 void hn_progress_tell(hn_progress *p, const char *what, double share) {
     static const double PATIENCE = 1, BETWEEN = 0.1; // [s]
-    double t = hn_wall_seconds();
+    double t = hn_clock_wall();
     if (p->started == 0) {
         p->started = t;
     }

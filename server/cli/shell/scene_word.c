@@ -1,26 +1,11 @@
 #include "cli/shell/scene_word.h"
 
+#include "base/file.h"
 #include "cli/shell/args.h"
-
-// From words of the command line to a model.
 
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-/// Standard input to its end, at most one byte beyond what a scene may have.
-static hn_status read_stdin(hn_strbuf *text, hn_diags *diags) {
-    char piece[1 << 14];
-    size_t n;
-    while ((n = fread(piece, 1, sizeof piece, stdin)) > 0) {
-        hn_strbuf_add_n(text, piece, n);
-        if (text->n > HN_SCENE_MAX_BYTES) {
-            return hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
-                                "standard input has more than %d bytes", HN_SCENE_MAX_BYTES);
-        }
-    }
-    return text->failed ? HN_ERR_MEMORY : HN_OK;
-}
 
 hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_assignment see,
                               void *user, hn_diags *diags) {
@@ -74,7 +59,7 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
         hn_model_source source = {
             .settings = s->item, .n_settings = s->n, .allow_open = allow_open};
         if (strcmp(word, "-") == 0) {
-            status = read_stdin(&text, diags);
+            status = hn_file_read_stdin(HN_SCENE_MAX_BYTES, &text, diags);
             source.text = hn_strbuf_text(&text);
             source.n_text = text.n;
         } else if (!hn_library_scene_path(lib, word) &&

@@ -1,49 +1,20 @@
 // holonom merge PART...: parts of a study to the whole.
+#include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/study/study.h"
 #include "session/precision/study.h"
 
-#include <errno.h>
-#include <stdio.h>
-#include <string.h>
-
 enum {
     MOST_BYTES = 64 << 20
 }; // of a part: some hundred points with their coordinates take less than one
-
-/// The whole file; told when it cannot be had.
-static hn_status read_file(const char *path, hn_strbuf *b, hn_diags *diags) {
-    char piece[1 << 14];
-    size_t n;
-    FILE *f = fopen(path, "rb");
-    if (!f) {
-        return hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s': %s", path,
-                            strerror(errno));
-    }
-    while ((n = fread(piece, 1, sizeof piece, f)) > 0 && b->n <= MOST_BYTES) {
-        hn_strbuf_add_n(b, piece, n);
-    }
-    const int bad = ferror(f), error = errno;
-    fclose(f);
-    if (bad) { // a folder, for one
-        return hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "cannot read '%.200s': %s", path,
-                            strerror(error));
-    }
-    if (b->n > MOST_BYTES) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
-                            "'%.200s' has more than %d bytes: it is no part of a study", path,
-                            MOST_BYTES);
-    }
-    return b->failed ? HN_ERR_MEMORY : HN_OK;
-}
 
 static hn_status merge_files(const hn_args *args, hn_strbuf *texts, hn_study **out,
                              hn_diags *diags) {
     hn_study_part_text parts[HN_CLI_MAX_WORDS];
     hn_status status = hn_forms_check(&hn_study_forms, args, diags);
     for (int i = 0; i < args->words.n && status == HN_OK; i++) {
-        status = read_file(args->words.word[i], &texts[i], diags);
+        status = hn_file_load(args->words.word[i], MOST_BYTES, &texts[i], diags);
         parts[i] = (hn_study_part_text){args->words.word[i], hn_strbuf_text(&texts[i]), texts[i].n};
     }
     return status == HN_OK ? hn_study_merge(parts, args->words.n, out, diags) : status;

@@ -1,6 +1,6 @@
+#include "base/clock.h"
 #include "http/live/session_internal.h"
 #include "http/live/stream.h"
-#include "study/run/timing.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -201,7 +201,7 @@ void hn_session_advance(hn_session *live) {
 }
 
 void hn_session_set_anchor(hn_session *live) {
-    live->anchor_time = hn_wall_seconds();
+    live->anchor_time = hn_clock_wall();
     live->anchor_frame = live->frame;
 }
 
@@ -247,7 +247,7 @@ static hn_request *take_patch(hn_session *live) {
 
 /// Nobody reads along: 1 when the comparison should pause itself.
 static int is_unwatched(const hn_session *live) {
-    return live->n_streams == 0 && hn_wall_seconds() - live->touched > live->opts->idle_pause;
+    return live->n_streams == 0 && hn_clock_wall() - live->touched > live->opts->idle_pause;
 }
 
 /// A frame that is due; its lateness is kept as lag rather than caught up in a burst.
@@ -255,7 +255,7 @@ static void advance_on_time(hn_session *live, double due) {
     pthread_mutex_unlock(&live->lock);
     hn_session_advance(live);
     pthread_mutex_lock(&live->lock);
-    double late = hn_wall_seconds() - due;
+    double late = hn_clock_wall() - due;
     if (late > LATE) {
         live->lag += late;
         hn_session_set_anchor(live);
@@ -283,7 +283,7 @@ static void do_next(hn_session *live) {
         return;
     }
     double due = next_due(live);
-    if (hn_wall_seconds() < due) {
+    if (hn_clock_wall() < due) {
         wait_until(live, due);
     } else {
         advance_on_time(live, due);
@@ -362,7 +362,7 @@ static hn_session *new_live(const hn_http_opts *opts, const hn_library *lib,
     pthread_mutex_init(&live->lock, NULL);
     uint64_t name = 0;
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
-        name = (uint64_t)(hn_wall_seconds() * 1e9);
+        name = (uint64_t)(hn_clock_wall() * 1e9);
     }
     snprintf(live->id, sizeof live->id, "%016llx", (unsigned long long)name);
     live->refs = 1;
@@ -372,7 +372,7 @@ static hn_session *new_live(const hn_http_opts *opts, const hn_library *lib,
     live->asked_duration = order->duration;
     live->speed = order->speed;
     live->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
-    live->touched = hn_wall_seconds();
+    live->touched = hn_clock_wall();
     live->patches_end = &live->patches;
     return live;
 }
@@ -431,14 +431,14 @@ const char *hn_session_id(const hn_session *live) {
 
 void hn_session_json(hn_strbuf *b, hn_session *live) {
     pthread_mutex_lock(&live->lock);
-    live->touched = hn_wall_seconds();
+    live->touched = hn_clock_wall();
     hn_session_put_json(b, live);
     pthread_mutex_unlock(&live->lock);
 }
 
 void hn_session_patch(hn_session *live, hn_request *r) {
     pthread_mutex_lock(&live->lock);
-    live->touched = hn_wall_seconds();
+    live->touched = hn_clock_wall();
     if (live->thread_ended) {
         reply_gone(live, r);
     } else {
@@ -460,7 +460,7 @@ void hn_session_end(hn_session *live, int deleted) {
 }
 
 int hn_session_tick(hn_session *live) {
-    double now = hn_wall_seconds();
+    double now = hn_clock_wall();
     pthread_mutex_lock(&live->lock);
     int expired =
         live->n_streams == 0 && !live->patches && now - live->touched > live->opts->expiry;

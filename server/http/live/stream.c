@@ -1,8 +1,8 @@
 #include "http/live/stream.h"
 
+#include "base/clock.h"
 #include "build.h"
 #include "http/live/session_internal.h"
-#include "study/run/timing.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -110,7 +110,7 @@ static void fill(hn_stream *s) {
         s->said_end = 1;
     }
     if (s->text.n == 0 && !is_at_end(s) &&
-        hn_wall_seconds() - s->last_sent >= s->live->opts->keep_alive) {
+        hn_clock_wall() - s->last_sent >= s->live->opts->keep_alive) {
         hn_strbuf_add(&s->text, ": still here\n\n");
     }
 }
@@ -130,7 +130,7 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
             s->waiting = 1;
             MHD_suspend_connection(s->connection);
         } else {
-            s->last_sent = hn_wall_seconds();
+            s->last_sent = hn_clock_wall();
         }
         pthread_mutex_unlock(&live->lock);
         if (ended) {
@@ -156,7 +156,7 @@ static void close_stream(void *cls) {
     }
     *place = s->next;
     live->n_streams--;
-    live->touched = hn_wall_seconds();
+    live->touched = hn_clock_wall();
     pthread_mutex_unlock(&live->lock);
     atomic_fetch_sub(s->n_open, 1);
     hn_strbuf_reset(&s->text);
@@ -216,7 +216,7 @@ static void reply_stream(hn_stream *s, hn_request *r) {
 static int attach(hn_stream *s, hn_request *r) {
     hn_session *live = s->live;
     pthread_mutex_lock(&live->lock);
-    live->touched = hn_wall_seconds();
+    live->touched = hn_clock_wall();
     int open = choose_cursor(s, r, read_last_id(r));
     if (open) {
         live->refs++;
@@ -253,7 +253,7 @@ void hn_stream_open(hn_session *live, hn_request *r, _Atomic int *n_open) {
                      .connection = r->connection,
                      .n_open = n_open,
                      .skips = mode && strcmp(mode, "live") == 0,
-                     .last_sent = hn_wall_seconds()};
+                     .last_sent = hn_clock_wall()};
     if (attach(s, r)) {
         reply_stream(s, r);
     } else {

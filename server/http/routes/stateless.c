@@ -1,12 +1,12 @@
 #include "http/routes/stateless.h"
 
+#include "base/clock.h"
 #include "grade/exercise_shelf.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/request/scene_request.h"
 #include "session/compare/comparison.h"
 #include "session/compare/picture.h"
-#include "study/run/pace.h"
 
 #include <string.h>
 
@@ -122,7 +122,7 @@ typedef struct allowance {
 static int may_go_on(void *user, double share) {
     const allowance *a = user;
     (void)share;
-    return hn_thread_seconds() < a->cpu_end && !atomic_load(&a->context->stopping);
+    return hn_clock_thread() < a->cpu_end && !atomic_load(&a->context->stopping);
 }
 
 void hn_handle_run(hn_request *r) {
@@ -131,7 +131,7 @@ void hn_handle_run(hn_request *r) {
         return;
     }
     allowance a = {.context = r->context,
-                   .cpu_end = hn_thread_seconds() + r->context->opts.max_run_cpu};
+                   .cpu_end = hn_clock_thread() + r->context->opts.max_run_cpu};
     const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
     double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
     hn_run_request request = {

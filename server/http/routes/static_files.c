@@ -1,6 +1,7 @@
 #include "http/routes/static_files.h"
 
 #include "base/arena.h"
+#include "base/file.h"
 #include "http/ground/sha256.h"
 #include "http/request/request.h"
 
@@ -121,16 +122,12 @@ static void allow_import_maps(hn_strbuf *policy, const char *html) {
 }
 
 static void read_import_maps(hn_strbuf *policy, const char *path) {
-    FILE *f = fopen(path, "rb");
-    char *text = f ? malloc(MAX_HTML + 1) : NULL;
-    if (text) {
-        text[fread(text, 1, MAX_HTML, f)] = 0;
-        allow_import_maps(policy, text);
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    if (hn_file_read(path, MAX_HTML, &text, NULL) == HN_OK) {
+        allow_import_maps(policy, hn_strbuf_text(&text));
     }
-    free(text);
-    if (f) {
-        fclose(f);
-    }
+    hn_strbuf_reset(&text);
 }
 
 static void write_policy(hn_static_files *s) {

@@ -1,11 +1,10 @@
 #include "http/studies/studies.h"
 
+#include "base/clock.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/studies/studies_internal.h"
 #include "integrators/method/method_spec.h"
-#include "study/run/pace.h"
-#include "study/run/timing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -77,8 +76,8 @@ static void *work(void *arg) {
     hn_study_result result = {0};
     hn_strbuf_init(&result.document);
     hn_strbuf_init(&result.report);
-    s->work.wall_end = hn_wall_seconds() + s->work.order.budget;
-    s->work.cpu_end = hn_thread_seconds() + all->opts->max_run_cpu;
+    s->work.wall_end = hn_clock_wall() + s->work.order.budget;
+    s->work.cpu_end = hn_clock_thread() + all->opts->max_run_cpu;
     s->work.kind->run(&s->work, &result);
     if (result.document.failed || result.report.failed) {
         result.state = HN_STUDY_FAILED;
@@ -91,7 +90,7 @@ static void *work(void *arg) {
     pthread_mutex_lock(&all->lock);
     s->result = result;
     s->done = 1;
-    s->ended = s->touched = hn_wall_seconds();
+    s->ended = s->touched = hn_clock_wall();
     pthread_mutex_unlock(&all->lock);
     release(s);
     pthread_mutex_lock(&all->lock);
@@ -119,7 +118,7 @@ static double time_left(const study *s, double share, double elapsed) {
 }
 
 static void put_progress(hn_strbuf *b, const study *s) {
-    const double elapsed = (s->done ? s->ended : hn_wall_seconds()) - s->started;
+    const double elapsed = (s->done ? s->ended : hn_clock_wall()) - s->started;
     const double share = s->done && s->result.state == HN_STUDY_FINISHED
                              ? 1
                              : fmin(1, fmax(0, atomic_load(&s->work.share)));
@@ -190,7 +189,7 @@ static void drop(study *s, study **dead, int *n_dead) {
 
 /// Lets go of what nobody touched for long. With the lock held.
 static void expire(hn_studies *all, study **dead, int *n_dead) {
-    const double now = hn_wall_seconds();
+    const double now = hn_clock_wall();
     for (int i = all->n - 1; i >= 0; i--) {
         if (now - all->list[i]->touched > all->opts->expiry) {
             drop(take_out(all, i), dead, n_dead);
@@ -351,7 +350,7 @@ static hn_status read_order(hn_study_work *w, const cJSON *body, const hn_http_o
 static void name_study(study *s) {
     uint64_t name = 0;
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
-        name = (uint64_t)(hn_wall_seconds() * 1e9);
+        name = (uint64_t)(hn_clock_wall() * 1e9);
     }
     snprintf(s->id, sizeof s->id, "%016llx", (unsigned long long)name);
 }
@@ -388,7 +387,7 @@ static hn_status start(hn_studies *all, study *s) {
     expire(all, dead, &n_dead);
     make_room(all, dead, &n_dead);
     hn_status status = all->n < HN_STUDIES_KEPT && !all->stopping ? HN_OK : HN_ERR_LIMIT;
-    s->started = s->touched = hn_wall_seconds();
+    s->started = s->touched = hn_clock_wall();
     s->refs = 3;
     if (status == HN_OK && pthread_create(&thread, NULL, work, s) != 0) {
         status = HN_ERR_MEMORY;
@@ -415,7 +414,7 @@ static study *find_study(hn_request *r) {
         if (strcmp(all->list[i]->id, r->parts[0]) == 0) {
             found = all->list[i];
             found->refs++;
-            found->touched = hn_wall_seconds();
+            found->touched = hn_clock_wall();
         }
     }
     pthread_mutex_unlock(&all->lock);

@@ -1,10 +1,9 @@
 // What each kind of study does: the same documents as the command line's.
+#include "base/clock.h"
 #include "http/studies/studies_internal.h"
 #include "session/accounts/accounts.h"
 #include "session/precision/study.h"
 #include "session/stability/stability.h"
-#include "study/run/pace.h"
-#include "study/run/timing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,14 +11,14 @@
 
 static int must_stop(void *user) {
     hn_study_work *w = user;
-    w->cpu_used_up |= hn_thread_seconds() > w->cpu_end;
+    w->cpu_used_up |= hn_clock_thread() > w->cpu_end;
     return w->cpu_used_up || atomic_load(&w->stop);
 }
 
 /// For a kind that does not share out its budget itself.
 static int must_stop_in_time(void *user) {
     hn_study_work *w = user;
-    w->out_of_time |= hn_wall_seconds() > w->wall_end;
+    w->out_of_time |= hn_clock_wall() > w->wall_end;
     return w->out_of_time || must_stop(w);
 }
 

@@ -1,13 +1,14 @@
 // When loops of steps look at their limits: after each slow step, seldom between quick ones, and whatever the output asked for.
 
 #include "study/run/pace.h"
+#include "base/clock.h"
 #include "study/run/walk.h"
 #include "support/near.h"
 #include "support/trial.h"
 
 static void burn(double seconds) {
-    const double end = hn_thread_seconds() + seconds;
-    while (hn_thread_seconds() < end) {}
+    const double end = hn_clock_thread() + seconds;
+    while (hn_clock_thread() < end) {}
 }
 
 static void slow_steps_are_looked_at_one_by_one(void **state) {
@@ -33,7 +34,7 @@ static void quick_steps_are_seldom_interrupted(void **state) {
 
 static void where_steps_become_slow_looks_become_frequent(void **state) {
     (void)state;
-    hn_pace pace = {.last = hn_thread_seconds(), .every = 400, .n = 399};
+    hn_pace pace = {.last = hn_clock_thread(), .every = 400, .n = 399};
     burn(0.1);
     assert_int_equal(hn_pace_is_due(&pace), 1);
     assert_in_range(pace.every, 1, 40); // 400 steps took ten times as long as they may

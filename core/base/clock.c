@@ -1,0 +1,17 @@
+#include "base/clock.h"
+
+#include <time.h>
+
+static double seconds_of(clockid_t clock) {
+    struct timespec ts;
+    clock_gettime(clock, &ts);
+    return (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
+}
+
+double hn_clock_wall(void) {
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+double hn_clock_thread(void) {
+    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+}

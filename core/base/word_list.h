@@ -1,0 +1,14 @@
+#ifndef HN_BASE_WORD_LIST_H
+#define HN_BASE_WORD_LIST_H
+// Lists in a sentence: "a", "a and b", "a, b and c".
+
+#include "base/strbuf.h"
+
+/// Returns the text that stands before item i of n (0-based): "" before the first, `last` before
+/// the last, ", " before any other. `last` is " and " or " or ". For lists whose items are written
+/// by code; hn_word_list() serves those that are plain words.
+const char *hn_word_joint(int i, int n, const char *last);
+
+/// Adds the n words to `b`, joined as above. n = 0 adds nothing.
+void hn_word_list(hn_strbuf *b, const char *const *words, int n, const char *last);
+#endif

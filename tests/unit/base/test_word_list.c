@@ -1,0 +1,32 @@
+#include "support/near.h"
+
+#include "base/word_list.h"
+
+static void the_last_two_words_are_joined_by_a_word(void **state) {
+    (void)state;
+    const char *const words[] = {"a", "b", "c"};
+    const char *const expected[] = {"", "a", "a and b", "a, b and c"};
+    for (int n = 0; n <= 3; n++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_word_list(&b, words, n, " and ");
+        assert_string_equal(hn_strbuf_text(&b), expected[n]);
+        hn_strbuf_reset(&b);
+    }
+}
+
+static void joints_serve_lists_that_code_writes(void **state) {
+    (void)state;
+    assert_string_equal(hn_word_joint(0, 1, " or "), "");
+    assert_string_equal(hn_word_joint(1, 2, " or "), " or ");
+    assert_string_equal(hn_word_joint(1, 3, " or "), ", ");
+    assert_string_equal(hn_word_joint(2, 3, " or "), " or ");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_last_two_words_are_joined_by_a_word),
+        cmocka_unit_test(joints_serve_lists_that_code_writes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
