@@ -363,7 +363,7 @@ static void a_file_is_saved_and_a_folder_that_is_not_there_is_told(void **state)
     assert_memory_equal(head, "\x89PNG\r\n\x1a\n", 8);
 
     assert_int_equal(hn_canvas_save_png(c, "/nowhere/at/all.png", &diag), HN_ERR_IO);
-    assert_string_equal(diag.pointer, "/nowhere/at/all.png");
+    assert_non_null(strstr(diag.message, "/nowhere/at/all.png"));
     hn_canvas_free(c);
 }
 
