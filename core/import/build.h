@@ -1,6 +1,6 @@
 #ifndef HN_IMPORT_BUILD_H
 #define HN_IMPORT_BUILD_H
-// A mechanism on its way from a file to a scene: both readers fill it, write.c tells it as JSON.
+// A mechanism on its way from a file to a scene: both readers fill it, write.c writes it as JSON.
 // Everything lives in one arena and is freed at once. `world` is a pose at the file's zero
 // configuration.
 
@@ -46,7 +46,7 @@ typedef struct hn_im_joint {
     double zero; ///< of a joint with one coordinate: its value in the file's zero configuration
 } hn_im_joint;
 
-/// Text that stands in a list of the scene as it is: a load, a constraint, or a joint of the loop
+/// JSON texts that are copied into a list of the scene: loads, constraints, joints of the loop
 /// file.
 typedef struct hn_im_texts {
     int n, cap;
@@ -106,7 +106,7 @@ bool hn_im_add_text(hn_build *b, hn_im_texts *list, hn_strbuf *text);
 
 int hn_im_find_body(const hn_build *b, const char *source);  ///< -2 if there is none
 int hn_im_find_joint(const hn_build *b, const char *source); ///< -1 if there is none
-/// A name for people, of what stands in a file: no braces, at most 60 characters.
+/// A name for people made from one of the file: no braces, at most 60 characters.
 const char *hn_im_label(hn_build *b, const char *wanted);
 const char *hn_im_text(hn_build *b, const char *format, ...) HN_PRINTF(2, 3); ///< in the arena
 /// Room for one more item; the list, moved if need be, or NULL.

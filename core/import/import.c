@@ -96,7 +96,7 @@ static void sum_up(hn_import *im) {
     memcpy(info->com, sum.c, sizeof info->com);
 }
 
-/// Faults the scene's loader finds, told where they stand in the files that were read.
+/// Reports a fault of the scene's loader at its place in the files that were read.
 static void tell_at_source(const hn_build *b, const hn_diag *d) {
     int i = -1;
 

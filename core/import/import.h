@@ -31,7 +31,7 @@ const char *hn_import_outcome_name(hn_import_outcome outcome); ///< "ignored" ..
 
 typedef struct hn_import_note {
     hn_import_outcome outcome;
-    const char *file; ///< the included file it stands in; NULL: the model's own
+    const char *file; ///< the included file that holds it; NULL: the model's own
     int line;         ///< of the element in its file, from 1
     /// "/mujoco/worldbody/body[2]/joint/@armature", with all files in their places
     const char *where;

@@ -198,7 +198,7 @@ static void check_key(hn_mj *m, const char *wanted) {
                 "there is no keyframe named '%.60s'", wanted);
 }
 
-// ---- the whole ----
+// ---- reading it all ----
 
 typedef void (*section_reader)(hn_mj *m, const xmlNode *section);
 
@@ -216,16 +216,17 @@ static const struct {
     int one_by_one;
     hn_import_outcome outcome;
     const char *why;
-} NOT_READ[] = {{"size", 0, HN_IMPORT_IGNORED, "sizes of MuJoCo's memory"},
-                {"visual", 0, HN_IMPORT_IGNORED, "only for looks"},
-                {"statistic", 0, HN_IMPORT_IGNORED, "only for looks"},
-                {"custom", 1, HN_IMPORT_IGNORED, "numbers for other programs"},
-                {"asset", 1, HN_IMPORT_IGNORED, "looks; a mesh gives no mass here"},
-                {"sensor", 1, HN_IMPORT_IGNORED, "measures only"},
-                {"contact", 1, HN_IMPORT_REFUSED, "contacts are not in the scene"},
-                {"tendon", 1, HN_IMPORT_REFUSED, "tendons are not in the scene"},
-                {"deformable", 1, HN_IMPORT_REFUSED, "what bends is not in the scene"},
-                {"extension", 1, HN_IMPORT_REFUSED, "plugins are not in the scene"}};
+} NOT_READ[] = {
+    {"size", 0, HN_IMPORT_IGNORED, "sizes of MuJoCo's memory"},
+    {"visual", 0, HN_IMPORT_IGNORED, "affects the appearance only"},
+    {"statistic", 0, HN_IMPORT_IGNORED, "affects the appearance only"},
+    {"custom", 1, HN_IMPORT_IGNORED, "numbers for other programs"},
+    {"asset", 1, HN_IMPORT_IGNORED, "affects the appearance only; a mesh gives no mass here"},
+    {"sensor", 1, HN_IMPORT_IGNORED, "measures only"},
+    {"contact", 1, HN_IMPORT_REFUSED, "contacts are not in the scene"},
+    {"tendon", 1, HN_IMPORT_REFUSED, "tendons are not in the scene"},
+    {"deformable", 1, HN_IMPORT_REFUSED, "what bends is not in the scene"},
+    {"extension", 1, HN_IMPORT_REFUSED, "plugins are not in the scene"}};
 static const char READ[] = "compiler option default worldbody equality actuator keyframe";
 
 static void skip_section(hn_mj *m, const xmlNode *c) {
@@ -307,7 +308,7 @@ bool hn_im_read_mjcf(hn_build *b, const xmlNode *root, const hn_import_source *s
                .groups = {-HUGE_VAL, HUGE_VAL}};
     b->gravity[2] = -9.81;
 
-    // defaults first: every element looks into them
+    // defaults first: every element may take attributes from them
     if (!hn_mj_collect_classes(&m)) {
         return false;
     }

@@ -37,7 +37,7 @@ typedef struct hn_mj {
     int n_touching;
 } hn_mj;
 
-/// An element together with the default class it looks into.
+/// An element and the default class that gives the attributes it lacks.
 typedef struct hn_mj_element {
     const xmlNode *node;
     const xmlNode *defaults; ///< its class, or NULL: the main one
@@ -67,7 +67,7 @@ bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]);
 /// Names what is not used of an element, by the rules for its name.
 void hn_mj_check(hn_mj *m, const xmlNode *node);
 
-// ---- the whole ----
+// ---- reading it all ----
 /// Puts the files that a model includes in their places; 0 after a fault.
 bool hn_im_include(hn_build *b, xmlDoc *doc, const hn_import_source *source);
 /// Reads the element <mujoco> into `b`; 0 after a fault.

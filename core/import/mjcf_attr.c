@@ -28,7 +28,7 @@ static const xmlNode *find_class(hn_mj *m, const char *name) {
 
 enum { MAX_CLASSES = 1000, MAX_ELEMENTS = 64 };
 
-/// Attributes are looked up in every class around; both bounds keep that short.
+/// Attributes are searched in every surrounding class; both bounds keep that short.
 static bool check_size(hn_mj *m, const xmlNode *cls) {
     int n = 0;
     for (const xmlNode *c = hn_im_first(cls); c; c = hn_im_next(c)) {
@@ -42,14 +42,13 @@ static bool check_size(hn_mj *m, const xmlNode *cls) {
 static bool collect(hn_mj *m, const xmlNode *cls) {
     const xmlNode *other = find_class(m, class_name(m, cls));
 
-    // the top class may stand there several times, any other once
+    // the top class may appear several times, any other once
     if (!is_top(m, cls) && !hn_im_attr(m->b, cls, "class")) {
         return hn_im_fault(m->b, cls, NULL, NULL, "a default inside a default needs its 'class'");
     }
     if (other && !(is_top(m, cls) && is_top(m, other))) {
-        return hn_im_fault(m->b, cls, "class",
-                           "a class is made once and cannot stand inside itself",
-                           "the default class '%.60s' stands in %s already", class_name(m, cls),
+        return hn_im_fault(m->b, cls, "class", "a class is defined once and cannot contain itself",
+                           "the default class '%.60s' is defined in %s already", class_name(m, cls),
                            hn_im_line_of(m->b, other));
     }
     if (!check_size(m, cls)) {

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/// Where reading stands: a body, a frame in it, the default class for what has none of its own.
+/// The place in the tree: a body, a frame in it, the default class for elements without their own.
 typedef struct place {
     int body;
     hn_im_frame at;
@@ -55,7 +55,7 @@ static void check_static(hn_mj *m, const xmlNode *node) {
     const char *mocap = hn_im_attr(m->b, node, "mocap");
     if (mocap && strcmp(mocap, "true") == 0) {
         hn_im_note(m->b, HN_IMPORT_APPROXIMATED, node, "mocap",
-                   "a body moved from outside stands still at its place");
+                   "a body moved from outside is fixed at its place");
     }
 }
 
@@ -125,7 +125,7 @@ static void read_child(hn_mj *m, const xmlNode *c, place *p) {
     } else if (strcmp(name, "site") == 0) {
         add_site(m, c, p);
     } else if (hn_im_lists(looks, name)) {
-        hn_im_skip(m->b, HN_IMPORT_IGNORED, c, "only for looks");
+        hn_im_skip(m->b, HN_IMPORT_IGNORED, c, "affects the appearance only");
     } else if (!hn_im_lists(joints, name)) {
         hn_im_skip(m->b, HN_IMPORT_REFUSED, c, "what this element makes is not in the scene");
     } else if (p->body == HN_GROUND) {

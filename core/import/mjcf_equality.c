@@ -75,7 +75,7 @@ static bool by_anchor(hn_mj *m, const hn_mj_element *e, sides *s) {
     return true;
 }
 
-/// relpose is the second body seen from the first; a quaternion of zeros stands for the pose the
+/// relpose is the second body seen from the first; a quaternion of zeros means the pose the
 /// model is written in.
 static bool by_pose(hn_mj *m, const hn_mj_element *e, sides *s) {
     double x[7];
@@ -224,7 +224,7 @@ static void read_equality(hn_mj *m, const xmlNode *c) {
     if (!e.node) {
         return;
     }
-    // defaults stand under the name of the section
+    // defaults have the name of the section
     int active = hn_im_flag(m->b, c, "active", 1);
     if (active <= 0 || m->no_equality) {
         hn_im_note(m->b, HN_IMPORT_IGNORED, c, NULL, "switched off in the model");

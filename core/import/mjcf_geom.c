@@ -132,7 +132,7 @@ void hn_mj_geom(hn_mj *m, const xmlNode *node, const xmlNode *childclass, const 
         hn_im_note(m->b, needed && !on_ground ? HN_IMPORT_REFUSED : HN_IMPORT_IGNORED, node, NULL,
                    needed && !on_ground
                        ? "a geom of type '%.40s' has no mass here: give the body an 'inertial'"
-                       : "a geom of type '%.40s' is for looks and contacts",
+                       : "a geom of type '%.40s' affects appearance and contacts only",
                    type);
         return;
     }

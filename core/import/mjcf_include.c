@@ -141,7 +141,7 @@ static xmlDoc *read_file(including *in, const xmlNode *node, hn_im_file *file) {
 
 static bool expand(including *in, xmlNode *parent);
 
-/// The children of `root` go where `node` stands.
+/// Replaces `node` by the children of `root`.
 static void put_in_place(xmlNode *node, xmlNode *root) {
     for (xmlNode *c = root->children, *next; c; c = next) {
         next = c->next;

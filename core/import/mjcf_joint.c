@@ -44,7 +44,7 @@ static bool read_type(hn_mj *m, const hn_mj_element *e, hn_joint_type *type) {
                        "unknown joint type '%.40s'", word);
 }
 
-/// Anchor and axis in the body: where the joint sits before it turns anything.
+/// Anchor and axis of the joint in its body, at the zero configuration.
 static bool read_place(hn_mj *m, const hn_mj_element *e, const hn_im_frame *at, int ball,
                        hn_im_frame *out) {
     double pos[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
@@ -195,9 +195,8 @@ static void remember_moving(hn_mj *m, int joint) {
 static bool start_free(hn_mj *m, const hn_mj_element *e, const chain *c, hn_im_joint *j) {
     if (c->parent != HN_GROUND || c->n > 1) {
         return hn_im_fault(m->b, e->node, NULL, NULL,
-                           c->n > 1
-                               ? "a free joint is the only joint of its body"
-                               : "a free joint is for bodies that stand directly in worldbody");
+                           c->n > 1 ? "a free joint is the only joint of its body"
+                                    : "a free joint is allowed only on children of worldbody");
     }
     double R[3][3];
     memcpy(R, c->local.R, sizeof R);
@@ -272,7 +271,7 @@ static int count_joints(const xmlNode *node) {
     return n;
 }
 
-/// Joints may stand in frames; faults of those were told when the frame was read.
+/// Joints may be inside <frame> elements, whose faults were reported when they were read.
 static void walk_joints(hn_mj *m, const xmlNode *node, const xmlNode *childclass,
                         const hn_im_frame *at, chain *links) {
     for (const xmlNode *c = hn_im_first(node); c && m->b->status == HN_OK; c = hn_im_next(c)) {

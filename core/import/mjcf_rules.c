@@ -9,7 +9,7 @@
 #define END \
     { NULL, USED, NULL }
 
-static const char LOOKS[] = "only for looks and tools";
+static const char LOOKS[] = "affects the appearance and editors only";
 static const char SOLVER[] = "a setting of MuJoCo's solver";
 static const char CONTACT[] = "contacts are not in the scene";
 static const char SOFT[] =
@@ -59,7 +59,7 @@ static const hn_im_rule JOINT[] = {
     {"name class type pos axis range limited stiffness damping springref ref", USED, NULL},
     {"group user", HN_IMPORT_IGNORED, LOOKS},
     {"solreflimit solimplimit margin solreffriction solimpfriction", HN_IMPORT_IGNORED,
-     "limits are told when passed, and do not push back"},
+     "crossing the limit is reported; no force acts there"},
     {"armature", HN_IMPORT_REFUSED, "the inertia of a rotor is not in the scene"},
     {"frictionloss", HN_IMPORT_REFUSED, "dry friction is not in the scene"},
     {"springdamper", HN_IMPORT_REFUSED,

@@ -1,4 +1,4 @@
-// URDF: links and joints by name, a tree whose root stands on the ground. Semantics after the ROS
+// URDF: links and joints by name, a tree whose root is fixed to the ground. Semantics after the ROS
 // wiki (urdf/XML).
 #include "import/urdf.h"
 
@@ -81,7 +81,7 @@ static void name_others(urdf *u, const xmlNode *node, const char *known) {
         if (hn_im_lists("visual collision material verbose", name)) {
             hn_im_skip(u->b, HN_IMPORT_IGNORED, c,
                        strcmp(name, "collision") == 0 ? "contacts are not in the scene"
-                                                      : "only for looks");
+                                                      : "affects the appearance only");
         } else if (hn_im_lists("calibration safety_controller transmission sensor ros2_control",
                                name)) {
             hn_im_skip(u->b, HN_IMPORT_IGNORED, c, "for the robot's own software");
@@ -197,7 +197,7 @@ static bool read_limits(urdf *u, const xmlNode *node, int kind, hn_im_joint *j) 
         return hn_im_fault(u->b, limit, NULL, NULL, "the range from %g to %g is empty", j->min,
                            j->max);
     }
-    // a range of no width stands in many files for none
+    // many files write a range of no width for no range
     j->limited = TYPES[kind].needs_limit && j->min < j->max;
     if (TYPES[kind].needs_limit && !j->limited) {
         hn_im_note(u->b, HN_IMPORT_APPROXIMATED, limit, NULL,

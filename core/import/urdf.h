@@ -1,6 +1,6 @@
 #ifndef HN_IMPORT_URDF_H
 #define HN_IMPORT_URDF_H
-// URDF, the robot description of ROS: a tree of links and joints that stands on the ground.
+// URDF, the robot description of ROS: a tree of links and joints fixed to the ground.
 
 #include "import/build.h"
 

@@ -98,7 +98,7 @@ static void write_names(const hn_im_joint *j, hn_strbuf *o) {
     }
 }
 
-/// Directions in the child stand there only where their numbers differ from the parent's.
+/// Directions in the child are written only where their numbers differ from the parent's.
 static void write_joint(const hn_build *b, const hn_im_joint *j, hn_strbuf *o) {
     hn_json_object(o);
     hn_json_put_string(o, "name", j->name);
@@ -219,7 +219,7 @@ static void lay_out(const char *json, hn_strbuf *out) {
     int depth = 0, in_string = 0,
         numbers = 0; // numbers: the depth of the list of numbers that is open
 
-    // character by character: what stands between two of them depends on depth and kind
+    // character by character: spaces and line breaks depend on depth and kind
     for (const char *c = json; *c; c++) {
         const int opens = !in_string && (*c == '{' || *c == '[');
         const int closes = !in_string && (*c == '}' || *c == ']');

@@ -20,7 +20,7 @@ const xmlNode *hn_im_child(const xmlNode *parent, const char *name); ///< first 
 const char *hn_im_attr(hn_build *b, const xmlNode *node, const char *name);
 
 /// Numbers separated by white space: at least `least`, at most `most`, all finite. Their count, or
-/// -1 after a fault told at node and attribute.
+/// -1 after a fault reported at node and attribute.
 int hn_im_numbers(hn_build *b, const xmlNode *node, const char *attribute, const char *text,
                   int least, int most, double *out);
 /// An attribute that has to have n numbers; 0 when absent, 1 when read, -1 after a fault.

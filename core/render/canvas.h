@@ -9,8 +9,7 @@
 // has one shade. A layer (begin ... end) holds several shapes to the same rule, the last drawn on
 // top, so that a whole mechanism can be shown at 60 %.
 //
-// Drawing calls cannot fail visibly; when memory runs out the canvas remembers, and painting says
-// so.
+// Drawing calls have no result. When memory runs out the canvas keeps that, and painting fails.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -48,7 +47,7 @@ hn_stroke hn_stroke_solid(uint32_t rgb, double width);
 // ---- shapes ----
 // xy holds n points x, y; points that are not finite are left out with their segments
 
-/// Round ends and joints.
+/// A line through n points with round ends and corners.
 void hn_canvas_line(hn_canvas *c, const double *xy, int n, const hn_stroke *stroke);
 void hn_canvas_segment(hn_canvas *c, double x0, double y0, double x1, double y1,
                        const hn_stroke *stroke);
@@ -62,14 +61,14 @@ void hn_canvas_polygon(hn_canvas *c, const double *xy, int n, hn_paint paint);
 enum { HN_CAPSULE_POINTS = 34 };
 int hn_canvas_capsule(double x0, double y0, double x1, double y1, double width,
                       double xy[2 * HN_CAPSULE_POINTS]);
-/// Shaft and head, tip at (x1, y1).
+/// An arrow with its tip at (x1, y1); `head` is the length of the head [px].
 void hn_canvas_arrow(hn_canvas *c, double x0, double y0, double x1, double y1, double head,
                      const hn_stroke *stroke);
 /// A ground line of the given length through (x, y), its normal at `angle` (radians, counted
 /// clockwise from straight down), strokes slanting away on that side.
 void hn_canvas_hatch(hn_canvas *c, double x, double y, double length, double angle,
                      const hn_stroke *stroke);
-/// The sign of a method.
+/// The marker of a method.
 void hn_canvas_marker(hn_canvas *c, hn_marker marker, double x, double y, double size,
                       hn_paint paint);
 

@@ -163,7 +163,7 @@ static void draw_scale_bar(hn_canvas *c, const hn_sheet *s) {
                    hn_paint_solid(surface->muted), text);
 }
 
-/// World axes, where one does not look from the front: at the lower right of the drawing.
+/// Draws the world axes at the lower right, in views other than the front.
 static void draw_triad(hn_canvas *c, const hn_sheet *s) {
     static const char *const names[3] = {"x", "y", "z"};
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));

@@ -13,7 +13,8 @@
 //
 // The selected method is opaque. The others are at 60 %, outlined with their dash; the reference
 // solution is thin grey beneath. Springs, dampers, sliders and loads look as in textbooks. The
-// inset magnifies the widest gap at a cut joint; a gap wide enough to be seen is also drawn in place.
+// inset magnifies the widest gap at a cut joint; a gap wide enough to be seen is also drawn in
+// place.
 //
 // The view is opts.look (the front: world x to the right, y up; any other shows a triad of axes).
 // It is fitted once to opts.view, so that a series of pictures does not jump.
@@ -45,7 +46,7 @@ typedef struct hn_snapshot_load {
 typedef struct hn_snapshot_opts {
     const char *title, *caption; ///< may be NULL
     double time;                 ///< [s]; NaN: not shown
-    hn_view look;                ///< where one looks from
+    hn_view look;                ///< direction of view
     /// right0, right1, up0, up1 [m] to fit; right1 <= right0: fitted to the poses given
     double view[4];
     int n_loads;

@@ -500,7 +500,7 @@ void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *
         hn_view_project(&s->look, load->force, seen);
         const double size = hypot(seen[0], seen[1]);
         const double whole =
-            hypot(hypot(load->force[0], load->force[1]), load->force[2]); // what the text tells
+            hypot(hypot(load->force[0], load->force[1]), load->force[2]); // what the text says
         if (!(size > 0) || !isfinite(size)) {
             continue;
         }

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// [px] from this width on inset and legend stand beside the drawing
+// [px] from this width on inset and legend are beside the drawing
 static const double WIDE_ENOUGH = 560;
 static const double CLOSED = 1e-12;       // of the view: a smaller tear is not magnified
 static const double TEAR_IN_INSET = 0.4;  // the tear's share of the inset

@@ -26,7 +26,7 @@ static void draw_in_place(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
 
 // ---- the inset ----
 
-/// The inset looks at the middle between the half-joints through a glass.
+/// The inset: a magnifying glass over the middle between the half-joints.
 typedef struct glass {
     hn_canvas *c;
     const hn_drawing *d;
@@ -46,8 +46,8 @@ static void through(const glass *g, int point, double out[2]) {
     out[1] = g->centre[1] - g->scale * (w[1] - g->middle[1]);
 }
 
-/// The ends of the bars that meet at `point`: as wide as they look well, not magnified, out to the
-/// border.
+/// The ends of the bars that meet at `point`: at a width that suits the inset, not magnified, out
+/// to the border.
 static void draw_bar_ends(const glass *g, int point) {
     const hn_theme theme = hn_canvas_theme(g->c);
     hn_stroke outline = hn_slot_stroke(theme, g->pose->slot, g->line);

@@ -1,8 +1,8 @@
 #ifndef HN_RENDER_VIEW_H
 #define HN_RENDER_VIEW_H
-// Where one looks from: a parallel view of the world on a plane. Plane mechanisms are seen from the
-// front (world x right, y up); mechanisms in space a little from the right and from above. Upwards
-// is y, or z for those whose gravity pulls along -z.
+// The direction of view: a parallel projection of the world on a plane. Plane mechanisms are seen
+// from the front (world x right, y up), mechanisms in space a little from the right and from above.
+// Upwards is y, or z where gravity acts along -z.
 
 #include "base/diag.h"
 
@@ -11,11 +11,11 @@ typedef struct hn_view {
     double right[3], up[3], toward[3];
 } hn_view;
 
-/// The viewer stands at `azimuth` [rad] round the vertical, from the front (0) towards world x, and
+/// The view from `azimuth` [rad] round the vertical, from the front (0) towards world x, and
 /// `elevation` [rad] above the horizontal.
 hn_view hn_view_look(double azimuth, double elevation);
 hn_view hn_view_front(void);
-/// The view for a mechanism in space that asks for none.
+/// The default view for a mechanism in space.
 hn_view hn_view_space(void);
 /// out: right and up components [m].
 void hn_view_project(const hn_view *view, const double world[3], double out[2]);

@@ -236,7 +236,7 @@ static void repeat(hn_reader *r, const cJSON *node, const char *key, hn_rd_item 
     // one item for each value
     int faults = r->n_faults;
     r->loop_name = name;
-    // one faulty repetition is enough to tell
+    // one faulty repetition is enough
     for (long long i = bounds[0]; i <= bounds[1] && r->n_faults == faults && !r->oom; i++) {
         r->loop_value = i;
         item(r, node, key);

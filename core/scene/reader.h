@@ -87,21 +87,21 @@ bool hn_rd_fault_at(hn_reader *r, const char *key, const char *hint, const char 
     HN_PRINTF(4, 5);
 /// the same with HN_ERR_LIMIT
 bool hn_rd_limit(hn_reader *r, const char *format, ...) HN_PRINTF(2, 3);
-bool hn_rd_stopped(const hn_reader *r); ///< out of memory, or enough faults told
-/// "did you mean 'x'?" into out, or the list of what is allowed.
+bool hn_rd_stopped(const hn_reader *r); ///< out of memory, or HN_RD_MAX_FAULTS reached
+/// Writes a hint: "did you mean 'x'?", or the list of allowed words.
 void hn_rd_suggest(char *out, size_t size, const char *word, const char *const *names, int n);
 const char *hn_rd_kind(const cJSON *node); ///< "a number", "a list", ...
 
 // ---- memory: all from the scene's arena ----
-/// Room for one more item behind n; old items are kept. NULL (and oom or a limit fault) if there is
-/// none.
+/// Returns the list with room for one more item behind the n that it holds. Fails: NULL, and `oom`
+/// or a fault about the limit.
 void *hn_rd_grow(hn_reader *r, void *items, int n, size_t size, int limit, const char *what);
 const char *hn_rd_keep(hn_reader *r, const char *text);
 const char *hn_rd_pointer(hn_reader *r); ///< the present path, kept
 
 // ---- the tree ----
-/// 1 if node is an object whose members are all among `fields`; faults otherwise (0 only if it is
-/// no object).
+/// Checks that `node` is an object and reports members that are not among `fields`. Returns false
+/// only when it is no object.
 bool hn_rd_object(hn_reader *r, const cJSON *node, const char *what, const char *const *fields,
                   int n_fields);
 typedef void (*hn_rd_item)(hn_reader *r, const cJSON *item, const char *key);
@@ -114,36 +114,36 @@ bool hn_rd_is_list(hn_reader *r, const cJSON *node, const char *what); ///< abse
 void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn_rd_item item);
 
 // ---- values ----
-/// Text as it stands (title, about); NULL if absent.
+/// Returns a text unchanged (title, about); NULL if it is absent.
 const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int required);
-/// A name: {..} filled in, checked for length; NULL (and a fault if required) when absent.
+/// Returns a name with its {formulas} filled in, checked for length. NULL when it is absent: a
+/// fault only if `required`.
 const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int required);
-/// `raw` with every {formula} replaced by its whole-number value; NULL after a fault.
+/// Returns `raw` with every {formula} replaced by its whole-number value; NULL after a fault.
 const char *hn_rd_fill(hn_reader *r, const char *raw);
 bool hn_rd_flag(hn_reader *r, const cJSON *object, const char *key);
-/// A number or a formula. On a fault *out is 0 and 0 is returned.
+/// Reads a number or a formula. After a fault *out is 0 and the result false.
 bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope);
-/// The member `key`: absent gives `fallback` (a fault when `required`).
+/// Reads the member `key`; where it is absent, `fallback` (a fault when `required`).
 bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
                   hn_quantity *out, hn_rd_scope scope);
-/// Two (z = 0) or three entries.
+/// Reads a vector of two (then z = 0) or three entries.
 bool hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
-/// The member `key` as a direction: two or three numbers of any length but zero, made unit. 0 after
-/// a fault.
+/// Reads the member `key` as a direction: two or three numbers, not all zero, scaled to length 1.
 bool hn_rd_direction(hn_reader *r, const cJSON *object, const char *key, double out[3]);
-/// Checks that `ref` (written under `key`) is perpendicular to `axis`; what rounding left of the
-/// axis in it is taken out.
+/// Checks that `ref` (written under `key`) is perpendicular to `axis`, and removes what rounding
+/// left of the axis in it.
 bool hn_rd_make_normal(hn_reader *r, const char *key, const double axis[3], double ref[3]);
-/// The direction nobody gave: the coordinate axis least aligned with `axis` (x before y before z),
-/// made perpendicular.
+/// Chooses a direction perpendicular to `axis` for a file that gives none: from the coordinate axis
+/// least aligned with it, x before y before z.
 void hn_rd_default_normal(const double axis[3], double ref[3]);
-/// Value of a formula in parameters, for braces and "for".
+/// Evaluates a formula in parameters, as in braces and in "for".
 bool hn_rd_formula(hn_reader *r, const char *text, hn_rd_scope scope, hn_quantity *out);
 
-// names in formulas: found in constant time, for a scene may hold thousands and use them a million
-// times
-void hn_rd_put_name(hn_reader *r, hn_rd_meaning meaning,
-                    int index); ///< of a parameter or coordinate that stands in the scene
+// Names in formulas are found in constant time: a scene may hold thousands and use them a million
+// times.
+/// Makes the name of a parameter or coordinate of the scene known to formulas.
+void hn_rd_put_name(hn_reader *r, hn_rd_meaning meaning, int index);
 hn_rd_meaning hn_rd_find_name(const hn_reader *r, const char *name, int *index);
 
 // ---- parts of a scene ----
@@ -152,7 +152,7 @@ bool hn_rd_param_value(hn_reader *r, int k, double *value); ///< evaluates on de
 void hn_rd_bodies(hn_reader *r, const cJSON *root);
 void hn_rd_joints(hn_reader *r, const cJSON *root);
 void hn_rd_lagrangian(hn_reader *r, const cJSON *root);
-/// A constraint of a Lagrangian beside bodies, among the scene's; name NULL: make one.
+/// Adds a constraint that a Lagrangian beside bodies gives as a formula; name NULL: one is made.
 void hn_rd_formula_constraint(hn_reader *r, const char *name, const hn_quantity *value);
 void hn_rd_points(hn_reader *r, const cJSON *root);
 void hn_rd_loads(hn_reader *r, const cJSON *root);
@@ -161,32 +161,32 @@ void hn_rd_shapes(hn_reader *r, const cJSON *root);
 void hn_rd_start(hn_reader *r, const cJSON *root);
 void hn_rd_draw_default(hn_reader *r, const cJSON *root); ///< what the scene leaves undrawn
 
-/// Adds a coordinate after checking its names; `rate` NULL: made from the name. Index or -1.
+/// Adds a coordinate after a check of its names and returns its index, -1 after a fault. `rate`
+/// NULL: made from the name.
 int hn_rd_add_coordinate(hn_reader *r, const char *name, const char *rate, hn_unit_kind kind,
                          int joint, int actuated);
-/// Reads and adds the coordinates of a joint that will be the next, with what drives and limits
-/// them.
+/// Adds the coordinates of the joint that is being read, with their drives and limits.
 void hn_rd_joint_coordinates(hn_reader *r, const cJSON *node, hn_joint *j);
-/// A body by name ("ground" too), -2 after a fault.
+/// Returns the body that the member `key` names ("ground": HN_GROUND), -2 after a fault.
 int hn_rd_body(hn_reader *r, const cJSON *object, const char *key);
-/// A point: a name, numbers in `body`'s frame, or {"body","at"}; index or -1 after a fault.
+/// Returns the index of a point, -1 after a fault. It is written as a name, as numbers in the frame
+/// of `body`, or as {"body","at"}.
 int hn_rd_point(hn_reader *r, const cJSON *node, int body);
-/// The index of this unnamed point, made if there is none like it; -1 without memory.
+/// Returns the index of the unnamed point at this place, made if there is none; -1 without memory.
 int hn_rd_place(hn_reader *r, int body, const hn_quantity at[3]);
 int hn_rd_add_point(hn_reader *r, const char *name, int body, const hn_quantity at[3]);
 hn_shape *hn_rd_add_shape(hn_reader *r, hn_shape_kind kind, int p, int q, int body);
 
 // ---- scene_check.c: facts about the whole scene ----
-void hn_rd_check_tree(hn_reader *r,
-                      const cJSON *node); ///< names used twice in one object, numbers not finite
+/// Reports names that one object uses twice.
+void hn_rd_check_tree(hn_reader *r, const cJSON *node);
 void hn_rd_check_inertia(hn_reader *r, const hn_body *body);
 void hn_rd_check_connected(hn_reader *r);
-/// 1 unless `taken_by` says where the name stands already.
+/// Reports a name that is used already: `taken_by` says where, NULL: nowhere.
 bool hn_rd_check_new_name(hn_reader *r, const char *name, const char *taken_by);
-/// 1 unless the coordinate is an entry of a rotation vector, whose value is used nowhere but inside
-/// its joint.
+/// Reports the use of an entry of a rotation vector: its value has a meaning inside its joint only.
 bool hn_rd_check_no_turn(hn_reader *r, int coordinate);
-/// 1 if `name` can be used in formulas and is still free there; otherwise a fault.
+/// Reports a name that formulas cannot use, or that they use already.
 bool hn_rd_check_identifier(hn_reader *r, const char *name);
 
 #endif

@@ -81,7 +81,7 @@ static int lookup(void *user, const char *name, hn_ex *out) {
     return found;
 }
 
-/// The names to suggest after a typing error: made only when one is to be told.
+/// The names to suggest after a typing error.
 static int known_names(hn_reader *r, hn_rd_scope scope, const char **names, int room) {
     int n = 0;
     if (r->loop_name) {
@@ -101,7 +101,7 @@ static int known_names(hn_reader *r, hn_rd_scope scope, const char **names, int 
     return n;
 }
 
-/// One parse in a scope; a parameter's own faults may be told on the way.
+/// Parses in a scope; a parameter's own faults may be reported on the way.
 static hn_status parse(hn_reader *r, const char *text, hn_rd_scope scope, int suggest, hn_ex *out,
                        hn_diag *diag) {
     enum { ROOM = 512 };

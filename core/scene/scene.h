@@ -174,7 +174,7 @@ typedef struct hn_constraint {
 } hn_constraint;
 
 /// Formulas of a Lagrangian in coordinates, rates, t and parameters. Beside bodies the energies are
-/// added to theirs, and the constraints stand among the scene's.
+/// added to theirs, and the constraints are among the scene's.
 typedef struct hn_lagrangian {
     hn_quantity kinetic, potential;
     int n_constraints;

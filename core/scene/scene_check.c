@@ -30,7 +30,8 @@ static void check_keys(hn_reader *r, const cJSON *node) {
     qsort(keys, (size_t)n, sizeof *keys, compare_names);
     for (i = 1; i < n && !hn_rd_stopped(r); i++) {
         if (strcmp(keys[i - 1], keys[i]) == 0) {
-            hn_rd_fault_at(r, keys[i], NULL, "'%.60s' stands twice in this object", keys[i]);
+            hn_rd_fault_at(r, keys[i], NULL, "the field '%.60s' is given twice in this object",
+                           keys[i]);
         }
     }
     free(keys);
@@ -81,8 +82,8 @@ bool hn_rd_check_no_turn(hn_reader *r, int coordinate) {
     const hn_coordinate *c = &r->scene->coordinates[coordinate];
     return c->turn < 0 ||
            hn_rd_fault(r, "its rate can be used; for angles of their own take a universal joint",
-                       "'%s' is an entry of a rotation vector: it tells the start of the joint "
-                       "'%s', and is no coordinate that a formula or load could use",
+                       "'%s' is an entry of the rotation vector of the joint '%s': it can be given "
+                       "at the start, but no formula and no load can use it",
                        c->name, r->scene->joints[c->joint].name);
 }
 
@@ -90,7 +91,7 @@ bool hn_rd_check_no_turn(hn_reader *r, int coordinate) {
 
 /// A tensor belongs to a body of positive mass exactly when S = (trace I / 2) 1 - I, the second
 /// moments of its mass, has no negative eigenvalue: that contains both I >= 0 and the triangle
-/// inequality of the principal moments. All principal minors of S are looked at, with room for
+/// inequality of the principal moments. All principal minors of S are checked, with room for
 /// rounding.
 void hn_rd_check_inertia(hn_reader *r, const hn_body *b) {
     const hn_quantity *I = b->inertia;

@@ -9,8 +9,8 @@
 
 enum { MAX_FREEDOMS = 6 };
 
-/// One freedom: what stands behind the joint's name in its coordinate's, its unit, its entry of a
-/// rotation vector.
+/// One degree of freedom: the suffix of its coordinate's name behind that of the joint, its unit,
+/// its entry of a rotation vector.
 typedef struct freedom {
     const char *suffix;
     hn_unit_kind kind;
@@ -88,8 +88,8 @@ static const char *listed_name(hn_reader *r, const cJSON *node) {
     return hn_rd_fill(r, node->valuestring);
 }
 
-/// The names under `many` (a list, one for each freedom), or for a single freedom under `one`.
-/// Those left out stay NULL.
+/// The names under `many` (a list, one for each degree of freedom), or for a single one under
+/// `one`. Those left out stay NULL.
 static bool read_names(hn_reader *r, const cJSON *node, const char *one, const char *many, int n,
                        const char *names[MAX_FREEDOMS]) {
     const cJSON *list = hn_rd_get(node, many), *single = hn_rd_get(node, one);

@@ -195,7 +195,7 @@ static int common_body(const hn_scene *s, const int *points, int n) {
     return body;
 }
 
-/// A polygon's points stand in a row: copies of those resolved, one behind the other. The first, or
+/// Copies the points of a polygon one behind the other. The first, or
 /// -1.
 static int line_up(hn_reader *r, const int *points, int n) {
     int first = r->scene->n_points;
@@ -257,7 +257,7 @@ static double read_width(hn_reader *r, const cJSON *node) {
     return width.value;
 }
 
-/// An entry of a body's "draw": {"bar": [p, q], "width": w}. The body is the one reading stands at.
+/// An entry of a body's "draw": {"bar": [p, q], "width": w}. The body is `body_at`.
 static void read_on_own_body(hn_reader *r, const cJSON *node, const char *key) {
     const char *fields[N_ROWS + 2] = {"width", "for"};
     int kind = -1, n = 0;

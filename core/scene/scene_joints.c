@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// ---- where it sits ----
+// ---- place and directions ----
 
 /// A reference direction must be perpendicular to the axis; what rounding left of the axis in it is
 /// taken out.

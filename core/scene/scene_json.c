@@ -166,7 +166,7 @@ static void read_root(hn_reader *r, const cJSON *root, const char *id) {
     }
 }
 
-// ---- the whole ----
+// ---- reading it all ----
 
 /// Removes what is only said or shown, at any depth.
 static void strip_words(cJSON *node) {

@@ -46,7 +46,7 @@ static void check_unit(hn_reader *r, const char *unit) {
     for (size_t i = 0; i < sizeof FOREIGN / sizeof FOREIGN[0]; i++) {
         if (strcmp(unit, FOREIGN[i].unit) == 0) {
             hn_rd_fault_at(r, "unit", FOREIGN[i].hint,
-                           "the unit '%s' is not served; numbers are in SI units", unit);
+                           "the unit '%s' is not supported; numbers are in SI units", unit);
             return;
         }
     }
@@ -131,7 +131,7 @@ static const hn_setting *find_setting(const hn_reader *r, const char *name) {
     return NULL;
 }
 
-/// "l1 needs l2 needs l1", told at the parameter where the ring was entered.
+/// "l1 needs l2 needs l1", reported at the parameter where the ring was entered.
 static void tell_cycle(hn_reader *r, int k) {
     char ring[HN_DIAG_MESSAGE - 64];
     size_t at = 0;

@@ -34,10 +34,10 @@ static const struct {
     {BODY("<joint/><geom size='1' class='nobody'/>"), "no default class 'nobody'"},
     {BODY("<joint name='j'/><joint name='j'/><geom size='1'/>"), "two joints"},
     {WORLD("<body name='b'><geom size='1'/><body><freejoint/><geom size='1'/></body></body>"),
-     "directly in worldbody"},
+     "only on children of worldbody"},
     {WORLD("<joint/>"), "the world has no 'joint'"},
     {"<mujoco><default><default class='a'><default class='a'/></default></default></mujoco>",
-     "default class 'a' stands in line 1 already"},
+     "default class 'a' is defined in line 1 already"},
     {"<mujoco><include file='x.xml'/><worldbody><body><joint/><geom "
      "size='1'/></body></worldbody></mujoco>",
      "where 'x.xml' is is not known"},
