@@ -103,7 +103,7 @@ hn_status hn_chart_fail(hn_chart *chart, hn_status status, double t, const doubl
     return status;
 }
 
-// --- one configuration ------------------------------------------------------------------------------------
+// ---- one configuration ----
 
 static void eval_loop(hn_chart *chart, hn_chart_point *p, double t) {
     hn_eval_run(chart->loop, t, p->q, p->s);
@@ -157,10 +157,7 @@ hn_status hn_chart_settle(hn_chart *chart) {
     const size_t nv = (size_t)chart->nv, r = (size_t)chart->r;
     const hn_chart_point *from = &chart->here;
     hn_chart_point *to = &chart->base;
-    const hn_status status = hn_chart_check_mode(chart);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_chart_check_mode(chart));
     memcpy(to->q, from->q, (size_t)chart->nq * sizeof(double));
     memcpy(to->s, from->s, nv * sizeof(double));
     memcpy(to->N, from->N, nv * r * sizeof(double));

@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// Which columns of J are dependent. Volumes are products of the diagonal of R, kept as logarithms: a mechanism with
-// hundreds of rows would overflow a plain determinant. Columns are scaled by 1 / sqrt(M_jj), so metres and radians can
-// be compared.
+// Which columns of J are dependent. Volumes are products of the diagonal of R, kept as logarithms:
+// a mechanism with hundreds of rows would overflow a plain determinant. Columns are scaled by 1 /
+// sqrt(M_jj), so metres and radians can be compared.
 
 #define RANK_TOL 1e-10
 #define SINGULAR_TOL \
@@ -61,7 +61,8 @@ static int turn_of(const hn_chart *chart, int j) {
                : TURN_PASSIVE;
 }
 
-// speeds of balls first, then last coordinates first, actuated ones after all others, `first` at the very end
+// speeds of balls first, then last coordinates first, actuated ones after all others, `first` at
+// the very end
 static void order_columns(hn_chart *chart, int first) {
     int n = 0;
     for (int turn = 0; turn < N_TURNS; turn++) {
@@ -76,7 +77,8 @@ static void order_columns(hn_chart *chart, int first) {
     }
 }
 
-// Length of what a column adds to the first k basis vectors; it becomes basis vector k when it is long enough.
+// Length of what a column adds to the first k basis vectors; it becomes basis vector k when it is
+// long enough.
 static double try_column(hn_chart *chart, int column, int k) {
     const int nc = chart->nc;
     double *next = chart->basis + k * nc;
@@ -99,7 +101,8 @@ static double try_column(hn_chart *chart, int column, int k) {
     return rest;
 }
 
-// the choice by preference: fills dep and gives its log volume, or -HUGE_VAL when too few columns were independent
+// the choice by preference: fills dep and gives its log volume, or -HUGE_VAL when too few columns
+// were independent
 static double choose_by_order(hn_chart *chart, int first, int rank) {
     int n = 0;
     double volume = 0;
@@ -131,10 +134,10 @@ static void sort_choice(hn_chart *chart) {
     }
 }
 
-// What a coordinate counts as one, so that columns can be compared: a radian, the characteristic length of the mechanism, and
-// where a coordinate is neither, 1 / sqrt(M_jj). Masses would be no measure for the others: of a light crank and a heavy slider
-// the slider would be kept up to the very neighbourhood of its dead points, where the crank follows from it a hundred times
-// as fast.
+// What a coordinate counts as one, so that columns can be compared: a radian, the characteristic
+// length of the mechanism, and where a coordinate is neither, 1 / sqrt(M_jj). Masses would be no
+// measure for the others: of a light crank and a heavy slider the slider would be kept up to the
+// very neighbourhood of its dead points, where the crank follows from it a hundred times as fast.
 static void scale_columns(hn_chart *chart, double t, const double *q, const double *no_speed) {
     const hn_scene *scene = hn_system_scene(chart->sys);
     const int n_user = hn_system_get_info(chart->sys).n_user;
@@ -242,8 +245,9 @@ int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
     return volume > SINGULAR_TOL;
 }
 
-// The first choice of an instance is made from all of J, densely; later ones begin with the same columns and exchange some
-// where those have become poor. So a choice depends on the first state and on the present one, not on what was between.
+// The first choice of an instance is made from all of J, densely; later ones begin with the same
+// columns and exchange some where those have become poor. So a choice depends on the first state
+// and on the present one, not on what was between.
 static hn_status choose_again(hn_chart *chart, double t, const double *q, int first) {
     int k, j;
     const double limit = first >= 0 ? 1 / DEAD_POINT : 1 / HN_CHART_TAU;
@@ -309,8 +313,8 @@ hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first)
     return first == HN_CHART_BEST ? improve(chart, t, q) : choose_again(chart, t, q, first);
 }
 
-// the column of a ball that would have been a much better independent coordinate at `base` than those that are, -1: none, or a
-// plain coordinate would have been too
+// the column of a ball that would have been a much better independent coordinate at `base` than
+// those that are, -1: none, or a plain coordinate would have been too
 static int find_holding_ball(const hn_chart *chart) {
     int held_by = -1;
     double best = 1 / HN_CHART_TAU;

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-// The dependent columns at one configuration: factor of J_d, basis, volume. Square J_d sparse, others by dense QR.
+// The dependent columns at one configuration: factor of J_d, basis, volume. Square J_d sparse,
+// others by dense QR.
 
 #define PIVOT_TOL 1e-13 // of the largest pivot: J_d is singular to rounding
 
@@ -145,7 +146,8 @@ void hn_chart_make_basis(hn_chart *chart, hn_chart_point *p) {
     }
 }
 
-// by Cramer's rule the ratio of the two determinants is an entry of J_d^-1 J_i, and that is an entry of N
+// by Cramer's rule the ratio of the two determinants is an entry of J_d^-1 J_i, and that is an
+// entry of N
 double hn_chart_exchange(const hn_chart *chart, const hn_chart_point *p, int k, int j) {
     const int dep = chart->dep[k], ind = chart->ind[j];
     return fabs(p->N[dep * chart->r + j]) * chart->scale[ind] / chart->scale[dep];

@@ -1,11 +1,13 @@
 #ifndef HN_FORMULATIONS_CHART_JACOBIAN_H
 #define HN_FORMULATIONS_CHART_JACOBIAN_H
-// Exact derivatives on a chart (chart.h), by the chain rule over those of accel_jacobian.h: with v = N u + s and J v + phi_t = 0,
+// Exact derivatives on a chart (chart.h), by the chain rule over those of accel_jacobian.h: with v
+// = N u + s and J v + phi_t = 0,
 //
-//     dv = N du + [0; -J_d^-1 V dx],      du' = the independent entries of A_x dx + A_v dv                             (1)
+//     dv = N du + [0; -J_d^-1 V dx],      du' = the independent entries of A_x dx + A_v dv    (1)
 //
-// where A_x and A_v are derivatives of the accelerations, and dx = N du_q where positions stay closed. Two solves of the saddle
-// system for each freedom, against as many evaluations by differences.
+// where A_x and A_v are derivatives of the accelerations, and dx = N du_q where positions stay
+// closed. Two solves of the saddle system for each freedom, against as many evaluations by
+// differences.
 
 #include "formulations/ground/accel_jacobian.h"
 #include "formulations/chart/chart.h"

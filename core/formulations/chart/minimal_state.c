@@ -58,10 +58,7 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_minimal_state *s = self;
     const int r = s->chart.r;
     s->chart.cost.evals++;
-    const hn_status status = place(s, t, y, HN_CHART_TOL);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(place(s, t, y, HN_CHART_TOL));
     hn_chart_speeds(&s->chart, &s->chart.here, y + r, s->v);
     memcpy(ydot, y + r, (size_t)r * sizeof *y);
     return hn_chart_accel(&s->chart, s->v, ydot + r);
@@ -81,15 +78,11 @@ static hn_status prepare(void *self) {
 
 static hn_status jacobian(void *self, double t, const double *y, double *jac) {
     hn_minimal_state *s = self;
-    hn_status status = place(s, t, y, HN_CHART_TOL);
-    if (status == HN_OK) {
-        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.r, s->v);
-        status = hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v);
-    }
-    if (status == HN_OK) {
-        hn_chart_jacobian_minimal(&s->slopes, &s->chart, jac);
-    }
-    return status;
+    HN_TRY(place(s, t, y, HN_CHART_TOL));
+    hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.r, s->v);
+    HN_TRY(hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v));
+    hn_chart_jacobian_minimal(&s->slopes, &s->chart, jac);
+    return HN_OK;
 }
 
 void hn_minimal_ode(void *self, hn_ode *out) {
@@ -127,7 +120,8 @@ static hn_status demand_dyads(hn_minimal_state *s, double t) {
                                              "on is not told by the pose");
 }
 
-// a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose `here`
+// a closed form for the coordinates chosen, if there is one and it is wanted; at the closed pose
+// `here`
 static hn_status choose_position(hn_minimal_state *s, double t) {
     hn_chart *chart = &s->chart;
     hn_status status = HN_OK;
@@ -145,8 +139,8 @@ static hn_status choose_position(hn_minimal_state *s, double t) {
     return s->position == HN_POSITION_DYADS ? demand_dyads(s, t) : HN_OK;
 }
 
-// Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed form takes one run of its tape
-// for each closing, and looks at its branches twice a step.
+// Newton's method took a loop evaluation, a factor and a solve for each of its steps; the closed
+// form takes one run of its tape for each closing, and looks at its branches twice a step.
 static void compare_costs(hn_minimal_state *s, double t) {
     const hn_chart *chart = &s->chart;
     if (s->position != HN_POSITION_AUTO || chart->dyads || !s->dyads ||
@@ -174,21 +168,14 @@ hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const doubl
     // a start that is made again gives the same bits
     s->closings = s->newton_steps = 0;
     s->n_settled = 0;
-    hn_status status = hn_chart_choose(chart, t, s->q, first);
-    if (status == HN_OK) {
-        status = hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE);
-    }
-    if (status == HN_OK) {
-        status = choose_position(s, t);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_chart_choose(chart, t, s->q, first));
+    HN_TRY(hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE));
+    HN_TRY(choose_position(s, t));
     for (int j = 0; j < chart->r; j++) {
         y[j] = s->q[chart->at[chart->ind[j]]];
         y[chart->r + j] = s->v[chart->ind[j]];
     }
-    status = hn_chart_settle(chart);
+    hn_status status = hn_chart_settle(chart);
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->last_v);
     s->volume = 1;
     s->has_rate = 0;
@@ -212,8 +199,9 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
     return HN_OK;
 }
 
-// A step that jumps over a dead point finds a closed loop on the near side of it again: the coordinate turns back although
-// the mechanism went on. Then |det J_d| was on its way to zero and all speeds have turned round.
+// A step that jumps over a dead point finds a closed loop on the near side of it again: the
+// coordinate turns back although the mechanism went on. Then |det J_d| was on its way to zero and
+// all speeds have turned round.
 static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     const hn_chart *chart = &s->chart;
     double along = 0;
@@ -226,9 +214,10 @@ static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     return along < 0;
 }
 
-// A closed form keeps its sign and so never goes over to the other mode: where the two ways of assembling a dyad meet inside a
-// step, it turns back on a kinked path. The tangent does not: from the last state forth or from this one back it arrives at a pose
-// of the other sign (of two points on either side of the meeting at least one sees it).
+// A closed form keeps its sign and so never goes over to the other mode: where the two ways of
+// assembling a dyad meet inside a step, it turns back on a kinked path. The tangent does not: from
+// the last state forth or from this one back it arrives at a pose of the other sign (of two points
+// on either side of the meeting at least one sees it).
 static hn_status check_dyads(hn_minimal_state *s, double t, const double *y) {
     hn_chart *chart = &s->chart;
     const hn_chart_point *here = &chart->here, *base = &chart->base;
@@ -251,20 +240,15 @@ static hn_status check_dyads(hn_minimal_state *s, double t, const double *y) {
 hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     hn_chart *chart = &s->chart;
     const double h = t - chart->base.t;
-    hn_status status = place(s, t, y, HN_CHART_TOL_FINE);
-    if (status == HN_OK) {
-        status = check_dyads(s, t, y);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(place(s, t, y, HN_CHART_TOL_FINE));
+    HN_TRY(check_dyads(s, t, y));
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
     if (jumped_a_dead_point(s, h)) {
         chart->here.valid = 0;
         return hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
                              "a dead point lies inside this step: the coordinate turns back there");
     }
-    status = hn_chart_settle(chart);
+    hn_status status = hn_chart_settle(chart);
     if (status == HN_OK && h != 0) {
         const double volume = hn_chart_volume(chart);
         s->volume_rate = (volume - s->volume) / h;

@@ -1,16 +1,18 @@
 #ifndef HN_FORMULATIONS_MINIMAL_STATE_H
 #define HN_FORMULATIONS_MINIMAL_STATE_H
-// What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many entries as the mechanism
-// has freedoms. Which entry of q an independent speed moves must be plain, so the speeds of balls are always dependent; where
-// that cannot be, the scene is refused. Every right-hand side closes the loops first, by Newton from a tangent prediction or, where
-// the loops fall apart into dyads, in closed form, so no gap can open.
+// What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many
+// entries as the mechanism has freedoms. Which entry of q an independent speed moves must be plain,
+// so the speeds of balls are always dependent; where that cannot be, the scene is refused. Every
+// right-hand side closes the loops first, by Newton from a tangent prediction or, where the loops
+// fall apart into dyads, in closed form, so no gap can open.
 
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"
 
 /// How loops are closed once the independent coordinates are known.
 typedef enum hn_position {
-    HN_POSITION_AUTO, ///< by Newton's method at first; in closed form once that is seen to cost fewer operations
+    /// by Newton's method at first; in closed form once that is seen to cost fewer operations
+    HN_POSITION_AUTO,
     HN_POSITION_NEWTON,
     HN_POSITION_DYADS ///< in closed form, or not at all
 } hn_position;
@@ -31,16 +33,19 @@ typedef struct hn_minimal_state {
     int has_rate;
 } hn_minimal_state;
 
-/// Closed forms add nodes to the system's graph when the state is set (dynamics/compile/system.h says who may when).
+/// Closed forms add nodes to the system's graph when the state is set (dynamics/compile/system.h
+/// says who may when).
 HN_MUST_CHECK hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                                         hn_diag *diag);
 void hn_minimal_destroy(void *self);
 void hn_minimal_ode(void *self, hn_ode *out);
-/// Chooses a chart (`first` as for hn_chart_choose), closes the loops at the independent entries of q.
+/// Chooses a chart (`first` as for hn_chart_choose), closes the loops at the independent entries of
+/// q.
 HN_MUST_CHECK hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
                                          const double *v, double *y);
 hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v);
-/// Closes the loops at an accepted state as far as rounding allows and makes it the base of the next step.
+/// Closes the loops at an accepted state as far as rounding allows and makes it the base of the
+/// next step.
 HN_MUST_CHECK hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y);
 void hn_minimal_add_cost(const void *self, hn_cost *cost);
 const char *hn_minimal_why(const void *self);

@@ -33,12 +33,10 @@ static hn_status locate(hn_orthonormal_state *s, double t, const double *q) {
 
 static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
     hn_orthonormal_state *s = self;
-    const hn_status status = locate(s, t, y);
-    if (status == HN_OK) {
-        hn_tspace_speeds(&s->space, y + s->space.nq, s->v);
-        hn_system_kinematics(s->space.sys, y, s->v, pos_dot);
-    }
-    return status;
+    HN_TRY(locate(s, t, y));
+    hn_tspace_speeds(&s->space, y + s->space.nq, s->v);
+    hn_system_kinematics(s->space.sys, y, s->v, pos_dot);
+    return HN_OK;
 }
 
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {
@@ -88,12 +86,10 @@ hn_status hn_orthonormal_set_state(void *self, double t, const double *q, const 
 hn_status hn_orthonormal_get_state(void *self, double t, const double *y, double *q, double *v) {
     hn_orthonormal_state *s = self;
     const int nq = s->space.nq;
-    const hn_status status = locate(s, t, y);
-    if (status == HN_OK) {
-        memcpy(q, y, (size_t)nq * sizeof *q);
-        hn_tspace_speeds(&s->space, y + nq, v);
-    }
-    return status;
+    HN_TRY(locate(s, t, y));
+    memcpy(q, y, (size_t)nq * sizeof *q);
+    hn_tspace_speeds(&s->space, y + nq, v);
+    return HN_OK;
 }
 
 hn_status hn_orthonormal_after_step(void *self, double t, double *y, int *changed) {
@@ -109,11 +105,9 @@ hn_status hn_orthonormal_after_step(void *self, double t, double *y, int *change
         return status;
     }
     hn_tspace_speeds(ts, y + ts->nq, s->v);
-    status = hn_tspace_set_base(ts, t, y, HN_TSPACE_CARRIED);
-    if (status == HN_OK) {
-        hn_tspace_coordinates(ts, s->v, y + ts->nq);
-    }
-    return status;
+    HN_TRY(hn_tspace_set_base(ts, t, y, HN_TSPACE_CARRIED));
+    hn_tspace_coordinates(ts, s->v, y + ts->nq);
+    return HN_OK;
 }
 
 void hn_orthonormal_add_cost(const void *self, hn_cost *cost) {

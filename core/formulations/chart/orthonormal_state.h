@@ -1,8 +1,9 @@
 #ifndef HN_FORMULATIONS_ORTHONORMAL_STATE_H
 #define HN_FORMULATIONS_ORTHONORMAL_STATE_H
-// The state y = (q, u) with v = N u + s and an orthonormal basis N (tangent_space.h). Tracked, the basis of a step is the last
-// one carried along, and the equation knows its rate. Untracked, it is found anew at every right-hand side, as a factorisation
-// gives it, and its rate is taken as if it had been carried: true until a column changes its sign.
+// The state y = (q, u) with v = N u + s and an orthonormal basis N (tangent_space.h). Tracked, the
+// basis of a step is the last one carried along, and the equation knows its rate. Untracked, it is
+// found anew at every right-hand side, as a factorisation gives it, and its rate is taken as if it
+// had been carried: true until a column changes its sign.
 
 #include "formulations/chart/tangent_space.h"
 

@@ -10,8 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TAU_BLUR \
-    1e-13 // of the forces it is the difference of: h and g are derived twice, in different orders of summation
+// of the forces it is the difference of: h and g are derived twice, in different orders of
+// summation
+#define TAU_BLUR 1e-13
 
 const char *hn_reduced_choice_text(hn_reduced_choice choice) {
     static const char *const texts[] = {"the motors", "the choice of the reduced method here",
@@ -19,7 +20,7 @@ const char *hn_reduced_choice_text(hn_reduced_choice choice) {
     return texts[choice];
 }
 
-// memory -----------------------------------------------------------------------------------------------------------
+// ---- memory ----
 
 static hn_status allocate(hn_reduced_terms *w, hn_arena *arena) {
     const size_t n = (size_t)w->nv;
@@ -67,13 +68,10 @@ hn_status hn_reduced_terms_init(hn_reduced_terms *w, const hn_system *sys, hn_ar
                                 hn_diag *diag) {
     memset(w, 0, sizeof *w);
     w->nv = hn_system_get_info(sys).nv;
-    hn_status status = hn_chart_init(&w->chart, sys, 1, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_chart_init(&w->chart, sys, 1, arena, diag));
     w->chart.plain_only = 1;
     w->is_moved = closures_move(sys);
-    status = hn_force_parts_create(sys, arena, &w->parts);
+    hn_status status = hn_force_parts_create(sys, arena, &w->parts);
     if (status == HN_OK) {
         status = allocate(w, arena);
     }
@@ -91,7 +89,7 @@ const char *hn_reduced_terms_why(const hn_reduced_terms *w) {
     return w->chart.why[0] ? w->chart.why : NULL;
 }
 
-// which coordinates ------------------------------------------------------------------------------------------------
+// ---- which coordinates ----
 
 /// The basis of the chart in user rates.
 static void make_rates(hn_reduced_terms *w) {
@@ -134,7 +132,8 @@ static double volume_of(hn_reduced_terms *w, const int *list) {
     return log_volume(w);
 }
 
-/// The motors into `list`; 0 unless there are as many as freedoms, each behind a coordinate of the tree.
+/// The motors into `list`; 0 unless there are as many as freedoms, each behind a coordinate of the
+/// tree.
 static int list_motors(const hn_reduced_terms *w, int *list) {
     const hn_scene *scene = hn_system_scene(w->chart.sys);
     int n = 0, all = 0;
@@ -186,7 +185,8 @@ static int choose_coordinates(hn_reduced_terms *w) {
     return 1;
 }
 
-/// basis = N R^-1 and offset, so that v = basis v_r + offset with v_r the user rates `ind`: R = rows `ind` of `rates`.
+/// basis = N R^-1 and offset, so that v = basis v_r + offset with v_r the user rates `ind`: R =
+/// rows `ind` of `rates`.
 static hn_status rebase(hn_reduced_terms *w) {
     const hn_chart *chart = &w->chart;
     const int r = w->r;
@@ -205,7 +205,8 @@ static hn_status rebase(hn_reduced_terms *w) {
     return HN_OK;
 }
 
-/// x (nv, system) <- x - basis (user rates `ind` of x): what is left moves no independent coordinate.
+/// x (nv, system) <- x - basis (user rates `ind` of x): what is left moves no independent
+/// coordinate.
 static void remove_independent(const hn_reduced_terms *w, double *x, double *user) {
     hn_system_rates_to_user(w->chart.sys, x, user);
     for (int j = 0; j < w->r; j++) {
@@ -215,7 +216,7 @@ static void remove_independent(const hn_reduced_terms *w, double *x, double *use
     }
 }
 
-// what (1) consists of ---------------------------------------------------------------------------------------------
+// ---- what (1) consists of ----
 
 /// x (nv) = basis u
 static void expand(const hn_reduced_terms *w, const double *u, double *x) {
@@ -224,7 +225,8 @@ static void expand(const hn_reduced_terms *w, const double *u, double *x) {
     }
 }
 
-/// c of (1) at speeds v from gamma, without a part along the independent coordinates; `full` has been run there.
+/// c of (1) at speeds v from gamma, without a part along the independent coordinates; `full` has
+/// been run there.
 static void calc_c(hn_reduced_terms *w, double *c) {
     hn_chart *chart = &w->chart;
     memset(c, 0, (size_t)w->nv * sizeof *c);
@@ -289,7 +291,8 @@ static void calc_coriolis(hn_reduced_terms *w) {
     }
 }
 
-/// tau = f + h + g, what is rounding of the three taken as 0; `full` and `parts` have been run at w->v.
+/// tau = f + h + g, what is rounding of the three taken as 0; `full` and `parts` have been run at
+/// w->v.
 static void calc_forces(hn_reduced_terms *w) {
     const double *f = hn_eval_get(w->chart.full, HN_TERM_F), *h = hn_force_parts_h(w->parts),
                  *g = hn_force_parts_g(w->parts);
@@ -318,7 +321,8 @@ static void calc_mass(hn_reduced_terms *w) {
     }
 }
 
-/// Speeds that fit the loops with the given independent ones, and how far the given ones were from them.
+/// Speeds that fit the loops with the given independent ones, and how far the given ones were from
+/// them.
 static void close_speeds(hn_reduced_terms *w, const double *v) {
     const hn_system *sys = w->chart.sys;
     memcpy(w->offset, w->chart.here.s, (size_t)w->nv * sizeof *w->offset);
@@ -401,10 +405,7 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
 
 hn_status hn_reduced_terms_eval(hn_reduced_terms *w, double t, const double *q, const double *v,
                                 int freedoms) {
-    const hn_status status = place(w, t, q, freedoms);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(place(w, t, q, freedoms));
     close_speeds(w, v);
     calc_coriolis(w);
     calc_velocity_part(w, w->v, w->velocity_part);

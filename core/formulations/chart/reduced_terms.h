@@ -2,19 +2,22 @@
 #define HN_FORMULATIONS_REDUCED_TERMS_H
 // The equations of motion left on the free motion, written out at one state:
 //
-//     v = Phi v_r + s,    M_r a_r + C_r v_r + d_r + g_r = tau_r,    a = Phi a_r + c                                 (1)
-//     M_r = Phi' M Phi,   g_r = Phi' g,   tau_r = Phi' tau,   C_r = Phi' (M Phi_dot + C Phi)                        (2)
+//     v = Phi v_r + s,    M_r a_r + C_r v_r + d_r + g_r = tau_r,    a = Phi a_r + c           (1)
+//     M_r = Phi' M Phi,   g_r = Phi' g,   tau_r = Phi' tau,   C_r = Phi' (M Phi_dot + C Phi)  (2)
 //
-// with v_r the rates of as many scene coordinates as there are freedoms, M, g, tau and C of the scene (dynamics/evaluate/force_parts.h
-// says what is g and what is tau). s and d_r belong to closures that move with time and vanish without them.
+// with v_r the rates of as many scene coordinates as there are freedoms, M, g, tau and C of the
+// scene (dynamics/evaluate/force_parts.h says what is g and what is tau). s and d_r belong to
+// closures that move with time and vanish without them.
 //
-// C_r is not unique as a matrix. The one given here is that of Christoffel's symbols, with which M_r' - 2 C_r is skew. It
-// needs no derivative: C_r v_r is a quadratic form Q of v_r, known by evaluation (Phi_dot v_r from gamma), and
+// C_r is not unique as a matrix. The one given here is that of Christoffel's symbols, with which
+// M_r' - 2 C_r is skew. It needs no derivative: C_r v_r is a quadratic form Q of v_r, known by
+// evaluation (Phi_dot v_r from gamma), and
 //
-//     C_r y = 1/2 [Q(v_r + y) - Q(v_r) - Q(y) + Q(0)]                                                              (3)
+//     C_r y = 1/2 [Q(v_r + y) - Q(v_r) - Q(y) + Q(0)]                                         (3)
 //
-// is exact for it, as the symbols are symmetric in the two speeds. Independent speeds must be rates of coordinates for that,
-// so none of a ball's may be among them. Source: Siciliano et al. 2009, section 7.2.
+// is exact for it, as the symbols are symmetric in the two speeds. Independent speeds must be rates
+// of coordinates for that, so none of a ball's may be among them. Source: Siciliano et al. 2009,
+// section 7.2.
 
 #include "dynamics/evaluate/force_parts.h"
 #include "formulations/chart/chart.h"
@@ -22,11 +25,13 @@
 typedef enum hn_reduced_choice {
     HN_REDUCED_BY_MOTORS, ///< as many motors as freedoms, and they can serve
     HN_REDUCED_BY_CHART,  ///< the coordinates that the reduced method integrates here
-    HN_REDUCED_BY_PIVOTS ///< neither can serve as scene coordinates: those that carry the motion best
+    /// neither can serve as scene coordinates: those that carry the motion best
+    HN_REDUCED_BY_PIVOTS
 } hn_reduced_choice;
 const char *hn_reduced_choice_text(hn_reduced_choice choice);
 
-/// Plain data; read after a successful eval. Everything in scene coordinates (user rates), row-major.
+/// Plain data; read after a successful eval. Everything in scene coordinates (user rates),
+/// row-major.
 typedef struct hn_reduced_terms {
     hn_chart chart;
     hn_force_parts *parts;
@@ -39,8 +44,8 @@ typedef struct hn_reduced_terms {
     double *g_r, *tau_r;
     double *d_r;  ///< r: what closures that move with time add
     int is_moved; ///< 1: a closure moves with time, so that s and d_r need not be zero
-    double
-        speed_gap; ///< largest entry of v - (Phi v_r + s): 0 to rounding where the given speeds fit the loops
+    /// largest entry of v - (Phi v_r + s): 0 to rounding where the given speeds fit the loops
+    double speed_gap;
     // in system coordinates
     double *basis, *offset;    ///< nv x r, nv
     double *rates, *unit;      ///< nv x r user rates of the chart's basis; nv scratch
@@ -55,8 +60,9 @@ typedef struct hn_reduced_terms {
 HN_MUST_CHECK hn_status hn_reduced_terms_init(hn_reduced_terms *w, const hn_system *sys,
                                               hn_arena *arena, hn_diag *diag);
 void hn_reduced_terms_destroy(hn_reduced_terms *w);
-/// At (t, q, v), system coordinates; `freedoms` as they are known from elsewhere, -1: unknown. Fails with HN_ERR_CHART or
-/// HN_ERR_UNSUPPORTED and hn_reduced_terms_why() where no such coordinates exist, e.g. at a singular pose.
+/// At (t, q, v), system coordinates; `freedoms` as they are known from elsewhere, -1: unknown.
+/// Fails with HN_ERR_CHART or HN_ERR_UNSUPPORTED and hn_reduced_terms_why() where no such
+/// coordinates exist, e.g. at a singular pose.
 HN_MUST_CHECK hn_status hn_reduced_terms_eval(hn_reduced_terms *w, double t, const double *q,
                                               const double *v, int freedoms);
 const char *hn_reduced_terms_why(const hn_reduced_terms *w);

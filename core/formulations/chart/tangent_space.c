@@ -11,8 +11,8 @@
 enum { MAX_NEWTON = 25 };
 #define RANK_TOL 1e-10  // of the largest pivot of W^1/2 J'
 #define PIVOT_TOL 1e-13 // J Y0 is singular to rounding
-#define TURNED \
-    1e-3 // smallest pivot of J Y0, of the one at the base: the tangent space has turned by a right angle
+// smallest pivot of J Y0, of the one at the base: the tangent space has turned by a right angle
+#define TURNED 1e-3
 
 static int init_memory(hn_tspace *ts, hn_arena *arena) {
     const size_t nq = (size_t)ts->nq, nv = (size_t)ts->nv, nc = (size_t)ts->nc;
@@ -84,7 +84,7 @@ static double smallest_pivot(const hn_qr *qr) {
     return smallest;
 }
 
-// --- the base ---------------------------------------------------------------------------------------------
+// ---- the base ----
 
 static void measure(hn_tspace *ts, double t, const double *q) {
     hn_eval_run(ts->mass, t, q, NULL);
@@ -125,7 +125,8 @@ static void take_columns(hn_tspace *ts, int from, int n, double *B) {
     ts->cost.ops += 4.0 * nv * ts->rank * n;
 }
 
-// N0 = N L^-T with L L' = N' W^-1 N, which differs from I by the square of the angle turned through since the last base
+// N0 = N L^-T with L L' = N' W^-1 N, which differs from I by the square of the angle turned through
+// since the last base
 static int carry_basis(hn_tspace *ts) {
     const int nv = ts->nv, r = ts->r;
     for (int i = 0; i < nv; i++) {
@@ -182,7 +183,7 @@ hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q, hn_tspace
     return status;
 }
 
-// --- a place near it --------------------------------------------------------------------------------------
+// ---- a place near it ----
 
 static void eval_loop(hn_tspace *ts, double t) {
     hn_eval_run(ts->loop, t, ts->q, NULL);
@@ -274,12 +275,10 @@ hn_status hn_tspace_locate(hn_tspace *ts, double t, const double *q) {
         return fail(ts, HN_ERR_DIVERGED, t, "the state is not finite");
     }
     eval_loop(ts, t);
-    const hn_status status = factor(ts);
-    if (status == HN_OK) {
-        make_basis(ts);
-        ts->valid = 1;
-    }
-    return status;
+    HN_TRY(factor(ts));
+    make_basis(ts);
+    ts->valid = 1;
+    return HN_OK;
 }
 
 hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *delta, double *q,
@@ -314,7 +313,7 @@ hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *d
                 "no pose near the tangent of the step closes the loops: the step is too long");
 }
 
-// --- speeds and accelerations -----------------------------------------------------------------------------
+// ---- speeds and accelerations ----
 
 void hn_tspace_speeds(const hn_tspace *ts, const double *u, double *v) {
     for (int i = 0; i < ts->nv; i++) {

@@ -74,10 +74,7 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_tangent_state *s = self;
     const int nq = s->chart.nq;
     s->chart.cost.evals++;
-    const hn_status status = locate(s, &s->chart.here, t, y);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(locate(s, &s->chart.here, t, y));
     hn_chart_speeds(&s->chart, &s->chart.here, y + nq, s->v);
     hn_system_kinematics(s->chart.sys, y, s->v, ydot);
     return hn_chart_accel(&s->chart, s->v, ydot + nq);
@@ -85,12 +82,10 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
 
 static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
     hn_tangent_state *s = self;
-    const hn_status status = locate(s, &s->chart.here, t, y);
-    if (status == HN_OK) {
-        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
-        hn_system_kinematics(s->chart.sys, y, s->v, pos_dot);
-    }
-    return status;
+    HN_TRY(locate(s, &s->chart.here, t, y));
+    hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
+    hn_system_kinematics(s->chart.sys, y, s->v, pos_dot);
+    return HN_OK;
 }
 
 static hn_status prepare(void *self) {
@@ -100,19 +95,16 @@ static hn_status prepare(void *self) {
 
 static hn_status jacobian(void *self, double t, const double *y, double *jac) {
     hn_tangent_state *s = self;
-    hn_status status = locate(s, &s->chart.here, t, y);
-    if (status == HN_OK) {
-        hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
-        status = hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v);
-    }
-    if (status == HN_OK) {
-        hn_chart_jacobian_speeds(&s->slopes, &s->chart, jac);
-    }
-    return status;
+    HN_TRY(locate(s, &s->chart.here, t, y));
+    hn_chart_speeds(&s->chart, &s->chart.here, y + s->chart.nq, s->v);
+    HN_TRY(hn_chart_jacobian_at(&s->slopes, &s->chart, s->arena, s->v));
+    hn_chart_jacobian_speeds(&s->slopes, &s->chart, jac);
+    return HN_OK;
 }
 
-// The form that leaves out the rate of the basis has accelerations of its own, an orthonormal basis turns by a rule of its own, and the
-// positions of balls are not moved one speed at a time: these are left to differences.
+// The form that leaves out the rate of the basis has accelerations of its own, an orthonormal basis
+// turns by a rule of its own, and the positions of balls are not moved one speed at a time: these
+// are left to differences.
 static int has_derivatives(const hn_tangent_state *s) {
     return s->with_rate && !s->orthonormal && s->chart.nq == s->chart.nv;
 }
@@ -148,13 +140,8 @@ static hn_status start(hn_tangent_state *s, int choice, double t, const double *
     memmove(s->v, v, (size_t)s->chart.nv * sizeof *v);
     memmove(y, q, (size_t)s->chart.nq * sizeof *q);
     (void)hn_system_normalise(s->chart.sys, y);
-    hn_status status = hn_chart_choose(&s->chart, t, y, choice);
-    if (status == HN_OK) {
-        status = close_here(s, t, y);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_chart_choose(&s->chart, t, y, choice));
+    HN_TRY(close_here(s, t, y));
     speeds_to_basis(s, s->v, y + s->chart.nq);
     return hn_chart_settle(&s->chart);
 }

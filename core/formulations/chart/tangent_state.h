@@ -1,7 +1,8 @@
 #ifndef HN_FORMULATIONS_TANGENT_STATE_H
 #define HN_FORMULATIONS_TANGENT_STATE_H
-// What both null-space formulations share: the state y = (q, u) with v = N(q) u + s, so that J v + phi_t = 0 holds exactly
-// at any q. Positions drift inside a step only: at its end the dependent coordinates are closed by Newton.
+// What both null-space formulations share: the state y = (q, u) with v = N(q) u + s, so that J v +
+// phi_t = 0 holds exactly at any q. Positions drift inside a step only: at its end the dependent
+// coordinates are closed by Newton.
 
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"
@@ -11,8 +12,9 @@ typedef struct hn_tangent_state {
     hn_chart_jacobian slopes;
     hn_arena *arena;
     int with_rate; ///< see hn_tangent_init
-    int orthonormal; ///< 1: the columns of N have length 1 and are orthogonal, 0: N = [I; -J_d^-1 J_i]
-    double *v;       ///< nv, scratch
+    /// 1: the columns of N have length 1 and are orthogonal, 0: N = [I; -J_d^-1 J_i]
+    int orthonormal;
+    double *v; ///< nv, scratch
 } hn_tangent_state;
 
 /// `with_rate` 0 leaves out the basis-rate term (a model error, see nullspace_as_printed.c).

@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-// a basis of the rows fills the matrix with about so many entries; where it would be more, some of the rows have to do
+// a basis of the rows fills the matrix with about so many entries; where it would be more, some of
+// the rows have to do
 #define MOST_COMBINED 50000
 
 const double *hn_unit_positions(const hn_system *sys, const double *q, double *unit) {
@@ -23,7 +24,7 @@ const double *hn_unit_positions(const hn_system *sys, const double *q, double *u
     return unit;
 }
 
-// --- life -----------------------------------------------------------------------------------------------------
+// ---- life ----
 
 static unsigned terms_of(const hn_accel_jacobian *j) {
     return HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_GAMMA_Q |
@@ -158,7 +159,7 @@ void hn_accel_jacobian_free(hn_accel_jacobian *j) {
     j->terms = j->twist = NULL;
 }
 
-// --- products with the rows of (2) ----------------------------------------------------------------------------
+// ---- products with the rows of (2) ----
 
 void hn_slopes_add_term(const hn_accel_jacobian *j, hn_linear_term term, double k, const double *x,
                         double *out) {
@@ -216,7 +217,7 @@ static void subtract_transposed(const hn_accel_jacobian *j, const double *x, dou
     }
 }
 
-// --- at a state -----------------------------------------------------------------------------------------------
+// ---- at a state ----
 
 hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j) {
     hn_slopes_put_saddle(j, j->matrix[HN_SLOPES_RESTING]);
@@ -231,7 +232,8 @@ static double weigh_entry(const hn_accel_jacobian *j, int row, int col) {
     return J[(size_t)row * (size_t)j->nv + (size_t)col] / (m > 0 ? sqrt(m) : 1);
 }
 
-// one over the length of each row, short ones stretched no more than the accelerations do (linalg/saddle.h, row_floor)
+// one over the length of each row, short ones stretched no more than the accelerations do
+// (linalg/saddle.h, row_floor)
 static const double *scale_rows(const hn_accel_jacobian *j) {
     double *scale = j->work[0][1], longest = 0;
     for (int i = 0; i < j->nc; i++) {
@@ -268,8 +270,9 @@ static void choose_rows(hn_accel_jacobian *j, int rank) {
     j->ops += hn_flops_qr(nv, nc);
 }
 
-// Rows in use: an orthonormal basis of what the rows hold. Off the closed set, where rows that depend on each other part, the accelerations
-// meet them in the least-squares sense; with the basis held that has these derivatives but for the gap times its turning.
+// Rows in use: an orthonormal basis of what the rows hold. Off the closed set, where rows that
+// depend on each other part, the accelerations meet them in the least-squares sense; with the basis
+// held that has these derivatives but for the gap times its turning.
 static void combine_rows(hn_accel_jacobian *j, int rank) {
     const int nv = j->nv, nc = j->nc;
     double *column = j->work[0][0];
@@ -313,14 +316,11 @@ static void keep_rows(hn_accel_jacobian *j, int rank) {
     }
 }
 
-// Multipliers of the kept rows alone that push as all of them do: off the closed set, where rows part, only these belong to
-// accelerations that the kept rows decide.
+// Multipliers of the kept rows alone that push as all of them do: off the closed set, where rows
+// part, only these belong to accelerations that the kept rows decide.
 static hn_status shift_multipliers(hn_accel_jacobian *j) {
     double *top = j->work[0][0], *rows = j->work[0][1];
-    hn_status status = hn_accel_jacobian_prepare(j);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_accel_jacobian_prepare(j));
     memset(rows, 0, (size_t)j->nc * sizeof *rows);
     hn_linear_apply_transposed(j->terms, HN_LINEAR_J, j->lambda, top);
     for (int i = 0; i < j->nv; i++) {
@@ -371,10 +371,7 @@ static hn_status give_way(hn_accel_jacobian *j, double t) {
     double *rows = j->work[0][0];
     hn_linear_run(j->terms, t, j->pose, j->v, NULL, NULL);
     keep_rows(j, nc);
-    const hn_status status = hn_accel_jacobian_prepare(j);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_accel_jacobian_prepare(j));
     const double *gamma = hn_linear_get(j->terms, HN_LINEAR_GAMMA),
                  *phi = hn_linear_get(j->terms, HN_LINEAR_PHI),
                  *gap = hn_linear_get(j->terms, HN_LINEAR_SPEED_GAP);
@@ -424,7 +421,7 @@ const double *hn_accel_jacobian_accelerations(const hn_accel_jacobian *j) {
     return j->a;
 }
 
-// --- derivatives ----------------------------------------------------------------------------------------------
+// ---- derivatives ----
 
 void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const double *dv, double *da) {
     double *top = j->work[0][0], *rows = j->work[0][1];
@@ -484,7 +481,8 @@ void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, doubl
     hn_linear_apply(j->terms, HN_LINEAR_V, dx, rows);
 }
 
-// what turning ball k does to q': columns of its four entries and three speeds; and its part of dv'/dq from that by turns
+// what turning ball k does to q': columns of its four entries and three speeds; and its part of
+// dv'/dq from that by turns
 static void fill_ball(const hn_accel_jacobian *j, const hn_ball_place *b, double *jac) {
     const int n = j->nq + j->nv;
     const double *q = j->q + b->position, *omega = j->v + b->speed;
@@ -532,10 +530,7 @@ static void fill_column(hn_accel_jacobian *j, int i, int by_speed, int col, doub
 
 hn_status hn_accel_jacobian_fill(hn_accel_jacobian *j, double *jac) {
     const int nq = j->nq, nv = j->nv, n = nq + nv;
-    const hn_status status = hn_accel_jacobian_prepare(j);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_accel_jacobian_prepare(j));
     memset(jac, 0, (size_t)n * (size_t)n * sizeof *jac);
     for (int i = 0; i < nv; i++) {
         fill_column(j, i, 0, j->at[i] >= 0 ? j->at[i] : nq + i, jac);

@@ -13,7 +13,7 @@ typedef struct turn {
     double omega[3];
 } turn;
 
-// --- complex numbers ------------------------------------------------------------------------------------------
+// ---- complex numbers ----
 
 static hn_complex times(hn_complex a, hn_complex b) {
     return (hn_complex){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
@@ -43,7 +43,7 @@ static void store(int parts, double *const *x, int i, hn_complex value) {
     }
 }
 
-// --- matrices -------------------------------------------------------------------------------------------------
+// ---- matrices ----
 
 static turn turn_of(const hn_accel_jacobian *j, int which, hn_complex s) {
     const double *omega = j->v + j->balls[which].speed;
@@ -173,10 +173,10 @@ hn_status hn_accel_jacobian_factor(hn_accel_jacobian *j, int which, double re, d
     return hn_newton_matrix_factor(to);
 }
 
-// --- Newton's systems -----------------------------------------------------------------------------------------
+// ---- Newton's systems ----
 
-/// The kinematics of one ball with its right side r1: p = (p0, dx) with dq = 1/2 q o p solves s p - 1/2 p o omega = rho + (0, dv),
-/// rho = 2 q^-1 o r1.
+/// The kinematics of one ball with its right side r1: p = (p0, dx) with dq = 1/2 q o p solves s p -
+/// 1/2 p o omega = rho + (0, dv), rho = 2 q^-1 o r1.
 static void turn_ball(const hn_accel_jacobian *j, const hn_ball_place *b, const turn *p, int parts,
                       double *const *r, const hn_complex *dv, hn_complex out[4]) {
     const double *q = j->q + b->position, size = hn_dot(4, q, q);

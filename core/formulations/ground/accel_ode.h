@@ -1,10 +1,12 @@
 #ifndef HN_FORMULATIONS_ACCEL_ODE_H
 #define HN_FORMULATIONS_ACCEL_ODE_H
-// What index-1, Baumgarte and projection share: the state y = (q, v) in system coordinates and the right-hand side
+// What index-1, Baumgarte and projection share: the state y = (q, v) in system coordinates and the
+// right-hand side
 //
-//     q' = G(q) v,    v' = a   from   K [a; -lambda] = [f; -gamma - 2 alpha (J v + phi_t) - beta^2 phi]        (1)
+//  q' = G(q) v, v' = a from K [a; -lambda] = [f; -gamma - 2 alpha (J v + phi_t) - beta^2 phi] (1)
 //
-// A formulation's instance begins with an hn_accel_ode, so that the functions below and those of hn_state_ode fit its table.
+// A formulation's instance begins with an hn_accel_ode, so that the functions below and those of
+// hn_state_ode fit its table.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"

@@ -1,6 +1,7 @@
 #ifndef HN_FORMULATIONS_COST_H
 #define HN_FORMULATIONS_COST_H
-// Work and events of a formulation or an integrator, summed over a run: plain counters, reset by the run.
+// Work and events of a formulation or an integrator, summed over a run: plain counters, reset by
+// the run.
 
 typedef struct hn_cost {
     long long evals; ///< right-hand sides

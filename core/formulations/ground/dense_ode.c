@@ -48,11 +48,11 @@ void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, d
 
 double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size) {
     const hn_pivot_noise_terms at = {.n_J = ode->n_J,
-                              .row = ode->J_row,
-                              .col = ode->J_col,
-                              .J = ode->J,
-                              .phi = ode->phi,
-                              .phi_t = ode->phi_t};
+                                     .row = ode->J_row,
+                                     .col = ode->J_col,
+                                     .J = ode->J,
+                                     .phi = ode->phi,
+                                     .phi_t = ode->phi_t};
     return hn_pivot_noise_of(hn_pivot_noise_gap(ode->base.sys, &at, v, rate, size));
 }
 
@@ -87,10 +87,7 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     const double *q = hn_unit_positions(ode->base.sys, y, ode->base.unit), *v = y + ode->base.nq;
     ode->base.cost.evals++;
     hn_eval_run(ode->eval, t, q, v);
-    const hn_status status = ode->accelerate(self, t, v, ydot + ode->base.nq);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->accelerate(self, t, v, ydot + ode->base.nq));
     if (!hn_all_finite(ode->base.nv, ydot + ode->base.nq)) {
         snprintf(ode->base.why, sizeof ode->base.why,
                  "the accelerations at t = %.6g s are not finite", t);

@@ -1,11 +1,12 @@
 #ifndef HN_FORMULATIONS_DENSE_ODE_H
 #define HN_FORMULATIONS_DENSE_ODE_H
-// What the formulations share that get their acceleration from M, f, J and gamma as dense arrays, by their own formula: the
-// state y = (q, v) in system coordinates and
+// What the formulations share that get their acceleration from M, f, J and gamma as dense arrays,
+// by their own formula: the state y = (q, v) in system coordinates and
 //
-//     q' = G(q) v,    v' = accelerate(M, f, J, gamma, ...)                                             (1)
+//     q' = G(q) v,    v' = accelerate(M, f, J, gamma, ...)                                    (1)
 //
-// A formulation's instance begins with an hn_dense_ode, so that the functions below and those of hn_state_ode fit its table.
+// A formulation's instance begins with an hn_dense_ode, so that the functions below and those of
+// hn_state_ode fit its table.
 
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/state_ode.h"
@@ -18,7 +19,8 @@ typedef struct hn_dense_ode {
     /// entries of M (lower triangle) and of J that are not identically zero
     int n_M, n_J;
     const int *M_row, *M_col, *J_row, *J_col;
-    /// Fills a (nv) from the terms. Allocates nothing. Fails with its reason in `why`; counts its own work.
+    /// Fills a (nv) from the terms. Allocates nothing. Fails with its reason in `why`; counts its
+    /// own work.
     hn_status (*accelerate)(void *self, double t, const double *v, double *a);
 } hn_dense_ode;
 
@@ -28,8 +30,9 @@ HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sy
 /// out (nc) = gamma + 2 xi omega (J v + phi_t) + omega^2 phi at the terms last evaluated.
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,
                        double *out);
-/// The size of pivots of J that are blur at the state evaluated last (dynamics/evaluate/pivot_noise.h), with the gap's terms; rate (nc) receives
-/// J v + phi_t, size (nc) is scratch.
+/// The size of pivots of J that are blur at the state evaluated last
+/// (dynamics/evaluate/pivot_noise.h), with the gap's terms; rate (nc) receives J v + phi_t, size
+/// (nc) is scratch.
 double hn_dense_ode_blur(const hn_dense_ode *ode, const double *v, double *rate, double *size);
 /// y (nc) = J x and x (nv) += J' y, entry by entry.
 void hn_dense_ode_rows(const hn_dense_ode *ode, const double *x, double *y);

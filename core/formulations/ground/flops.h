@@ -1,7 +1,8 @@
 #ifndef HN_FORMULATIONS_FLOPS_H
 #define HN_FORMULATIONS_FLOPS_H
-// Arithmetic operations (additions and multiplications count one each) of the dense linear algebra that methods do in addition
-// to their tapes. Leading terms as in Golub & Van Loan 2013: exact enough to compare methods, and free of timing noise.
+// Arithmetic operations (additions and multiplications count one each) of the dense linear algebra
+// that methods do in addition to their tapes. Leading terms as in Golub & Van Loan 2013: exact
+// enough to compare methods, and free of timing noise.
 
 double hn_flops_qr(int m, int n);       ///< Householder QR with pivoting, m x n
 double hn_flops_qr_solve(int m, int n); ///< Q' b and R^-1

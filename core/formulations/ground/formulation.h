@@ -1,8 +1,9 @@
 #ifndef HN_FORMULATIONS_FORMULATION_H
 #define HN_FORMULATIONS_FORMULATION_H
-// A formulation: how the constraints enter the equations of motion. It turns a system into an ordinary differential equation
-// (ode.h) that any integrator can step, and may correct the state after a step; or it passes the differential-algebraic system
-// to integrators that take one. One file in formulations/rows and one line in formulations/list each.
+// A formulation: how the constraints enter the equations of motion. It turns a system into an
+// ordinary differential equation (ode.h) that any integrator can step, and may correct the state
+// after a step; or it passes the differential-algebraic system to integrators that take one. One
+// file in formulations/rows and one line in formulations/list each.
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -11,9 +12,10 @@
 #include "formulations/ground/ode.h"
 #include "formulations/ground/option.h"
 
-/// The equations that a formulation passes to the integrator: an ordinary differential equation (hn_ode), or a
-/// differential-algebraic system of one of these forms (integrators/step/dae.h). With a differential-algebraic form `ode` and
-/// all members below it are NULL, and `create`, which may be NULL too, only says whether the scene can be served.
+/// The equations that a formulation passes to the integrator: an ordinary differential equation
+/// (hn_ode), or a differential-algebraic system of one of these forms (integrators/step/dae.h).
+/// With a differential-algebraic form `ode` and all members below it are NULL, and `create`, which
+/// may be NULL too, only says whether the scene can be served.
 typedef enum hn_dae_form {
     HN_FORM_ODE,
     HN_FORM_INDEX3,
@@ -40,7 +42,8 @@ enum { HN_AUGMENTED_WEIGHT, HN_AUGMENTED_PROJECTIONS, HN_AUGMENTED_OPTIONS };
 enum { HN_BAUMGARTE_GIVEN, HN_BAUMGARTE_AUTO };
 enum { HN_PROJECTIONS_ON, HN_PROJECTIONS_OFF };
 
-/// What a formulation does and needs: bits of hn_formulation.traits. Remedies and studies choose by them, never by a name.
+/// What a formulation does and needs: bits of hn_formulation.traits. Remedies and studies choose by
+/// them, never by a name.
 typedef enum hn_trait {
     HN_TRAIT_CLOSES_POSITION = 1 << 0,    ///< phi = 0 after each step, to rounding
     HN_TRAIT_CLOSES_VELOCITY = 1 << 1,    ///< J v + phi_t = 0 after each step, to rounding
@@ -61,11 +64,12 @@ typedef struct hn_formulation {
     const char *drift;      ///< what happens to the gap, in words
     const char *when, *when_not, *source;
     const char *needs; ///< terms of the system that it evaluates: "M f J gamma"
-    const char
-        *order_note; ///< orders of q, v and lambda where they differ from the integrator's, or NULL
+    /// orders of q, v and lambda where they differ from the integrator's, or NULL
+    const char *order_note;
     const char *limits; ///< what it cannot serve, or NULL
     hn_dae_form form;
-    /// The form for integrators that do not serve `form` (index1: as ODE, or with lambda); HN_FORM_ODE: none.
+    /// The form for integrators that do not serve `form` (index1: as ODE, or with lambda);
+    /// HN_FORM_ODE: none.
     hn_dae_form alternative_form;
     int index;        ///< differential index of the equations passed on; 0: no multipliers in them
     bool model_error; ///< converges to a different solution, on purpose
@@ -73,24 +77,29 @@ typedef struct hn_formulation {
     int n_options;
     hn_option options[HN_MAX_OPTIONS];
 
-    /// Makes an instance from `arena`; destroy frees what is not from the arena. `options` in table order.
-    /// Fails: HN_ERR_UNSUPPORTED with the reason in diag for a scene that it cannot serve; HN_ERR_MEMORY; HN_ERR_LIMIT.
+    /// Makes an instance from `arena`; destroy frees what is not from the arena. `options` in table
+    /// order. Fails: HN_ERR_UNSUPPORTED with the reason in diag for a scene that it cannot serve;
+    /// HN_ERR_MEMORY; HN_ERR_LIMIT.
     hn_status (*create)(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag);
     void (*destroy)(void *self);
-    /// Returns sizes and functions; known once set_state has succeeded, because they may depend on the rank of J.
+    /// Returns sizes and functions; known once set_state has succeeded, because they may depend on
+    /// the rank of J.
     void (*ode)(void *self, hn_ode *out);
-    /// Converts (q, v) to y and back; q (nq), v (nv) in system coordinates, y with room for nq + nv. set_state may choose a
-    /// chart and forgets the past; get_state changes nothing that a later right-hand side could see.
+    /// Converts (q, v) to y and back; q (nq), v (nv) in system coordinates, y with room for nq +
+    /// nv. set_state may choose a chart and forgets the past; get_state changes nothing that a
+    /// later right-hand side could see.
     hn_status (*set_state)(void *self, double t, const double *q, const double *v, double *y);
     hn_status (*get_state)(void *self, double t, const double *y, double *q, double *v);
-    /// Makes a step out of several steps of the integrator (symmetric projection). NULL: the integrator's step is the step.
+    /// Makes a step out of several steps of the integrator (symmetric projection). NULL: the
+    /// integrator's step is the step.
     hn_status (*around_step)(void *self, const hn_step_call *base, double t, double h,
                              const double *y, double *y_new, double *err);
-    /// Corrects y in place at the end of an accepted step. *changed = 1 if y moved or its meaning changed: FSAL slopes, history
-    /// and dense output are then stale. NULL: nothing to do.
+    /// Corrects y in place at the end of an accepted step. *changed = 1 if y moved or its meaning
+    /// changed: FSAL slopes, history and dense output are then stale. NULL: nothing to do.
     hn_status (*after_step)(void *self, double t, double *y, int *changed);
-    /// Whether y has a new meaning after each step, so that the dense output of the last step cannot be read. NULL: no.
+    /// Whether y has a new meaning after each step, so that the dense output of the last step
+    /// cannot be read. NULL: no.
     int (*state_is_local)(const void *self);
     /// Changes an option while running (sliders). NULL: not possible.
     hn_status (*set)(void *self, int option, double value);
@@ -98,7 +107,8 @@ typedef struct hn_formulation {
     const char *(*why)(const void *self); ///< reason of the last failure in words, or NULL
 } hn_formulation;
 
-/// Returns the name of a form as the API spells it: "ode", "index3", "index2", "ggl", "index1", "stabilised", "augmented".
+/// Returns the name of a form as the API spells it: "ode", "index3", "index2", "ggl", "index1",
+/// "stabilised", "augmented".
 const char *hn_form_name(hn_dae_form form);
 
 #endif

@@ -1,13 +1,15 @@
 #ifndef HN_FORMULATIONS_ODE_H
 #define HN_FORMULATIONS_ODE_H
-// The ordinary differential equation y' = F(t, y) that a formulation makes of a system, as integrators see it.
+// The ordinary differential equation y' = F(t, y) that a formulation makes of a system, as
+// integrators see it.
 //
-// y = (positions, velocities): n_pos entries, then n_vel. The formulation decides which positions and velocities these are.
+// y = (positions, velocities): n_pos entries, then n_vel. The formulation decides which positions
+// and velocities these are.
 
 #include "base/status.h"
 
-/// Newton's systems of an implicit integrator, solved by the structure of the equations; the matrix dF/dy itself is full and
-/// hides that structure. `self` is that of the hn_ode.
+/// Newton's systems of an implicit integrator, solved by the structure of the equations; the matrix
+/// dF/dy itself is full and hides that structure. `self` is that of the hn_ode.
 typedef struct hn_ode_newton {
     /// Takes derivatives at (t, y). Fails as rhs does.
     hn_status (*at)(void *self, double t, const double *y);
@@ -23,14 +25,16 @@ typedef struct hn_ode {
     void *self;
     /// Evaluates y' (n_pos + n_vel) at (t, y). When it fails ydot is undefined.
     hn_status (*rhs)(void *self, double t, const double *y, double *ydot);
-    /// Evaluates the position part of y' only (partitioned integrators call it with new velocities).
+    /// Evaluates the position part of y' only (partitioned integrators call it with new
+    /// velocities).
     hn_status (*kinematics)(void *self, double t, const double *y, double *pos_dot);
-    /// Evaluates dF/dy at (t, y), (n_pos + n_vel) square, row-major, for implicit integrators. Fails as rhs does. NULL:
-    /// integrators take differences. Derivatives by a quaternion, whose length no motion changes, are along rotations.
+    /// Evaluates dF/dy at (t, y), (n_pos + n_vel) square, row-major, for implicit integrators.
+    /// Fails as rhs does. NULL: integrators take differences. Derivatives by a quaternion, whose
+    /// length no motion changes, are along rotations.
     hn_status (*jacobian)(void *self, double t, const double *y, double *jac);
     const hn_ode_newton *newton; ///< NULL: not offered
-    /// Reserves the memory that jacobian and newton need from the formulation's arena; otherwise their first call does so.
-    /// NULL: they need none.
+    /// Reserves the memory that jacobian and newton need from the formulation's arena; otherwise
+    /// their first call does so. NULL: they need none.
     hn_status (*prepare)(void *self);
 } hn_ode;
 

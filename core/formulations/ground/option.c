@@ -75,7 +75,8 @@ static int read_unit(const hn_option *option, const char *unit, double *parts) {
     return 0;
 }
 
-// Length of the decimal number at the start of s (no hexadecimal, no nan, no inf), 0 if there is none.
+// Length of the decimal number at the start of s (no hexadecimal, no nan, no inf), 0 if there is
+// none.
 static size_t number_length(const char *s) {
     size_t i = s[0] == '+' || s[0] == '-';
     size_t digits = 0;
@@ -139,9 +140,7 @@ hn_status hn_option_parse(const hn_option *option, const char *text, double *val
     word[length] = '\0';
     // dividing by a power of ten keeps "20 ms" equal to 0.02 to the last bit
     const double number = strtod(word, NULL) / parts;
-    const hn_status status = hn_option_check(option, number, diag);
-    if (status == HN_OK) {
-        *value = number;
-    }
-    return status;
+    HN_TRY(hn_option_check(option, number, diag));
+    *value = number;
+    return HN_OK;
 }

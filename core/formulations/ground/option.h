@@ -1,6 +1,7 @@
 #ifndef HN_FORMULATIONS_OPTION_H
 #define HN_FORMULATIONS_OPTION_H
-// One option of a formulation or an integrator, as in "alpha=20". (A scene has parameters, a method has options.)
+// One option of a formulation or an integrator, as in "alpha=20". (A scene has parameters, a method
+// has options.)
 
 #include "base/diag.h"
 #include "base/status.h"

@@ -67,10 +67,7 @@ static int make_pattern(hn_penalised *p, hn_arena *arena) {
 
 hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double *options,
                             hn_arena *arena, hn_diag *diag) {
-    const hn_status status = hn_dense_ode_init(&p->ode, sys, 1, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_dense_ode_init(&p->ode, sys, 1, arena, diag));
     const size_t nv = (size_t)p->ode.base.nv, nc = (size_t)p->ode.base.nc;
     p->a = options[HN_PENALISED_A];
     p->omega = options[HN_PENALISED_OMEGA];

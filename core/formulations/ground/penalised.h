@@ -1,8 +1,8 @@
 #ifndef HN_FORMULATIONS_PENALISED_H
 #define HN_FORMULATIONS_PENALISED_H
-// What penalty and augmented Lagrangian share: the matrix M + a J' J, which is positive definite however many rows depend on
-// each other, as long as no direction is both massless and free. It is factored sparse: two coordinates meet in it where a
-// body or a closure row touches both.
+// What penalty and augmented Lagrangian share: the matrix M + a J' J, which is positive definite
+// however many rows depend on each other, as long as no direction is both massless and free. It is
+// factored sparse: two coordinates meet in it where a body or a closure row touches both.
 
 #include "linalg/sparse_spd.h"
 #include "formulations/ground/dense_ode.h"
@@ -26,7 +26,8 @@ typedef struct hn_penalised {
 /// Memory and terms; `options` begin with the three above.
 HN_MUST_CHECK hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys,
                                           const double *options, hn_arena *arena, hn_diag *diag);
-/// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in ode.base.why.
+/// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in
+/// ode.base.why.
 HN_MUST_CHECK hn_status hn_penalised_factor(hn_penalised *p, double t, double weight);
 /// x <- (M + weight J' J)^-1 x, x (nv).
 void hn_penalised_solve(hn_penalised *p, double *x);

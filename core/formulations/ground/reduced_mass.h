@@ -11,7 +11,8 @@ typedef struct hn_mass_entries {
 /// y = M x, x and y (nv x r) row-major.
 void hn_mass_multiply(const hn_mass_entries *at, const double *M, const double *x, int r,
                       double *y);
-/// Lower triangle of A (r x r) = N' y, N and y (nv x r); each entry summed from the first row of N to the last.
+/// Lower triangle of A (r x r) = N' y, N and y (nv x r); each entry summed from the first row of N
+/// to the last.
 void hn_mass_project(int nv, int r, const double *N, const double *y, double *A);
 /// N' M N by these two, in arithmetic operations.
 double hn_mass_project_ops(const hn_mass_entries *at, int r);

@@ -29,7 +29,7 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
     return HN_OK;
 }
 
-// --- derivatives, for implicit integrators ----------------------------------------------------------------------
+// ---- derivatives, for implicit integrators ----
 
 static hn_accel_law law_of(const hn_state_ode *ode) {
     return ode->law ? ode->law(ode) : (hn_accel_law){0};
@@ -74,7 +74,7 @@ static void solve(void *self, int parts, double *const *x) {
 
 static const hn_ode_newton newton = {take_slopes, factor, solve};
 
-// --- a formulation's table --------------------------------------------------------------------------------------
+// ---- a formulation's table ----
 
 void hn_state_ode_get(void *self, hn_status (*rhs)(void *, double, const double *, double *),
                       hn_ode *out) {

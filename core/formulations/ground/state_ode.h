@@ -2,7 +2,7 @@
 #define HN_FORMULATIONS_STATE_ODE_H
 // What the formulations share whose state is y = (q, v) in system coordinates:
 //
-//     q' = G(q) v,    v' = the accelerations that obey a law (accel_jacobian.h)                                     (1)
+//     q' = G(q) v,    v' = the accelerations that obey a law (accel_jacobian.h)               (1)
 //
 // A formulation's instance begins with an hn_state_ode, so that the functions below fit its table.
 
@@ -14,7 +14,8 @@ enum { HN_WHY_TEXT = 240 };
 typedef struct hn_state_ode {
     const hn_system *sys;
     int nq, nv, nc;
-    /// The law that the accelerations obey now, for their derivatives; NULL: that of index-1. `give` does not change.
+    /// The law that the accelerations obey now, for their derivatives; NULL: that of index-1.
+    /// `give` does not change.
     hn_accel_law (*law)(const void *self);
     double *unit; ///< nq: positions with quaternions of length 1
     hn_arena *arena;
@@ -31,7 +32,8 @@ void hn_state_ode_get(void *self, hn_status (*rhs)(void *, double, const double 
                       hn_ode *out);
 hn_status hn_state_ode_set_state(void *self, double t, const double *q, const double *v, double *y);
 hn_status hn_state_ode_get_state(void *self, double t, const double *y, double *q, double *v);
-/// After a step: quaternions of balls back to length 1; `changed` only where that moved them by more than rounding.
+/// After a step: quaternions of balls back to length 1; `changed` only where that moved them by
+/// more than rounding.
 hn_status hn_state_ode_after_step(void *self, double t, double *y, int *changed);
 void hn_state_ode_add_cost(const void *self, hn_cost *cost); ///< `cost` above, and of derivatives
 const char *hn_state_ode_why(const void *self);

@@ -1,6 +1,7 @@
 #ifndef HN_FORMULATIONS_FORMULATION_LIST_H
 #define HN_FORMULATIONS_FORMULATION_LIST_H
-// The list of all formulations. A new formulation is one file in formulations/rows and one line here.
+// The list of all formulations. A new formulation is one file in formulations/rows and one line
+// here.
 
 #include "formulations/ground/formulation.h"
 
@@ -33,7 +34,8 @@ int hn_formulation_count(void);
 const hn_formulation *hn_formulation_at(int i);
 /// The formulation of this name ("baumgarte"); NULL when unknown.
 const hn_formulation *hn_formulation_find(const char *name);
-/// Returns the first formulation of the list that has all traits in `have` and none in `lack`; NULL: there is none.
+/// Returns the first formulation of the list that has all traits in `have` and none in `lack`;
+/// NULL: there is none.
 const hn_formulation *hn_formulation_with(unsigned have, unsigned lack);
 
 #endif

@@ -1,7 +1,7 @@
 #include "formulations/ground/formulation.h"
 
-// M a - f + J' lambda* = 0 with lambda* := lambda* + w phi until phi = 0; then speeds and accelerations are projected with the
-// matrix of that iteration (integrators/trapezoidal.c).
+// M a - f + J' lambda* = 0 with lambda* := lambda* + w phi until phi = 0; then speeds and
+// accelerations are projected with the matrix of that iteration (integrators/trapezoidal.c).
 
 static const char *const projections[] = {[HN_PROJECTIONS_ON] = "on", [HN_PROJECTIONS_OFF] = "off"};
 

@@ -5,16 +5,19 @@
 #include <math.h>
 #include <string.h>
 
-// lambda_1 = 0, then for k = 1, 2, ...                                                              (1)
-//     (M + a J' J) acc_k = f + J' lambda_k - a J' r,      r = gamma + 2 xi omega (J v + phi_t) + omega^2 phi
-//     lambda_(k+1) = lambda_k - a (J acc_k + r)
+// lambda_1 = 0, then for k = 1, 2, ...
+// (1)
+//  (M + a J' J) acc_k = f + J' lambda_k - a J' r, r = gamma + 2 xi omega (J v + phi_t) + omega^2 phi
+//  lambda_(k+1) = lambda_k - a (J acc_k + r)
 //
-// Each turn shrinks the error by 1 / (1 + a s), s the smallest nonzero eigenvalue of J M^-1 J'; the limit is Baumgarte's
-// acceleration with alpha = xi omega, beta = omega, and lambda stays in the range of J: of least norm where rows repeat.
-// acc_k is found as a correction of acc_(k-1), so that a strong penalty costs condition but no digits.
-// Every right-hand side starts anew from 0, so that it depends on the state alone.
+// Each turn shrinks the error by 1 / (1 + a s), s the smallest nonzero eigenvalue of J M^-1 J'; the
+// limit is Baumgarte's acceleration with alpha = xi omega, beta = omega, and lambda stays in the
+// range of J: of least norm where rows repeat. acc_k is found as a correction of acc_(k-1), so that
+// a strong penalty costs condition but no digits. Every right-hand side starts anew from 0, so that
+// it depends on the state alone.
 //
-// a = 0 on the card asks for 1e5 / s with s the median of J_i diag(M)^-1 J_i', the scale of J M^-1 J' without a solve.
+// a = 0 on the card asks for 1e5 / s with s the median of J_i diag(M)^-1 J_i', the scale of J M^-1
+// J' without a solve.
 
 enum { OPT_ITERATIONS = HN_PENALISED_OPTIONS, N_OPTIONS };
 #define AUTO_WEIGHT 1e5
@@ -84,10 +87,7 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     const int nv = p->ode.base.nv, nc = p->ode.base.nc;
     const double weight = choose_weight(al);
     hn_dense_ode_pull(&p->ode, v, p->omega, p->xi, p->pull);
-    const hn_status status = hn_penalised_factor(p, t, weight);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_penalised_factor(p, t, weight));
     memset(al->lambda, 0, (size_t)nc * sizeof *al->lambda);
     memset(acc, 0, (size_t)nv * sizeof *acc);
     for (int i = 0; i < al->iterations; i++) {
@@ -121,10 +121,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     al->p.ode.accelerate = accelerate;
     al->p.ode.base.law = law;
     al->iterations = (int)options[OPT_ITERATIONS];
-    const hn_status status = hn_penalised_init(&al->p, sys, options, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_penalised_init(&al->p, sys, options, arena, diag));
     al->lambda = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);
     al->residual = hn_arena_doubles(arena, (size_t)al->p.ode.base.nv);
     al->size = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);

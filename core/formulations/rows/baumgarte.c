@@ -5,12 +5,13 @@
 
 #include <math.h>
 
-// J a = -gamma - 2 alpha (J v + phi_t) - beta^2 phi, so the gap e obeys e'' + 2 alpha e' + beta^2 e = 0; with
-// alpha = beta it is critically damped:  e(t) = (e0 + (e0' + alpha e0) t) exp(-alpha t).            (1)
+// J a = -gamma - 2 alpha (J v + phi_t) - beta^2 phi, so the gap e obeys e'' + 2 alpha e' + beta^2 e
+// = 0; with alpha = beta it is critically damped:  e(t) = (e0 + (e0' + alpha e0) t) exp(-alpha t).
+// (1)
 //
-// The automatic rule follows the motion, not the step: alpha = min(1.3 w_rms, 0.1 / h), where w_rms is the running
-// rms of the largest rate. Tying alpha to 1/h alone would bring any integrator down to order 2, because inner stages
-// leave a gap of O(h^2) that alpha^2 then multiplies.
+// The automatic rule follows the motion, not the step: alpha = min(1.3 w_rms, 0.1 / h), where w_rms
+// is the running rms of the largest rate. Tying alpha to 1/h alone would bring any integrator down
+// to order 2, because inner stages leave a gap of O(h^2) that alpha^2 then multiplies.
 
 #define AUTO_RATE 1.3
 #define AUTO_STEP 0.1

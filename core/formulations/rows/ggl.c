@@ -1,8 +1,10 @@
 #include "formulations/ground/formulation.h"
 
-// q' = G (v + M^-1 J' mu),   M v' = f + J' lambda,   phi = 0,   J v + phi_t = 0                                   (1)
+// q' = G (v + M^-1 J' mu),   M v' = f + J' lambda,   phi = 0,   J v + phi_t = 0
+// (1)
 //
-// The exact solution has mu = 0. M^-1 in front of mu is free of units; the paper's own form has the identity there.
+// The exact solution has mu = 0. M^-1 in front of mu is free of units; the paper's own form has the
+// identity there.
 const hn_formulation hn_formulation_ggl = {
     .name = "ggl",
     .title = "Gear-Gupta-Leimkuhler, stabilised index 2",

@@ -2,8 +2,9 @@
 
 static const char *const projects[] = {"no", "yes"};
 
-// q' = G v,   M v' = f + J' lambda,   phi = 0: the loop as it is. What a collocation method loses of the speeds lies across the loops
-// (in M^-1 J'), so that a projection at the end of a step gives back the order that positions have.
+// q' = G v,   M v' = f + J' lambda,   phi = 0: the loop as it is. What a collocation method loses
+// of the speeds lies across the loops (in M^-1 J'), so that a projection at the end of a step gives
+// back the order that positions have.
 const hn_formulation hn_formulation_index3 = {
     .name = "index3",
     .title = "index 3, position constraints",

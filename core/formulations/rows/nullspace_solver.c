@@ -2,11 +2,12 @@
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/formulation.h"
 
-// J N = 0:  a = N z + c,  (N' M N) z = N' (f - M c),  c = -J^+ gamma, at the state (q, v) as it stands.        (1)
+// J N = 0:  a = N z + c,  (N' M N) z = N' (f - M c),  c = -J^+ gamma, at the state (q, v) as it
+// stands.        (1)
 //
-// N is an orthonormal basis by pivoted QR, found anew each time (linalg/saddle.h). It may turn or change sign from one evaluation to the next:
-// only a is used, which no choice of N changes. The same as index1 with its solver set to least-norm, under the name that textbooks
-// give it.
+// N is an orthonormal basis by pivoted QR, found anew each time (linalg/saddle.h). It may turn or
+// change sign from one evaluation to the next: only a is used, which no choice of N changes. The
+// same as index1 with its solver set to least-norm, under the name that textbooks give it.
 
 static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {

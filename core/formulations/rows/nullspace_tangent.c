@@ -5,13 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-// Inside one step, from q_n with the bases N_n of the free speeds and Y_n across them (tangent_space.h):
+// Inside one step, from q_n with the bases N_n of the free speeds and Y_n across them
+// (tangent_space.h):
 //
-//     q = q_n moved by  N_n xi + Y_n eta(xi),   eta by Newton on phi(q) = 0                                  (1)
-//     xi' = N_n' W^-1 (rate of the move),       u = N_n' W^-1 v                                              (2)
+//     q = q_n moved by  N_n xi + Y_n eta(xi),   eta by Newton on phi(q) = 0                   (1)
+//     xi' = N_n' W^-1 (rate of the move),       u = N_n' W^-1 v                               (2)
 //
-// with state (xi, u); xi' = u where q is a plain vector. Every right-hand side is closed, and xi is taken from 0 again at each
-// step, so that no chart of the whole motion is needed. Source: Potra & Rheinboldt 1991.
+// with state (xi, u); xi' = u where q is a plain vector. Every right-hand side is closed, and xi is
+// taken from 0 again at each step, so that no chart of the whole motion is needed. Source: Potra &
+// Rheinboldt 1991.
 
 typedef struct nullspace_tangent {
     hn_tspace space;
@@ -70,7 +72,7 @@ static hn_status place(nullspace_tangent *s, double t, const double *y, double t
 }
 
 // The rate of a rotation vector d whose turn has the angular velocity w (in the turned axes):
-//     d' = w + 1/2 d x w + k d x (d x w),   k = (1 - (a/2) cot(a/2)) / a^2,   a = |d|                          (3)
+//     d' = w + 1/2 d x w + k d x (d x w),   k = (1 - (a/2) cot(a/2)) / a^2,   a = |d|         (3)
 // Hairer, Lubich & Wanner 2006, III.4 (the inverse of dexp).
 static void turn_rate(const double d[3], double w[3]) {
     const double a = hypot(hypot(d[0], d[1]), d[2]);
@@ -95,20 +97,15 @@ static void rates(nullspace_tangent *s, const double *y, double *xi_dot) {
 
 static hn_status kinematics(void *self, double t, const double *y, double *pos_dot) {
     nullspace_tangent *s = self;
-    const hn_status status = place(s, t, y, HN_TSPACE_TOL);
-    if (status == HN_OK) {
-        rates(s, y, pos_dot);
-    }
-    return status;
+    HN_TRY(place(s, t, y, HN_TSPACE_TOL));
+    rates(s, y, pos_dot);
+    return HN_OK;
 }
 
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     nullspace_tangent *s = self;
     s->space.cost.evals++;
-    const hn_status status = kinematics(self, t, y, ydot);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(kinematics(self, t, y, ydot));
     hn_tspace_speeds(&s->space, y + s->space.r, s->v);
     return hn_tspace_accel(&s->space, s->v, ydot + s->space.r);
 }
@@ -161,30 +158,22 @@ static hn_status get_state(void *self, double t, const double *y, double *q, dou
     nullspace_tangent *s = self;
     hn_tspace *ts = &s->space;
     const int centred = is_centred(ts, t, y);
-    const hn_status status =
-        centred ? hn_tspace_locate(ts, t, ts->q0) : place(s, t, y, HN_TSPACE_TOL_FINE);
-    if (status == HN_OK) {
-        memcpy(q, centred ? ts->q0 : s->q, (size_t)ts->nq * sizeof *q);
-        hn_tspace_speeds(ts, y + ts->r, v);
-    }
-    return status;
+    HN_TRY(centred ? hn_tspace_locate(ts, t, ts->q0) : place(s, t, y, HN_TSPACE_TOL_FINE));
+    memcpy(q, centred ? ts->q0 : s->q, (size_t)ts->nq * sizeof *q);
+    hn_tspace_speeds(ts, y + ts->r, v);
+    return HN_OK;
 }
 
 static hn_status after_step(void *self, double t, double *y, int *changed) {
     nullspace_tangent *s = self;
     hn_tspace *ts = &s->space;
     *changed = 1;
-    hn_status status = place(s, t, y, HN_TSPACE_TOL_FINE);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(place(s, t, y, HN_TSPACE_TOL_FINE));
     (void)hn_system_normalise(ts->sys, s->q);
     hn_tspace_speeds(ts, y + ts->r, s->v);
-    status = hn_tspace_set_base(ts, t, s->q, HN_TSPACE_CARRIED);
-    if (status == HN_OK) {
-        centre(s, s->v, y);
-    }
-    return status;
+    HN_TRY(hn_tspace_set_base(ts, t, s->q, HN_TSPACE_CARRIED));
+    centre(s, s->v, y);
+    return HN_OK;
 }
 
 static int state_is_local(const void *self) {

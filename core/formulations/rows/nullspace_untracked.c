@@ -1,9 +1,10 @@
 #include "formulations/chart/orthonormal_state.h"
 #include "formulations/ground/formulation.h"
 
-// v = N u with an orthonormal N from a factorisation of J at each right-hand side. J N = 0 leaves N free up to a rotation, and
-// the factorisation chooses: when it changes its mind, a column changes its sign (or turns) from one evaluation to the next, u
-// does not, and so v does. The loop stays closed. An exhibit; nullspace:basis=orthonormal is the same with the basis carried.
+// v = N u with an orthonormal N from a factorisation of J at each right-hand side. J N = 0 leaves N
+// free up to a rotation, and the factorisation chooses: when it changes its mind, a column changes
+// its sign (or turns) from one evaluation to the next, u does not, and so v does. The loop stays
+// closed. An exhibit; nullspace:basis=orthonormal is the same with the basis carried.
 
 static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,
                         hn_diag *diag) {

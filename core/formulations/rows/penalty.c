@@ -3,18 +3,17 @@
 
 #include <string.h>
 
-// (M + a J' J) acc = f - a J' (gamma + 2 xi omega (J v + phi_t) + omega^2 phi)                       (1)
+// (M + a J' J) acc = f - a J' (gamma + 2 xi omega (J v + phi_t) + omega^2 phi)
+// (1)
 //
-// Mass, damping and stiffness of the loop are penalised together, so the gap's own motion has the rates of (xi, omega)
-// whatever a is: (1) is not stiff in time. A loop that carries the force lambda stays open by |lambda| / (a omega^2).
+// Mass, damping and stiffness of the loop are penalised together, so the gap's own motion has the
+// rates of (xi, omega) whatever a is: (1) is not stiff in time. A loop that carries the force
+// lambda stays open by |lambda| / (a omega^2).
 
 static hn_status accelerate(void *self, double t, const double *v, double *acc) {
     hn_penalised *p = self;
     hn_dense_ode_pull(&p->ode, v, p->omega, p->xi, p->pull);
-    const hn_status status = hn_penalised_factor(p, t, p->a);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_penalised_factor(p, t, p->a));
     memcpy(acc, p->ode.f, (size_t)p->ode.base.nv * sizeof *acc);
     for (int k = 0; k < p->ode.base.nc; k++) {
         p->work[k] = -p->a * p->pull[k];

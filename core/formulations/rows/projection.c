@@ -8,7 +8,8 @@
 
 enum { OPT_WEIGHT, OPT_WHAT, OPT_SOLVER, N_OPTIONS };
 enum { WHAT_BOTH, WHAT_POSITION, WHAT_VELOCITY };
-// of the characteristic length: rounding level times sqrt(rows), and what is accepted where rounding is coarser
+// of the characteristic length: rounding level times sqrt(rows), and what is accepted where
+// rounding is coarser
 #define GAP_TOL 3e-16
 #define GAP_TOL_COARSE 1e-12
 

@@ -11,20 +11,22 @@
 #include <stdio.h>
 #include <string.h>
 
-// With N = M^-1 J' for positions and speeds alike, and Psi one step of the integrator on the index-1 equations,
+// With N = M^-1 J' for positions and speeds alike, and Psi one step of the integrator on the
+// index-1 equations,
 //
-//     q^ = q0 + N0 mu,  v^ = v0 + N0 nu;   (q*, v*) = Psi(q^, v^);   q1 = q* + N1 mu,  v1 = v* + N1 nu            (1)
-//     phi(q1) = 0,  J1 v1 + phi_t = 0                                                                        (2)
+//  q^ = q0 + N0 mu, v^ = v0 + N0 nu; (q*, v*) = Psi(q^, v^); q1 = q* + N1 mu, v1 = v* + N1 nu (1)
+//  phi(q1) = 0,  J1 v1 + phi_t = 0                                                         (2)
 //
-// The same mu and nu push off the manifold and back on: with a symmetric Psi the whole step is symmetric, which the usual
-// projection is not, and energy stays bounded. mu and nu by quasi-Newton with 2 S0, S = J M^-1 J'; each turn costs a step of Psi.
-// Source: Hairer 2000; Hairer, Lubich & Wanner 2006, section V.4.1.
+// The same mu and nu push off the manifold and back on: with a symmetric Psi the whole step is
+// symmetric, which the usual projection is not, and energy stays bounded. mu and nu by quasi-Newton
+// with 2 S0, S = J M^-1 J'; each turn costs a step of Psi. Source: Hairer 2000; Hairer, Lubich &
+// Wanner 2006, section V.4.1.
 
 enum { MAX_TURNS = 40 };
 static const double ROUNDING = 4 * DBL_EPSILON; // of coordinates and speeds: as far as (2) is met
 static const double COARSE = 1e3;               // times that, where it gets no better
-// a direction in which J is weaker cannot be trusted to close anything, and a row that is short at this pose is mostly rounding if
-// stretched: pushed along either, the step starts somewhere else
+// a direction in which J is weaker cannot be trusted to close anything, and a row that is short at
+// this pose is mostly rounding if stretched: pushed along either, the step starts somewhere else
 static const double RANK_TOL = 1e-7;
 static const double ROW_FLOOR = 0.05;
 
@@ -159,13 +161,11 @@ static void move(const symmetric *s, double *y, const double *dq, const double *
     hn_axpy(s->ode.base.nv, 1, dv, y + s->ode.base.nq);
 }
 
-// the last line of (1), with N1 at the point that the last turn found; then (2)'s residuals as fractions of rounding
+// the last line of (1), with N1 at the point that the last turn found; then (2)'s residuals as
+// fractions of rounding
 static hn_status land(symmetric *s, double t1, double *y, double *q1, double *worst) {
     const int nq = s->ode.base.nq, nv = s->ode.base.nv, nc = s->ode.base.nc;
-    hn_status status = look(s, t1, q1);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(look(s, t1, q1));
     push_along(s, s->L, s->J, s->mu, s->N1_mu);
     push_along(s, s->L, s->J, s->nu, s->push);
     move(s, y, s->N1_mu, s->push);
@@ -216,10 +216,7 @@ static hn_status begin(symmetric *s, double t, const double *y) {
     opts.rank_tol = RANK_TOL;
     opts.row_floor = ROW_FLOOR;
     opts.residual_tol = HUGE_VAL;
-    const hn_status status = look(s, t, y);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(look(s, t, y));
     memcpy(s->L0, s->L, (size_t)nv * nv * sizeof *s->L);
     memcpy(s->J0, s->J, (size_t)nc * nv * sizeof *s->J);
     memset(s->mu, 0, (size_t)nc * sizeof *s->mu);
@@ -231,14 +228,10 @@ static hn_status begin(symmetric *s, double t, const double *y) {
 
 // what the noise of the integrator's own iteration leaves of (2), taken off at the end alone
 static hn_status polish(symmetric *s, double *y) {
-    hn_status status = hn_saddle_apply(s->zero, s->phi, s->N1_mu, s->x, NULL, s->saddle);
-    if (status == HN_OK) {
-        status = hn_saddle_apply(s->zero, s->rate, s->push, s->x, NULL, s->saddle);
-    }
-    if (status == HN_OK) {
-        move(s, y, s->N1_mu, s->push);
-    }
-    return status;
+    HN_TRY(hn_saddle_apply(s->zero, s->phi, s->N1_mu, s->x, NULL, s->saddle));
+    HN_TRY(hn_saddle_apply(s->zero, s->rate, s->push, s->x, NULL, s->saddle));
+    move(s, y, s->N1_mu, s->push);
+    return HN_OK;
 }
 
 static hn_status around_step(void *self, const hn_step_call *base, double t, double h,

@@ -9,16 +9,20 @@
 #include <stdio.h>
 #include <string.h>
 
-// M = L L',   a = a_u + L^-T (J L^-T)^+ (-gamma - J a_u),   M a_u = f                                 (1)
+// M = L L',   a = a_u + L^-T (J L^-T)^+ (-gamma - J a_u),   M a_u = f
+// (1)
 //
-// The pseudo-inverse by complete orthogonal decomposition: L^-1 J' P = Q [R; 0] with pivoting, rows of J scaled to unit length
-// in that metric, then R' z = P' b in least squares where rows were dropped, and x = Q z. Rows that depend on others
-// need no care; contradicting ones are met in the least-squares sense. Where the loops stand open, rows that depend on others on the
-// closed set part by about the gap: the tolerance that decides the rank grows with it (dynamics/evaluate/pivot_noise.h).
+// The pseudo-inverse by complete orthogonal decomposition: L^-1 J' P = Q [R; 0] with pivoting, rows
+// of J scaled to unit length in that metric, then R' z = P' b in least squares where rows were
+// dropped, and x = Q z. Rows that depend on others need no care; contradicting ones are met in the
+// least-squares sense. Where the loops stand open, rows that depend on others on the closed set
+// part by about the gap: the tolerance that decides the rank grows with it
+// (dynamics/evaluate/pivot_noise.h).
 //
-// Where M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia & Phohomsiri 2006),
+// Where M is singular there is no a_u; then, with J^+ J the projector on the rows of J (Udwadia &
+// Phohomsiri 2006),
 //
-//     [(I - J^+ J) M; J] a = [(I - J^+ J) f; -gamma]   in least squares                                (2)
+//     [(I - J^+ J) M; J] a = [(I - J^+ J) f; -gamma]   in least squares                       (2)
 //
 // which has one solution when no direction is both massless and free.
 
@@ -39,7 +43,7 @@ typedef struct udwadia_kalaba {
     double mass_scale;           // 1 / largest diagonal entry of M, in eq. (2)
 } udwadia_kalaba;
 
-// --- eq. (1) ----------------------------------------------------------------------------------------------
+// ---- eq. (1) ----
 
 // L and the scale; 0 where M is singular
 static int factor_mass(udwadia_kalaba *u) {
@@ -61,7 +65,8 @@ static int factor_mass(udwadia_kalaba *u) {
     return hn_cholesky(nv, u->L, nv, MASS_TOL) == HN_OK;
 }
 
-// scales the columns of u->rows to unit length and factors them; short ones only as far as they are more than blur
+// scales the columns of u->rows to unit length and factors them; short ones only as far as they are
+// more than blur
 static void factor_rows(udwadia_kalaba *u) {
     const int nv = u->ode.base.nv, nc = u->ode.base.nc;
     double longest = 0;
@@ -140,7 +145,7 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
         hn_flops_cholesky_solve(nv) * (1.5 + 0.5 * nc) + 2 * hn_flops_product(nc, nv, 1);
 }
 
-// --- eq. (2) ----------------------------------------------------------------------------------------------
+// ---- eq. (2) ----
 
 // columns of [(I - J^+ J) M; J] into u->stack at unit length; the index of an empty one, or -1
 static int fill_stack(udwadia_kalaba *u) {
@@ -230,10 +235,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     }
     *self = u;
     u->ode.accelerate = accelerate;
-    const hn_status status = hn_dense_ode_init(&u->ode, sys, 1, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_dense_ode_init(&u->ode, sys, 1, arena, diag));
     const int nv = u->ode.base.nv, nc = u->ode.base.nc, small = nv < nc ? nv : nc, big = nv + nc;
     u->L = hn_arena_doubles(arena, (size_t)nv * (size_t)nv);
     u->scale = hn_arena_doubles(arena, (size_t)nv);

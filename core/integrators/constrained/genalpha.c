@@ -9,14 +9,14 @@
 
 // Generalised-alpha with the auxiliary a of Arnold & Bruls: v' is the true acceleration, and
 //
-//     (1 - alpha_m) a1 + alpha_m a0 = (1 - alpha_f) v'1 + alpha_f v'0,    M v'1 = f + J' lambda at t1             (1)
-//     alpha_m = (2 rho - 1) / (rho + 1),  alpha_f = rho / (rho + 1),
-//     gamma = 1/2 + alpha_f - alpha_m,  beta = (gamma + 1/2)^2 / 4                                               (2)
+//  (1 - alpha_m) a1 + alpha_m a0 = (1 - alpha_f) v'1 + alpha_f v'0, M v'1 = f + J' lambda at t1 (1)
+//  alpha_m = (2 rho - 1) / (rho + 1),  alpha_f = rho / (rho + 1),
+//  gamma = 1/2 + alpha_f - alpha_m,  beta = (gamma + 1/2)^2 / 4                            (2)
 //
-// rho is the factor that is left of an infinitely fast oscillation after a step. The equilibrium holds exactly at t1, so M may
-// depend on q. a0 approximates v' at t + (alpha_m - alpha_f) h; begun there (shifted) the start costs no accuracy, begun
-// with v' itself the order stays 2, begun with 0 it falls to 1.
-// Source: Chung & Hulbert 1993; Arnold & Bruls 2007; Arnold, Bruls & Cardona 2015.
+// rho is the factor that is left of an infinitely fast oscillation after a step. The equilibrium
+// holds exactly at t1, so M may depend on q. a0 approximates v' at t + (alpha_m - alpha_f) h; begun
+// there (shifted) the start costs no accuracy, begun with v' itself the order stays 2, begun with 0
+// it falls to 1. Source: Chung & Hulbert 1993; Arnold & Bruls 2007; Arnold, Bruls & Cardona 2015.
 
 enum { OPT_STEP, OPT_RHO, OPT_A0, N_OPTIONS };
 enum { A0_SHIFTED, A0_CONSISTENT, A0_ZERO };
@@ -63,10 +63,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    const hn_status status = hn_newmark_init(&s->n, sys, form == HN_FORM_GGL, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_newmark_init(&s->n, sys, form == HN_FORM_GGL, arena, diag));
     const size_t nv = (size_t)s->n.base.nv, nc = (size_t)s->n.base.nc;
     choose_coefficients(s, options[OPT_RHO]);
     s->a0 = (int)options[OPT_A0];
@@ -131,16 +128,13 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     (void)err;
     genalpha *s = self;
     const size_t nv = (size_t)s->n.base.nv, nc = (size_t)s->n.base.nc;
-    hn_status status = s->fresh ? begin(s, t, h, y) : HN_OK;
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(s->fresh ? begin(s, t, h, y) : HN_OK);
     memcpy(s->n.a0, s->now.a, nv * sizeof *s->n.a0);
     memcpy(s->n.guess, s->now.lambda, nc * sizeof *s->n.guess);
     for (size_t i = 0; i < nv; i++) {
         s->n.past[i] = (s->alpha_m * s->now.a[i] - s->alpha_f * s->now.vdot[i]) / (1 - s->alpha_f);
     }
-    status = hn_newmark_step(&s->n, t, h, y, y_new);
+    hn_status status = hn_newmark_step(&s->n, t, h, y, y_new);
     memcpy(s->next.a, s->n.a1, nv * sizeof *s->n.a1);
     memcpy(s->next.vdot, s->n.e, nv * sizeof *s->n.e);
     memcpy(s->next.lambda, s->n.lambda, nc * sizeof *s->n.lambda);

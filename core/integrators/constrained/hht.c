@@ -8,12 +8,12 @@
 
 // HHT-I3: with F = f + J' lambda and alpha in [-1/3, 0]
 //
-//     1 / (1 + alpha) M(q1) a1 - F1 + alpha / (1 + alpha) F0 = 0                                               (1)
-//     gamma = (1 - 2 alpha) / 2,  beta = (1 - alpha)^2 / 4                                                     (2)
+//     1 / (1 + alpha) M(q1) a1 - F1 + alpha / (1 + alpha) F0 = 0                              (1)
+//     gamma = (1 - 2 alpha) / 2,  beta = (1 - alpha)^2 / 4                                    (2)
 //
-// (1) weighs forces of two times against an acceleration that M of ONE time multiplies. Where M depends on q that is an error
-// of the order h in each step: order 2 for constant M, little more than 1 in angles.
-// Source: Negrut et al. 2007; Jay & Negrut 2007.
+// (1) weighs forces of two times against an acceleration that M of ONE time multiplies. Where M
+// depends on q that is an error of the order h in each step: order 2 for constant M, little more
+// than 1 in angles. Source: Negrut et al. 2007; Jay & Negrut 2007.
 
 enum { OPT_STEP, OPT_DAMPING, N_OPTIONS };
 
@@ -46,10 +46,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    const hn_status status = hn_newmark_init(&s->n, sys, 0, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_newmark_init(&s->n, sys, 0, arena, diag));
     s->alpha = -options[OPT_DAMPING];
     s->n.gamma = (1 - 2 * s->alpha) / 2;
     s->n.beta = (1 - s->alpha) * (1 - s->alpha) / 4;
@@ -78,11 +75,9 @@ static void find_force(hht *s, double t, const double *y, const double *lambda, 
 static hn_status start(void *self, double t, const double *y) {
     hht *s = self;
     hn_dae_base *b = &s->n.base;
-    const hn_status status = hn_dae_accelerate(b, t, y, y + b->nq, s->now.a, s->now.lambda);
-    if (status == HN_OK) {
-        find_force(s, t, y, s->now.lambda, s->now.force);
-    }
-    return status;
+    HN_TRY(hn_dae_accelerate(b, t, y, y + b->nq, s->now.a, s->now.lambda));
+    find_force(s, t, y, s->now.lambda, s->now.force);
+    return HN_OK;
 }
 
 static hn_status step(void *self, double t, double h, const double *y, double *y_new, double *err) {
@@ -94,10 +89,7 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     for (size_t i = 0; i < nv; i++) {
         s->n.carry[i] = s->alpha / (1 + s->alpha) * s->now.force[i];
     }
-    const hn_status status = hn_newmark_step(&s->n, t, h, y, y_new);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_newmark_step(&s->n, t, h, y, y_new));
     memcpy(s->next.a, s->n.a1, nv * sizeof *s->n.a1);
     memcpy(s->next.lambda, s->n.lambda, nc * sizeof *s->n.lambda);
     find_force(s, t + h, y_new, s->next.lambda, s->next.force);

@@ -51,12 +51,9 @@ hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised, h
     const unsigned rest = HN_LINEAR_RESIDUAL | HN_LINEAR_PHI | HN_LINEAR_SPEED_GAP;
     const unsigned matrices =
         HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | (stabilised ? HN_LINEAR_V : 0);
-    hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
     s->stabilised = stabilised;
-    status = hn_linear_create(sys, rest, arena, &s->rest);
+    hn_status status = hn_linear_create(sys, rest, arena, &s->rest);
     if (status == HN_OK) {
         status = hn_linear_create(sys, matrices, arena, &s->matrices);
     }

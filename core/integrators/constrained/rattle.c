@@ -11,22 +11,24 @@
 
 // With D = q1 - q0, w = D / h and the momentum p = M v, one step is
 //
-//     M w - p0 - h/2 F - h/2 J0' lambda = 0,   phi(q1) = 0                                            (1)
-//     p1 = p0 + h/2 (F + F1) + h/2 J0' lambda + J1' mu,   J1 M1^-1 p1 + phi_t = 0                     (2)
+//     M w - p0 - h/2 F - h/2 J0' lambda = 0,   phi(q1) = 0                                    (1)
+//     p1 = p0 + h/2 (F + F1) + h/2 J0' lambda + J1' mu,   J1 M1^-1 p1 + phi_t = 0             (2)
 //
 // Constant M: F = L_q at q0, F1 = L_q at q1, and (1) is linear but for phi: RATTLE as published.
-// M(q): M and F = F1 = L_q are taken at ((q0 + q1) / 2, w): the midpoint discrete Lagrangian. Its Newton matrix for D is
-// M / h + (B - B') / 2 with B = (M w)_q; the curvature of L itself, of the order h, is left out.
-// Balls: their part of D is a turn; the midpoint discrete Lagrangian on the group adds to (1) and (2) what ball_step.h says.
-// Both are symplectic on the constraint manifold and symmetric, of order 2; lambda belongs to one side of q0, so alone it
-// is of order 1.
+// M(q): M and F = F1 = L_q are taken at ((q0 + q1) / 2, w): the midpoint discrete Lagrangian. Its
+// Newton matrix for D is M / h + (B - B') / 2 with B = (M w)_q; the curvature of L itself, of the
+// order h, is left out. Balls: their part of D is a turn; the midpoint discrete Lagrangian on the
+// group adds to (1) and (2) what ball_step.h says. Both are symplectic on the constraint manifold
+// and symmetric, of order 2; lambda belongs to one side of q0, so alone it is of order 1.
 //
-// Sums of many small increments: q and p are carried with the rounding of each sum, so that 1e7 steps lose nothing to it.
+// Sums of many small increments: q and p are carried with the rounding of each sum, so that 1e7
+// steps lose nothing to it.
 //
-// Forces that depend on speed (Q_v of lagrange_terms.h) spoil symplecticity and have no place in (1). On request they act in
-// half-steps before and after, with q held: Strang splitting, order 2.
-// Sources: Andersen 1983; Leimkuhler & Skeel 1994; Marsden & West 2001; Hairer, Lubich & Wanner 2006, sections VII.1 and VIII.5;
-// Bou-Rabee & Marsden 2009, Hamilton-Pontryagin integrators on Lie groups.
+// Forces that depend on speed (Q_v of lagrange_terms.h) spoil symplecticity and have no place in
+// (1). On request they act in half-steps before and after, with q held: Strang splitting, order 2.
+// Sources: Andersen 1983; Leimkuhler & Skeel 1994; Marsden & West 2001; Hairer, Lubich & Wanner
+// 2006, sections VII.1 and VIII.5; Bou-Rabee & Marsden 2009, Hamilton-Pontryagin integrators on Lie
+// groups.
 
 enum { OPT_STEP, OPT_SPEED_FORCES, N_OPTIONS };
 enum { REFUSE, SPLIT };
@@ -93,11 +95,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
-    status = hn_lagrange_create(sys, arena, &s->terms);
+    HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
+    hn_status status = hn_lagrange_create(sys, arena, &s->terms);
     if (status == HN_OK) {
         status = hn_ball_step_init(&s->balls, sys, arena);
     }
@@ -156,10 +155,7 @@ static hn_status speeds_from(rattle *s, const double *p, double moving) {
     hn_newton_matrix_begin(s->matrix, nv + b->nr);
     hn_dae_put_mass(b, s->matrix, 1, 0, 0);
     border(s, b->J, 1);
-    const hn_status status = factor(s);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(factor(s));
     memcpy(s->x, p, (size_t)nv * sizeof *p);
     for (int k = 0; k < b->nr; k++) {
         s->x[nv + k] = -moving * b->phi_t[b->rows[k]];
@@ -168,21 +164,16 @@ static hn_status speeds_from(rattle *s, const double *p, double moving) {
     return HN_OK;
 }
 
-// v after a time h of M v' = Q_v + J' lambda, J v' = 0 with q held, by Heun's method, at the terms last evaluated
+// v after a time h of M v' = Q_v + J' lambda, J v' = 0 with q held, by Heun's method, at the terms
+// last evaluated
 static hn_status damp(rattle *s, double t, double h, const double *q, double *v) {
     const int nv = s->base.nv;
-    hn_status status = speeds_from(s, hn_lagrange_dissipation(s->terms, t, q, v), 0);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(speeds_from(s, hn_lagrange_dissipation(s->terms, t, q, v), 0));
     for (int i = 0; i < nv; i++) {
         s->kick[i] = s->x[i];
         s->w[i] = v[i] + h * s->x[i];
     }
-    status = speeds_from(s, hn_lagrange_dissipation(s->terms, t, q, s->w), 0);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(speeds_from(s, hn_lagrange_dissipation(s->terms, t, q, s->w), 0));
     for (int i = 0; i < nv; i++) {
         v[i] += h / 2 * (s->kick[i] + s->x[i]);
     }
@@ -247,7 +238,8 @@ static hn_status factor_newton(rattle *s, double t, double h, const double *mome
     return factor(s);
 }
 
-// from half a turn on the poses of the ends do not tell which way round it was; at a whole one (1) is singular
+// from half a turn on the poses of the ends do not tell which way round it was; at a whole one (1)
+// is singular
 static hn_status look_at_turns(rattle *s, double t) {
     const double angle = hn_ball_step_angle(&s->balls, s->D);
     if (!(angle > HALF_TURN)) {
@@ -311,10 +303,7 @@ static hn_status find_speeds(rattle *s, double t, double h, const double *q, con
     for (int i = 0; i < nv; i++) {
         s->kick[i] = s->next.p[i] + (s->pull[i] + s->next.p_low[i]);
     }
-    const hn_status status = speeds_from(s, s->kick, 1);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(speeds_from(s, s->kick, 1));
     memcpy(v1, s->x, (size_t)nv * sizeof *v1);
     hn_dae_add_rows(b, b->J, -1, s->x + nv, s->pull);
     hn_add_kept(nv, s->next.p, s->next.p_low, s->pull);
@@ -366,18 +355,12 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     for (int i = 0; i < b->nv; i++) {
         s->D[i] = h * s->v[i];
     }
-    status = look_at_turns(s, t);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(look_at_turns(s, t));
     status = find_position(s, t, h, y, q1);
     if (status != HN_OK) {
         return hn_dae_fail(b, status, t, "the positions of the step");
     }
-    status = look_at_turns(s, t);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(look_at_turns(s, t));
     memcpy(q1, y, (size_t)b->nq * sizeof *q1);
     hn_ball_step_move(&s->balls, q1, s->next.q_low, s->D, s->kick);
     status = find_speeds(s, t, h, y, q1, v1);

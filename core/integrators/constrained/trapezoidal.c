@@ -10,22 +10,25 @@
 #include <math.h>
 #include <string.h>
 
-// The trapezoidal rule on q'' with the loop closed at its end, the multipliers by an augmented Lagrangian. With weight w
+// The trapezoidal rule on q'' with the loop closed at its end, the multipliers by an augmented
+// Lagrangian. With weight w
 //
-//     v1 = (2/h) D - v0,    a1 = (4/h^2) D - (4/h) v0 - a0,    q1 = q0 + D                                     (1)
-//     T delta = -h^2/4 (M a1 - f + J' (lambda* + w phi(q1))),   D += delta,  THEN lambda* += w phi(q1)          (2)
-//     T = M + h/2 C + h^2/4 (w J' J + K)
+//  v1 = (2/h) D - v0,    a1 = (4/h^2) D - (4/h) v0 - a0,    q1 = q0 + D                    (1)
+//  T delta = -h^2/4 (M a1 - f + J' (lambda* + w phi(q1))), D += delta, THEN lambda* += w phi(q1) (2)
+//  T = M + h/2 C + h^2/4 (w J' J + K)
 //
-// The force of the loop is -J' lambda*. The update of lambda* belongs after that of q1: with the phi of the old q1 the Newton
-// correction counts twice and the iteration ends in a cycle. Each turn shrinks phi by about 1 / (1 + w h^2 s / 4), s the
-// smallest eigenvalue of J M^-1 J', so w has to grow as h falls. Then the speeds and accelerations are projected with the same T:
+// The force of the loop is -J' lambda*. The update of lambda* belongs after that of q1: with the
+// phi of the old q1 the Newton correction counts twice and the iteration ends in a cycle. Each turn
+// shrinks phi by about 1 / (1 + w h^2 s / 4), s the smallest eigenvalue of J M^-1 J', so w has to
+// grow as h falls. Then the speeds and accelerations are projected with the same T:
 //
-//     T v = (M + h/2 C + h^2/4 K) v* - h^2/4 w J' phi_t,    T a = (M + h/2 C + h^2/4 K) a* - h^2/4 w J' gamma   (3)
+//     T v = (M + h/2 C + h^2/4 K) v* - h^2/4 w J' phi_t,
+//     T a = (M + h/2 C + h^2/4 K) a* - h^2/4 w J' gamma  (3)
 //
-// which leaves J v = O(1 / w); two turns leave the square of that, and so on. Without (3) the undamped rule on index 3 is
-// unstable: kept as an exhibit.
-// Rows may depend on each other: T is positive definite all the same.
-// Sources: Bayo & Ledesma 1996; Cuadrado, Cardenal & Bayo 1997; Cardona & Geradin 1989 (instability).
+// which leaves J v = O(1 / w); two turns leave the square of that, and so on. Without (3) the
+// undamped rule on index 3 is unstable: kept as an exhibit. Rows may depend on each other: T is
+// positive definite all the same. Sources: Bayo & Ledesma 1996; Cuadrado, Cardenal & Bayo 1997;
+// Cardona & Geradin 1989 (instability).
 
 enum {
     SPARSE_FROM = 16
@@ -115,15 +118,12 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
-    hn_status status = hn_dae_base_init(&s->base, sys, arena, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
     // on index3 it is the bare rule
     const int augmented = form == HN_FORM_AUGMENTED;
     s->given_weight = augmented ? form_options[HN_AUGMENTED_WEIGHT] : 0;
     s->project = augmented && (int)form_options[HN_AUGMENTED_PROJECTIONS] == HN_PROJECTIONS_ON;
-    status = hn_linear_create(sys, terms, arena, &s->matrices);
+    hn_status status = hn_linear_create(sys, terms, arena, &s->matrices);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &s->rate);
     }
@@ -355,7 +355,8 @@ static void accepted(void *self, int changed) {
     trapezoidal *s = self;
     const carried spare = s->now;
     (void)
-        changed; // a small mending of the state leaves accelerations and multipliers as good as they were
+        // a small mending of the state leaves accelerations and multipliers as good as they were
+        changed;
     s->now = s->next;
     s->next = spare;
     for (int k = 0; k < s->base.nc; k++) {

@@ -1,9 +1,10 @@
 #include "integrators/explicit/explicit_rk.h"
 #include "integrators/step/options.h"
 
-// Order 8 by Dormand & Prince with two embedded solutions, of orders 5 and 3, after Hairer, Norsett & Wanner 1993,
-// section II.10, and their program DOP853 (version of 1995); all digits that they publish. Stages are numbered from 1
-// as there; stages 14 to 16 and the weights D serve dense output of order 7 only.
+// Order 8 by Dormand & Prince with two embedded solutions, of orders 5 and 3, after Hairer, Norsett
+// & Wanner 1993, section II.10, and their program DOP853 (version of 1995); all digits that they
+// publish. Stages are numbered from 1 as there; stages 14 to 16 and the weights D serve dense
+// output of order 7 only.
 
 enum { STAGES = 12, EXTRA = 4, ALL = STAGES + EXTRA, DENSE_ROWS = 4 };
 #define AT(i) [(i)-1]

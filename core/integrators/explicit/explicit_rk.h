@@ -1,11 +1,12 @@
 #ifndef HN_INTEGRATORS_EXPLICIT_RK_H
 #define HN_INTEGRATORS_EXPLICIT_RK_H
-// One engine for every explicit Runge-Kutta tableau. The functions below fit the slots of hn_stepper; a stepper's
-// file adds its tableau and its card.
+// One engine for every explicit Runge-Kutta tableau. The functions below fit the slots of
+// hn_stepper; a stepper's file adds its tableau and its card.
 //
-// A rejected step is taken again from the same (t, y): the first stage is kept. After an accepted step the last
-// stage of a FSAL method becomes the first of the next one, unless the state was changed in between.
-// Dense output: Hairer, Norsett & Wanner 1993, section II.6 (order 4 for dopri5, 7 for dop853).
+// A rejected step is taken again from the same (t, y): the first stage is kept. After an accepted
+// step the last stage of a FSAL method becomes the first of the next one, unless the state was
+// changed in between. Dense output: Hairer, Norsett & Wanner 1993, section II.6 (order 4 for
+// dopri5, 7 for dop853).
 
 #include "base/arena.h"
 #include "base/status.h"

@@ -3,10 +3,12 @@
 
 #include <string.h>
 
-// v1 = v0 + h a(t, q0, v0),   q1 = q0 + h qdot(q0, v1)                                              (1)
+// v1 = v0 + h a(t, q0, v0),   q1 = q0 + h qdot(q0, v1)
+// (1)
 //
-// Speeds first, positions with the new speeds. On a separable conservative system the map is symplectic, so energy
-// oscillates instead of drifting. Source: Hairer, Lubich & Wanner 2006, section I.1.2.
+// Speeds first, positions with the new speeds. On a separable conservative system the map is
+// symplectic, so energy oscillates instead of drifting. Source: Hairer, Lubich & Wanner 2006,
+// section I.1.2.
 
 typedef struct symplectic_euler {
     int n_pos, n_vel;
@@ -37,10 +39,7 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
                       double *y_new, double *err) {
     (void)err;
     symplectic_euler *se = self;
-    hn_status status = ode->rhs(ode->self, t, y, se->slope);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->rhs(ode->self, t, y, se->slope));
     const int n_pos = se->n_pos, n_vel = se->n_vel;
     for (int i = 0; i < n_vel; i++) {
         se->slope[n_pos + i] *= h;
@@ -48,10 +47,7 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
     hn_compensated_add(&se->sum, n_pos, n_vel, y, se->slope + n_pos, y_new);
     memcpy(se->mixed, y, (size_t)n_pos * sizeof *y);
     memcpy(se->mixed + n_pos, y_new + n_pos, (size_t)n_vel * sizeof *y);
-    status = ode->kinematics(ode->self, t, se->mixed, se->slope);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->kinematics(ode->self, t, se->mixed, se->slope));
     for (int i = 0; i < n_pos; i++) {
         se->slope[i] *= h;
     }

@@ -2,13 +2,14 @@
 #define HN_INTEGRATORS_TABLEAU_H
 // Explicit Runge-Kutta methods as data. A tableau holds
 //
-//     k_i = F(t + c_i h, y + h sum_{j<i} a_ij k_j),     y1 = y + h sum_i b_i k_i                    (1)
-//     err = h sum_i e_i k_i,   e = b - b^ of an embedded solution of lower order                     (2)
+//     k_i = F(t + c_i h, y + h sum_{j<i} a_ij k_j),     y1 = y + h sum_i b_i k_i              (1)
+//     err = h sum_i e_i k_i,   e = b - b^ of an embedded solution of lower order              (2)
 //
-// and, where the method has one, the weights d of its standard continuous extension (explicit_rk.h), which may need stages
-// of its own. With a second embedded solution of lower order still, its error err2 makes the estimate sharper, entry by entry:
+// and, where the method has one, the weights d of its standard continuous extension
+// (explicit_rk.h), which may need stages of its own. With a second embedded solution of lower order
+// still, its error err2 makes the estimate sharper, entry by entry:
 //
-//     err |err| / sqrt(err^2 + err2^2 / 100)     of the order of h^8 when err = O(h^6), err2 = O(h^4)  (3)
+//  err |err| / sqrt(err^2 + err2^2 / 100) of the order of h^8 when err = O(h^6), err2 = O(h^4) (3)
 
 typedef struct hn_tableau {
     int stages; ///< that y1 needs
@@ -23,8 +24,8 @@ typedef struct hn_tableau {
     const double *e2; ///< stages, NULL without a second one
     const double *d;  ///< dense_rows x (stages + extra), NULL without dense output
     int dense_rows;
-    /// A stage at t + h beside y1: how far its slope is from F(t + h, y1), for the distance of the two, tells how fast the equation answers.
-    /// 0: none.
+    /// A stage at t + h beside y1: how far its slope is from F(t + h, y1), for the distance of the
+    /// two, tells how fast the equation answers. 0: none.
     int stiff_stage;
 } hn_tableau;
 

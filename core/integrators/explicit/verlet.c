@@ -3,15 +3,15 @@
 
 #include <string.h>
 
-// v' = v + h/2 a(t, q, v)
-// q1 = q + h qdot(q + h/2 qdot(q, v), v')                                                           (1)
-// v1 = v' + h/2 a(t + h, q1, v' + h/2 a(t, q, v))
+// v' = v + h/2 a(t, q, v) q1 = q + h qdot(q + h/2 qdot(q, v), v')
+// (1) v1 = v' + h/2 a(t + h, q1, v' + h/2 a(t, q, v))
 //
-// With qdot = v and accelerations that do not depend on speed this is velocity Verlet: the midpoint in the middle line is v'
-// itself, and the predicted speed in the last line is not looked at. Where positions turn with their rates (tangent
-// coordinates) or forces depend on speed (every mechanism in angles), the two keep the order at 2, but the map is
-// then not symplectic. The acceleration is taken anew at the start of each step, at the state that was kept.
-// Source: Swope et al. 1982; Hairer, Lubich & Wanner 2003, Geometric numerical integration illustrated by Stormer-Verlet.
+// With qdot = v and accelerations that do not depend on speed this is velocity Verlet: the midpoint
+// in the middle line is v' itself, and the predicted speed in the last line is not looked at. Where
+// positions turn with their rates (tangent coordinates) or forces depend on speed (every mechanism
+// in angles), the two keep the order at 2, but the map is then not symplectic. The acceleration is
+// taken anew at the start of each step, at the state that was kept. Source: Swope et al. 1982;
+// Hairer, Lubich & Wanner 2003, Geometric numerical integration illustrated by Stormer-Verlet.
 
 typedef struct verlet {
     int n_pos, n_vel;
@@ -48,10 +48,7 @@ static hn_status drift(verlet *s, const hn_ode *ode, double t, double h, const d
     for (int i = 0; i < s->n_vel; i++) {
         s->mixed[s->n_pos + i] = y[s->n_pos + i] + s->half[i];
     }
-    const hn_status status = ode->kinematics(ode->self, t + h / 2, s->mixed, s->slope);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->kinematics(ode->self, t + h / 2, s->mixed, s->slope));
     for (int i = 0; i < s->n_pos; i++) {
         s->slope[i] *= h;
     }
@@ -64,25 +61,16 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
     (void)err;
     verlet *s = self;
     const int n_pos = s->n_pos, n_vel = s->n_vel;
-    hn_status status = ode->rhs(ode->self, t, y, s->slope);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->rhs(ode->self, t, y, s->slope));
     for (int i = 0; i < n_vel; i++) {
         s->half[i] = h / 2 * s->slope[n_pos + i];
     }
-    status = drift(s, ode, t, h, y, y_new);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(drift(s, ode, t, h, y, y_new));
     memcpy(s->mixed, y_new, (size_t)n_pos * sizeof *y);
     for (int i = 0; i < n_vel; i++) {
         s->mixed[n_pos + i] = y[n_pos + i] + 2 * s->half[i];
     }
-    status = ode->rhs(ode->self, t + h, s->mixed, s->slope);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->rhs(ode->self, t + h, s->mixed, s->slope));
     for (int i = 0; i < n_vel; i++) {
         s->half[i] += h / 2 * s->slope[n_pos + i];
     }

@@ -7,16 +7,16 @@
 #include <stdio.h>
 #include <string.h>
 
-// Four integrators of the GNU Scientific Library under the library's own step control, to compare with. Only the first
-// step is ours (hn_first_step): the library asks its caller for it. The library allocates when an instance is made and
-// nothing in a step.
+// Four integrators of the GNU Scientific Library under the library's own step control, to compare
+// with. Only the first step is ours (hn_first_step): the library asks its caller for it. The
+// library allocates when an instance is made and nothing in a step.
 
 #define ROUNDING 1e-16 // see probe()
 #define PROBE_MIN 1e-5 // so that an entry near zero is moved by a sensible amount
 #define FAR 1e30       // no bound on time [s]
 #define FAR_STEP 1e10  // a state without entries has no error to choose a step by [s]
-// A trial that was refused outright adds REFUSED_TRIAL, a step without takes 1 away: steps that keep running into the end of
-// a chart shrink for ever without reaching it, and stop here.
+// A trial that was refused outright adds REFUSED_TRIAL, a step without takes 1 away: steps that
+// keep running into the end of a chart shrink for ever without reaching it, and stop here.
 enum { REFUSED_TRIAL = 8, TROUBLE_LIMIT = 200 };
 
 typedef struct gsl_stepper {
@@ -39,7 +39,7 @@ typedef struct gsl_stepper {
     char why[160];
 } gsl_stepper;
 
-// --- what the library asks ------------------------------------------------------------------------------------
+// ---- what the library asks ----
 
 // a refused right-hand side is a step too long: the library halves it and tries again
 static int told(gsl_stepper *s, hn_status status) {
@@ -56,7 +56,8 @@ static int give_slope(double t, const double *y, double *ydot, void *user) {
     return told(s, s->ode->rhs(s->ode->self, t, y, ydot));
 }
 
-// Displacement of a difference quotient that balances truncation and rounding (Hairer & Wanner 1996, section IV.8).
+// Displacement of a difference quotient that balances truncation and rounding (Hairer & Wanner
+// 1996, section IV.8).
 static double probe(double x) {
     return sqrt(ROUNDING * fmax(PROBE_MIN, fabs(x)));
 }
@@ -96,7 +97,7 @@ static int give_jacobian(double t, const double *y, double *jac, double *time_sl
     return told(s, status);
 }
 
-// --- life -----------------------------------------------------------------------------------------------------
+// ---- life ----
 
 static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, int n,
                            hn_arena *arena) {
@@ -105,7 +106,8 @@ static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, in
     if (!s || !room) {
         return NULL;
     }
-    // the library's own way to report faults ends the program; with it off they come back as numbers
+    // the library's own way to report faults ends the program; with it off they come back as
+    // numbers
     gsl_set_error_handler_off();
     *s = (gsl_stepper){.type = type, .start_order = start_order, .n = n, .fresh = 1};
     s->f0 = room;
@@ -145,7 +147,7 @@ static void accepted(void *self, int changed) {
     s->fresh |= changed;
 }
 
-// --- a step ---------------------------------------------------------------------------------------------------
+// ---- a step ----
 
 static hn_status restart(gsl_stepper *s, double t, const double *y) {
     gsl_odeiv2_step_reset(s->driver->s);
@@ -228,7 +230,7 @@ static hn_status prepare(void *self, const hn_ode *ode) {
     return with_jacobian && ode->prepare ? ode->prepare(ode->self) : HN_OK;
 }
 
-// --- the four -------------------------------------------------------------------------------------------------
+// ---- the four ----
 
 static void *create_rk8pd(int n_pos, int n_vel, hn_arena *arena) {
     return create(gsl_odeiv2_step_rk8pd, 8, n_pos + n_vel, arena);

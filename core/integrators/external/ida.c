@@ -16,16 +16,17 @@
 #include <stdio.h>
 #include <string.h>
 
-// BDF of order 1 to 5 by SUNDIALS IDA under the library's own order and step control. IDA is made for index 1. With the
-// constraints on speeds or positions its error test and the end test of its Newton iteration ask more of the multipliers than
-// they can give, because their errors are divided by h. What works then (measured, see the tests):
+// BDF of order 1 to 5 by SUNDIALS IDA under the library's own order and step control. IDA is made
+// for index 1. With the constraints on speeds or positions its error test and the end test of its
+// Newton iteration ask more of the multipliers than they can give, because their errors are divided
+// by h. What works then (measured, see the tests):
 //
 //     suppress=multipliers   the error test looks at q and v alone
-//     loosen=1e6             the Newton test counts the multipliers with an absolute tolerance 1e6 times as large
+//     loosen=1e6             the Newton test has a 1e6 times larger absolute tolerance of lambda
 //
-// a first step that is not as small as rtol, which is what the library would choose (h0=-1), and a start with consistent
-// accelerations. Written out as options so that their lack can be seen as well.
-// The library allocates when an instance is made and started, and nothing in a step.
+// a first step that is not as small as rtol, which is what the library would choose (h0=-1), and a
+// start with consistent accelerations. Written out as options so that their lack can be seen as
+// well. The library allocates when an instance is made and started, and nothing in a step.
 
 enum {
     OPT_RTOL,
@@ -68,7 +69,7 @@ static double *data_of(N_Vector x) {
     return N_VGetArrayPointer(x);
 }
 
-// --- what the library asks ------------------------------------------------------------------------------------
+// ---- what the library asks ----
 
 static int give_residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void *user) {
     ida_stepper *s = user;
@@ -125,7 +126,7 @@ static void be_silent(int code, const char *module, const char *function, char *
     (void)user;
 }
 
-// --- life -----------------------------------------------------------------------------------------------------
+// ---- life ----
 
 static void free_integration(ida_stepper *s) {
     IDAFree(&s->ida);
@@ -209,7 +210,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     return HN_OK;
 }
 
-// --- start ----------------------------------------------------------------------------------------------------
+// ---- start ----
 
 static int create_vectors(ida_stepper *s) {
     s->y = N_VNew_Serial(s->n, s->context);
@@ -326,13 +327,8 @@ static hn_status choose_first_step(ida_stepper *s, double t, const double *y) {
 
 static hn_status start(void *self, double t, const double *y) {
     ida_stepper *s = self;
-    hn_status status = choose_first_step(s, t, y);
-    if (status == HN_OK) {
-        status = hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(choose_first_step(s, t, y));
+    HN_TRY(hn_ida_problem_start(&s->problem, t, y, s->start_y, s->start_ydot));
     add_counters(s, &s->cost);
     free_integration(s);
     s->t = t;
@@ -342,7 +338,7 @@ static hn_status start(void *self, double t, const double *y) {
     return s->problem.n > 0 ? create_integration(s, t) : HN_OK;
 }
 
-// --- a step ---------------------------------------------------------------------------------------------------
+// ---- a step ----
 
 static int is_another_state(const ida_stepper *s, const double *y) {
     const int n = s->problem.nq + s->problem.nv;
@@ -374,13 +370,11 @@ static hn_status advance(void *self, double t, double t_stop, const double *y, d
     }
     // the time asked for only sets the scale of the first step
     const int flag = IDASolve(s->ida, t + 1, t_new, s->y, s->ydot, IDA_ONE_STEP);
-    const hn_status status = hn_ida_status(flag, t, s->why, sizeof s->why);
-    if (status == HN_OK) {
-        memcpy(y_new, data_of(s->y), (size_t)(s->problem.nq + s->problem.nv) * sizeof *y_new);
-        s->h = *t_new - t;
-        s->t = *t_new;
-    }
-    return status;
+    HN_TRY(hn_ida_status(flag, t, s->why, sizeof s->why));
+    memcpy(y_new, data_of(s->y), (size_t)(s->problem.nq + s->problem.nv) * sizeof *y_new);
+    s->h = *t_new - t;
+    s->t = *t_new;
+    return HN_OK;
 }
 
 static void accepted(void *self, int changed) {

@@ -52,7 +52,8 @@ static int count_doubled(const hn_ida_jacobian *j) {
                 : 0);
 }
 
-// Large matrices are given to the library entry by entry. With balls, whose columns are mixed by G, they stay full.
+// Large matrices are given to the library entry by entry. With balls, whose columns are mixed by G,
+// they stay full.
 static hn_status create_sparse(hn_ida_jacobian *j, hn_arena *arena) {
     const int room = hn_ida_problem_room(j->problem), puts = count_puts(j);
     if (j->G || !hn_newton_matrix_wants_sparse(room, puts - count_doubled(j))) {
@@ -94,7 +95,7 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j) {
     hn_linear_free(j->turn);
 }
 
-// --- entries --------------------------------------------------------------------------------------------------
+// ---- entries ----
 
 static void add(const hn_ida_jacobian *j, int row, int col, double x) {
     if (j->sparse) {
@@ -148,7 +149,7 @@ static void subtract_transpose(const hn_ida_jacobian *j, int row, int col) {
     add_term(j, j->terms, HN_LINEAR_J, &(target){row, col, 1, 0, 1}, -1);
 }
 
-// --- eq. (1) --------------------------------------------------------------------------------------------------
+// ---- eq. (1) ----
 
 // G, whose columns stand at right angles to each other, and its pseudo-inverse
 static void find_G(hn_ida_jacobian *j, const double *q) {
@@ -166,7 +167,8 @@ static void find_G(hn_ida_jacobian *j, const double *q) {
     }
 }
 
-// -(G v)_q: G v is a linear function of a quaternion's entries, so unit steps give its derivative exactly
+// -(G v)_q: G v is a linear function of a quaternion's entries, so unit steps give its derivative
+// exactly
 static void subtract_turning(hn_ida_jacobian *j, const double *v) {
     const int nq = j->problem->nq;
     memset(j->unit, 0, (size_t)nq * sizeof *j->unit);
@@ -205,7 +207,7 @@ static void put_kinematics(hn_ida_jacobian *j, double c, const double *y) {
     subtract_turning(j, y + p->nq);
 }
 
-// --- eq. (2), (3) ---------------------------------------------------------------------------------------------
+// ---- eq. (2), (3) ----
 
 static void put_dynamics(const hn_ida_jacobian *j, double c) {
     const int nq = j->problem->nq, nv = j->problem->nv;

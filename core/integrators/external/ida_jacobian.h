@@ -1,7 +1,7 @@
 #ifndef HN_INTEGRATORS_IDA_JACOBIAN_H
 #define HN_INTEGRATORS_IDA_JACOBIAN_H
-// The matrix of IDA's Newton iteration, dF/dy + c dF/dy', for the residual of ida_problem.h, from exact derivatives of the
-// equations of motion:
+// The matrix of IDA's Newton iteration, dF/dy + c dF/dy', for the residual of ida_problem.h, from
+// exact derivatives of the equations of motion:
 //
 //            q                         v               lambda    mu
 //     (1)    c - (G v)_q               -G
@@ -10,11 +10,12 @@
 //     (3)    gamma_q + (J v')_q        gamma_v + c J                       INDEX1
 //            + 2 alpha V + beta^2 J    + 2 alpha J                         STABILISED
 //            V                         J                                   INDEX2, GGL
-//            J                                                             INDEX3, GGL                                  (4)
+//            J                                                             INDEX3, GGL        (4)
 //
-// With mu the first block leaves out (M (q' - v) - J' mu)_q: both factors vanish with the error. Where a joint has more
-// coordinates than speeds, derivatives along the speeds are spread over the coordinates by the pseudo-inverse of G, and the
-// direction that changes the length of a quaternion is left out; the iteration converges as before, because no correction goes there.
+// With mu the first block leaves out (M (q' - v) - J' mu)_q: both factors vanish with the error.
+// Where a joint has more coordinates than speeds, derivatives along the speeds are spread over the
+// coordinates by the pseudo-inverse of G, and the direction that changes the length of a quaternion
+// is left out; the iteration converges as before, because no correction goes there.
 
 #include "dynamics/evaluate/linearise.h"
 #include "integrators/external/ida_problem.h"
@@ -45,8 +46,9 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j);
 /// Fills A (n x n, column by column).
 void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
                           const double *ydot, double *A);
-/// 1 when the matrix is large and has few entries: it is then filled in compressed columns with at most so many entries. Their places are
-/// the same from one filling to the next as long as the rows that are kept are.
+/// 1 when the matrix is large and has few entries: it is then filled in compressed columns with at
+/// most so many entries. Their places are the same from one filling to the next as long as the rows
+/// that are kept are.
 int hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j);
 int hn_ida_jacobian_puts(const hn_ida_jacobian *j);
 /// The places, and the values of their entries (borrowed).

@@ -9,8 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-#define ROW_RANK \
-    1e-10 // a row of J shorter than this beside the others, once they are taken out of it, depends on them
+// a row of J shorter than this beside the others, once they are taken out of it, depends on
+// them
+#define ROW_RANK 1e-10
 
 static int has_mu(const hn_ida_problem *p) {
     return p->form == HN_FORM_GGL;
@@ -44,13 +45,10 @@ static hn_status create_memory(hn_ida_problem *p, hn_arena *arena) {
         return HN_ERR_MEMORY;
     }
     const hn_accel_opts opts = {.baumgarte = is_stabilised(p), .want_lambda = 1};
-    hn_status status = hn_eval_create(p->sys, terms_of(p->form), arena, &p->eval);
-    if (status == HN_OK) {
-        p->n_M = hn_eval_pattern(p->eval, HN_TERM_M, &p->M_row, &p->M_col);
-        p->n_J = hn_eval_pattern(p->eval, HN_TERM_J, &p->J_row, &p->J_col);
-        status = hn_accel_create(p->sys, &opts, arena, &p->accel);
-    }
-    return status;
+    HN_TRY(hn_eval_create(p->sys, terms_of(p->form), arena, &p->eval));
+    p->n_M = hn_eval_pattern(p->eval, HN_TERM_M, &p->M_row, &p->M_col);
+    p->n_J = hn_eval_pattern(p->eval, HN_TERM_J, &p->J_row, &p->J_col);
+    return hn_accel_create(p->sys, &opts, arena, &p->accel);
 }
 
 hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys, hn_dae_form form,
@@ -85,7 +83,8 @@ int hn_ida_problem_room(const hn_ida_problem *p) {
     return p->nq + p->nv + (has_mu(p) ? 2 : 1) * p->nc;
 }
 
-// The first columns of the pivoted QR of J' are rows that span all of them; J' lambda = b with those alone.
+// The first columns of the pivoted QR of J' are rows that span all of them; J' lambda = b with
+// those alone.
 static void keep_independent_rows(hn_ida_problem *p, const double *J) {
     memcpy(p->qr.a, J, (size_t)p->nc * (size_t)p->nv * sizeof *J);
     hn_qr_factor(&p->qr, p->nv, p->nc, ROW_RANK);
@@ -119,11 +118,7 @@ hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
                                double *ydot) {
     const double *q = state, *v = state + p->nq;
     hn_accel_info info = {0};
-    const hn_status status =
-        hn_accel_eval(p->accel, t, q, v, p->alpha, p->beta, p->a, p->lambda, &info);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_accel_eval(p->accel, t, q, v, p->alpha, p->beta, p->a, p->lambda, &info));
     hn_eval_run(p->eval, t, q, v);
     keep_independent_rows(p, hn_eval_get(p->eval, HN_TERM_J));
     if (p->n_kept < p->nc) {

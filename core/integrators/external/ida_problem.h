@@ -1,20 +1,21 @@
 #ifndef HN_INTEGRATORS_IDA_PROBLEM_H
 #define HN_INTEGRATORS_IDA_PROBLEM_H
-// The equations as SUNDIALS IDA takes them: a residual F(t, y, y') = 0 in y = (q, v, lambda [, mu]), n entries,
+// The equations as SUNDIALS IDA takes them: a residual F(t, y, y') = 0 in y = (q, v, lambda [,
+// mu]), n entries,
 //
-//     q' - G(q) v                   nq rows;  with mu: M (q' - v) - J' mu                                             (1)
-//     M v' - f - J' lambda          nv rows                                                                         (2)
+//     q' - G(q) v                   nq rows;  with mu: M (q' - v) - J' mu                     (1)
+//     M v' - f - J' lambda          nv rows                                                   (2)
 //     one per constraint row that is kept:
 //       INDEX1      J v' + gamma
 //       STABILISED  J v' + gamma + 2 alpha (J v + phi_t) + beta^2 phi
 //       INDEX2      J v + phi_t
 //       INDEX3      phi
-//       GGL         J v + phi_t, and phi                                                                            (3)
+//       GGL         J v + phi_t, and phi                                                      (3)
 //
-// Weighting the kinematics of (1) by M makes the correction M^-1 J' mu, the smallest one in the sense of kinetic energy, without
-// inverting M. Rows of J that depend on others at the start are left out: their multipliers are 0, and the matrix of Newton's
-// method stays regular.
-// Source: Gear, Leimkuhler & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
+// Weighting the kinematics of (1) by M makes the correction M^-1 J' mu, the smallest one in the
+// sense of kinetic energy, without inverting M. Rows of J that depend on others at the start are
+// left out: their multipliers are 0, and the matrix of Newton's method stays regular. Source: Gear,
+// Leimkuhler & Gupta 1985; Brenan, Campbell & Petzold 1996, ch. 6.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -39,21 +40,22 @@ typedef struct hn_ida_problem {
     long long residuals;       ///< evaluated so far
 } hn_ida_problem;
 
-/// `form_options` are those of the formulation (STABILISED: alpha, beta, ...). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT,
-/// HN_ERR_UNSUPPORTED, told in diag.
+/// `form_options` are those of the formulation (STABILISED: alpha, beta, ...). Fails:
+/// HN_ERR_MEMORY, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED, told in diag.
 HN_MUST_CHECK hn_status hn_ida_problem_init(hn_ida_problem *p, const hn_system *sys,
                                             hn_dae_form form, const double *form_options,
                                             hn_arena *arena, hn_diag *diag);
 void hn_ida_problem_free(hn_ida_problem *p);
 /// The largest n that any choice of rows leads to.
 int hn_ida_problem_room(const hn_ida_problem *p);
-/// Chooses the rows and fills y and y' (room) at a state (q, v): speeds and accelerations, lambda from the saddle system, mu = 0,
-/// and nothing known of lambda'. Fails like hn_accel_eval().
+/// Chooses the rows and fills y and y' (room) at a state (q, v): speeds and accelerations, lambda
+/// from the saddle system, mu = 0, and nothing known of lambda'. Fails like hn_accel_eval().
 HN_MUST_CHECK hn_status hn_ida_problem_start(hn_ida_problem *p, double t, const double *state,
                                              double *y, double *ydot);
-/// A first step h at which the formula of order 1 that IDA starts with errs by about the tolerance, from the slopes at a state and
-/// near it. The library's own choice, which makes the first step as small as rtol, loses the multipliers in rounding divided by
-/// h when they stand in constraints on speeds or positions. Fails like hn_accel_eval().
+/// A first step h at which the formula of order 1 that IDA starts with errs by about the tolerance,
+/// from the slopes at a state and near it. The library's own choice, which makes the first step as
+/// small as rtol, loses the multipliers in rounding divided by h when they stand in constraints on
+/// speeds or positions. Fails like hn_accel_eval().
 HN_MUST_CHECK hn_status hn_ida_problem_first_step(hn_ida_problem *p, double t, const double *state,
                                                   double rtol, double atol, double hmax, double *h);
 /// r (n).

@@ -6,8 +6,8 @@
 
 #include <stddef.h>
 
-/// The status of a flag; a negative one is told in `why`: "IDA: the corrector did not converge at t = 0 s (flag
-/// -4)".
+/// The status of a flag; a negative one is told in `why`: "IDA: the corrector did not converge at t
+/// = 0 s (flag -4)".
 hn_status hn_ida_status(int flag, double t, char *why, size_t size);
 
 #endif

@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-// Hairer & Wanner 1996, VII.4: on index 2, s Gauss stages have order s + 1 in the state and s - 1 in the multipliers where s is odd, s and
-// s - 2 where it is even, because J v is asked for at the stages and only extrapolated, with |R(infinity)| = 1, to the end.
+// Hairer & Wanner 1996, VII.4: on index 2, s Gauss stages have order s + 1 in the state and s - 1
+// in the multipliers where s is odd, s and s - 2 where it is even, because J v is asked for at the
+// stages and only extrapolated, with |R(infinity)| = 1, to the end.
 #define NOT_INDEX_2                                                                          \
     "no stage of Gauss stands at the end of a step: on index 2 two stages have order 2 and " \
     "multipliers that do not converge, three 4 and 2; midpoint asks for the loop at the end"

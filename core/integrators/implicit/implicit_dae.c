@@ -55,7 +55,8 @@ static int wants_speed_gap(hn_dae_form form) {
     return form == HN_FORM_INDEX2 || form == HN_FORM_GGL;
 }
 
-// D(x) u of (1) for one ball: u + 1/2 x u + (1 - a/2 cot a/2) / a^2 x (x u), products of vectors, a the angle
+// D(x) u of (1) for one ball: u + 1/2 x u + (1 - a/2 cot a/2) / a^2 x (x u), products of vectors, a
+// the angle
 static void turn_rate(const double *x, double *u) {
     const double a = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     // the series where the quotient cancels: its next term is a^4 / 30240
@@ -83,7 +84,8 @@ static void move_from_start(const implicit_dae *s, const double *x, double *q) {
     hn_system_move(s->sys, q, x);
 }
 
-// state of a stage, or of the end when the constraint is asked for there, `weight` times the stage's change
+// state of a stage, or of the end when the constraint is asked for there, `weight` times the
+// stage's change
 static void place(implicit_dae *s, const double *u, double weight) {
     for (int i = 0; i < s->nv; i++) {
         s->x[i] = weight * u[i];
@@ -158,7 +160,7 @@ static int has_driven_loop(const hn_system *sys) {
     return 0;
 }
 
-// --- life -------------------------------------------------------------------------------------------------
+// ---- life ----
 
 static hn_status allocate(implicit_dae *s, const hn_collocation *col, hn_arena *arena) {
     const size_t nq = (size_t)s->nq, nv = (size_t)s->nv, nc = (size_t)s->nc;
@@ -188,23 +190,15 @@ static hn_status create_terms(implicit_dae *s, hn_arena *arena) {
     const unsigned terms = HN_LINEAR_RESIDUAL | (wants_phi(s->form) ? HN_LINEAR_PHI : 0u) |
                            (wants_speed_gap(s->form) ? HN_LINEAR_SPEED_GAP : 0u);
     const hn_accel_opts accel = {.want_lambda = 1};
-    hn_status status = hn_implicit_linear_init(&s->lin, s->sys, s->form, arena);
-    if (status == HN_OK) {
-        status = hn_linear_create(s->sys, terms, arena, &s->at_stage);
-    }
-    if (status == HN_OK) {
-        status = hn_accel_create(s->sys, &accel, arena, &s->accel);
-    }
-    if (status == HN_OK) {
-        status = hn_projector_create(s->sys, HN_WEIGHT_MASS, arena, &s->projector);
-    }
-    if (status == HN_OK) {
-        s->R = hn_linear_get(s->at_stage, HN_LINEAR_RESIDUAL);
-        s->phi = wants_phi(s->form) ? hn_linear_get(s->at_stage, HN_LINEAR_PHI) : NULL;
-        s->speed_gap =
-            wants_speed_gap(s->form) ? hn_linear_get(s->at_stage, HN_LINEAR_SPEED_GAP) : NULL;
-    }
-    return status;
+    HN_TRY(hn_implicit_linear_init(&s->lin, s->sys, s->form, arena));
+    HN_TRY(hn_linear_create(s->sys, terms, arena, &s->at_stage));
+    HN_TRY(hn_accel_create(s->sys, &accel, arena, &s->accel));
+    HN_TRY(hn_projector_create(s->sys, HN_WEIGHT_MASS, arena, &s->projector));
+    s->R = hn_linear_get(s->at_stage, HN_LINEAR_RESIDUAL);
+    s->phi = wants_phi(s->form) ? hn_linear_get(s->at_stage, HN_LINEAR_PHI) : NULL;
+    s->speed_gap =
+        wants_speed_gap(s->form) ? hn_linear_get(s->at_stage, HN_LINEAR_SPEED_GAP) : NULL;
+    return HN_OK;
 }
 
 hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form, const hn_collocation *col,
@@ -274,7 +268,7 @@ hn_status hn_implicit_dae_start(void *self, double t, const double *y) {
     return HN_OK;
 }
 
-// --- one step ---------------------------------------------------------------------------------------------
+// ---- one step ----
 
 static void set_scale(implicit_dae *s, double h) {
     const double size_q = 1 + hn_norm_max(s->nq, s->q0), size_v = 1 + hn_norm_max(s->nv, s->v0);
@@ -291,7 +285,8 @@ static void set_scale(implicit_dae *s, double h) {
     }
 }
 
-// accelerations and multipliers of the last step's stages, continued and integrated; at first those of the start
+// accelerations and multipliers of the last step's stages, continued and integrated; at first those
+// of the start
 static void guess_stages(implicit_dae *s, double h) {
     const hn_collocation *col = &s->st.col;
     const int stages = col->stages, nv = s->nv, nc = s->nc, n = s->st.n;
@@ -339,7 +334,8 @@ static void weigh_for_error(const implicit_dae *s, double h, int part, double *o
     }
 }
 
-// the estimate as displacement (nv) and change of speed (nv) into s->st.parts, from slope v and force at a point
+// the estimate as displacement (nv) and change of speed (nv) into s->st.parts, from slope v and
+// force at a point
 static void filter_error(implicit_dae *s, const double *v, const double *force, const double *ex,
                          const double *ew) {
     const int nv = s->nv;
@@ -370,7 +366,8 @@ static void put_error(implicit_dae *s, double h, double *err) {
     }
 }
 
-// see hn_collocation.e; a second pass at y0 + err where the first is above the tolerance keeps stiff starts from failing
+// see hn_collocation.e; a second pass at y0 + err where the first is above the tolerance keeps
+// stiff starts from failing
 static void estimate_error(implicit_dae *s, double t, double h, const double *y,
                            const double *y_new, double *err) {
     const int n = s->nq + s->nv;
@@ -391,8 +388,9 @@ static void estimate_error(implicit_dae *s, double t, double h, const double *y,
     put_error(s, h, err);
 }
 
-// The estimate is a motion that the loops allow. Where they are moved from outside it sees nothing of how fast: what shows that
-// is how far the polynomial through the stages leaves them between the stages: what it takes to close them there counts as well.
+// The estimate is a motion that the loops allow. Where they are moved from outside it sees nothing
+// of how fast: what shows that is how far the polynomial through the stages leaves them between the
+// stages: what it takes to close them there counts as well.
 static void add_gap_between(implicit_dae *s, double t, double h, double *err) {
     const double between = 0.85; // where that polynomial's error of interpolation is about largest
     const int nv = s->nv;
@@ -414,7 +412,8 @@ static void add_gap_between(implicit_dae *s, double t, double h, double *err) {
     }
 }
 
-// what Newton's tolerance leaves, what rows that were left out need, and what index 2 leaves open on request
+// what Newton's tolerance leaves, what rows that were left out need, and what index 2 leaves open
+// on request
 static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     hn_status status = HN_OK;
     const int dependent = s->lin.n_kept < s->nc;
@@ -436,8 +435,8 @@ static hn_status close_end(implicit_dae *s, double t, double *q, double *v) {
     return status;
 }
 
-// Index 2 lets the gap open, and rows that depend on others do so only at a closed pose: where a row is in doubt the pose
-// is closed for the choice, and for that alone.
+// Index 2 lets the gap open, and rows that depend on others do so only at a closed pose: where a
+// row is in doubt the pose is closed for the choice, and for that alone.
 static void choose_rows(implicit_dae *s, double t) {
     const double pivot = hn_implicit_linear_choose(&s->lin, t, s->q0, s->v0);
     if (s->form != HN_FORM_INDEX2 || pivot > NEARLY_DEPENDENT) {
@@ -476,13 +475,10 @@ hn_status hn_implicit_dae_step(void *self, double t, double h, const double *y, 
     implicit_dae *s = self;
     s->h = h;
     s->why[0] = '\0';
-    hn_status status = begin(s, t, y);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(begin(s, t, y));
     set_scale(s, h);
     guess_stages(s, h);
-    status = hn_stages_solve(&s->st, t, h);
+    hn_status status = hn_stages_solve(&s->st, t, h);
     if (status != HN_OK) {
         snprintf(s->why, sizeof s->why, "%s", s->st.why);
         return status;

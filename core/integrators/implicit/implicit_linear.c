@@ -101,10 +101,7 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_V;
     *l = (hn_implicit_linear){.form = form, .nv = info.nv, .nc = info.nc};
-    hn_status status = hn_linear_create(sys, terms, arena, &l->terms);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_linear_create(sys, terms, arena, &l->terms));
     l->M = hn_linear_get(l->terms, HN_LINEAR_M);
     l->K = hn_linear_get(l->terms, HN_LINEAR_K);
     l->C = hn_linear_get(l->terms, HN_LINEAR_C);
@@ -112,7 +109,7 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     l->V = hn_linear_get(l->terms, HN_LINEAR_V);
     l->has_damping = hn_linear_entries(l->terms, HN_LINEAR_C) > 0;
     l->sparse = wants_sparse(l);
-    status = allocate(l, arena);
+    hn_status status = allocate(l, arena);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_J, &rows, &cols);
     return status == HN_OK ? hn_row_check_create(arena, l->nc, l->nv, n, rows, cols, &l->check)
                            : status;

@@ -1,23 +1,27 @@
 #ifndef HN_INTEGRATORS_IMPLICIT_LINEAR_H
 #define HN_INTEGRATORS_IMPLICIT_LINEAR_H
-// The linear systems of Newton's method on a differential-algebraic system (implicit_dae.h), with s in the place of d/dt:
+// The linear systems of Newton's method on a differential-algebraic system (implicit_dae.h), with s
+// in the place of d/dt:
 //
-//     s x - w - Y m = -r1,    s M w + K x + C w - J' l = -r2,    J x = -r3  |  V x + J w = -r3  |  both               (1)
+//  s x - w - Y m = -r1, s M w + K x + C w - J' l = -r2, J x = -r3 | V x + J w = -r3 | both (1)
 //
-// With w = s x + r1 - Y m and, M Y = J', l' = l + s m, what has to be factored is a saddle-point matrix of the size nv + nc,
+// With w = s x + r1 - Y m and, M Y = J', l' = l + s m, what has to be factored is a saddle-point
+// matrix of the size nv + nc,
 //
-//     [M + C/s + (K - C Y S^-1 V)/s^2,  -J';  J (+ V/s),  0] [x; l'/s^2],    S = J Y                                 (2)
+//     [M + C/s + (K - C Y S^-1 V)/s^2,  -J';  J (+ V/s),  0] [x; l'/s^2],    S = J Y          (2)
 //
-// (V/s: index 2; the term with S: GGL, m = S^-1 (V x + r3' + J r1 - s r3)). In these unknowns, h^2 times the multipliers, its
-// condition does not depend on the step. Rows of J that depend on others are left out, and their multipliers stay as they are.
-// Source: Bottasso, Dopico & Trainelli 2008, on the scaling of index three equations.
+// (V/s: index 2; the term with S: GGL, m = S^-1 (V x + r3' + J r1 - s r3)). In these unknowns, h^2
+// times the multipliers, its condition does not depend on the step. Rows of J that depend on others
+// are left out, and their multipliers stay as they are. Source: Bottasso, Dopico & Trainelli 2008,
+// on the scaling of index three equations.
 //
-// Large mechanisms: Y, S and with them (2) of GGL are full. There p = Y m stays an unknown of its own,
+// Large mechanisms: Y, S and with them (2) of GGL are full. There p = Y m stays an unknown of its
+// own,
 //
 //     [M + C/s + K/s^2   -J'   -C/s     .  ] [ x      ]
 //     [J                  .      .      .  ] [ l'/s^2 ]
 //     [.                  .      M     -J' ] [ p/s    ]
-//     [V/s                .     -J      .  ] [ m/s    ]                                                          (3)
+//     [V/s                .     -J      .  ] [ m/s    ]                                       (3)
 //
 // and every block is as sparse as the mechanism (linalg/newton_matrix.h).
 
@@ -59,10 +63,12 @@ typedef struct hn_implicit_linear {
 HN_MUST_CHECK hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys,
                                                 hn_dae_form form, hn_arena *arena);
 void hn_implicit_linear_free(hn_implicit_linear *l);
-/// Chooses the rows that stand on their own at a pose: to be called where the loops are closed, because rows that depend on others
-/// do so only there. Returns the smallest pivot that was kept, of the largest.
+/// Chooses the rows that stand on their own at a pose: to be called where the loops are closed,
+/// because rows that depend on others do so only there. Returns the smallest pivot that was kept,
+/// of the largest.
 double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *q, const double *v);
-/// Evaluates the terms with the rows chosen before. Fails with HN_ERR_SINGULAR where the mass matrix does (GGL only), HN_ERR_DIVERGED.
+/// Evaluates the terms with the rows chosen before. Fails with HN_ERR_SINGULAR where the mass
+/// matrix does (GGL only), HN_ERR_DIVERGED.
 HN_MUST_CHECK hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q,
                                               const double *v, const double *a,
                                               const double *lambda);
@@ -72,7 +78,8 @@ HN_MUST_CHECK hn_status hn_implicit_linear_factor(hn_implicit_linear *l, int whi
 void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r);
 /// out (nv) = Y m, m (nc): what mu adds to the rate of the displacement (GGL only).
 void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out);
-/// Matrix (2) for a real s, row-major of size nv + n_kept, as it is factored when it is dense; for reports on its condition.
+/// Matrix (2) for a real s, row-major of size nv + n_kept, as it is factored when it is dense; for
+/// reports on its condition.
 void hn_implicit_linear_matrix(hn_implicit_linear *l, double s, double *out);
 /// Arithmetic operations so far.
 double hn_implicit_linear_ops(const hn_implicit_linear *l);

@@ -221,7 +221,8 @@ static void guess_stages(implicit_ode *s, double h) {
     }
 }
 
-// see hn_collocation.e; a second pass at y0 + err where the first is above the tolerance keeps stiff starts from failing
+// see hn_collocation.e; a second pass at y0 + err where the first is above the tolerance keeps
+// stiff starts from failing
 static hn_status estimate_error(implicit_ode *s, double t, double h, const double *y_new,
                                 double *err) {
     const hn_collocation *col = &s->nw.col;
@@ -264,23 +265,13 @@ hn_status hn_implicit_ode_step(void *self, const hn_ode *ode, double t, double h
     s->h = 0;
     s->nw.why[0] = '\0';
     memcpy(s->y0, y, (size_t)s->n * sizeof *y);
-    hn_status status = ode->newton ? HN_OK : allocate_full(s);
-    if (status == HN_OK) {
-        status = ode->rhs(ode->self, t, y, s->slope0);
-    }
-    if (status == HN_OK) {
-        status = find_jacobian(s, t, s->y0, s->slope0);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->newton ? HN_OK : allocate_full(s));
+    HN_TRY(ode->rhs(ode->self, t, y, s->slope0));
+    HN_TRY(find_jacobian(s, t, s->y0, s->slope0));
     set_scale(s, ode);
     s->nw.floor = s->rtol > 0 ? 0 : ROUNDING;
     guess_stages(s, h);
-    status = hn_stages_solve(&s->nw, t, h);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_stages_solve(&s->nw, t, h));
     hn_stages_end(&s->nw, y_new);
     hn_axpy(s->n, 1, y, y_new);
     s->h = h;

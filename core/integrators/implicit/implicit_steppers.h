@@ -1,6 +1,7 @@
 #ifndef HN_INTEGRATORS_IMPLICIT_STEPPERS_H
 #define HN_INTEGRATORS_IMPLICIT_STEPPERS_H
-// What the cards of collocation methods share: with the nodes of a method as data, its slots are three lines each.
+// What the cards of collocation methods share: with the nodes of a method as data, its slots are
+// three lines each.
 
 #include "integrators/implicit/implicit_dae.h"
 #include "integrators/implicit/implicit_ode.h"

@@ -7,7 +7,8 @@
 #include <string.h>
 
 enum { MOST_TO_TOLERANCE = 10, MOST_TO_ROUNDING = 40, MOST_RELINEARISED = 6 };
-// Corrections that no longer shrink are rounding when they are below this, else a reason to take the derivatives anew.
+// Corrections that no longer shrink are rounding when they are below this, else a reason to take
+// the derivatives anew.
 #define NEAR_ROUNDING 1e-9
 #define STALLED 0.7
 #define SLOW 0.3
@@ -149,7 +150,8 @@ static int is_done(const hn_stages *nw, const progress *p) {
 static void look(progress *p, double size, int first) {
     p->ratio = first ? HUGE_VAL : size / p->size;
     p->size = size;
-    // rounding of stiff forces goes up and down at random: what counts is that it gets no smaller than it has been
+    // rounding of stiff forces goes up and down at random: what counts is that it gets no smaller
+    // than it has been
     p->stalled = !first && size > STALLED * p->least ? p->stalled + 1 : 0;
     p->least = first ? size : fmin(size, p->least);
     p->grown = !first && p->ratio >= HOPELESS && size > NEAR_ROUNDING ? p->grown + 1 : 0;

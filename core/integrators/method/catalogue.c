@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-// The catalogue of methods as JSON: the cards that the page, the terminal and `holonom list methods` show.
+// The catalogue of methods as JSON: the cards that the page, the terminal and `holonom list
+// methods` show.
 
 static void put_option(hn_strbuf *b, const hn_option *info) {
     hn_json_object(b);

@@ -272,24 +272,13 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     }
     const piece left = {text, 0, at}, right = {text, at + 1, n};
     const size_t left_colon = find_char(left, ':'), right_colon = find_char(right, ':');
-    hn_status status = find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag);
-    if (status == HN_OK) {
-        status = find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag);
-    }
-    if (status == HN_OK) {
-        status = check_pair(right, &spec, diag);
-    }
-    if (status == HN_OK) {
-        status = parse_side(left, left_colon, spec.formulation->options,
-                            spec.formulation->n_options, spec.formulation_set, diag);
-    }
-    if (status == HN_OK) {
-        status = parse_side(right, right_colon, spec.stepper->options, spec.stepper->n_options,
-                            spec.stepper_set, diag);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag));
+    HN_TRY(find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag));
+    HN_TRY(check_pair(right, &spec, diag));
+    HN_TRY(parse_side(left, left_colon, spec.formulation->options, spec.formulation->n_options,
+                      spec.formulation_set, diag));
+    HN_TRY(parse_side(right, right_colon, spec.stepper->options, spec.stepper->n_options,
+                      spec.stepper_set, diag));
     if (diag) {
         *diag = (hn_diag){0};
     }
@@ -332,7 +321,7 @@ int hn_method_is_adaptive(const hn_method_spec *spec) {
     return spec->stepper->adaptive && !(hn_method_option(spec, "h", 0) > 0);
 }
 
-// --- writing ----------------------------------------------------------------------------------------------
+// ---- writing ----
 
 // a short text that reads back to the same double; six digits write 20 as 20, not as 2e+01
 static void format_value(const hn_option *info, double value, char *out, size_t n) {

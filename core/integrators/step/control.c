@@ -46,20 +46,14 @@ hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
                         double atol, double hmax, double *f0, double *work, double *work2,
                         double *h) {
     const int n = ode->n_pos + ode->n_vel;
-    hn_status status = ode->rhs(ode->self, t, y, f0);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->rhs(ode->self, t, y, f0));
     const double d0 = scaled_norm(n, y, y, rtol, atol), d1 = scaled_norm(n, f0, y, rtol, atol);
     double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
     h0 = fmin(h0, hmax);
     for (int i = 0; i < n; i++) {
         work[i] = y[i] + h0 * f0[i];
     }
-    status = ode->rhs(ode->self, t + h0, work, work2);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(ode->rhs(ode->self, t + h0, work, work2));
     for (int i = 0; i < n; i++) {
         work2[i] -= f0[i];
     }

@@ -10,8 +10,8 @@
 #define HN_STEP_GROW 5.0
 #define HN_STEP_SHRINK 0.2
 
-/// sqrt(mean((err_i / (atol + rtol max(|y0_i|, |y1_i|)))^2)); accepted when <= 1. Infinite when an entry is not
-/// finite, 0 for n = 0.
+/// sqrt(mean((err_i / (atol + rtol max(|y0_i|, |y1_i|)))^2)); accepted when <= 1. Infinite when an
+/// entry is not finite, 0 for n = 0.
 double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
                      double atol);
 
@@ -21,11 +21,12 @@ typedef struct hn_step_control {
     int just_rejected; ///< the step must not grow right after a rejection
 } hn_step_control;
 
-/// The factor for the next step size after an error norm `err` (accepted when err <= 1); k = embedded order + 1.
+/// The factor for the next step size after an error norm `err` (accepted when err <= 1); k =
+/// embedded order + 1.
 double hn_step_factor(hn_step_control *control, double err, int k);
 
-/// A first step size from two right-hand sides: h such that an explicit Euler step and the change of slope stay
-/// small. f0 and work are (n) scratch. Fails with the right-hand side's status.
+/// A first step size from two right-hand sides: h such that an explicit Euler step and the change
+/// of slope stay small. f0 and work are (n) scratch. Fails with the right-hand side's status.
 HN_MUST_CHECK hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,
                                       double rtol, double atol, double hmax, double *f0,
                                       double *work, double *work2, double *h);

@@ -8,9 +8,11 @@
 #include <stdio.h>
 #include <string.h>
 
-// pivots of J' with unit rows below this belong to rows that follow from the others; at a closed pose those are at rounding
+// pivots of J' with unit rows below this belong to rows that follow from the others; at a closed
+// pose those are at rounding
 static const double DEPENDENT_ROW = 1e-8;
-// where positions have drifted dependent rows part; then a rank above the one seen at closed poses takes stronger rows
+// where positions have drifted dependent rows part; then a rank above the one seen at closed poses
+// takes stronger rows
 static const double CLOSED = 1e-12; // of the mechanism's length
 static const double STRONG_ROW = 1e-3;
 
@@ -160,7 +162,7 @@ void hn_dae_choose_rows(hn_dae_base *b) {
     b->cost.ops += hn_flops_qr(nv, nc);
 }
 
-// --- Newton matrices --------------------------------------------------------------------------------------------
+// ---- Newton matrices ----
 
 hn_newton_matrix *hn_dae_matrix_create(const hn_dae_base *b, hn_arena *arena, int n_max,
                                        int fillings, int borders, int more) {

@@ -1,12 +1,13 @@
 #ifndef HN_INTEGRATORS_DAE_BASE_H
 #define HN_INTEGRATORS_DAE_BASE_H
-// What integrators of the differential-algebraic system share: evaluators of its terms, consistent accelerations and
-// multipliers to begin from, and the constraint rows that count.
+// What integrators of the differential-algebraic system share: evaluators of its terms, consistent
+// accelerations and multipliers to begin from, and the constraint rows that count.
 //
-// Redundant rows. A Newton matrix with dependent rows of J has no inverse, and away from the closed poses, where Newton's
-// iterates are, dependent rows are dependent no longer. So each step begins by choosing independent rows at its closed first
-// pose, by column-pivoted QR of J', and goes on with those alone; the others follow, because every motion that keeps the
-// chosen rows closed keeps them closed. The multipliers of rows left out are 0 inside a scheme.
+// Redundant rows. A Newton matrix with dependent rows of J has no inverse, and away from the closed
+// poses, where Newton's iterates are, dependent rows are dependent no longer. So each step begins
+// by choosing independent rows at its closed first pose, by column-pivoted QR of J', and goes on
+// with those alone; the others follow, because every motion that keeps the chosen rows closed keeps
+// them closed. The multipliers of rows left out are 0 inside a scheme.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -24,8 +25,8 @@ typedef struct hn_dae_base {
     hn_accel *accel;
     hn_eval *dyn;  ///< M, f
     hn_eval *loop; ///< phi, phi_t, J
-    const double *M, *f, *phi, *phi_t,
-        *J;        ///< the terms last evaluated; NULL where there are no rows
+    /// the terms last evaluated; NULL where there are no rows
+    const double *M, *f, *phi, *phi_t, *J;
     int nr;        ///< rows that count, see hn_dae_choose_rows()
     int rank_seen; ///< largest rank met at a closed pose
     int *rows;     ///< their numbers
@@ -53,11 +54,13 @@ void hn_dae_dynamics(hn_dae_base *b, double t, const double *q, const double *v)
 void hn_dae_loops(hn_dae_base *b, double t, const double *q);
 /// Chooses the rows that count from J last evaluated.
 void hn_dae_choose_rows(hn_dae_base *b);
-/// A matrix of size n_max filled by `fillings` of M and `borders` of the chosen rows of J or their transpose, and `more` puts.
+/// A matrix of size n_max filled by `fillings` of M and `borders` of the chosen rows of J or their
+/// transpose, and `more` puts.
 HN_MUST_CHECK hn_newton_matrix *hn_dae_matrix_create(const hn_dae_base *b, hn_arena *arena,
                                                      int n_max, int fillings, int borders,
                                                      int more);
-/// Puts s M, and s times the chosen rows of J (nc x nv) or their transpose, with the first entry at (row, col).
+/// Puts s M, and s times the chosen rows of J (nc x nv) or their transpose, with the first entry at
+/// (row, col).
 void hn_dae_put_mass(const hn_dae_base *b, hn_newton_matrix *to, double s, int row, int col);
 void hn_dae_put_rows(const hn_dae_base *b, hn_newton_matrix *to, const double *J, double s, int row,
                      int col);
@@ -77,18 +80,21 @@ void hn_dae_spread_rows(const hn_dae_base *b, const double *x, double *out);
 /// Consistent a (nv) and lambda (nc, may be NULL) at a state; a failure is told in `why`.
 HN_MUST_CHECK hn_status hn_dae_accelerate(hn_dae_base *b, double t, const double *q,
                                           const double *v, double *a, double *lambda);
-/// Size of a displacement `delta` (nv) in the mass norm at the terms last evaluated, relative to the largest of the step's whole
-/// displacement `moved` (nv), the coordinates themselves and the displacement that opens a loop by the mechanism's length [-]: the
-/// same in any units, and not below what rounding of the coordinates allows.
+/// Size of a displacement `delta` (nv) in the mass norm at the terms last evaluated, relative to
+/// the largest of the step's whole displacement `moved` (nv), the coordinates themselves and the
+/// displacement that opens a loop by the mechanism's length [-]: the same in any units, and not
+/// below what rounding of the coordinates allows.
 double hn_dae_newton_size(hn_dae_base *b, const double *delta, const double *moved,
                           const double *q);
 /// Notes `what` failed at time t and returns `status`.
 hn_status hn_dae_fail(hn_dae_base *b, hn_status status, double t, const char *what);
 
-/// Why a step of the ggl form has no answer at an M (nv x nv) that has no inverse: names the first coordinate without mass.
+/// Why a step of the ggl form has no answer at an M (nv x nv) that has no inverse: names the first
+/// coordinate without mass.
 void hn_dae_tell_massless(const hn_system *sys, const double *M, double t, char *why, size_t size);
 
-/// When integrators on index 2 close the position at the end of a step: every so many steps, or one of these.
+/// When integrators on index 2 close the position at the end of a step: every so many steps, or one
+/// of these.
 enum { HN_CLOSE_NEVER = -1, HN_CLOSE_DEPENDENT = 0 };
 /// The setting "close" of index 2; of the other forms HN_CLOSE_NEVER.
 int hn_dae_close_option(hn_dae_form form, const double *form_options);
@@ -97,11 +103,13 @@ int hn_dae_projects_speeds(hn_dae_form form, const double *form_options);
 /// The refusal of an integrator that does not do that; HN_OK where it is not asked for.
 HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
                                                  const char *integrator, hn_diag *diag);
-/// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent` says that rows were left out.
+/// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent`
+/// says that rows were left out.
 int hn_dae_closes(int close, long long n, int dependent);
 
-/// A Newton iteration watched: it has converged when the correction, or what the contraction seen so far leaves of it, is
-/// below tol times the size of the unknowns, or when it has shrunk to rounding and stays there.
+/// A Newton iteration watched: it has converged when the correction, or what the contraction seen
+/// so far leaves of it, is below tol times the size of the unknowns, or when it has shrunk to
+/// rounding and stays there.
 typedef struct hn_newton {
     int iterations;
     double last;        ///< size of the last correction, relative

@@ -122,11 +122,7 @@ static void build_kinetic(source *s) {
 }
 
 static hn_status compile(const source *s, int n_out, hn_arena *arena, part *p) {
-    hn_status status =
-        hn_tape_compile(s->g, s->list, n_out, s->symbols, s->nq + s->n + 1, &p->tape);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_tape_compile(s->g, s->list, n_out, s->symbols, s->nq + s->n + 1, &p->tape));
     p->out = hn_arena_doubles(arena, (size_t)n_out);
     p->work = hn_arena_doubles(arena, hn_tape_work_size(p->tape));
     if (!p->out || !p->work) {
@@ -144,7 +140,8 @@ static hn_status compile_forces(source *s, hn_arena *arena, part *p) {
     return compile(s, 2 * s->n, arena, p);
 }
 
-// what is not identically zero of M and (M v)_q, in s->list, moves to its front; its places are noted
+// what is not identically zero of M and (M v)_q, in s->list, moves to its front; its places are
+// noted
 static void pick_entries(hn_lagrange *l, source *s) {
     const int size = s->n * s->n;
     for (int i = 0; i < size; i++) {

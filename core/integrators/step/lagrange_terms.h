@@ -2,14 +2,16 @@
 #define HN_INTEGRATORS_LAGRANGE_TERMS_H
 // A system read as Lagrange's equations of the second kind, for variational integrators:
 //
-//     d/dt (M v) = L_q + Q_v + J' lambda,     L_q = d/dq (1/2 v' M v) + f(q, 0, t)                               (1)
-//     Q_v = f(q, v, t) - f(q, 0, t) + (dM/dt) v - d/dq (1/2 v' M v)                                             (2)
+//     d/dt (M v) = L_q + Q_v + J' lambda,     L_q = d/dq (1/2 v' M v) + f(q, 0, t)            (1)
+//     Q_v = f(q, v, t) - f(q, 0, t) + (dM/dt) v - d/dq (1/2 v' M v)                           (2)
 //
-// Derivatives by q are taken along the speeds: along G of q' = G v. For the three speeds of a ball, measured in its own axes, the
-// left of (1) and the middle of (2) gain omega x p, p being its three entries of M v (Hamel's form).
+// Derivatives by q are taken along the speeds: along G of q' = G v. For the three speeds of a ball,
+// measured in its own axes, the left of (1) and the middle of (2) gain omega x p, p being its three
+// entries of M v (Hamel's form).
 //
-// Q_v is what depends on speed and comes from no Lagrangian of this form: dampers, friction, air, gyroscopic terms. It vanishes
-// identically for rigid bodies under weight, springs and forces of place and time.
+// Q_v is what depends on speed and comes from no Lagrangian of this form: dampers, friction, air,
+// gyroscopic terms. It vanishes identically for rigid bodies under weight, springs and forces of
+// place and time.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -22,7 +24,8 @@ HN_MUST_CHECK hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena
 void hn_lagrange_free(hn_lagrange *l); ///< NULL is legal
 /// 1 when no entry of M depends on q or t.
 int hn_lagrange_mass_is_constant(const hn_lagrange *l);
-/// 1 when Q_v differs from zero at some of a few states with coordinates and speeds of order one: more than rounding makes it.
+/// 1 when Q_v differs from zero at some of a few states with coordinates and speeds of order one:
+/// more than rounding makes it.
 int hn_lagrange_has_dissipation(hn_lagrange *l);
 
 /// All below are borrowed from the object and stay until the next call of the same function.

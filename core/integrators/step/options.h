@@ -1,9 +1,11 @@
 #ifndef HN_INTEGRATORS_OPTIONS_H
 #define HN_INTEGRATORS_OPTIONS_H
-// Options that several integrators share. An integrator's table places them with an enum of its own:
+// Options that several integrators share. An integrator's table places them with an enum of its
+// own:
 //
 //     enum { OPT_STEP, OPT_RHO, N_OPTIONS };
-//     .n_options = N_OPTIONS, .options = {[OPT_STEP] = HN_OPTION_STEP, [OPT_RHO] = {.key = "rho", ...}}
+//     .n_options = N_OPTIONS,
+//     .options = {[OPT_STEP] = HN_OPTION_STEP, [OPT_RHO] = {.key = "rho", ...}}
 
 #include "integrators/step/stepper.h"
 

@@ -11,7 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Every formulation at one state, through its table alone: the acceleration it implies, against the saddle-point solve.
+// Every formulation at one state, through its table alone: the acceleration it implies, against the
+// saddle-point solve.
 
 enum { MAX = 64 };
 
@@ -67,7 +68,8 @@ static void reference_acceleration(const hn_trial *trial, const double *q, const
     hn_arena_free(arena);
 }
 
-// speeds after a short step along y', by the formulation's own map: v(t + e) and v(t - e) give its acceleration
+// speeds after a short step along y', by the formulation's own map: v(t + e) and v(t - e) give its
+// acceleration
 static void implied_acceleration(instance *in, const hn_trial *trial, double *a) {
     const int n = in->ode.n_pos + in->ode.n_vel;
     const double e = 1e-5;

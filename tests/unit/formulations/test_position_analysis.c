@@ -46,8 +46,9 @@ static double ops_of(const reduction *red) {
     return cost.ops;
 }
 
-/// Back and forth a little on the way from the start: each pose from the last accepted one, as in a run. Returns how many poses
-/// there were before the chart ended. The other two go where Newton's method goes.
+/// Back and forth a little on the way from the start: each pose from the last accepted one, as in a
+/// run. Returns how many poses there were before the chart ended. The other two go where Newton's
+/// method goes.
 static int poses_agree(const char *name, const hn_model *m, reduction *newton, reduction *dyads,
                        reduction *either) {
     const int r = newton->ode.n_pos, nq = m->info.nq;
@@ -89,8 +90,8 @@ static int poses_agree(const char *name, const hn_model *m, reduction *newton, r
 }
 
 typedef struct tally {
-    int served,
-        cheaper; ///< scenes with a closed form; those where `auto` saves operations
+    /// scenes with a closed form; those where `auto` saves operations
+    int served, cheaper;
 } tally;
 
 static void compare_costs(const char *name, double either, double newton, tally *n) {
@@ -144,8 +145,9 @@ static void dyads_find_the_poses_of_newtons_method_and_auto_takes_what_costs_les
     assert_true(n.cheaper >= 10);
 }
 
-/// The crank of the parallelogram goes on through the pose where all links lie on one line: there the two ways of assembling
-/// the dyad meet, and going on with the sign kept would be the crossed loop.
+/// The crank of the parallelogram goes on through the pose where all links lie on one line: there
+/// the two ways of assembling the dyad meet, and going on with the sign kept would be the crossed
+/// loop.
 static void a_step_over_a_change_point_is_refused_whatever_its_length(void **state) {
     (void)state;
     static const double steps[] = {0.3, 0.1, 0.0371, 0.01};

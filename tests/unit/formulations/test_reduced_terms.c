@@ -76,8 +76,8 @@ static void next_state(probe *p) {
     close_loops(p);
 }
 
-/// The next state with its terms; 0 where they do not exist, and the reason then names a ball: nothing else stands in the way
-/// of the shipped scenes near their starts.
+/// The next state with its terms; 0 where they do not exist, and the reason then names a ball:
+/// nothing else stands in the way of the shipped scenes near their starts.
 static int next_terms(probe *p) {
     next_state(p);
     const hn_status status =
@@ -127,8 +127,9 @@ static double largest(const double *x, int n) {
     return most;
 }
 
-/// Phi a_r + c = a with c = Phi_dot v_r: two states of the motion apart by a small step would tell the same to fewer digits, so
-/// the independent rows are compared, where c is 0, and the equation itself.
+/// Phi a_r + c = a with c = Phi_dot v_r: two states of the motion apart by a small step would tell
+/// the same to fewer digits, so the independent rows are compared, where c is 0, and the equation
+/// itself.
 static void accelerations_agree(probe *p) {
     const hn_reduced_terms *w = &p->terms;
     hn_accel_info info;
@@ -230,7 +231,8 @@ static double kinetic_after(probe *p, hn_eval *energy, double h) {
     return hn_eval_get(energy, HN_TERM_ENERGY)[0];
 }
 
-/// d/dt (v_r' M_r v_r / 2) = v_r' (tau_r - g_r), the left side along the motion that the saddle system gives.
+/// d/dt (v_r' M_r v_r / 2) = v_r' (tau_r - g_r), the left side along the motion that the saddle
+/// system gives.
 static void power_balances(probe *p) {
     hn_reduced_terms *w = &p->terms;
     hn_eval *energy = NULL;
@@ -264,7 +266,8 @@ static void the_reduced_forces_account_for_the_kinetic_energy(void **state) {
     assert_true(for_shipped_scenes(power_balances, 5) >= 28);
 }
 
-/// Without motors and dampers nothing is left of f + h + g, although h and g come from the energies and f from the bodies.
+/// Without motors and dampers nothing is left of f + h + g, although h and g come from the energies
+/// and f from the bodies.
 static void without_loads_no_force_is_left(void **state) {
     (void)state;
     static const char *const names[] = {"fb0",  "fb0-lagrangian",   "bennett",
@@ -306,7 +309,8 @@ static void motors_are_the_independent_coordinates_where_they_serve(void **state
     close_probe(&p);
 }
 
-/// FB0 by hand: with the crank's angle independent, theta_coupler' and theta_rocker' over theta_crank' follow from closing the loop.
+/// FB0 by hand: with the crank's angle independent, theta_coupler' and theta_rocker' over
+/// theta_crank' follow from closing the loop.
 static double parameter(const probe *p, const char *name) {
     const int i = hn_scene_find_param(p->model.scene, name);
     assert_true(i >= 0);

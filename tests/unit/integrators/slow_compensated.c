@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Ten million small steps: the integrator's own error is far below rounding, so what is seen is what summing does.
+// Ten million small steps: the integrator's own error is far below rounding, so what is seen is
+// what summing does.
 
 enum { STEPS = 10000000 };
 #define T 10.0
@@ -34,9 +35,11 @@ static void rounding_of_ten_million_steps_falls_to_that_of_one(void **state) {
     const hn_stepper *s = hn_stepper_find("rk4");
     const double plain = error_after(s, 0, arena), compensated = error_after(s, 1, arena);
     print_message("rk4, %d steps: error %.2g plain, %.2g compensated\n", STEPS, plain, compensated);
-    // each plain sum is cut by up to 1.1e-16: at random 3000 of those, one-sidedly up to 1e7 of them
+    // each plain sum is cut by up to 1.1e-16: at random 3000 of those, one-sidedly up to 1e7 of
+    // them
     assert_true(plain > 3e-14);
-    // the slopes are evaluated at a state rounded to 1.1e-16, for ten seconds, which the motion neither damps nor amplifies
+    // the slopes are evaluated at a state rounded to 1.1e-16, for ten seconds, which the motion
+    // neither damps nor amplifies
     assert_true(compensated < 3e-15);
     hn_arena_free(arena);
 }
@@ -46,7 +49,8 @@ static void a_method_of_order_two_is_left_with_its_own_error(void **state) {
     hn_arena *arena = hn_arena_create(0);
     const hn_stepper *s = hn_stepper_find("verlet");
     const double h = T / STEPS, compensated = error_after(s, 1, arena);
-    // the phase is ahead by T h^2/24 and the speed's amplitude short by h^2/8; rounding may add a hundredth
+    // the phase is ahead by T h^2/24 and the speed's amplitude short by h^2/8; rounding may add a
+    // hundredth
     const double own = fabs(T * h * h / 24 * cos(T) - h * h / 8 * sin(T));
     print_message("verlet: error %.3g, its own %.3g\n", compensated, own);
     assert_rel(compensated, own, 0.01);

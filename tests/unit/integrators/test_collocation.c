@@ -1,4 +1,5 @@
-// Collocation coefficients against the published ones, and the basis in which Newton's systems fall apart.
+// Collocation coefficients against the published ones, and the basis in which Newton's systems fall
+// apart.
 #include "integrators/implicit/implicit_tableau.h"
 #include "support/near.h"
 

@@ -118,7 +118,8 @@ static void speeds_that_do_not_fit_the_loop_give_a_blow_of_size_1_over_h(void **
     assert_rel(blow[2], blow[1], 0.03);
 }
 
-// x'' + w^2 x = 0 beside nothing else: after many steps at h w = 1000 what is left falls by rho a step
+// x'' + w^2 x = 0 beside nothing else: after many steps at h w = 1000 what is left falls by rho a
+// step
 static void an_infinitely_fast_oscillation_keeps_rho_of_itself_in_a_step(void **state) {
     (void)state;
     static const char text[] =
@@ -138,7 +139,8 @@ static void an_infinitely_fast_oscillation_keeps_rho_of_itself_in_a_step(void **
         assert_int_equal(hn_test_dae_steps(&d, 1, 100), HN_OK);
         const double early = hn_norm2(1, d.y);
         assert_int_equal(hn_test_dae_steps(&d, 1, 100), HN_OK);
-        // roots of size rho nearly fall together, so powers of n stand beside rho^n: 2^(2/100), and a beat
+        // roots of size rho nearly fall together, so powers of n stand beside rho^n: 2^(2/100), and
+        // a beat
         const double rate = pow(hn_norm2(1, d.y) / early, 1.0 / 100);
         assert_rel(rate, table[i].rho, 0.05);
         hn_test_dae_close(&d);

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-// The library's integrators through our table: that they are the ones named, keep the tolerance asked for, land where they
-// are stopped, and hand on what the right-hand side says.
+// The library's integrators through our table: that they are the ones named, keep the tolerance
+// asked for, land where they are stopped, and hand on what the right-hand side says.
 
 static const char *const names[] = {"gsl-rk8pd", "gsl-msadams", "gsl-msbdf", "gsl-bsimp"};
 enum { N_NAMES = sizeof names / sizeof *names };
@@ -71,7 +71,8 @@ static void an_orbit_is_followed_to_the_tolerance(void **state) {
     for (int i = 0; i < N_NAMES; i++) {
         const hn_stepper *s = hn_stepper_find(names[i]);
         assert_non_null(s);
-        // errors of steps add up along the orbit: a factor of 1000 leaves room for that, and for 2700 steps of msbdf
+        // errors of steps add up along the orbit: a factor of 1000 leaves room for that, and for
+        // 2700 steps of msbdf
         assert_true(orbit_error(s, 1e-5) < 1e-2);
         assert_true(orbit_error(s, 1e-9) < 1e-6);
     }

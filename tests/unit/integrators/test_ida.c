@@ -16,7 +16,7 @@ static const hn_dae_form forms[] = {HN_FORM_INDEX1, HN_FORM_STABILISED, HN_FORM_
 enum { N_FORMS = sizeof forms / sizeof *forms, ROOM = 96 };
 static const double stabilisation[3] = {7, 5, 0};
 
-// --- the matrix of Newton's method ------------------------------------------------------------------------------
+// ---- the matrix of Newton's method ----
 
 static double column_error(hn_ida_problem *p, double t, double c, const double *y,
                            const double *ydot, const double *A, int col) {
@@ -59,7 +59,8 @@ static int check_sparse(hn_ida_jacobian *j, double t, double c, const double *y,
     return 1;
 }
 
-// away from the loop's manifold, so that nothing vanishes by accident; mu and q' - v are small, as the matrix takes for granted
+// away from the loop's manifold, so that nothing vanishes by accident; mu and q' - v are small, as
+// the matrix takes for granted
 static int check_matrix(const hn_model *m, hn_dae_form form) {
     hn_arena *arena = hn_arena_create(0);
     hn_ida_problem p;
@@ -80,7 +81,8 @@ static int check_matrix(const hn_model *m, hn_dae_form form) {
     }
     hn_ida_jacobian_fill(&j, t, c, y, ydot, A);
     for (int col = 0; col < p.n; col++) {
-        // central differences: 1e-12 of truncation, 1e-10 of rounding, times the curvature of the formulas
+        // central differences: 1e-12 of truncation, 1e-10 of rounding, times the curvature of the
+        // formulas
         const double err = column_error(&p, t, c, y, ydot, A, col);
         if (!(err < 1e-6)) {
             fail_msg("%s: column %d of %d is off by %g", hn_form_name(form), col, p.n, err);
@@ -117,7 +119,7 @@ static void a_large_matrix_is_filled_entry_by_entry(void **state) {
     hn_model_close(&m);
 }
 
-// --- the stepper ------------------------------------------------------------------------------------------------
+// ---- the stepper ----
 
 typedef struct trial {
     hn_model m;

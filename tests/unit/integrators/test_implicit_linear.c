@@ -1,5 +1,5 @@
-// The linear systems of Newton's method on differential-algebraic forms: they are solved, and their condition does not depend on
-// the step in the unknowns that are used.
+// The linear systems of Newton's method on differential-algebraic forms: they are solved, and their
+// condition does not depend on the step in the unknowns that are used.
 #include "integrators/implicit/implicit_linear.h"
 
 #include "linalg/dense.h"
@@ -102,7 +102,8 @@ static double residual_of(const bench *b, hn_dae_form form, double re, double im
     return worst;
 }
 
-// car axis: damping is zero there, constraints move in time; squeezer: stiff; slider-crank: lengths and angles, damping
+// car axis: damping is zero there, constraints move in time; squeezer: stiff; slider-crank: lengths
+// and angles, damping
 static void corrections_solve_the_linear_equations_of_every_form(void **state) {
     (void)state;
     static const char *const scenes[] = {"fb0", "andrews", "slider-crank", "five-bar"};

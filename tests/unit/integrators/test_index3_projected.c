@@ -48,7 +48,8 @@ static slopes measure(const hn_model *m, const hn_test_state *exact, const char 
     return out;
 }
 
-// Hairer, Lubich & Roche 1989 for the first; the steps are not yet so small that the slopes are whole numbers
+// Hairer, Lubich & Roche 1989 for the first; the steps are not yet so small that the slopes are
+// whole numbers
 static void
 radau5_has_order_five_throughout_when_speeds_are_projected_and_three_else(void **state) {
     (void)state;
@@ -85,8 +86,8 @@ static void integrators_that_do_not_project_refuse_to_be_asked(void **state) {
         for (int i = 0; i < stepper->n_options; i++) {
             options[i] = isnan(stepper->options[i].initial) ? 1 : stepper->options[i].initial;
         }
-        assert_int_equal(stepper->dae->create(m.sys, HN_FORM_INDEX3, options, form_options,
-                                              m.arena, &self, &diag),
+        assert_int_equal(stepper->dae->create(m.sys, HN_FORM_INDEX3, options, form_options, m.arena,
+                                              &self, &diag),
                          HN_ERR_UNSUPPORTED);
         assert_non_null(strstr(diag.message, others[k]));
         assert_non_null(strstr(diag.hint, "radau5"));

@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-// The order conditions of Butcher, one per rooted tree: Hairer, Norsett & Wanner 1993, table II.2.1.
+// The order conditions of Butcher, one per rooted tree: Hairer, Norsett & Wanner 1993, table
+// II.2.1.
 
 enum { MAX_STAGES = 12, N_CONDITIONS = 17 };
 #define ROUNDING 2e-14 // sums of seven terms of size up to 12
@@ -159,8 +160,9 @@ static void embedded_solutions_have_the_stated_order_and_not_one_more(void **sta
     assert_int_equal(found, 3);
 }
 
-// A rooted tree as the levels of its nodes in depth-first order, root at level 0. Its elementary weights are those of its
-// branches, each taken through A, multiplied; its density is its size times the densities of its branches.
+// A rooted tree as the levels of its nodes in depth-first order, root at level 0. Its elementary
+// weights are those of its branches, each taken through A, multiplied; its density is its size
+// times the densities of its branches.
 enum { MAX_ORDER = 9 };
 typedef struct weighed {
     double x[MAX_STAGES], density;
@@ -184,7 +186,8 @@ static weighed weigh(const hn_tableau *t, int size, const int *level) {
     return out;
 }
 
-// the next tree of this size; 0 after the last. Source: Beyer & Hedetniemi 1980, Constant time generation of rooted trees
+// the next tree of this size; 0 after the last. Source: Beyer & Hedetniemi 1980, Constant time
+// generation of rooted trees
 static int next_tree(int size, int *level) {
     int p = size - 1;
     while (p > 0 && level[p] == 1) {

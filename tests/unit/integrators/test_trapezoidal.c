@@ -29,8 +29,8 @@ static int teardown(void **state) {
 }
 
 static void open_ali3p(hn_test_dae *d, const hn_model *m, const char *options) {
-    hn_test_dae_open_as(d, m, hn_stepper_find("trapezoidal"), hn_formulation_find("ali3p"),
-                        options, NULL);
+    hn_test_dae_open_as(d, m, hn_stepper_find("trapezoidal"), hn_formulation_find("ali3p"), options,
+                        NULL);
 }
 
 static double turns_per_step(const hn_test_dae *d) {
@@ -70,8 +70,8 @@ static void order_is_2_and_the_gap_at_rounding(void **state) {
 
 static void turns_a_step_and_the_speed_gap_follow_the_weight(void **state) {
     (void)state;
-    // h = 0.0025, from an independent program: turns to |dq| < 1e-11, and |J v| about 70 / weight. We ask for a few digits
-    // more, so a few turns more where each gains little
+    // h = 0.0025, from an independent program: turns to |dq| < 1e-11, and |J v| about 70 / weight.
+    // We ask for a few digits more, so a few turns more where each gains little
     static const struct {
         const char *options;
         double turns_least, turns_most, speed_gap;
