@@ -7,7 +7,8 @@
 
 // lambda_1 = 0, then for k = 1, 2, ...
 // (1)
-//  (M + a J' J) acc_k = f + J' lambda_k - a J' r, r = gamma + 2 xi omega (J v + phi_t) + omega^2 phi
+//  (M + a J' J) acc_k = f + J' lambda_k - a J' r,
+//      r = gamma + 2 xi omega (J v + phi_t) + omega^2 phi
 //  lambda_(k+1) = lambda_k - a (J acc_k + r)
 //
 // Each turn shrinks the error by 1 / (1 + a s), s the smallest nonzero eigenvalue of J M^-1 J'; the
