@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BUILD_H
 #define HN_BUILD_H
 // What this program calls itself.

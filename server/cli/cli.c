@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/cli.h"
 
 #include "build.h"
@@ -86,7 +87,8 @@ static const hn_command *find_command(const char *name) {
 
 enum { HELP_INDENT = 10, HELP_WIDTH = 80 };
 
-/// Words in lines of HELP_WIDTH columns, each but the first after HELP_INDENT blanks; `column`: where the first begins.
+/// Words in lines of HELP_WIDTH columns, each but the first after HELP_INDENT blanks; `column`:
+/// where the first begins.
 static void add_folded(hn_strbuf *b, int column, const char *words) {
     while (*words) {
         const int n = (int)strcspn(words, " ");

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_CLI_H
 #define HN_CLI_CLI_H
-// The command line: one table of commands. Results go to standard output, everything else to standard error.
+// The command line: one table of commands. Results go to standard output, everything else to
+// standard error.
 
 #include "cli/shell/command.h"
 

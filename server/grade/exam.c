@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The exam of a problem: phi read and differentiated, states drawn.
 #include "base/hash.h"
 #include "grade/exercise.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/exercise.h"
 
 #include "base/file.h"
@@ -247,7 +248,7 @@ double hn_exercise_points(const hn_exercise *problem) {
     return problem->points * problem->n_rows * problem->n_columns;
 }
 
-// telling -------------------------------------------------------------------------------------------
+// ---- telling ----
 
 /// The shape of a submission with dots for the formulas.
 static void submission_form(hn_strbuf *b, const hn_exercise *p) {

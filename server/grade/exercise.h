@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SERVER_GRADE_PROBLEM_H
 #define HN_SERVER_GRADE_PROBLEM_H
-// Inside grade/ only: what a problem file says, and an exam: the problem's expressions and the states to compare at.
+// Inside grade/ only: what a problem file says, and an exam: the problem's expressions and the
+// states to compare at.
 
 #include "base/arena.h"
 #include "expr/graph.h"
@@ -54,7 +56,8 @@ typedef struct hn_exam {
     double expected[HN_GRADE_MAX_ENTRIES][HN_GRADE_MAX_STATES];
 } hn_exam;
 
-/// Parses, differentiates, draws the states. `diag` may be NULL; HN_ERR_INPUT means the problem itself is at fault.
+/// Parses, differentiates, draws the states. `diag` may be NULL; HN_ERR_INPUT means the problem
+/// itself is at fault.
 HN_MUST_CHECK hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed,
                                      hn_diag *diag);
 void hn_exam_reset(hn_exam *exam);
@@ -64,8 +67,8 @@ double hn_exam_value(hn_exam *exam, hn_ex e, int state);
 /// The difference allowed where this value is expected.
 double hn_exam_allowed(const hn_exam *exam, double expected);
 
-/// Names the mistake in a wrong entry, or "other". `value` holds the values of `given` at all states; `by` receives what
-/// the text refers to ("J21") and may stay empty.
+/// Names the mistake in a wrong entry, or "other". `value` holds the values of `given` at all
+/// states; `by` receives what the text refers to ("J21") and may stay empty.
 typedef struct hn_grade_mistake {
     const char *id, *text; ///< static
     char by[32];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/exercise_shelf.h"
 
 #include "session/compare/picture.h"

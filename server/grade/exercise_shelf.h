@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SERVER_PROBLEM_SHELF_H
 #define HN_SERVER_PROBLEM_SHELF_H
 // The shipped problems, by id: for the command line and the HTTP interface alike.
@@ -9,9 +10,11 @@
 /// Returns owned in *out. An unknown id: HN_ERR_INPUT with a near miss (pointer "/problem").
 HN_MUST_CHECK hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id,
                                                hn_exercise **out, hn_diags *diags);
-/// {"problems":[{"id","title","scene","points"}...]}; one that does not load stands there with its "errors".
+/// {"problems":[{"id","title","scene","points"}...]}; one that does not load stands there with its
+/// "errors".
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib);
-/// The picture of the state at which the first wrong entry shows, as PNG; HN_ERR_UNSUPPORTED when the verdict has none.
+/// The picture of the state at which the first wrong entry shows, as PNG; HN_ERR_UNSUPPORTED when
+/// the verdict has none.
 HN_MUST_CHECK hn_status hn_shelf_verdict_png(hn_strbuf *png, const hn_library *lib,
                                              const hn_verdict *verdict, hn_diags *diags);
 #endif

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/grade.h"
 
 #include "base/file.h"
@@ -14,7 +15,7 @@
 
 enum { MAX_DEPTH = 16 };
 
-// reading the submission ------------------------------------------------------------------------------
+// ---- reading the submission ----
 
 static int refuse(hn_verdict *v, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
 
@@ -38,7 +39,8 @@ static const char *kind_of(const cJSON *node) {
                                   : "true or false";
 }
 
-/// Fields that were not read are told, a near miss of the answer's name is suggested, another problem's file is refused.
+/// Fields that were not read are told, a near miss of the answer's name is suggested, another
+/// problem's file is refused.
 static int check_fields(hn_verdict *v, const cJSON *root) {
     const hn_exercise *p = v->problem;
     const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
@@ -110,7 +112,7 @@ static int check_shape(hn_verdict *v, const cJSON *answer, int *transposed) {
     return 1;
 }
 
-// one entry -------------------------------------------------------------------------------------------
+// ---- one entry ----
 
 static double partial_share(const hn_exercise *p, const char *mistake) {
     for (int i = 0; i < p->n_partial; i++) {
@@ -154,7 +156,8 @@ static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_
     return *status == HN_OK;
 }
 
-/// Compares at all states; fills in the closed state where the difference is largest. Returns 1 if right.
+/// Compares at all states; fills in the closed state where the difference is largest. Returns 1 if
+/// right.
 static int compare(hn_exam *exam, int index, hn_entry_verdict *e, const double *value) {
     const double *expected = exam->expected[index];
     double worst = -1;
@@ -218,7 +221,7 @@ static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn
     return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : HN_OK;
 }
 
-// the whole -------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 /// 1 if column j is wrong by its sign in every row.
 static int column_has_sign(const hn_verdict *v, int j) {

@@ -1,12 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SERVER_GRADE_GRADE_H
 #define HN_SERVER_GRADE_GRADE_H
-// Grading formulas. A problem asks for a matrix of formulas (the constraint Jacobian, entry by entry); its reference is
-// not typed but differentiated from the problem's own phi. A submission is a JSON file with formulas; each entry is
-// compared with the reference at random states (all lengths and angles random, loop closed), and a wrong one is
-// compared with what known mistakes would have given, so that the verdict can name the mistake.
+// Grading formulas. A problem asks for a matrix of formulas (the constraint Jacobian, entry by
+// entry); its reference is not typed but differentiated from the problem's own phi. A submission is
+// a JSON file with formulas; each entry is compared with the reference at random states (all
+// lengths and angles random, loop closed), and a wrong one is compared with what known mistakes
+// would have given, so that the verdict can name the mistake.
 //
-// Three outcomes are kept apart: graded (however low the score), ungradable (the submission cannot be read, and why), and
-// the grader's own failure (an hn_status other than HN_OK).
+// Three outcomes are kept apart: graded (however low the score), ungradable (the submission cannot
+// be read, and why), and the grader's own failure (an hn_status other than HN_OK).
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -25,7 +27,8 @@ enum {
 
 typedef struct hn_exercise hn_exercise;
 
-/// Reads a problem (lessons/NN-topic/problems/ID.json). Returns owned. Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_MEMORY, told in diags.
+/// Reads a problem (lessons/NN-topic/problems/ID.json). Returns owned. Fails: HN_ERR_IO,
+/// HN_ERR_INPUT, HN_ERR_MEMORY, told in diags.
 HN_MUST_CHECK hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *diags);
 HN_MUST_CHECK hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out,
                                               hn_diags *diags);
@@ -48,7 +51,8 @@ typedef struct hn_entry_verdict {
     int right;
     int closed_only; ///< right where the loop is closed, though not the derivative as a formula
     const char *
-        mistake; ///< id of a known mistake ("sign", "degrees", ...), "other", or "" when right; static
+        /// id of a known mistake ("sign", "degrees", ...), "other", or "" when right; static
+        mistake;
     char explanation[HN_GRADE_TEXT]; ///< a sentence for the student, "" when right
     char given[HN_GRADE_TEXT];       ///< the formula as handed in, cut
     char expected[HN_GRADE_TEXT];    ///< the reference formula
@@ -67,7 +71,8 @@ typedef struct hn_verdict {
     double score, max_score;
     int n_entries, n_right;
     hn_entry_verdict entry[HN_GRADE_MAX_ENTRIES];
-    // the state at which the first wrong entry shows, for a picture: names as in the scene, parameters first
+    // the state at which the first wrong entry shows, for a picture: names as in the scene,
+    // parameters first
     int shown_entry; ///< index of that entry, -1 if there is none
     int n_names,
         n_params; ///< of the n_names, the first n_params are parameters, the rest coordinates
@@ -78,15 +83,18 @@ typedef struct hn_verdict {
     const hn_exercise *problem; ///< borrowed
 } hn_verdict;
 
-/// Grades n bytes of a submission. `seed` chooses the states (0: the problem's own). HN_OK for graded and ungradable
-/// alike; otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time and memory are bounded.
+/// Grades n bytes of a submission. `seed` chooses the states (0: the problem's own). HN_OK for
+/// graded and ungradable alike; otherwise the grader failed (HN_ERR_MEMORY, HN_ERR_INTERNAL). Time
+/// and memory are bounded.
 HN_MUST_CHECK hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n,
                                       uint64_t seed, hn_verdict *out);
-/// The same from a file; one that cannot be opened or is too large is ungradable. At most HN_GRADE_MAX_BYTES + 1 are read.
+/// The same from a file; one that cannot be opened or is too large is ungradable. At most
+/// HN_GRADE_MAX_BYTES + 1 are read.
 HN_MUST_CHECK hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t seed,
                                       hn_verdict *out);
 
-/// For a person: one line an entry, and under a wrong one given, expected, allowed difference and the kind of mistake.
+/// For a person: one line an entry, and under a wrong one given, expected, allowed difference and
+/// the kind of mistake.
 void hn_verdict_text(hn_strbuf *b, const hn_verdict *v);
 /// The whole verdict as one JSON object.
 void hn_verdict_json(hn_strbuf *b, const hn_verdict *v);

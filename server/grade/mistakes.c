@@ -1,5 +1,7 @@
-// Known mistakes: each row makes the formulas that a wrong entry would show. The first row one of whose formulas agrees
-// with the entry at every state, closed or open, names the mistake; so more special rows stand first.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Known mistakes: each row makes the formulas that a wrong entry would show. The first row one of
+// whose formulas agrees with the entry at every state, closed or open, names the mistake; so more
+// special rows stand first.
 #include "grade/exercise.h"
 
 #include <math.h>
@@ -49,7 +51,7 @@ static hn_ex replace_names(const place *at, hn_ex e, int from, int to, double a,
     return out;
 }
 
-// the rows ------------------------------------------------------------------------------------------
+// ---- the rows ----
 
 static void make_zero(const place *at, variants *v) {
     (void)at;
@@ -60,7 +62,8 @@ static void make_sign(const place *at, variants *v) {
     add(v, hn_neg(at->reference), "");
 }
 
-/// Angles taken in degrees, or turned into degrees; with and without the factor that differentiation brings.
+/// Angles taken in degrees, or turned into degrees; with and without the factor that
+/// differentiation brings.
 static void make_degrees(const place *at, variants *v) {
     const double factor = acos(-1) / 180;
     const hn_exercise *p = at->exam->problem;
@@ -141,7 +144,8 @@ static void make_phi(const place *at, variants *v) {
     add(v, at->exam->phi[at->row], "");
 }
 
-/// The derivative of the wrong thing: of the whole row by time would hold rates, so only factors are left.
+/// The derivative of the wrong thing: of the whole row by time would hold rates, so only factors
+/// are left.
 static void make_factor(const place *at, variants *v) {
     static const double factors[] = {2, 0.5, -2, -0.5};
     for (int i = 0; i < 4; i++) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One verdict, told to a person, to a program, and to Gradescope.
 #include "base/hash.h"
 #include "grade/exercise.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Starts the real server on a free port and speaks HTTP to it; runs unittest cases and prints TAP."""
 
 import http.client

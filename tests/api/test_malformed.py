@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Requests at fault: each gets a problem document that says where and what, and the server goes on."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The reference solution of a scene: stored, computed on request within bounds, and the motion between stored times."""
 
 import unittest

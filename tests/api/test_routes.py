@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every route answers, in the shape that the OpenAPI document promises."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Comparisons and their event streams: order, resuming, gaps, ends, readers that are slow or go away."""
 
 import json

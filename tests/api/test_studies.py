@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Studies as resources: the documents of the command line, progress while they last, bounds, stopping, and what is left of them."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The command line as a person and a script use it: exit statuses, outputs that parse, faults that are told."""
 
 import csv

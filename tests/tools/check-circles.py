@@ -81,10 +81,10 @@ def circles(graph):
 
 
 def place(source):
-    """Layer and room of a source; the room is None for a file outside all rooms."""
+    """Layer and room of a source: all folders between the layer and the file, "" for a file outside all rooms."""
     parts = source.split("/")
     parts = parts[1:] if parts[0] == "core" else parts
-    return parts[0], parts[1] if len(parts) > 2 else None
+    return parts[0], "/".join(parts[1:-1])
 
 
 def climbs(graph, layers, rooms):

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom compare: several methods on one clock, and a table of where they part.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -73,7 +74,8 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_quantity(t, steps > 0 ? hn_document_number(m, "cpu") / steps : (double)NAN, "s");
 }
 
-/// What a spelling deserves to be told, and the first few incidents of each method; all of them are in the JSON.
+/// What a spelling deserves to be told, and the first few incidents of each method; all of them are
+/// in the JSON.
 static void put_incidents(hn_strbuf *b, const cJSON *summary) {
     const cJSON *incident, *m;
     int i = 0;

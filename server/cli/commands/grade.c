@@ -1,5 +1,11 @@
+<<<<<<< HEAD
 // holonom problem and holonom grade. A wrong answer graded low is done (0); a submission that cannot be read is 2.
 #include "base/clock.h"
+=======
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom problem and holonom grade. A wrong answer graded low is done (0); a submission that
+// cannot be read is 2.
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -78,7 +84,8 @@ static hn_status make_folder(const char *path, hn_diag *diag) {
     return HN_OK;
 }
 
-/// DIR/results.json for one submission to Gradescope, otherwise DIR/NAME.json or .txt after the submission's file.
+/// DIR/results.json for one submission to Gradescope, otherwise DIR/NAME.json or .txt after the
+/// submission's file.
 static void name_file(char *out, size_t size, const hn_args *args, verdict_form form,
                       const char *submission, const char *ending) {
     const char *slash = strrchr(submission, '/'), *name = slash ? slash + 1 : submission;

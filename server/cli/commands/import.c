@@ -1,5 +1,11 @@
+<<<<<<< HEAD
 // holonom import: a mechanism written for another program, as a scene; what of it is not in the scene is told.
 #include "base/file.h"
+=======
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom import: a mechanism written for another program, as a scene; what of it is not in the
+// scene is told.
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -18,7 +24,8 @@ static hn_status read_file(const char *path, hn_strbuf *text, hn_diags *diags) {
                                   : hn_file_load(path, HN_IMPORT_MAX_BYTES, text, diags);
 }
 
-/// A file below the folder `user` (as realpath tells it): a link that leads out of it is not followed.
+/// A file below the folder `user` (as realpath tells it): a link that leads out of it is not
+/// followed.
 static hn_status read_included(void *user, const char *name, size_t most, hn_strbuf *text,
                                hn_diag *diag) {
     const char *folder = user;
@@ -83,7 +90,8 @@ static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *dia
     return status;
 }
 
-/// Where the scene stands when its loops are closed; told, not demanded: what assembly misses is a fact about the model.
+/// Where the scene stands when its loops are closed; told, not demanded: what assembly misses is a
+/// fact about the model.
 static hn_status assemble(const hn_library *lib, const hn_import *im, hn_model **out,
                           hn_diags *diags) {
     hn_model_source source = {.allow_open = 1};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom list scenes|methods|lessons|problems
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"

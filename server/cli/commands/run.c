@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom run: one method, its samples as CSV, NDJSON or JSON.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -80,7 +81,8 @@ static int add_measure(column *columns, int n, const cJSON *samples, const char 
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, and the three measures.
+/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, and the three
+/// measures.
 static int find_columns(column *columns, const cJSON *run) {
     static const char *const last[] = {"gap", "velocity_gap", "energy"};
     const cJSON *samples = hn_document_get(run, "samples");

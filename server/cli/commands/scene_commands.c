@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom inspect, equations, terms: questions about one scene.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -111,8 +112,8 @@ static double largest_of(const cJSON *list, const char *key) {
     return largest;
 }
 
-/// Force and moment of each, in world axes; a star where redundant rows leave it undetermined. What is rounding beside the
-/// largest is shown as 0.
+/// Force and moment of each, in world axes; a star where redundant rows leave it undetermined. What
+/// is rounding beside the largest is shown as 0.
 static void put_reactions(hn_strbuf *b, const cJSON *list) {
     static const char *const keys[] = {"force", "moment"};
     const cJSON *item;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom snapshot: a picture of where several methods have taken a scene.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"

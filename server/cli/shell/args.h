@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_ARGS_H
 #define HN_CLI_ARGS_H
 // The words and options behind a command: one table of options for all commands.
@@ -19,7 +20,8 @@ typedef struct hn_numbers {
     double *value; ///< owned
 } hn_numbers;
 
-/// Options of all commands; a command reads those it lists. Numbers that were not given are NaN, texts NULL.
+/// Options of all commands; a command reads those it lists. Numbers that were not given are NaN,
+/// texts NULL.
 typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
     hn_words given; ///< names of the options that were given, as in the table
@@ -34,13 +36,15 @@ typedef struct hn_args {
     int json, csv, open, help, raw_lambda, reactions, run_long;
 } hn_args;
 
-/// Parses what follows the command's name. HN_ERR_INPUT with a near miss in diag. hn_args_reset() afterwards in any case.
+/// Parses what follows the command's name. HN_ERR_INPUT with a near miss in diag. hn_args_reset()
+/// afterwards in any case.
 HN_MUST_CHECK hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc,
                                       char **argv, hn_diag *diag);
 void hn_args_reset(hn_args *args);
 /// "--set NAME=VALUE   a parameter that differs ...", a line an option of the command.
 void hn_args_describe(hn_strbuf *b, const hn_command *command);
-/// HN_ERR_INPUT when an option was given that is not one of `options` (separated by spaces): `whose` does not read it.
+/// HN_ERR_INPUT when an option was given that is not one of `options` (separated by spaces):
+/// `whose` does not read it.
 HN_MUST_CHECK hn_status hn_args_allow_only(const hn_args *args, const char *options,
                                            const char *whose, hn_diags *diags);
 /// A finite number and nothing behind it; 0 otherwise.

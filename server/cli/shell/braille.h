@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_BRAILLE_H
 #define HN_CLI_BRAILLE_H
 // Lines on a terminal: each character cell is 2 x 4 dots of braille, and may hold a glyph instead.

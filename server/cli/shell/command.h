@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_COMMAND_H
 #define HN_CLI_COMMAND_H
 // One command of the command line, and the exit statuses: the same for all commands.

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_COMMANDS_H
 #define HN_CLI_COMMANDS_H
-// The functions behind the commands; each file of commands/ and study/ defines one or a few of them.
+// The functions behind the commands; each file of commands/ and study/ defines one or a few of
+// them.
 
 #include "cli/shell/args.h"
 

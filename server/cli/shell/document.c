@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/document.h"
 
 #include <math.h>
@@ -62,7 +63,8 @@ static void put_scalar(hn_strbuf *b, const cJSON *item) {
     hn_strbuf_add(b, text);
 }
 
-/// A scalar, or the scalars of an array with commas between; what has no room is marked by an ellipsis.
+/// A scalar, or the scalars of an array with commas between; what has no room is marked by an
+/// ellipsis.
 static void format_cell(const cJSON *item, char out[HN_TABLE_CELL]) {
     if (!cJSON_IsArray(item)) {
         format_scalar(item, out);
@@ -122,7 +124,8 @@ static int find_column(const hn_list_column *columns, int n, const char *key) {
     return -1;
 }
 
-/// A table of objects, its columns the members that any of them has; members with parts of their own are left out.
+/// A table of objects, its columns the members that any of them has; members with parts of their
+/// own are left out.
 static void put_objects(hn_strbuf *b, const cJSON *array) {
     hn_list_column columns[HN_TABLE_COLUMNS];
     int n = 0;

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_DOCUMENT_H
 #define HN_CLI_DOCUMENT_H
-// The tables for people are made from the same JSON documents that --json prints, so the two never disagree.
+// The tables for people are made from the same JSON documents that --json prints, so the two never
+// disagree.
 
 #include "base/strbuf.h"
 #include "cli/shell/table.h"
@@ -21,7 +23,8 @@ typedef struct hn_list_column {
 } hn_list_column;
 /// A table with one row for each object of the array.
 void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *columns, int n);
-/// An outline of any document: a line for each member, lists of numbers and words in one line, lists of objects as tables.
+/// An outline of any document: a line for each member, lists of numbers and words in one line,
+/// lists of objects as tables.
 void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent);
 /// A matrix with names for rows and columns (either may be NULL).
 void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const cJSON *row_names,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/plain.h"
 
 #include <string.h>
@@ -41,13 +42,15 @@ int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang) 
     return 0;
 }
 
-/// Rows of the dots that are set, a bit each, top row first: bits 0..2 of a column are its upper three dots, 6 and 7 the lowest.
+/// Rows of the dots that are set, a bit each, top row first: bits 0..2 of a column are its upper
+/// three dots, 6 and 7 the lowest.
 static unsigned rows_of(unsigned dots) {
     return ((dots | dots >> 3) & 7u) | ((dots >> 6 | dots >> 7) & 1u) << 3;
 }
 
 static char like_braille(unsigned dots) {
-    // by rows: none, then '\'' for the upper half, '.' for the lower, '-' for the middle, '|' where three rows or more are set
+    // by rows: none, then '\'' for the upper half, '.' for the lower, '-' for the middle, '|' where
+    // three rows or more are set
     static const char by_rows[16] = {' ', '\'', '-', '\'', '-', ':', '-', '|',
                                      '.', ':',  ':', '|',  '.', '|', '|', '|'};
     return by_rows[rows_of(dots)];

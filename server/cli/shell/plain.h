@@ -1,12 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_PLAIN_H
 #define HN_CLI_PLAIN_H
-// Text for people on a terminal that shows no UTF-8: each character of a plot, a mark or a formula becomes one of ASCII, so that
-// columns stay where they are.
+// Text for people on a terminal that shows no UTF-8: each character of a plot, a mark or a formula
+// becomes one of ASCII, so that columns stay where they are.
 
 #include "base/strbuf.h"
 
-/// 1 when the locale names a character set that is not UTF-8: the first of LC_ALL, LC_CTYPE and LANG that says anything. Where
-/// none does, as in a container, nothing is known of the terminal and 0 is returned. Each may be NULL.
+/// 1 when the locale names a character set that is not UTF-8: the first of LC_ALL, LC_CTYPE and
+/// LANG that says anything. Where none does, as in a container, nothing is known of the terminal
+/// and 0 is returned. Each may be NULL.
 int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang);
 /// The text with ASCII characters alone; what has no likeness becomes '?'.
 void hn_plain_add(hn_strbuf *b, const char *utf8);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_PRINT_H
 #define HN_CLI_PRINT_H
 // Standard output.
@@ -5,7 +6,8 @@
 #include "base/strbuf.h"
 #include "cli/shell/command.h"
 
-/// Prints and frees the buffer's text with a newline at its end; HN_EXIT_PROGRAM when memory or the output failed.
+/// Prints and frees the buffer's text with a newline at its end; HN_EXIT_PROGRAM when memory or the
+/// output failed.
 hn_exit hn_cli_print(hn_strbuf *text);
 /// The same for text that people read: in ASCII characters where the locale has no UTF-8.
 hn_exit hn_cli_print_text(hn_strbuf *text);

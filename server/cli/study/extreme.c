@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom extreme [ID...]: cases in which methods break, predicted and observed.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom merge PART...: parts of a study to the whole.
 #include "base/file.h"
 #include "cli/shell/commands.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom reference SCENE: the reference solution, the two means it comes from, and the digits they share over time.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom study SCENE KIND: the kinds of study, and what they share.
 #include "cli/study/study.h"
 

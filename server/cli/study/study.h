@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_STUDY_H
 #define HN_CLI_STUDY_H
 // What a study command may be about: one table of kinds, each kind a file study_KIND.c, and what they share.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom study SCENE budget: where the error at the end comes from, and the energy.
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/progress.h"

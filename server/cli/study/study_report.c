@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom report SCENE...: the full report over several scenes, as text, JSON or one HTML file, and its plots as files.
 #include "build.h"
 #include "cli/shell/commands.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom study SCENE stability: where steps are stable, predicted and tried.
 #include "cli/study/study_stability.h"
 

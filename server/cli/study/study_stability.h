@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_STUDY_STABILITY_H
 #define HN_CLI_STUDY_STABILITY_H
 // A map of stability for a terminal.

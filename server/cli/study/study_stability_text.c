@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/table.h"
 #include "cli/study/study_stability.h"
 #include "session/stability/stability_frame.h"

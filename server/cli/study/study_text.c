@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/study/study_text.h"
 
 #include "base/units.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_STUDY_TEXT_H
 #define HN_CLI_STUDY_TEXT_H
 // A study for people at a terminal: verdicts, a plot, who is cheapest for which accuracy, what equal cost buys.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // holonom study SCENE work-precision: what accuracy costs, method by method.
 #include "build.h"
 #include "cli/shell/diagnostics.h"

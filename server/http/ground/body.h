@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_BODY_H
 #define HN_HTTP_BODY_H
-// The JSON body of a request. Each route names the fields it takes in one table; the same table checks the body
-// (every fault with its pointer) and writes the schema of the OpenAPI document.
+// The JSON body of a request. Each route names the fields it takes in one table; the same table
+// checks the body (every fault with its pointer) and writes the schema of the OpenAPI document.
 
 #include "base/diag.h"
 
@@ -31,8 +32,9 @@ typedef struct hn_field {
     const char *about;
 } hn_field;
 
-/// Tells every field that is unknown (near miss), written twice, missing, of a wrong type or out of range. `fields` ends with a
-/// row without a name; `parent` is the pointer of `object` ("" at the top). HN_ERR_INPUT when anything is at fault.
+/// Tells every field that is unknown (near miss), written twice, missing, of a wrong type or out of
+/// range. `fields` ends with a row without a name; `parent` is the pointer of `object` ("" at the
+/// top). HN_ERR_INPUT when anything is at fault.
 HN_MUST_CHECK hn_status hn_body_check(const cJSON *object, const hn_field *fields,
                                       const char *parent, hn_diags *diags);
 // reading a body that was checked

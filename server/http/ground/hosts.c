@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/ground/hosts.h"
 
 #include <arpa/inet.h>
@@ -25,7 +26,8 @@ static int split_host(const char *text, char *name, size_t size) {
     return *end == ':' && strlen(end + 1) <= 5 && strspn(end + 1, "0123456789") == strlen(end + 1);
 }
 
-/// A name cannot be trusted when every interface is served (a foreign name may be made to point here); a literal address can.
+/// A name cannot be trusted when every interface is served (a foreign name may be made to point
+/// here); a literal address can.
 static int is_literal_address(const char *name) {
     unsigned char bytes[sizeof(struct in6_addr)];
     char inner[HOST_TEXT];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_HOSTS_H
 #define HN_HTTP_HOSTS_H
 // The host names that the server answers to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/ground/http_opts.h"
 
 hn_http_opts hn_http_opts_default(void) {

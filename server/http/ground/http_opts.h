@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_HTTP_OPTS_H
 #define HN_HTTP_HTTP_OPTS_H
 // Options and limits of the HTTP server. The index of the API lists the limits.

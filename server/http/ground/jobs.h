@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_JOBS_H
 #define HN_HTTP_JOBS_H
-// A pool of threads with a bounded queue: long requests are worked off here, so that short ones and streams never wait.
+// A pool of threads with a bounded queue: long requests are worked off here, so that short ones and
+// streams never wait.
 
 #include "base/status.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/ground/problem_document.h"
 
 static const hn_http_problem_info INFOS[HN_PROBLEM_COUNT] = {

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_PROBLEM_H
 #define HN_HTTP_PROBLEM_H
-// Problem documents (RFC 9457): one table of kinds; each kind has one status, one title and a page about it under
-// /api/v1/errors/.
+// Problem documents (RFC 9457): one table of kinds; each kind has one status, one title and a page
+// about it under /api/v1/errors/.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -53,7 +54,8 @@ typedef struct hn_http_problem_info {
 
 const hn_http_problem_info *hn_http_problem_get_info(hn_http_problem kind);
 
-/// The document. `instance` (the address asked) may be NULL; `diags` may be NULL; `offset` < 0 is left out; `hint` may be NULL.
+/// The document. `instance` (the address asked) may be NULL; `diags` may be NULL; `offset` < 0 is
+/// left out; `hint` may be NULL.
 void hn_http_problem_json(hn_strbuf *b, hn_http_problem kind, const char *detail, const char *hint,
                           const char *instance, long long offset, const hn_diags *diags);
 #endif

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_SHA256_H
 #define HN_HTTP_SHA256_H
-// SHA-256 in base64, as a content security policy names an inline script. Source: FIPS 180-4, RFC 4648.
+// SHA-256 in base64, as a content security policy names an inline script. Source: FIPS 180-4, RFC
+// 4648.
 
 #include <stddef.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/comparisons.h"
 
 #include "http/ground/body.h"
@@ -17,30 +18,30 @@ struct hn_comparisons {
     pthread_cond_t changed; ///< the keeper should end, or a comparison's thread has ended
     const hn_http_opts *opts;
     const hn_library *lib;
-    hn_session **lives; ///< one reference each
-    int n, n_reserved;  ///< there, and being made
+    hn_session **sessions; ///< one reference each
+    int n, n_reserved;     ///< there, and being made
     int n_threads, stopping;
     _Atomic int n_streams;
     pthread_t keeper;
     int has_keeper;
 };
 
-// ---- the table --------------------------------------------------------------------------------------------------
+// ---- the table ----
 
 /// Takes the i-th out; its reference passes to the caller. With the lock held.
 static hn_session *take_out(hn_comparisons *all, int i) {
-    hn_session *live = all->lives[i];
-    all->lives[i] = all->lives[--all->n];
-    return live;
+    hn_session *session = all->sessions[i];
+    all->sessions[i] = all->sessions[--all->n];
+    return session;
 }
 
 /// Ends what nobody touched for long; wakes streams for their comment lines.
 static void tick(hn_comparisons *all) {
     for (int i = all->n - 1; i >= 0; i--) {
-        if (hn_session_tick(all->lives[i])) {
-            hn_session *live = take_out(all, i);
-            hn_session_end(live, 1);
-            hn_session_release(live);
+        if (hn_session_tick(all->sessions[i])) {
+            hn_session *session = take_out(all, i);
+            hn_session_end(session, 1);
+            hn_session_release(session);
         }
     }
 }
@@ -76,8 +77,8 @@ hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library
     pthread_mutex_init(&all->lock, NULL);
     all->opts = opts;
     all->lib = lib;
-    all->lives = calloc((size_t)opts->max_comparisons, sizeof(hn_session *));
-    all->has_keeper = all->lives && pthread_create(&all->keeper, NULL, keep, all) == 0;
+    all->sessions = calloc((size_t)opts->max_comparisons, sizeof(hn_session *));
+    all->has_keeper = all->sessions && pthread_create(&all->keeper, NULL, keep, all) == 0;
     if (!all->has_keeper) {
         hn_comparisons_free(all);
         return NULL;
@@ -92,9 +93,9 @@ void hn_comparisons_stop(hn_comparisons *all) {
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
     while (all->n > 0) {
-        hn_session *live = take_out(all, all->n - 1);
-        hn_session_end(live, 0);
-        hn_session_release(live);
+        hn_session *session = take_out(all, all->n - 1);
+        hn_session_end(session, 0);
+        hn_session_release(session);
     }
     pthread_cond_broadcast(&all->changed);
     while (all->n_threads > 0) {
@@ -112,7 +113,7 @@ void hn_comparisons_free(hn_comparisons *all) {
         hn_comparisons_stop(all);
         pthread_cond_destroy(&all->changed);
         pthread_mutex_destroy(&all->lock);
-        free(all->lives);
+        free(all->sessions);
         free(all);
     }
 }
@@ -126,13 +127,13 @@ static void thread_gone(void *user) {
 }
 
 /// The comparison of the request's path, retained; NULL with a problem as reply.
-static hn_session *find_live(hn_request *r) {
+static hn_session *find_session(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
     hn_session *found = NULL;
     pthread_mutex_lock(&all->lock);
     for (int i = 0; i < all->n && !found; i++) {
-        if (strcmp(hn_session_id(all->lives[i]), r->parts[0]) == 0) {
-            found = hn_session_retain(all->lives[i]);
+        if (strcmp(hn_session_id(all->sessions[i]), r->parts[0]) == 0) {
+            found = hn_session_retain(all->sessions[i]);
         }
     }
     pthread_mutex_unlock(&all->lock);
@@ -143,8 +144,8 @@ static hn_session *find_live(hn_request *r) {
     return found;
 }
 
-/// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its last frame: only so many
-/// may linger.
+/// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its
+/// last frame: only so many may linger.
 static int reserve(hn_comparisons *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
     int stopping = all->stopping;
@@ -165,22 +166,23 @@ static int reserve(hn_comparisons *all, hn_request *r) {
     return !stopping && !full;
 }
 
-/// Fills the reserved place, or gives it back when `live` is NULL. A server that stops in between keeps nothing.
-static void settle(hn_comparisons *all, hn_session *live) {
+/// Fills the reserved place, or gives it back when `session` is NULL. A server that stops in between
+/// keeps nothing.
+static void settle(hn_comparisons *all, hn_session *session) {
     pthread_mutex_lock(&all->lock);
     all->n_reserved--;
-    if (!live) {
+    if (!session) {
         all->n_threads--;
         pthread_cond_broadcast(&all->changed);
     } else if (all->stopping) {
-        hn_session_end(live, 0);
+        hn_session_end(session, 0);
     } else {
-        all->lives[all->n++] = hn_session_retain(live);
+        all->sessions[all->n++] = hn_session_retain(session);
     }
     pthread_mutex_unlock(&all->lock);
 }
 
-// ---- handlers ---------------------------------------------------------------------------------------------------
+// ---- handlers ----
 
 void hn_handle_comparisons_list(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
@@ -191,7 +193,7 @@ void hn_handle_comparisons_list(hn_request *r) {
     hn_json_array(&b);
     pthread_mutex_lock(&all->lock);
     for (int i = 0; i < all->n; i++) {
-        hn_json_string(&b, hn_session_id(all->lives[i]));
+        hn_json_string(&b, hn_session_id(all->sessions[i]));
     }
     pthread_mutex_unlock(&all->lock);
     hn_json_end_array(&b);
@@ -209,7 +211,7 @@ static int read_methods(const cJSON *body, const char **methods) {
     return n;
 }
 
-static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **live,
+static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **session,
                         hn_diags *diags) {
     const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_scene_request scene = {0};
@@ -224,7 +226,7 @@ static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **liv
     };
     hn_status status = hn_scene_request_read(&scene, body, diags);
     if (status == HN_OK) {
-        status = hn_session_create(all->opts, all->lib, &order, thread_gone, all, live, diags);
+        status = hn_session_create(all->opts, all->lib, &order, thread_gone, all, session, diags);
     }
     hn_scene_request_reset(&scene);
     return status;
@@ -232,68 +234,68 @@ static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **liv
 
 void hn_handle_comparisons_create(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
-    hn_session *live = NULL;
+    hn_session *session = NULL;
     hn_diags diags = {0};
     if (!reserve(all, r)) {
         return;
     }
-    hn_status status = create(all, r->json, &live, &diags);
-    settle(all, live);
+    hn_status status = create(all, r->json, &session, &diags);
+    settle(all, session);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
         return;
     }
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_session_json(&b, live);
+    hn_session_json(&b, session);
     hn_reply_json(r, MHD_HTTP_CREATED, &b);
-    hn_reply_header_add(r, "Location", "/api/v1/comparisons/%s", hn_session_id(live));
-    hn_session_release(live);
+    hn_reply_header_add(r, "Location", "/api/v1/comparisons/%s", hn_session_id(session));
+    hn_session_release(session);
 }
 
 void hn_handle_comparison_get(hn_request *r) {
-    hn_session *live = find_live(r);
-    if (live) {
+    hn_session *session = find_session(r);
+    if (session) {
         hn_strbuf b;
         hn_strbuf_init(&b);
-        hn_session_json(&b, live);
+        hn_session_json(&b, session);
         hn_reply_json(r, MHD_HTTP_OK, &b);
-        hn_session_release(live);
+        hn_session_release(session);
     }
 }
 
 void hn_handle_comparison_patch(hn_request *r) {
-    hn_session *live = find_live(r);
-    if (!live) {
+    hn_session *session = find_session(r);
+    if (!session) {
         hn_request_finish(r);
         return;
     }
-    hn_session_patch(live, r);
-    hn_session_release(live);
+    hn_session_patch(session, r);
+    hn_session_release(session);
 }
 
 void hn_handle_comparison_delete(hn_request *r) {
     hn_comparisons *all = r->context->comparisons;
-    hn_session *live = find_live(r);
-    if (!live) {
+    hn_session *session = find_session(r);
+    if (!session) {
         return;
     }
     pthread_mutex_lock(&all->lock);
     for (int i = 0; i < all->n; i++) {
-        if (all->lives[i] == live) {
+        if (all->sessions[i] == session) {
             hn_session_release(take_out(all, i));
         }
     }
     pthread_mutex_unlock(&all->lock);
-    hn_session_end(live, 1);
-    hn_session_release(live);
+    hn_session_end(session, 1);
+    hn_session_release(session);
     hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
 }
 
 void hn_handle_comparison_events(hn_request *r) {
-    hn_session *live = find_live(r);
-    if (live) {
-        hn_stream_open(live, r, &r->context->comparisons->n_streams);
-        hn_session_release(live);
+    hn_session *session = find_session(r);
+    if (session) {
+        hn_stream_open(session, r, &r->context->comparisons->n_streams);
+        hn_session_release(session);
     }
 }

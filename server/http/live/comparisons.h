@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_COMPARISONS_H
 #define HN_HTTP_COMPARISONS_H
-// All comparisons of the server: found by id, bounded in number, gone when nobody touched them for long.
+// All comparisons of the server: found by id, bounded in number, gone when nobody touched them for
+// long.
 
 #include "http/ground/http_opts.h"
 #include "session/model/library.h"
@@ -10,7 +12,8 @@ struct hn_request;
 
 /// `opts` and `lib` must outlive it. NULL when memory or threads are out.
 hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library *lib);
-/// Ends every comparison and waits for their threads; streams that are still open keep what they read from. NULL is legal.
+/// Ends every comparison and waits for their threads; streams that are still open keep what they
+/// read from. NULL is legal.
 void hn_comparisons_stop(hn_comparisons *all);
 void hn_comparisons_free(hn_comparisons *all);
 

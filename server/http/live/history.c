@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/history.h"
 
 static const char *const NAMES[HN_EVENT_COUNT] = {

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_HISTORY_H
 #define HN_HTTP_HISTORY_H
-// The last events of a comparison, so that a reader that was cut off goes on without a gap. Ids start at 1 and only
-// grow; the oldest events go when there are too many or they hold too many bytes. Not locked: the comparison is.
+// The last events of a comparison, so that a reader that was cut off goes on without a gap. Ids
+// start at 1 and only grow; the oldest events go when there are too many or they hold too many
+// bytes. Not locked: the comparison is.
 
 #include "base/strbuf.h"
 

@@ -1,5 +1,6 @@
-// What PATCH can change. Everything that can fail is tried before anything is changed, so that a request at fault
-// leaves the comparison as it was.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What PATCH can change. Everything that can fail is tried before anything is changed, so that a
+// request at fault leaves the comparison as it was.
 #include "http/ground/body.h"
 #include "http/live/session_internal.h"
 
@@ -27,15 +28,15 @@ static change read_change(const cJSON *body) {
 }
 
 /// 1 when the change fits the state; otherwise the reply is a problem.
-static int fits_state(const hn_session *live, const change *c, hn_request *r) {
+static int fits_state(const hn_session *session, const change *c, hn_request *r) {
     int restart = c->methods || c->settings || c->reset;
-    int running = c->wants_state ? c->run : live->state == HN_SESSION_RUNNING;
+    int running = c->wants_state ? c->run : session->state == HN_SESSION_RUNNING;
     if (c->step > 0 && running) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"state\": \"paused\" as well",
                          "a running comparison cannot be stepped");
         return 0;
     }
-    if (live->state == HN_SESSION_FINISHED && !restart &&
+    if (session->state == HN_SESSION_FINISHED && !restart &&
         (c->step > 0 || (c->wants_state && c->run))) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"reset\": true as well",
                          "the comparison has finished");
@@ -44,8 +45,9 @@ static int fits_state(const hn_session *live, const change *c, hn_request *r) {
     return 1;
 }
 
-/// The spellings the new runs are made from: those asked, or the present ones with what was changed while running.
-static int choose_methods(const hn_session *live, const cJSON *asked, char (*kept)[HN_SPEC_MAX],
+/// The spellings the new runs are made from: those asked, or the present ones with what was changed
+/// while running.
+static int choose_methods(const hn_session *session, const cJSON *asked, char (*kept)[HN_SPEC_MAX],
                           const char **methods) {
     int n = 0;
     const cJSON *item;
@@ -55,24 +57,24 @@ static int choose_methods(const hn_session *live, const cJSON *asked, char (*kep
         }
         return n;
     }
-    for (; n < hn_comparison_n_methods(live->bench.comparison); n++) {
-        hn_method_format(hn_run_spec(hn_comparison_run(live->bench.comparison, n)), kept[n]);
+    for (; n < hn_comparison_n_methods(session->bench.comparison); n++) {
+        hn_method_format(hn_run_spec(hn_comparison_run(session->bench.comparison, n)), kept[n]);
         methods[n] = kept[n];
     }
     return n;
 }
 
-static hn_status build(hn_session *live, const change *c, hn_subject *fresh, hn_diags *diags) {
+static hn_status build(hn_session *session, const change *c, hn_subject *fresh, hn_diags *diags) {
     char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     const char *methods[HN_COMPARISON_MAX_METHODS];
-    int n = choose_methods(live, c->methods, kept, methods);
+    int n = choose_methods(session, c->methods, kept, methods);
     hn_scene_request scene = {0};
-    hn_status status = hn_scene_request_copy(&scene, &live->bench.scene);
+    hn_status status = hn_scene_request_copy(&scene, &session->bench.scene);
     if (status == HN_OK && c->settings) {
         status = hn_scene_request_read_settings(&scene, c->settings, diags);
     }
     if (status == HN_OK) {
-        status = hn_subject_create(live, &scene, methods, n, fresh, diags);
+        status = hn_subject_create(session, &scene, methods, n, fresh, diags);
     }
     hn_scene_request_reset(&scene);
     return status;
@@ -91,104 +93,110 @@ static hn_status set_running(hn_subject *bench, const cJSON *set, hn_diags *diag
     return status;
 }
 
-/// A new start: the clock back to 0, a new generation, the event `reset` with the whole description, frame 0.
-static hn_status restart(hn_session *live) {
-    pthread_mutex_lock(&live->lock);
-    live->generation++;
-    live->frame = 0;
-    live->lag = 0;
-    if (live->state == HN_SESSION_FINISHED) {
-        live->state = HN_SESSION_PAUSED;
+/// A new start: the clock back to 0, a new generation, the event `reset` with the whole
+/// description, frame 0.
+static hn_status restart(hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    session->generation++;
+    session->frame = 0;
+    session->lag = 0;
+    if (session->state == HN_SESSION_FINISHED) {
+        session->state = HN_SESSION_PAUSED;
     }
-    hn_session_set_anchor(live);
-    hn_strbuf_clear(&live->latest);
-    pthread_mutex_unlock(&live->lock);
-    hn_status status = hn_session_publish_setup(live);
+    hn_session_set_anchor(session);
+    hn_strbuf_clear(&session->latest);
+    pthread_mutex_unlock(&session->lock);
+    hn_status status = hn_session_publish_setup(session);
     hn_strbuf b;
     hn_strbuf_init(&b);
-    pthread_mutex_lock(&live->lock);
+    pthread_mutex_lock(&session->lock);
     hn_json_object(&b);
-    hn_json_put_int(&b, "generation", live->generation);
+    hn_json_put_int(&b, "generation", session->generation);
     hn_json_key(&b, "description");
-    hn_session_put_json(&b, live);
+    hn_session_put_json(&b, session);
     hn_json_end_object(&b);
-    hn_history_add(&live->history, HN_EVENT_RESET, &b);
-    pthread_mutex_unlock(&live->lock);
-    hn_session_publish_frame(live);
+    hn_history_add(&session->history, HN_EVENT_RESET, &b);
+    pthread_mutex_unlock(&session->lock);
+    hn_session_publish_frame(session);
     return status;
 }
 
-static hn_status publish_set(hn_session *live, const cJSON *set) {
-    hn_status status = hn_session_publish_setup(live);
+static hn_status publish_set(hn_session *session, const cJSON *set) {
+    hn_status status = hn_session_publish_setup(session);
     char *text = cJSON_PrintUnformatted(set);
     hn_strbuf b;
     hn_strbuf_init(&b);
-    pthread_mutex_lock(&live->lock);
+    pthread_mutex_lock(&session->lock);
     hn_json_object(&b);
-    hn_session_put_state(&b, live);
+    hn_session_put_state(&b, session);
     hn_json_key(&b, "set");
     hn_json_raw(&b, text ? text : "null");
     hn_json_key(&b, "comparison");
-    hn_json_raw(&b, hn_strbuf_text(&live->comparison_json));
+    hn_json_raw(&b, hn_strbuf_text(&session->comparison_json));
     hn_json_end_object(&b);
-    hn_history_add(&live->history, HN_EVENT_STATE, &b);
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
+    hn_history_add(&session->history, HN_EVENT_STATE, &b);
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
     cJSON_free(text);
     return status;
 }
 
 /// Nothing here can be at fault any more.
-static hn_status carry_out(hn_session *live, const change *c, hn_subject *fresh) {
+static hn_status carry_out(hn_session *session, const change *c, hn_subject *fresh) {
     hn_status status = HN_OK;
     if (fresh->comparison) {
-        hn_subject_reset(&live->bench);
-        live->bench = *fresh;
+        hn_subject_reset(&session->bench);
+        session->bench = *fresh;
         *fresh = (hn_subject){0};
     } else if (c->reset) {
+<<<<<<< HEAD
         hn_comparison_reset(live->bench.comparison);
+=======
+        hn_comparison_reset(session->bench.comparison);
+        memset(session->bench.told, 0, sizeof session->bench.told);
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     }
     if (c->methods || c->settings || c->reset) {
-        status = restart(live);
+        status = restart(session);
     }
     if (c->set && status == HN_OK) {
-        status = publish_set(live, c->set);
+        status = publish_set(session, c->set);
     }
-    int run = c->wants_state ? c->run : live->state == HN_SESSION_RUNNING;
-    int changes_state = c->wants_state && live->state != HN_SESSION_FINISHED &&
-                        c->run != (live->state == HN_SESSION_RUNNING);
+    int run = c->wants_state ? c->run : session->state == HN_SESSION_RUNNING;
+    int changes_state = c->wants_state && session->state != HN_SESSION_FINISHED &&
+                        c->run != (session->state == HN_SESSION_RUNNING);
     if (changes_state || c->speed > 0) {
-        pthread_mutex_lock(&live->lock);
-        live->speed = c->speed > 0 ? c->speed : live->speed;
-        pthread_mutex_unlock(&live->lock);
-        hn_session_set_state(live,
-                             live->state == HN_SESSION_FINISHED ? HN_SESSION_FINISHED
-                             : run                              ? HN_SESSION_RUNNING
-                                                                : HN_SESSION_PAUSED,
+        pthread_mutex_lock(&session->lock);
+        session->speed = c->speed > 0 ? c->speed : session->speed;
+        pthread_mutex_unlock(&session->lock);
+        hn_session_set_state(session,
+                             session->state == HN_SESSION_FINISHED ? HN_SESSION_FINISHED
+                             : run                                 ? HN_SESSION_RUNNING
+                                                                   : HN_SESSION_PAUSED,
                              NULL);
     }
-    for (int k = 0; k < c->step && live->state != HN_SESSION_FINISHED; k++) {
-        hn_session_advance(live);
+    for (int k = 0; k < c->step && session->state != HN_SESSION_FINISHED; k++) {
+        hn_session_advance(session);
     }
     return status;
 }
 
-void hn_session_apply(hn_session *live, hn_request *r) {
+void hn_session_apply(hn_session *session, hn_request *r) {
     change c = read_change(r->json);
     hn_subject fresh = {0};
     hn_diags diags = {0};
     hn_status status = HN_OK;
-    if (!fits_state(live, &c, r)) {
+    if (!fits_state(session, &c, r)) {
         return;
     }
     if (c.methods || c.settings) {
-        status = build(live, &c, &fresh, &diags);
+        status = build(session, &c, &fresh, &diags);
     }
     if (status == HN_OK && c.set) {
-        status = set_running(fresh.comparison ? &fresh : &live->bench, c.set, &diags);
+        status = set_running(fresh.comparison ? &fresh : &session->bench, c.set, &diags);
     }
     if (status == HN_OK) {
-        status = carry_out(live, &c, &fresh);
+        status = carry_out(session, &c, &fresh);
     }
     hn_subject_reset(&fresh);
     if (status != HN_OK) {
@@ -197,6 +205,6 @@ void hn_session_apply(hn_session *live, hn_request *r) {
     }
     hn_strbuf b;
     hn_strbuf_init(&b);
-    hn_session_json(&b, live);
+    hn_session_json(&b, session);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }

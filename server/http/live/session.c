@@ -1,4 +1,8 @@
+<<<<<<< HEAD
 #include "base/clock.h"
+=======
+// SPDX-License-Identifier: GPL-3.0-or-later
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 #include "http/live/session_internal.h"
 #include "http/live/stream.h"
 
@@ -7,10 +11,11 @@
 #include <sys/random.h>
 #include <time.h>
 
-/// Frames that come later than this are not caught up: the clock is set anew and the loss is told as `lag`.
+/// Frames that come later than this are not caught up: the clock is set anew and the loss is told
+/// as `lag`.
 static const double LATE = 0.25; // [s]
 
-// ---- bench ------------------------------------------------------------------------------------------------------
+// ---- bench ----
 
 void hn_subject_reset(hn_subject *bench) {
     hn_comparison_free(bench->comparison);
@@ -19,19 +24,19 @@ void hn_subject_reset(hn_subject *bench) {
     *bench = (hn_subject){0};
 }
 
-hn_status hn_subject_create(const hn_session *live, const hn_scene_request *scene,
+hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
                             const char *const *methods, int n_methods, hn_subject *bench,
                             hn_diags *diags) {
     *bench = (hn_subject){0};
     hn_status status = hn_scene_request_copy(&bench->scene, scene);
     if (status == HN_OK) {
-        status = hn_scene_request_load(scene, live->lib, 0, &bench->model, diags);
+        status = hn_scene_request_load(scene, session->lib, 0, &bench->model, diags);
     }
     if (status == HN_OK) {
         hn_comparison_opts opts = hn_comparison_opts_default();
-        opts.frame_dt = live->asked_frame_dt;
-        opts.duration = live->asked_duration;
-        opts.cpu_budget = live->opts->frame_cpu;
+        opts.frame_dt = session->asked_frame_dt;
+        opts.duration = session->asked_duration;
+        opts.cpu_budget = session->opts->frame_cpu;
         status = hn_comparison_create(bench->model, methods, n_methods, &opts, &bench->comparison,
                                       diags);
     }
@@ -41,16 +46,16 @@ hn_status hn_subject_create(const hn_session *live, const hn_scene_request *scen
     return status;
 }
 
-// ---- publishing -------------------------------------------------------------------------------------------------
+// ---- publishing ----
 
 static const char *state_name(hn_session_state state) {
     static const char *const names[] = {"paused", "running", "finished"};
     return names[state];
 }
 
-void hn_session_put_state(hn_strbuf *b, const hn_session *live) {
-    hn_json_put_string(b, "state", state_name(live->state));
-    hn_json_put_number(b, "speed", live->speed);
+void hn_session_put_state(hn_strbuf *b, const hn_session *session) {
+    hn_json_put_string(b, "state", state_name(session->state));
+    hn_json_put_number(b, "speed", session->speed);
 }
 
 static void put_raw(hn_strbuf *b, const char *key, const hn_strbuf *json) {
@@ -58,24 +63,24 @@ static void put_raw(hn_strbuf *b, const char *key, const hn_strbuf *json) {
     hn_json_raw(b, json->n ? hn_strbuf_text(json) : "null");
 }
 
-void hn_session_put_json(hn_strbuf *b, const hn_session *live) {
+void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     char self[64], events[80];
-    snprintf(self, sizeof self, "/api/v1/comparisons/%s", live->id);
+    snprintf(self, sizeof self, "/api/v1/comparisons/%s", session->id);
     snprintf(events, sizeof events, "%s/events", self);
     hn_json_object(b);
-    hn_json_put_string(b, "id", live->id);
-    hn_session_put_state(b, live);
-    hn_json_put_int(b, "frame", live->frame);
-    hn_json_put_number(b, "t", (double)live->frame * live->frame_dt);
-    hn_json_put_number(b, "frame_dt", live->frame_dt);
-    hn_json_put_number(b, "duration", live->duration);
-    hn_json_put_int(b, "generation", live->generation);
-    hn_json_put_number(b, "lag", live->lag);
-    hn_json_put_int(b, "last_event", (long long)live->history.last_id);
-    put_raw(b, "scene", &live->scene_json);
-    put_raw(b, "comparison", &live->comparison_json);
-    put_raw(b, "settings", &live->settings_json);
-    put_raw(b, "latest", &live->latest);
+    hn_json_put_string(b, "id", session->id);
+    hn_session_put_state(b, session);
+    hn_json_put_int(b, "frame", session->frame);
+    hn_json_put_number(b, "t", (double)session->frame * session->frame_dt);
+    hn_json_put_number(b, "frame_dt", session->frame_dt);
+    hn_json_put_number(b, "duration", session->duration);
+    hn_json_put_int(b, "generation", session->generation);
+    hn_json_put_number(b, "lag", session->lag);
+    hn_json_put_int(b, "last_event", (long long)session->history.last_id);
+    put_raw(b, "scene", &session->scene_json);
+    put_raw(b, "comparison", &session->comparison_json);
+    put_raw(b, "settings", &session->settings_json);
+    put_raw(b, "latest", &session->latest);
     hn_json_key(b, "links");
     hn_json_object(b);
     hn_json_put_string(b, "self", self);
@@ -84,8 +89,8 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *live) {
     hn_json_end_object(b);
 }
 
-void hn_session_wake_streams(hn_session *live) {
-    for (hn_stream *s = live->streams; s; s = hn_stream_next(s)) {
+void hn_session_wake_streams(hn_session *session) {
+    for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
         hn_stream_wake(s);
     }
 }
@@ -96,23 +101,23 @@ static void swap_text(hn_strbuf *a, hn_strbuf *b) {
     *b = t;
 }
 
-hn_status hn_session_publish_setup(hn_session *live) {
+hn_status hn_session_publish_setup(hn_session *session) {
     hn_strbuf scene, comparison, settings;
     hn_strbuf_init(&scene);
     hn_strbuf_init(&comparison);
     hn_strbuf_init(&settings);
-    hn_model_json(&scene, live->bench.model);
-    hn_comparison_json(&comparison, live->bench.comparison);
-    hn_scene_request_settings_json(&settings, &live->bench.scene);
+    hn_model_json(&scene, session->bench.model);
+    hn_comparison_json(&comparison, session->bench.comparison);
+    hn_scene_request_settings_json(&settings, &session->bench.scene);
     hn_status status = scene.failed || comparison.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
     if (status == HN_OK) {
-        pthread_mutex_lock(&live->lock);
-        swap_text(&live->scene_json, &scene);
-        swap_text(&live->comparison_json, &comparison);
-        swap_text(&live->settings_json, &settings);
-        live->frame_dt = hn_comparison_frame_dt(live->bench.comparison);
-        live->duration = hn_comparison_duration(live->bench.comparison);
-        pthread_mutex_unlock(&live->lock);
+        pthread_mutex_lock(&session->lock);
+        swap_text(&session->scene_json, &scene);
+        swap_text(&session->comparison_json, &comparison);
+        swap_text(&session->settings_json, &settings);
+        session->frame_dt = hn_comparison_frame_dt(session->bench.comparison);
+        session->duration = hn_comparison_duration(session->bench.comparison);
+        pthread_mutex_unlock(&session->lock);
     }
     hn_strbuf_reset(&scene);
     hn_strbuf_reset(&comparison);
@@ -121,12 +126,13 @@ hn_status hn_session_publish_setup(hn_session *live) {
 }
 
 /// Writes {"generation":G, and the members of `object`, an object that is not empty.
-static void put_with_generation(hn_strbuf *b, const hn_session *live, const hn_strbuf *object) {
-    hn_strbuf_printf(b, "{\"generation\":%lld,", live->generation);
+static void put_with_generation(hn_strbuf *b, const hn_session *session, const hn_strbuf *object) {
+    hn_strbuf_printf(b, "{\"generation\":%lld,", session->generation);
     hn_strbuf_add(b, hn_strbuf_text(object) + (object->n > 0));
     b->failed |= object->failed;
 }
 
+<<<<<<< HEAD
 /// Publishes an incident as an event.
 static void publish_incident(hn_session *live, int method, const hn_incident *incident) {
     hn_strbuf text, event;
@@ -153,99 +159,131 @@ static void publish_incidents(hn_session *live) {
             }
         }
         live->bench.published[i] = newest;
+=======
+/// The incidents that are new since the last frame, or whose message has grown (what became of the
+/// run there), an event each.
+static void publish_incidents(hn_session *session) {
+    for (int i = 0; i < hn_comparison_n_methods(session->bench.comparison); i++) {
+        const hn_incident *list;
+        int n = hn_run_incidents(hn_comparison_run(session->bench.comparison, i), &list);
+        for (int k = 0; k < n; k++) {
+            const size_t length = strlen(list[k].message);
+            if (k < session->bench.told[i] && length == session->bench.told_length[i][k]) {
+                continue;
+            }
+            session->bench.told_length[i][k] = length;
+            hn_strbuf incident, event;
+            hn_strbuf_init(&incident);
+            hn_strbuf_init(&event);
+            hn_incident_json(&incident, i, &list[k]);
+            put_with_generation(&event, session, &incident);
+            pthread_mutex_lock(&session->lock);
+            hn_history_add(&session->history, HN_EVENT_INCIDENT, &event);
+            pthread_mutex_unlock(&session->lock);
+            hn_strbuf_reset(&incident);
+        }
+        session->bench.told[i] = n;
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     }
 }
 
-static void publish_end(hn_session *live) {
+static void publish_end(hn_session *session) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
-    hn_json_put_int(&b, "generation", live->generation);
+    hn_json_put_int(&b, "generation", session->generation);
     hn_json_key(&b, "summary");
-    hn_comparison_summary_json(&b, live->bench.comparison);
+    hn_comparison_summary_json(&b, session->bench.comparison);
     hn_json_end_object(&b);
-    pthread_mutex_lock(&live->lock);
-    hn_history_add(&live->history, HN_EVENT_END, &b);
-    live->state = HN_SESSION_FINISHED;
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
+    pthread_mutex_lock(&session->lock);
+    hn_history_add(&session->history, HN_EVENT_END, &b);
+    session->state = HN_SESSION_FINISHED;
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
 }
 
-void hn_session_publish_frame(hn_session *live) {
+void hn_session_publish_frame(hn_session *session) {
     hn_strbuf frame, event, latest;
     hn_strbuf_init(&frame);
     hn_strbuf_init(&event);
     hn_strbuf_init(&latest);
-    hn_comparison_frame_json(&frame, live->bench.comparison);
-    put_with_generation(&event, live, &frame);
+    hn_comparison_frame_json(&frame, session->bench.comparison);
+    put_with_generation(&event, session, &frame);
     hn_strbuf_add_n(&latest, hn_strbuf_text(&event), event.n);
-    pthread_mutex_lock(&live->lock);
-    live->frame = hn_comparison_frame(live->bench.comparison);
+    pthread_mutex_lock(&session->lock);
+    session->frame = hn_comparison_frame(session->bench.comparison);
     if (!latest.failed) {
-        swap_text(&live->latest, &latest);
+        swap_text(&session->latest, &latest);
     }
-    hn_history_add(&live->history, HN_EVENT_FRAME, &event);
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
-    publish_incidents(live);
-    if (hn_comparison_finished(live->bench.comparison)) {
-        publish_end(live);
+    hn_history_add(&session->history, HN_EVENT_FRAME, &event);
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
+    publish_incidents(session);
+    if (hn_comparison_finished(session->bench.comparison)) {
+        publish_end(session);
     }
     hn_strbuf_reset(&frame);
     hn_strbuf_reset(&latest);
 }
 
-void hn_session_advance(hn_session *live) {
-    hn_comparison_next(live->bench.comparison);
-    hn_session_publish_frame(live);
+void hn_session_advance(hn_session *session) {
+    hn_comparison_next(session->bench.comparison);
+    hn_session_publish_frame(session);
 }
 
+<<<<<<< HEAD
 void hn_session_set_anchor(hn_session *live) {
     live->anchor_time = hn_clock_wall();
     live->anchor_frame = live->frame;
+=======
+void hn_session_set_anchor(hn_session *session) {
+    session->anchor_time = hn_wall_seconds();
+    session->anchor_frame = session->frame;
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 }
 
-void hn_session_set_state(hn_session *live, hn_session_state state, const char *reason) {
+void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason) {
     hn_strbuf b;
     hn_strbuf_init(&b);
-    pthread_mutex_lock(&live->lock);
-    live->state = state;
-    hn_session_set_anchor(live);
+    pthread_mutex_lock(&session->lock);
+    session->state = state;
+    hn_session_set_anchor(session);
     hn_json_object(&b);
-    hn_session_put_state(&b, live);
+    hn_session_put_state(&b, session);
     if (reason) {
         hn_json_put_string(&b, "reason", reason);
     }
     hn_json_end_object(&b);
-    hn_history_add(&live->history, HN_EVENT_STATE, &b);
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
+    hn_history_add(&session->history, HN_EVENT_STATE, &b);
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
 }
 
-// ---- the thread -------------------------------------------------------------------------------------------------
+// ---- the thread ----
 
 /// When the next frame is due. With the lock held.
-static double next_due(const hn_session *live) {
-    return live->anchor_time +
-           (double)(live->frame + 1 - live->anchor_frame) * live->frame_dt / live->speed;
+static double next_due(const hn_session *session) {
+    return session->anchor_time + (double)(session->frame + 1 - session->anchor_frame) *
+                                      session->frame_dt / session->speed;
 }
 
-static void wait_until(hn_session *live, double time) {
+static void wait_until(hn_session *session, double time) {
     struct timespec ts = {.tv_sec = (time_t)time};
     ts.tv_nsec = (long)((time - (double)ts.tv_sec) * 1e9);
-    pthread_cond_timedwait(&live->wake, &live->lock, &ts);
+    pthread_cond_timedwait(&session->wake, &session->lock, &ts);
 }
 
-static hn_request *take_patch(hn_session *live) {
-    hn_request *r = live->patches;
-    live->patches = r->next;
-    if (!live->patches) {
-        live->patches_end = &live->patches;
+static hn_request *take_patch(hn_session *session) {
+    hn_request *r = session->patches;
+    session->patches = r->next;
+    if (!session->patches) {
+        session->patches_end = &session->patches;
     }
     return r;
 }
 
 /// Nobody reads along: 1 when the comparison should pause itself.
+<<<<<<< HEAD
 static int is_unwatched(const hn_session *live) {
     return live->n_streams == 0 && hn_clock_wall() - live->touched > live->opts->idle_pause;
 }
@@ -256,42 +294,61 @@ static void advance_on_time(hn_session *live, double due) {
     hn_session_advance(live);
     pthread_mutex_lock(&live->lock);
     double late = hn_clock_wall() - due;
+=======
+static int is_unwatched(const hn_session *session) {
+    return session->n_streams == 0 &&
+           hn_wall_seconds() - session->touched > session->opts->idle_pause;
+}
+
+/// A frame that is due; its lateness is kept as lag rather than caught up in a burst.
+static void advance_on_time(hn_session *session, double due) {
+    pthread_mutex_unlock(&session->lock);
+    hn_session_advance(session);
+    pthread_mutex_lock(&session->lock);
+    double late = hn_wall_seconds() - due;
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     if (late > LATE) {
-        live->lag += late;
-        hn_session_set_anchor(live);
+        session->lag += late;
+        hn_session_set_anchor(session);
     }
 }
 
 /// One thing to do, or a wait. With the lock held.
-static void do_next(hn_session *live) {
-    if (live->patches) {
-        hn_request *r = take_patch(live);
-        pthread_mutex_unlock(&live->lock);
-        hn_session_apply(live, r);
+static void do_next(hn_session *session) {
+    if (session->patches) {
+        hn_request *r = take_patch(session);
+        pthread_mutex_unlock(&session->lock);
+        hn_session_apply(session, r);
         hn_request_finish(r);
-        pthread_mutex_lock(&live->lock);
+        pthread_mutex_lock(&session->lock);
         return;
     }
-    if (live->state != HN_SESSION_RUNNING) {
-        pthread_cond_wait(&live->wake, &live->lock);
+    if (session->state != HN_SESSION_RUNNING) {
+        pthread_cond_wait(&session->wake, &session->lock);
         return;
     }
-    if (is_unwatched(live)) {
-        pthread_mutex_unlock(&live->lock);
-        hn_session_set_state(live, HN_SESSION_PAUSED, "nobody was reading");
-        pthread_mutex_lock(&live->lock);
+    if (is_unwatched(session)) {
+        pthread_mutex_unlock(&session->lock);
+        hn_session_set_state(session, HN_SESSION_PAUSED, "nobody was reading");
+        pthread_mutex_lock(&session->lock);
         return;
     }
+<<<<<<< HEAD
     double due = next_due(live);
     if (hn_clock_wall() < due) {
         wait_until(live, due);
+=======
+    double due = next_due(session);
+    if (hn_wall_seconds() < due) {
+        wait_until(session, due);
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     } else {
-        advance_on_time(live, due);
+        advance_on_time(session, due);
     }
 }
 
-static void reply_gone(hn_session *live, hn_request *r) {
-    if (live->deleted) {
+static void reply_gone(hn_session *session, hn_request *r) {
+    if (session->deleted) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, NULL, "the comparison was deleted");
     } else {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
@@ -300,70 +357,71 @@ static void reply_gone(hn_session *live, hn_request *r) {
 }
 
 static void *work(void *arg) {
-    hn_session *live = arg;
-    pthread_mutex_lock(&live->lock);
-    while (!live->ending) {
-        do_next(live);
+    hn_session *session = arg;
+    pthread_mutex_lock(&session->lock);
+    while (!session->ending) {
+        do_next(session);
     }
-    live->thread_ended = 1;
-    while (live->patches) {
-        reply_gone(live, take_patch(live));
+    session->thread_ended = 1;
+    while (session->patches) {
+        reply_gone(session, take_patch(session));
     }
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
-    void (*gone)(void *) = live->gone;
-    void *user = live->user;
-    hn_session_release(live);
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
+    void (*gone)(void *) = session->gone;
+    void *user = session->user;
+    hn_session_release(session);
     gone(user);
     return NULL;
 }
 
-// ---- life -------------------------------------------------------------------------------------------------------
+// ---- life ----
 
-static void free_live(hn_session *live) {
-    hn_subject_reset(&live->bench);
-    hn_history_reset(&live->history);
-    hn_strbuf_reset(&live->scene_json);
-    hn_strbuf_reset(&live->comparison_json);
-    hn_strbuf_reset(&live->settings_json);
-    hn_strbuf_reset(&live->latest);
-    pthread_cond_destroy(&live->wake);
-    pthread_mutex_destroy(&live->lock);
-    free(live);
+static void free_session(hn_session *session) {
+    hn_subject_reset(&session->bench);
+    hn_history_reset(&session->history);
+    hn_strbuf_reset(&session->scene_json);
+    hn_strbuf_reset(&session->comparison_json);
+    hn_strbuf_reset(&session->settings_json);
+    hn_strbuf_reset(&session->latest);
+    pthread_cond_destroy(&session->wake);
+    pthread_mutex_destroy(&session->lock);
+    free(session);
 }
 
-hn_session *hn_session_retain(hn_session *live) {
-    pthread_mutex_lock(&live->lock);
-    live->refs++;
-    pthread_mutex_unlock(&live->lock);
-    return live;
+hn_session *hn_session_retain(hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    session->refs++;
+    pthread_mutex_unlock(&session->lock);
+    return session;
 }
 
-void hn_session_release(hn_session *live) {
-    pthread_mutex_lock(&live->lock);
-    int left = --live->refs;
-    pthread_mutex_unlock(&live->lock);
+void hn_session_release(hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    int left = --session->refs;
+    pthread_mutex_unlock(&session->lock);
     if (left == 0) {
-        free_live(live);
+        free_session(session);
     }
 }
 
-static hn_session *new_live(const hn_http_opts *opts, const hn_library *lib,
-                            const hn_session_request *order) {
-    hn_session *live = calloc(1, sizeof *live);
-    if (!live) {
+static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
+                               const hn_session_request *order) {
+    hn_session *session = calloc(1, sizeof *session);
+    if (!session) {
         return NULL;
     }
     pthread_condattr_t attr;
     pthread_condattr_init(&attr);
     pthread_condattr_setclock(&attr, CLOCK_MONOTONIC);
-    pthread_cond_init(&live->wake, &attr);
+    pthread_cond_init(&session->wake, &attr);
     pthread_condattr_destroy(&attr);
-    pthread_mutex_init(&live->lock, NULL);
+    pthread_mutex_init(&session->lock, NULL);
     uint64_t name = 0;
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
         name = (uint64_t)(hn_clock_wall() * 1e9);
     }
+<<<<<<< HEAD
     snprintf(live->id, sizeof live->id, "%016llx", (unsigned long long)name);
     live->refs = 1;
     live->opts = opts;
@@ -375,15 +433,28 @@ static hn_session *new_live(const hn_http_opts *opts, const hn_library *lib,
     live->touched = hn_clock_wall();
     live->patches_end = &live->patches;
     return live;
+=======
+    snprintf(session->id, sizeof session->id, "%016llx", (unsigned long long)name);
+    session->refs = 1;
+    session->opts = opts;
+    session->lib = lib;
+    session->asked_frame_dt = order->frame_dt;
+    session->asked_duration = order->duration;
+    session->speed = order->speed;
+    session->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
+    session->touched = hn_wall_seconds();
+    session->patches_end = &session->patches;
+    return session;
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 }
 
 /// The thread holds a reference of its own.
-static hn_status start_thread(hn_session *live) {
+static hn_status start_thread(hn_session *session) {
     pthread_t thread;
-    live->refs++;
-    hn_session_set_anchor(live);
-    if (pthread_create(&thread, NULL, work, live) != 0) {
-        live->refs--;
+    session->refs++;
+    hn_session_set_anchor(session);
+    if (pthread_create(&thread, NULL, work, session) != 0) {
+        session->refs--;
         return HN_ERR_MEMORY;
     }
     pthread_detach(thread);
@@ -393,42 +464,43 @@ static hn_status start_thread(hn_session *live) {
 hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                             const hn_session_request *order, void (*gone)(void *user), void *user,
                             hn_session **out, hn_diags *diags) {
-    hn_session *live = new_live(opts, lib, order);
-    if (!live) {
+    hn_session *session = new_session(opts, lib, order);
+    if (!session) {
         return HN_ERR_MEMORY;
     }
-    live->gone = gone;
-    live->user = user;
+    session->gone = gone;
+    session->user = user;
     hn_status status =
-        hn_history_init(&live->history, opts->max_events, (size_t)opts->max_event_bytes);
+        hn_history_init(&session->history, opts->max_events, (size_t)opts->max_event_bytes);
     if (status == HN_OK) {
-        status = hn_subject_create(live, order->scene, order->methods, order->n_methods,
-                                   &live->bench, diags);
+        status = hn_subject_create(session, order->scene, order->methods, order->n_methods,
+                                   &session->bench, diags);
     }
-    if (status == HN_OK && hn_comparison_duration(live->bench.comparison) > opts->max_duration) {
-        status = hn_diags_add(diags, HN_ERR_LIMIT, "/duration", NULL,
-                              "the duration is %g s; at most %g s are run",
-                              hn_comparison_duration(live->bench.comparison), opts->max_duration);
-    }
-    if (status == HN_OK) {
-        status = hn_session_publish_setup(live);
+    if (status == HN_OK && hn_comparison_duration(session->bench.comparison) > opts->max_duration) {
+        status = hn_diags_add(
+            diags, HN_ERR_LIMIT, "/duration", NULL, "the duration is %g s; at most %g s are run",
+            hn_comparison_duration(session->bench.comparison), opts->max_duration);
     }
     if (status == HN_OK) {
-        hn_session_publish_frame(live);
-        status = start_thread(live);
+        status = hn_session_publish_setup(session);
+    }
+    if (status == HN_OK) {
+        hn_session_publish_frame(session);
+        status = start_thread(session);
     }
     if (status != HN_OK) {
-        hn_session_release(live);
+        hn_session_release(session);
         return status;
     }
-    *out = live;
+    *out = session;
     return HN_OK;
 }
 
-const char *hn_session_id(const hn_session *live) {
-    return live->id;
+const char *hn_session_id(const hn_session *session) {
+    return session->id;
 }
 
+<<<<<<< HEAD
 void hn_session_json(hn_strbuf *b, hn_session *live) {
     pthread_mutex_lock(&live->lock);
     live->touched = hn_clock_wall();
@@ -441,32 +513,55 @@ void hn_session_patch(hn_session *live, hn_request *r) {
     live->touched = hn_clock_wall();
     if (live->thread_ended) {
         reply_gone(live, r);
+=======
+void hn_session_json(hn_strbuf *b, hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    session->touched = hn_wall_seconds();
+    hn_session_put_json(b, session);
+    pthread_mutex_unlock(&session->lock);
+}
+
+void hn_session_patch(hn_session *session, hn_request *r) {
+    pthread_mutex_lock(&session->lock);
+    session->touched = hn_wall_seconds();
+    if (session->thread_ended) {
+        reply_gone(session, r);
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     } else {
         r->next = NULL;
-        *live->patches_end = r;
-        live->patches_end = &r->next;
-        pthread_cond_signal(&live->wake);
+        *session->patches_end = r;
+        session->patches_end = &r->next;
+        pthread_cond_signal(&session->wake);
     }
-    pthread_mutex_unlock(&live->lock);
+    pthread_mutex_unlock(&session->lock);
 }
 
-void hn_session_end(hn_session *live, int deleted) {
-    pthread_mutex_lock(&live->lock);
-    live->ending = 1;
-    live->deleted |= deleted;
-    pthread_cond_signal(&live->wake);
-    hn_session_wake_streams(live);
-    pthread_mutex_unlock(&live->lock);
+void hn_session_end(hn_session *session, int deleted) {
+    pthread_mutex_lock(&session->lock);
+    session->ending = 1;
+    session->deleted |= deleted;
+    pthread_cond_signal(&session->wake);
+    hn_session_wake_streams(session);
+    pthread_mutex_unlock(&session->lock);
 }
 
+<<<<<<< HEAD
 int hn_session_tick(hn_session *live) {
     double now = hn_clock_wall();
     pthread_mutex_lock(&live->lock);
     int expired =
         live->n_streams == 0 && !live->patches && now - live->touched > live->opts->expiry;
     for (hn_stream *s = live->streams; s; s = hn_stream_next(s)) {
+=======
+int hn_session_tick(hn_session *session) {
+    double now = hn_wall_seconds();
+    pthread_mutex_lock(&session->lock);
+    int expired = session->n_streams == 0 && !session->patches &&
+                  now - session->touched > session->opts->expiry;
+    for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
         hn_stream_tick(s, now);
     }
-    pthread_mutex_unlock(&live->lock);
+    pthread_mutex_unlock(&session->lock);
     return expired;
 }

@@ -1,8 +1,9 @@
-#ifndef HN_HTTP_LIVE_H
-#define HN_HTTP_LIVE_H
-// One comparison as a resource. A thread of its own owns the model and the runs, paces the frames and carries out
-// changes in the order they come; everybody else reads what it has published, under the lock. Whoever holds a
-// pointer holds a reference.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_SESSION_H
+#define HN_HTTP_SESSION_H
+// One comparison as a resource. A thread of its own owns the model and the runs, paces the frames
+// and carries out changes in the order they come; everybody else reads what it has published, under
+// the lock. Whoever holds a pointer holds a reference.
 
 #include "http/ground/http_opts.h"
 #include "http/live/history.h"
@@ -31,19 +32,23 @@ typedef struct hn_session_request {
     int running;
 } hn_session_request;
 
-/// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one reference.
+/// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one
+/// reference.
 HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
                                           const hn_session_request *order, void (*gone)(void *user),
                                           void *user, hn_session **out, hn_diags *diags);
-hn_session *hn_session_retain(hn_session *live);
-void hn_session_release(hn_session *live);
-const char *hn_session_id(const hn_session *live);
+hn_session *hn_session_retain(hn_session *session);
+void hn_session_release(hn_session *session);
+const char *hn_session_id(const hn_session *session);
 /// The description; counts as a reader's look.
-void hn_session_json(hn_strbuf *b, hn_session *live);
-/// Hands over a suspended PATCH request with its body: the thread carries it out and answers. Answers itself when the thread has ended.
-void hn_session_patch(hn_session *live, struct hn_request *r);
-/// The thread ends and streams are closed, with the event `end` when it was `deleted` (rather than the server stopping).
-void hn_session_end(hn_session *live, int deleted);
-/// Now and then: wakes streams for their keep-alive; 1 when nobody has touched it for so long that it should go.
-int hn_session_tick(hn_session *live);
+void hn_session_json(hn_strbuf *b, hn_session *session);
+/// Hands over a suspended PATCH request with its body: the thread carries it out and answers.
+/// Answers itself when the thread has ended.
+void hn_session_patch(hn_session *session, struct hn_request *r);
+/// The thread ends and streams are closed, with the event `end` when it was `deleted` (rather than
+/// the server stopping).
+void hn_session_end(hn_session *session, int deleted);
+/// Now and then: wakes streams for their keep-alive; 1 when nobody has touched it for so long that
+/// it should go.
+int hn_session_tick(hn_session *session);
 #endif

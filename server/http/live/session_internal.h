@@ -1,5 +1,6 @@
-#ifndef HN_HTTP_LIVE_INTERNAL_H
-#define HN_HTTP_LIVE_INTERNAL_H
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_SESSION_INTERNAL_H
+#define HN_HTTP_SESSION_INTERNAL_H
 // Shared by live.c (thread and publishing), patch.c (changes) and stream.c (readers).
 
 #include "http/live/session.h"
@@ -50,25 +51,25 @@ struct hn_session {
 };
 
 /// A model and its runs. On failure nothing is left in *bench.
-HN_MUST_CHECK hn_status hn_subject_create(const hn_session *live, const hn_scene_request *scene,
+HN_MUST_CHECK hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
                                           const char *const *methods, int n_methods,
                                           hn_subject *bench, hn_diags *diags);
 void hn_subject_reset(hn_subject *bench);
 
 // for the thread; none may be called with the lock held
 /// Writes out what does not change from frame to frame. HN_ERR_MEMORY leaves the old texts.
-HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *live);
+HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *session);
 /// The present frame as an event, then its incidents, then the end if it is reached.
-void hn_session_publish_frame(hn_session *live);
+void hn_session_publish_frame(hn_session *session);
 /// One frame further.
-void hn_session_advance(hn_session *live);
-void hn_session_set_state(hn_session *live, hn_session_state state, const char *reason);
+void hn_session_advance(hn_session *session);
+void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason);
 /// Carries out the body of a PATCH and fills in the reply.
-void hn_session_apply(hn_session *live, hn_request *r);
+void hn_session_apply(hn_session *session, hn_request *r);
 
 // with the lock held
-void hn_session_put_json(hn_strbuf *b, const hn_session *live);
-void hn_session_put_state(hn_strbuf *b, const hn_session *live); ///< members "state" and "speed"
-void hn_session_wake_streams(hn_session *live);
-void hn_session_set_anchor(hn_session *live);
+void hn_session_put_json(hn_strbuf *b, const hn_session *session);
+void hn_session_put_state(hn_strbuf *b, const hn_session *session); ///< members "state" and "speed"
+void hn_session_wake_streams(hn_session *session);
+void hn_session_set_anchor(hn_session *session);
 #endif

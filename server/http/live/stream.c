@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/stream.h"
 
 #include "base/clock.h"
@@ -11,7 +12,7 @@
 enum { CHUNK = 1 << 16, SCHEMA = 1 };
 
 struct hn_stream {
-    hn_session *live;
+    hn_session *session;
     struct MHD_Connection *connection;
     _Atomic int *n_open;
     hn_stream *next;
@@ -36,12 +37,12 @@ void hn_stream_wake(hn_stream *s) {
 }
 
 void hn_stream_tick(hn_stream *s, double now) {
-    if (now - s->last_sent >= s->live->opts->keep_alive) {
+    if (now - s->last_sent >= s->session->opts->keep_alive) {
         hn_stream_wake(s);
     }
 }
 
-// ---- writing, with the lock held --------------------------------------------------------------------------------
+// ---- writing, with the lock held ----
 
 static void put_hello(hn_stream *s) {
     hn_strbuf b;
@@ -50,7 +51,7 @@ static void put_hello(hn_stream *s) {
     hn_json_put_int(&b, "schema", SCHEMA);
     hn_json_put_string(&b, "build", HN_BUILD);
     hn_json_key(&b, "description");
-    hn_session_put_json(&b, s->live);
+    hn_session_put_json(&b, s->session);
     hn_json_end_object(&b);
     hn_strbuf_add(&s->text, "retry: 1000\nevent: hello\ndata: ");
     hn_strbuf_add_n(&s->text, hn_strbuf_text(&b), b.n);
@@ -78,7 +79,7 @@ static void put_event(hn_stream *s, const hn_event *e) {
 
 /// What has come since the last look, up to a chunk's size.
 static void put_new_events(hn_stream *s) {
-    const hn_history *h = &s->live->history;
+    const hn_history *h = &s->session->history;
     uint64_t first = hn_history_first_id(h);
     if (s->cursor < first) {
         put_gap(s, s->cursor, first - 1);
@@ -94,8 +95,8 @@ static void put_new_events(hn_stream *s) {
 
 /// 1 when the reader has seen all there will be (until somebody resets the comparison).
 static int is_at_end(const hn_stream *s) {
-    return s->live->ending ||
-           (s->live->state == HN_SESSION_FINISHED && s->cursor > s->live->history.last_id);
+    return s->session->ending ||
+           (s->session->state == HN_SESSION_FINISHED && s->cursor > s->session->history.last_id);
 }
 
 static void fill(hn_stream *s) {
@@ -105,24 +106,28 @@ static void fill(hn_stream *s) {
         put_hello(s);
     }
     put_new_events(s);
-    if (s->text.n == 0 && s->live->deleted && !s->said_end) {
+    if (s->text.n == 0 && s->session->deleted && !s->said_end) {
         hn_strbuf_add(&s->text, "event: end\ndata: {\"deleted\":true}\n\n");
         s->said_end = 1;
     }
     if (s->text.n == 0 && !is_at_end(s) &&
+<<<<<<< HEAD
         hn_clock_wall() - s->last_sent >= s->live->opts->keep_alive) {
+=======
+        hn_wall_seconds() - s->last_sent >= s->session->opts->keep_alive) {
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
         hn_strbuf_add(&s->text, ": still here\n\n");
     }
 }
 
-// ---- callbacks of the HTTP library ------------------------------------------------------------------------------
+// ---- callbacks of the HTTP library ----
 
 static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
     hn_stream *s = cls;
     (void)pos;
     if (s->at == s->text.n) {
-        hn_session *live = s->live;
-        pthread_mutex_lock(&live->lock);
+        hn_session *session = s->session;
+        pthread_mutex_lock(&session->lock);
         fill(s);
         int ended = s->text.n == 0 && is_at_end(s);
         if (s->text.n == 0 && !ended) {
@@ -132,7 +137,7 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
         } else {
             s->last_sent = hn_clock_wall();
         }
-        pthread_mutex_unlock(&live->lock);
+        pthread_mutex_unlock(&session->lock);
         if (ended) {
             return MHD_CONTENT_READER_END_OF_STREAM;
         }
@@ -148,25 +153,32 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
 
 static void close_stream(void *cls) {
     hn_stream *s = cls;
-    hn_session *live = s->live;
-    pthread_mutex_lock(&live->lock);
-    hn_stream **place = &live->streams;
+    hn_session *session = s->session;
+    pthread_mutex_lock(&session->lock);
+    hn_stream **place = &session->streams;
     while (*place != s) {
         place = &(*place)->next;
     }
     *place = s->next;
+<<<<<<< HEAD
     live->n_streams--;
     live->touched = hn_clock_wall();
     pthread_mutex_unlock(&live->lock);
+=======
+    session->n_streams--;
+    session->touched = hn_wall_seconds();
+    pthread_mutex_unlock(&session->lock);
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     atomic_fetch_sub(s->n_open, 1);
     hn_strbuf_reset(&s->text);
     free(s);
-    hn_session_release(live);
+    hn_session_release(session);
 }
 
-// ---- opening ----------------------------------------------------------------------------------------------------
+// ---- opening ----
 
-/// Last-Event-ID (a header, or last_event_id in the query); -1 when not given, -2 when it is no number.
+/// Last-Event-ID (a header, or last_event_id in the query); -1 when not given, -2 when it is no
+/// number.
 static long long read_last_id(const hn_request *r) {
     const char *text = hn_request_header(r, "Last-Event-ID");
     if (!text || !*text) {
@@ -181,7 +193,7 @@ static long long read_last_id(const hn_request *r) {
 
 /// Where to begin. With the lock held; 0 when the reply is made here.
 static int choose_cursor(hn_stream *s, hn_request *r, long long last) {
-    const hn_history *h = &s->live->history;
+    const hn_history *h = &s->session->history;
     if (last == -2 || (last >= 0 && (uint64_t)last > h->last_id)) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
                          "the last event id must be a number up to %llu, the newest event here",
@@ -214,21 +226,27 @@ static void reply_stream(hn_stream *s, hn_request *r) {
 
 /// Puts the stream on the comparison's list; 0 when the reply is made here.
 static int attach(hn_stream *s, hn_request *r) {
+<<<<<<< HEAD
     hn_session *live = s->live;
     pthread_mutex_lock(&live->lock);
     live->touched = hn_clock_wall();
+=======
+    hn_session *session = s->session;
+    pthread_mutex_lock(&session->lock);
+    session->touched = hn_wall_seconds();
+>>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     int open = choose_cursor(s, r, read_last_id(r));
     if (open) {
-        live->refs++;
-        live->n_streams++;
-        s->next = live->streams;
-        live->streams = s;
+        session->refs++;
+        session->n_streams++;
+        s->next = session->streams;
+        session->streams = s;
     }
-    pthread_mutex_unlock(&live->lock);
+    pthread_mutex_unlock(&session->lock);
     return open;
 }
 
-void hn_stream_open(hn_session *live, hn_request *r, _Atomic int *n_open) {
+void hn_stream_open(hn_session *session, hn_request *r, _Atomic int *n_open) {
     const char *mode = hn_request_query(r, "mode");
     if (mode && strcmp(mode, "live") != 0 && strcmp(mode, "complete") != 0) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "mode=complete or mode=live",
@@ -241,15 +259,15 @@ void hn_stream_open(hn_session *live, hn_request *r, _Atomic int *n_open) {
         return;
     }
     int open = atomic_fetch_add(n_open, 1);
-    hn_stream *s = open < live->opts->max_streams ? calloc(1, sizeof *s) : NULL;
+    hn_stream *s = open < session->opts->max_streams ? calloc(1, sizeof *s) : NULL;
     if (!s) {
         atomic_fetch_sub(n_open, 1);
         hn_reply_problem(r, HN_PROBLEM_BUSY, "close a stream", "%d streams are open already",
-                         live->opts->max_streams);
+                         session->opts->max_streams);
         hn_reply_header_add(r, "Retry-After", "5");
         return;
     }
-    *s = (hn_stream){.live = live,
+    *s = (hn_stream){.session = session,
                      .connection = r->connection,
                      .n_open = n_open,
                      .skips = mode && strcmp(mode, "live") == 0,

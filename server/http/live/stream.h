@@ -1,13 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STREAM_H
 #define HN_HTTP_STREAM_H
-// A reader of a comparison's events (server-sent events). Its connection is suspended while there is nothing to say.
+// A reader of a comparison's events (server-sent events). Its connection is suspended while there
+// is nothing to say.
 
 #include "http/live/session.h"
 
 typedef struct hn_stream hn_stream;
 
-/// Answers GET .../events. Takes nothing; the stream holds its own reference of `live`. `n_open` is the server's count of streams.
-void hn_stream_open(hn_session *live, struct hn_request *r, _Atomic int *n_open);
+/// Answers GET .../events. Takes nothing; the stream holds its own reference of `live`. `n_open` is
+/// the server's count of streams.
+void hn_stream_open(hn_session *session, struct hn_request *r, _Atomic int *n_open);
 
 // for the comparison, with its lock held
 hn_stream *hn_stream_next(const hn_stream *s);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_CONTEXT_H
 #define HN_HTTP_CONTEXT_H
 // The parts of the server that handlers use. The server owns them; each part locks itself.

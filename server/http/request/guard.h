@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_GUARD_H
 #define HN_HTTP_GUARD_H
 // What is checked before a handler sees a request: who asks, for whom, and in which media types.

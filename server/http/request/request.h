@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_REQUEST_H
 #define HN_HTTP_REQUEST_H
-// One HTTP request from its first header to its last byte. The server makes it, a handler fills in the reply, the
-// completed callback alone frees it. A handler sees only this.
+// One HTTP request from its first header to its last byte. The server makes it, a handler fills in
+// the reply, the completed callback alone frees it. A handler sees only this.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -52,13 +53,15 @@ typedef struct hn_request {
 /// The query argument, or NULL. Light routes and heavy ones alike.
 const char *hn_request_query(const hn_request *r, const char *name);
 const char *hn_request_header(const hn_request *r, const char *name);
-/// Calls `see` for each argument `name=value` of the query in turn; stops when it returns not HN_OK, and returns that.
+/// Calls `see` for each argument `name=value` of the query in turn; stops when it returns not
+/// HN_OK, and returns that.
 HN_MUST_CHECK hn_status hn_request_each_query(const hn_request *r, const char *name,
                                               hn_status (*see)(void *user, const char *value),
                                               void *user);
 
 void hn_reply_header_add(hn_request *r, const char *name, const char *format, ...) HN_PRINTF(3, 4);
-/// Takes the buffer's text (the buffer is empty afterwards). A buffer whose memory ran out becomes a problem.
+/// Takes the buffer's text (the buffer is empty afterwards). A buffer whose memory ran out becomes
+/// a problem.
 void hn_reply_json(hn_request *r, unsigned status, hn_strbuf *text);
 void hn_reply_bytes(hn_request *r, unsigned status, const char *media_type, hn_strbuf *bytes);
 void hn_reply_empty(hn_request *r, unsigned status);
@@ -70,7 +73,8 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
-/// Suspends the connection: from here on another thread owns the request, until hn_request_finish().
+/// Suspends the connection: from here on another thread owns the request, until
+/// hn_request_finish().
 void hn_request_suspend(hn_request *r);
 /// Hands an answered request back to the connection's thread, which sends the reply.
 void hn_request_finish(hn_request *r);

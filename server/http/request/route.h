@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_ROUTE_H
 #define HN_HTTP_ROUTE_H
 // One row of the table of routes, and the search for the row that an address belongs to.

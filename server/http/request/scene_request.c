@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/scene_request.h"
 
 #include <math.h>

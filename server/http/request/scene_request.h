@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_SCENE_REQUEST_H
 #define HN_HTTP_SCENE_REQUEST_H
-// The scene that a request names, with the parameters that differ: read from a body or a query, kept, loaded.
+// The scene that a request names, with the parameters that differ: read from a body or a query,
+// kept, loaded.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -18,7 +20,8 @@ typedef struct hn_scene_request {
     char *names[HN_SCENE_MAX_PARAMS];
 } hn_scene_request;
 
-/// From the members "scene" and "settings". Start from a zeroed order; hn_scene_request_reset() afterwards in any case.
+/// From the members "scene" and "settings". Start from a zeroed order; hn_scene_request_reset()
+/// afterwards in any case.
 HN_MUST_CHECK hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body,
                                               hn_diags *diags);
 /// The settings alone; those that were there are forgotten.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/catalogue.h"
 
 #include "build.h"
@@ -189,7 +190,7 @@ void hn_handle_scene(hn_request *r) {
     }
 }
 
-// reference solutions ----------------------------------------------------------------------------------------------
+// ---- reference solutions ----
 
 /// A number of the query above 0 and at most `most`, NaN when it was not given.
 static hn_status read_number(const hn_request *r, const char *name, double most, double *out,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/openapi.h"
 
 #include "build.h"
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// ---- schemas of requests, from the field tables -----------------------------------------------------------------
+// ---- schemas of requests, from the field tables ----
 
 static void put_type(hn_strbuf *b, const char *type) {
     hn_json_put_string(b, "type", type);
@@ -113,7 +114,7 @@ void hn_fields_schema_json(hn_strbuf *b, const hn_field *fields) {
     hn_json_end_object(b);
 }
 
-// ---- schemas of answers -----------------------------------------------------------------------------------------
+// ---- schemas of answers ----
 
 #define NUMBERS "{\"type\":\"array\",\"items\":{\"type\":\"number\"}}"
 #define MAYBE_NUMBER "{\"type\":[\"number\",\"null\"]}"
@@ -261,7 +262,7 @@ static void put_components(hn_strbuf *b) {
     hn_json_end_object(b);
 }
 
-// ---- paths ------------------------------------------------------------------------------------------------------
+// ---- paths ----
 
 static void put_parameter(hn_strbuf *b, const char *name, size_t n_name, const char *in,
                           const char *type, const char *about) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_OPENAPI_H
 #define HN_HTTP_OPENAPI_H
 // The OpenAPI 3.1 document, written from the table of routes and their fields.

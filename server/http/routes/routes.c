@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/routes.h"
 
 #include "http/live/comparisons.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/server.h"
 
 #include "base/json_text.h"
@@ -27,7 +28,7 @@ struct hn_server {
     char address[300];
 };
 
-// ---- one request ------------------------------------------------------------------------------------------------
+// ---- one request ----
 
 /// Where an address lies off the API: a redirect to its front door, a file of the page, or nothing.
 static void reply_off_routes(hn_request *r, const char *method, const hn_route_match *match) {
@@ -86,7 +87,8 @@ static void check_head(hn_request *r, const char *method) {
     }
 }
 
-/// 1 when the rest of the body is not worth reading, or the client waits to be told before it sends it.
+/// 1 when the rest of the body is not worth reading, or the client waits to be told before it sends
+/// it.
 static int must_answer_early(const hn_request *r) {
     long long length = 0;
     const char *text = hn_request_header(r, "Content-Length");
@@ -155,7 +157,8 @@ static void run_job(void *job) {
     hn_request_finish(r);
 }
 
-/// Sees to it that a reply comes. 1: it is there; 0: the request belongs to somebody else until it is finished.
+/// Sees to it that a reply comes. 1: it is there; 0: the request belongs to somebody else until it
+/// is finished.
 static int start_work(hn_server *server, hn_request *r) {
     switch (r->route->work) {
     case HN_WORK_LIGHT:
@@ -268,7 +271,7 @@ static void on_completed(void *cls, struct MHD_Connection *connection, void **re
     *req_cls = NULL;
 }
 
-// ---- the server -------------------------------------------------------------------------------------------------
+// ---- the server ----
 
 static void set_hosts(hn_server *s) {
     const char *host = s->context.opts.host;

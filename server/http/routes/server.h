@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_SERVER_H
 #define HN_HTTP_SERVER_H
-// The HTTP server: one thread speaks with the clients, a pool does long work, each comparison has a thread of its own.
+// The HTTP server: one thread speaks with the clients, a pool does long work, each comparison has a
+// thread of its own.
 
 #include "base/diag.h"
 #include "http/ground/http_opts.h"
@@ -8,8 +10,8 @@
 
 typedef struct hn_server hn_server;
 
-/// Listens and serves until hn_server_stop(). `lib` must outlive the server. HN_ERR_IO when no port could be had: diag says which
-/// and why (a privileged port, an address that is not ours).
+/// Listens and serves until hn_server_stop(). `lib` must outlive the server. HN_ERR_IO when no port
+/// could be had: diag says which and why (a privileged port, an address that is not ours).
 HN_MUST_CHECK hn_status hn_server_start(const hn_library *lib, const hn_http_opts *opts,
                                         hn_server **out, hn_diag *diag);
 /// "http://127.0.0.1:8080"

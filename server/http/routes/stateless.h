@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STATELESS_H
 #define HN_HTTP_STATELESS_H
 // Questions that are one POST and one answer.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/routes/static_files.h"
 
 #include "base/arena.h"
@@ -106,7 +107,8 @@ static const file *find_file(const hn_static_files *s, const char *address) {
     return bsearch(&key, s->files, (size_t)s->n, sizeof key, compare_files);
 }
 
-/// The hash of each inline import map goes into the policy: browsers take an import map in no other way.
+/// The hash of each inline import map goes into the policy: browsers take an import map in no other
+/// way.
 static void allow_import_maps(hn_strbuf *policy, const char *html) {
     static const char open[] = "<script type=\"importmap\">";
     for (const char *at = strstr(html, open); at; at = strstr(at, open)) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STUDIES_H
 #define HN_HTTP_STUDIES_H
 // Studies as resources: what takes seconds is done on a thread of its own, asked for progress while it lasts and for its document

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STUDIES_INTERNAL_H
 #define HN_HTTP_STUDIES_INTERNAL_H
 // Shared by studies.c (life of the resource) and studies_kinds.c (what each kind of study does).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What each kind of study does: the same documents as the command line's.
 #include "base/clock.h"
 #include "http/studies/studies_internal.h"

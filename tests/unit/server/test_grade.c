@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Grading of Problem 3: right answers in many spellings, each known mistake named, unreadable files refused with a reason.
 #include "grade/grade.h"
 
@@ -327,7 +328,7 @@ static void every_prefix_of_a_submission_ends_in_a_verdict(void **state) {
     }
 }
 
-// the outputs -----------------------------------------------------------------------------------------
+// ---- the outputs ----
 
 static cJSON *parse(hn_strbuf *b) {
     cJSON *root = cJSON_Parse(hn_strbuf_text(b));
