@@ -4,6 +4,7 @@
 #include "build.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "session/report/report.h"
 
@@ -190,9 +191,14 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
         hn_report_diag(args, &diag);
         return HN_EXIT_PROGRAM;
     }
-    hn_exit status = command->run(lib, args);
+
+    // no command writes over what it reads
+    hn_diags diags = {0};
+    const hn_status status = hn_cli_protect_inputs(args, &diags);
+    const hn_exit result =
+        status == HN_OK ? command->run(lib, args) : hn_report_diags(args, status, &diags);
     hn_library_free(lib);
-    return status;
+    return result;
 }
 
 /// "--help" and "--version" are the commands of these names.

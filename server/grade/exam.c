@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exam of a problem: phi read and differentiated, states drawn.
+#include "grade/exam.h"
+
 #include "base/hash.h"
-#include "grade/exercise.h"
+#include "expr/parse.h"
+#include "grade/spelling.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MAX_DRAWS = 10000 }; // states are drawn again until the loop closes within the given ranges
+enum { MAX_DRAWS = 10000 };
 
-static int lookup(void *user, const char *name, hn_ex *out) {
-    hn_exam *exam = user;
-    const hn_exercise *p = exam->problem;
+/// Returns the index of a name or of one of its aliases, -1 if there is none.
+static int find_name(const hn_exercise *p, const char *name) {
     for (int i = 0; i < p->n_aliases; i++) {
         if (strcmp(name, p->aliases[i].key) == 0) {
             name = p->aliases[i].text;
@@ -19,11 +20,23 @@ static int lookup(void *user, const char *name, hn_ex *out) {
     }
     for (int i = 0; i < p->n_names; i++) {
         if (strcmp(name, p->names[i].name) == 0) {
-            *out = hn_graph_symbol_expr(exam->graph, exam->symbol[i]);
-            return 1;
+            return i;
         }
     }
-    return 0;
+    return -1;
+}
+
+static int lookup(void *user, const char *name, hn_ex *out) {
+    hn_exam *exam = user;
+    char joined[64];
+    int i = find_name(exam->problem, name);
+    if (i < 0 && hn_spelling_join(name, joined, sizeof joined)) {
+        i = find_name(exam->problem, joined);
+    }
+    if (i >= 0) {
+        *out = hn_graph_symbol_expr(exam->graph, exam->symbol[i]);
+    }
+    return i >= 0;
 }
 
 hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *diag) {
@@ -47,8 +60,8 @@ double hn_exam_value(hn_exam *exam, hn_ex e, int state) {
     return hn_graph_eval(exam->graph, e, exam->state[state]);
 }
 
-double hn_exam_allowed(const hn_exam *exam, double expected) {
-    return exam->problem->absolute + exam->problem->relative * fabs(expected);
+double hn_exam_allowed(const hn_exam *exam, double size) {
+    return exam->problem->absolute + exam->problem->relative * size;
 }
 
 /// The k-th random number in [0, 1) of a seed.
@@ -80,13 +93,12 @@ static hn_status draw_states(hn_exam *exam, uint64_t seed, hn_diag *diag) {
     const hn_exercise *p = exam->problem;
     hn_ex derived[HN_GRADE_MAX_NAMES];
     for (int i = 0; i < p->n_names; i++) {
-        hn_status status = p->names[i].formula
-                               ? hn_exam_parse(exam, p->names[i].formula, &derived[i], diag)
-                               : HN_OK;
-        if (status != HN_OK) {
-            return status;
+        if (p->names[i].formula) {
+            HN_TRY(hn_exam_parse(exam, p->names[i].formula, &derived[i], diag));
         }
     }
+
+    // states are drawn until the names that close the loop lie within their ranges
     uint64_t k = 0;
     int draws = 0;
     exam->n_states = p->n_closed + p->n_open;
@@ -102,9 +114,9 @@ static hn_status draw_states(hn_exam *exam, uint64_t seed, hn_diag *diag) {
     return HN_OK;
 }
 
-static hn_status build(hn_exam *exam, hn_diag *diag) {
+/// The names as symbols of the graph, in their order.
+static hn_status make_symbols(hn_exam *exam, hn_diag *diag) {
     const hn_exercise *p = exam->problem;
-    int by[HN_GRADE_MAX_COLUMNS];
     for (int i = 0; i < p->n_names; i++) {
         hn_ex e = hn_symbol(exam->graph, p->names[i].name, NULL);
         exam->symbol[i] = hn_ex_symbol(exam->graph, e);
@@ -113,6 +125,13 @@ static hn_status build(hn_exam *exam, hn_diag *diag) {
                                "the name '%.40s' is given twice", p->names[i].name);
         }
     }
+    return HN_OK;
+}
+
+/// phi, and its derivatives by the coordinates that the answer names.
+static hn_status differentiate(hn_exam *exam, hn_diag *diag) {
+    const hn_exercise *p = exam->problem;
+    int by[HN_GRADE_MAX_COLUMNS];
     for (int j = 0; j < p->n_columns; j++) {
         by[j] = hn_graph_find_symbol(exam->graph, p->by[j]);
         if (by[j] < 0) {
@@ -121,13 +140,34 @@ static hn_status build(hn_exam *exam, hn_diag *diag) {
         }
     }
     for (int i = 0; i < p->n_rows; i++) {
-        hn_status status = hn_exam_parse(exam, p->phi[i], &exam->phi[i], diag);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(hn_exam_parse(exam, p->phi[i], &exam->phi[i], diag));
         hn_diff(exam->graph, exam->phi[i], by, p->n_columns, &exam->reference[i * p->n_columns]);
     }
-    return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : HN_OK;
+    return HN_OK;
+}
+
+/// The values of the reference at all states, and the size of each entry.
+static hn_status evaluate(hn_exam *exam, hn_diag *diag) {
+    const hn_exercise *p = exam->problem;
+    for (int k = 0; k < p->n_rows * p->n_columns; k++) {
+        for (int s = 0; s < exam->n_states; s++) {
+            const double x = hn_exam_value(exam, exam->reference[k], s);
+            if (!isfinite(x)) {
+                return hn_diag_set(diag, HN_ERR_INPUT, "/phi", NULL,
+                                   "the reference has no finite value at a random state");
+            }
+            exam->expected[k][s] = x;
+            exam->size[k] = fmax(exam->size[k], fabs(x));
+        }
+    }
+    return HN_OK;
+}
+
+static hn_status prepare(hn_exam *exam, uint64_t seed, hn_diag *diag) {
+    HN_TRY(make_symbols(exam, diag));
+    HN_TRY(differentiate(exam, diag));
+    HN_TRY(draw_states(exam, seed, diag));
+    return evaluate(exam, diag);
 }
 
 hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed, hn_diag *diag) {
@@ -137,20 +177,9 @@ hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed,
     if (!exam->graph) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = build(exam, diag);
-    if (status == HN_OK) {
-        status = draw_states(exam, seed ? seed : problem->seed, diag);
-    }
-    for (int k = 0; k < problem->n_rows * problem->n_columns && status == HN_OK; k++) {
-        for (int s = 0; s < exam->n_states; s++) {
-            exam->expected[k][s] = hn_exam_value(exam, exam->reference[k], s);
-            if (!isfinite(exam->expected[k][s])) {
-                status = hn_diag_set(diag, HN_ERR_INPUT, "/phi", NULL,
-                                     "the reference has no finite value at a random state");
-                break;
-            }
-        }
-    }
+
+    // a graph without memory makes any other fault
+    const hn_status status = prepare(exam, seed ? seed : problem->seed, diag);
     return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : status;
 }
 

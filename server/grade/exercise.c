@@ -4,14 +4,16 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json_text.h"
+#include "grade/exam.h"
+#include "grade/mistakes.h"
 
-#include <errno.h>
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/// What reading needs: where to put things and whom to tell.
+/// The exercise being read, and where its faults go.
 typedef struct reader {
     hn_exercise *p;
     hn_diags *diags;
@@ -130,19 +132,10 @@ static void read_statement(reader *r, const cJSON *node) {
     hn_strbuf_reset(&b);
 }
 
-static void read_problem(reader *r, const cJSON *root) {
+/// Names, and what is asked.
+static void read_question(reader *r, const cJSON *root) {
     hn_exercise *p = r->p;
-    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(root, "answer"),
-                *states = cJSON_GetObjectItemCaseSensitive(root, "states"),
-                *tolerance = cJSON_GetObjectItemCaseSensitive(root, "tolerance");
-    p->id = read_text(r, root, "id", "/id");
-    p->title = read_text(r, root, "title", "/title");
-    p->lesson = read_text(r, root, "lesson", "/lesson");
-    p->section = read_text(r, root, "section", "/section");
-    p->scene = cJSON_GetObjectItemCaseSensitive(root, "scene")
-                   ? read_text(r, root, "scene", "/scene")
-                   : "";
-    read_statement(r, cJSON_GetObjectItemCaseSensitive(root, "statement"));
+    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(root, "answer");
     read_names(r, cJSON_GetObjectItemCaseSensitive(root, "parameters"));
     p->n_params = p->n_names;
     read_names(r, cJSON_GetObjectItemCaseSensitive(root, "coordinates"));
@@ -156,6 +149,25 @@ static void read_problem(reader *r, const cJSON *root) {
     p->n_columns = read_texts(r, cJSON_GetObjectItemCaseSensitive(answer, "by"), "/answer/by",
                               p->by, HN_GRADE_MAX_COLUMNS);
     p->points = read_number(r, answer, "points", "/answer/points", 0, 1e6);
+}
+
+static void read_problem(reader *r, const cJSON *root) {
+    hn_exercise *p = r->p;
+    const cJSON *states = cJSON_GetObjectItemCaseSensitive(root, "states"),
+                *tolerance = cJSON_GetObjectItemCaseSensitive(root, "tolerance");
+
+    // what a person reads
+    p->id = read_text(r, root, "id", "/id");
+    p->title = read_text(r, root, "title", "/title");
+    p->lesson = read_text(r, root, "lesson", "/lesson");
+    p->section = read_text(r, root, "section", "/section");
+    p->scene = cJSON_GetObjectItemCaseSensitive(root, "scene")
+                   ? read_text(r, root, "scene", "/scene")
+                   : "";
+    read_statement(r, cJSON_GetObjectItemCaseSensitive(root, "statement"));
+    read_question(r, root);
+
+    // how answers are compared
     p->seed = (uint64_t)read_number(r, states, "seed", "/states/seed", 1, 9e15);
     p->n_closed =
         (int)read_number(r, states, "closed", "/states/closed", 20, HN_GRADE_MAX_STATES / 2);
@@ -189,10 +201,13 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "", diag.hint, "%s", diag.message);
     }
+
+    // everything lives in the arena, the exercise itself too
     cJSON *root = cJSON_ParseWithLength(text, n);
     hn_arena *arena = root ? hn_arena_create(0) : NULL;
     hn_exercise *p = arena ? hn_arena_get(arena, sizeof *p) : NULL;
     status = p ? HN_OK : HN_ERR_MEMORY;
+
     if (p) {
         p->arena = arena;
         p->hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, n));
@@ -277,18 +292,9 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *p) {
                      p->points, p->points == 1 ? "" : "s", p->n_closed);
 }
 
-void hn_exercise_json(hn_strbuf *b, const hn_exercise *p) {
-    char name[32], hash[17];
-    hn_hash_hex(p->hash, hash);
-    hn_json_object(b);
-    hn_json_put_string(b, "id", p->id);
-    hn_json_put_string(b, "title", p->title);
-    hn_json_put_string(b, "lesson", p->lesson);
-    hn_json_put_string(b, "section", p->section);
-    hn_json_put_string(b, "scene", p->scene);
-    hn_json_put_string(b, "statement", p->statement);
-    hn_json_put_number(b, "points", hn_exercise_points(p));
-    hn_json_put_string(b, "hash", hash);
+/// The entries that are asked for, and the names in them.
+static void put_question(hn_strbuf *b, const hn_exercise *p) {
+    char name[32];
     hn_json_key(b, "entries");
     hn_json_array(b);
     for (int i = 0; i < p->n_rows * p->n_columns; i++) {
@@ -308,6 +314,23 @@ void hn_exercise_json(hn_strbuf *b, const hn_exercise *p) {
     hn_json_end_array(b);
     hn_json_key(b, "phi");
     hn_json_strings(b, p->phi, (size_t)p->n_rows);
+}
+
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *p) {
+    char hash[17];
+    hn_hash_hex(p->hash, hash);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", p->id);
+    hn_json_put_string(b, "title", p->title);
+    hn_json_put_string(b, "lesson", p->lesson);
+    hn_json_put_string(b, "section", p->section);
+    hn_json_put_string(b, "scene", p->scene);
+    hn_json_put_string(b, "statement", p->statement);
+    hn_json_put_number(b, "points", hn_exercise_points(p));
+    hn_json_put_string(b, "hash", hash);
+    put_question(b, p);
+
+    // how answers are compared, and the shape of a submission
     hn_json_key(b, "tolerance");
     hn_json_object(b);
     hn_json_put_number(b, "relative", p->relative);

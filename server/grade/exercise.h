@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_SERVER_GRADE_PROBLEM_H
-#define HN_SERVER_GRADE_PROBLEM_H
-// Inside grade/ only: what a problem file says, and an exam: the problem's expressions and the
-// states to compare at.
+#ifndef HN_GRADE_EXERCISE_H
+#define HN_GRADE_EXERCISE_H
+// An exercise asks for a matrix of formulas: the constraint Jacobian, entry by entry. Its file
+// holds the statement, phi, the ranges of all names, and what entries and mistakes are worth.
 
 #include "base/arena.h"
-#include "expr/graph.h"
-#include "expr/parse.h"
-#include "grade/grade.h"
+#include "base/diag.h"
+#include "base/strbuf.h"
 
-#include <cjson/cJSON.h>
+#include <stdint.h>
+
+enum {
+    HN_GRADE_MAX_ROWS = 4,
+    HN_GRADE_MAX_COLUMNS = 8,
+    HN_GRADE_MAX_ENTRIES = HN_GRADE_MAX_ROWS * HN_GRADE_MAX_COLUMNS,
+    HN_GRADE_MAX_NAMES = 24,      ///< parameters and coordinates of a problem
+    HN_GRADE_MAX_BYTES = 1 << 20, ///< of a submission
+    HN_GRADE_MAX_FORMULA = 2000,  ///< characters of one entry
+    HN_GRADE_TEXT = 400
+};
 
 /// A parameter or coordinate: random in [low, high], or a formula of those that closes the loop.
 typedef struct hn_grade_name {
@@ -23,59 +32,39 @@ typedef struct hn_grade_pair {
     double value;
 } hn_grade_pair;
 
-struct hn_exercise {
+typedef struct hn_exercise {
     hn_arena *arena;
     const char *id, *title, *scene, *statement, *lesson, *section, *answer;
     int n_names, n_params; ///< parameters first
     hn_grade_name names[HN_GRADE_MAX_NAMES];
     int n_aliases, n_partial;
-    hn_grade_pair
-        aliases[HN_GRADE_MAX_NAMES]; ///< key: what people type, text: the name it stands for
-    hn_grade_pair partial[HN_GRADE_MAX_NAMES]; ///< key: id of a mistake, value: share of the points
+    /// key: what people type, text: the name it stands for
+    hn_grade_pair aliases[HN_GRADE_MAX_NAMES];
+    /// key: id of a mistake, value: share of the points
+    hn_grade_pair partial[HN_GRADE_MAX_NAMES];
     int n_rows, n_columns;
     const char *phi[HN_GRADE_MAX_ROWS];
     const char *by[HN_GRADE_MAX_COLUMNS];
     double points; ///< for each entry
     uint64_t seed, hash;
     int n_closed, n_open;
-    double relative, absolute; ///< allowed difference: absolute + relative * |expected|
+    double relative, absolute; ///< allowed: absolute + relative * (size of the entry)
     const char *why;           ///< reason for the tolerance
-};
+} hn_exercise;
 
-enum { HN_GRADE_MAX_STATES = 64 };
-
-/// The expressions of a problem in a graph of their own, and its states. Freed by hn_exam_reset().
-typedef struct hn_exam {
-    const hn_exercise *problem;
-    hn_graph *graph;
-    int symbol[HN_GRADE_MAX_NAMES];
-    hn_ex phi[HN_GRADE_MAX_ROWS];
-    hn_ex reference[HN_GRADE_MAX_ENTRIES]; ///< row-major, d phi_i / d by_j
-    int n_states;                          ///< the first problem->n_closed of them close the loop
-    double state[HN_GRADE_MAX_STATES][HN_GRADE_MAX_NAMES];
-    double expected[HN_GRADE_MAX_ENTRIES][HN_GRADE_MAX_STATES];
-} hn_exam;
-
-/// Parses, differentiates, draws the states. `diag` may be NULL; HN_ERR_INPUT means the problem
-/// itself is at fault.
-HN_MUST_CHECK hn_status hn_exam_init(hn_exam *exam, const hn_exercise *problem, uint64_t seed,
-                                     hn_diag *diag);
-void hn_exam_reset(hn_exam *exam);
-/// One formula in the problem's names (aliases too).
-HN_MUST_CHECK hn_status hn_exam_parse(hn_exam *exam, const char *text, hn_ex *out, hn_diag *diag);
-double hn_exam_value(hn_exam *exam, hn_ex e, int state);
-/// The difference allowed where this value is expected.
-double hn_exam_allowed(const hn_exam *exam, double expected);
-
-/// Names the mistake in a wrong entry, or "other". `value` holds the values of `given` at all
-/// states; `by` receives what the text refers to ("J21") and may stay empty.
-typedef struct hn_grade_mistake {
-    const char *id, *text; ///< static
-    char by[32];
-} hn_grade_mistake;
-hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
-                                       const double *value);
-/// 1 if the mistake's id is one that verdicts can hold.
-int hn_grade_is_mistake(const char *id);
-
+/// Reads an exercise (lessons/NN-topic/problems/ID.json). Returns owned.
+/// Fails: HN_ERR_IO, HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY; diags say where.
+HN_MUST_CHECK hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *diags);
+HN_MUST_CHECK hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out,
+                                              hn_diags *diags);
+void hn_exercise_free(hn_exercise *problem); ///< NULL is legal
+const char *hn_exercise_id(const hn_exercise *problem);
+const char *hn_exercise_title(const hn_exercise *problem);
+/// Returns the id of the scene that draws a state of it, "" if there is none.
+const char *hn_exercise_scene(const hn_exercise *problem);
+double hn_exercise_points(const hn_exercise *problem);
+/// The statement for a person: what is given, what is asked, how to hand it in.
+void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem);
+/// {"id","title","statement","points","entries":[..],"given":[..],"submission":{..}}
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem);
 #endif

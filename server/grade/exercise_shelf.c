@@ -33,6 +33,8 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
     for (int i = 0; i < hn_library_n_problems(lib); i++) {
         hn_exercise *problem = NULL;
         hn_diags diags = {0};
+
+        // one that does not load is listed with its faults
         hn_json_object(b);
         hn_json_put_string(b, "id", hn_library_problem_id(lib, i));
         if (hn_exercise_load_file(hn_library_problem_path(lib, hn_library_problem_id(lib, i)),

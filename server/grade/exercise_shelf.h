@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_SERVER_PROBLEM_SHELF_H
-#define HN_SERVER_PROBLEM_SHELF_H
+#ifndef HN_GRADE_EXERCISE_SHELF_H
+#define HN_GRADE_EXERCISE_SHELF_H
 // The shipped problems, by id: for the command line and the HTTP interface alike.
 
 #include "base/strbuf.h"
-#include "grade/grade.h"
+#include "grade/verdict.h"
 #include "session/model/library.h"
 
 /// Returns owned in *out. An unknown id: HN_ERR_INPUT with a near miss (pointer "/problem").

@@ -4,113 +4,17 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "expr/print.h"
-#include "grade/exercise.h"
+#include "grade/exam.h"
+#include "grade/mistakes.h"
+#include "grade/spelling.h"
+#include "grade/submission.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MAX_DEPTH = 16 };
-
-// ---- reading the submission ----
-
-static int refuse(hn_verdict *v, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
-
-/// Makes the verdict ungradable; returns 0, so that `return refuse(...)` reads well.
-static int refuse(hn_verdict *v, const char *hint, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(v->reason, sizeof v->reason, format, args);
-    va_end(args);
-    snprintf(v->hint, sizeof v->hint, "%s", hint ? hint : "");
-    v->kind = HN_VERDICT_UNGRADABLE;
-    return 0;
-}
-
-static const char *kind_of(const cJSON *node) {
-    return cJSON_IsNumber(node)   ? "a number"
-           : cJSON_IsString(node) ? "a text"
-           : cJSON_IsArray(node)  ? "a list"
-           : cJSON_IsObject(node) ? "an object"
-           : cJSON_IsNull(node)   ? "null"
-                                  : "true or false";
-}
-
-/// Fields that were not read are told, a near miss of the answer's name is suggested, another
-/// problem's file is refused.
-static int check_fields(hn_verdict *v, const cJSON *root) {
-    const hn_exercise *p = v->problem;
-    const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
-    for (const cJSON *m = root->child; m; m = m->next) {
-        int known = 0;
-        for (int i = 0; i < 5; i++) {
-            known |= strcmp(m->string, fields[i]) == 0;
-        }
-        if (!known && !v->note[0]) {
-            snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
-        }
-    }
-    const cJSON *id = cJSON_GetObjectItemCaseSensitive(root, "problem");
-    if (cJSON_IsString(id) && strcmp(id->valuestring, p->id) != 0) {
-        return refuse(v, NULL, "the submission says it answers problem '%.40s', this is '%s'",
-                      id->valuestring, p->id);
-    }
-    if (!cJSON_GetObjectItemCaseSensitive(root, p->answer)) {
-        const char *found = root->child ? root->child->string : NULL;
-        const char *near = found ? hn_nearest_name(found, fields, 1) : NULL;
-        char hint[HN_GRADE_TEXT];
-        if (near) {
-            snprintf(hint, sizeof hint, "rename '%.60s' to '%s'", found, near);
-        } else {
-            snprintf(hint, sizeof hint, "as in {\"%s\": [[\"...\", ...], ...]}", p->answer);
-        }
-        return refuse(v, hint, "the field '%s' is missing%s", p->answer,
-                      found ? "" : ": the object is empty");
-    }
-    return 1;
-}
-
-/// Rows and columns of the answer; a matrix of the transposed shape is let through.
-static int check_shape(hn_verdict *v, const cJSON *answer, int *transposed) {
-    const hn_exercise *p = v->problem;
-    int rows = cJSON_GetArraySize(answer), columns = -1;
-    if (!cJSON_IsArray(answer)) {
-        return refuse(v, NULL, "'%s' is %s, expected a list of %d rows", p->answer, kind_of(answer),
-                      p->n_rows);
-    }
-    int i = 0;
-    for (const cJSON *row = answer->child; row; row = row->next, i++) {
-        if (!cJSON_IsArray(row)) {
-            return refuse(v, NULL, "row %d of '%s' is %s, expected a list of %d formulas", i + 1,
-                          p->answer, kind_of(row), p->n_columns);
-        }
-        int n = cJSON_GetArraySize(row);
-        if (columns >= 0 && n != columns) {
-            return refuse(v, NULL, "row %d of '%s' has %d entries, the rows before have %d", i + 1,
-                          p->answer, n, columns);
-        }
-        columns = n;
-    }
-    *transposed = rows == p->n_columns && columns == p->n_rows && rows != columns;
-    if (!*transposed && (rows != p->n_rows || columns != p->n_columns)) {
-        return refuse(v, "one row for each equation, one column for each coordinate",
-                      "'%s' has %d rows of %d entries, expected %d rows of %d", p->answer, rows,
-                      columns < 0 ? 0 : columns, p->n_rows, p->n_columns);
-    }
-    for (const cJSON *row = answer->child; row; row = row->next) {
-        for (const cJSON *m = row->child; m; m = m->next) {
-            if (!cJSON_IsString(m) && !cJSON_IsNumber(m) && !cJSON_IsNull(m)) {
-                return refuse(v, "write each entry as a text in quotes",
-                              "an entry of '%s' is %s, expected a formula in quotes", p->answer,
-                              kind_of(m));
-            }
-        }
-    }
-    return 1;
-}
 
 // ---- one entry ----
 
@@ -128,10 +32,32 @@ static void set_mistake(hn_verdict *v, hn_entry_verdict *e, const char *id) {
     e->points = e->max_points * partial_share(v->problem, id);
 }
 
+/// Parses the formula in the parser's own spelling; what that was is said where it cannot be read.
+static hn_status parse_entry(hn_verdict *v, hn_exam *exam, const char *text, hn_entry_verdict *e,
+                             hn_ex *given) {
+    hn_diag diag = {0};
+    hn_strbuf plain;
+    hn_strbuf_init(&plain);
+    hn_spelling_normalise(&plain, text);
+    const char *formula = hn_strbuf_text(&plain);
+    hn_status status = plain.failed ? HN_ERR_MEMORY : hn_exam_parse(exam, formula, given, &diag);
+
+    if (status == HN_ERR_INPUT || status == HN_ERR_LIMIT) {
+        const int same = strcmp(formula, text) == 0;
+        set_mistake(v, e, "unreadable");
+        v->n_unreadable++;
+        snprintf(e->explanation, sizeof e->explanation,
+                 "the formula cannot be read%s%.60s%s: %.180s%s%.110s", same ? "" : " (as ",
+                 same ? "" : formula, same ? "" : ")", diag.message, diag.hint[0] ? "; " : "",
+                 diag.hint);
+    }
+    hn_strbuf_reset(&plain);
+    return status;
+}
+
 /// The formula of an entry; 0 when there is none that can be read.
 static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_verdict *e,
                       hn_ex *given, hn_status *status) {
-    hn_diag diag = {0};
     const char *text = cJSON_IsString(node) ? node->valuestring : "";
     char number[40];
     if (cJSON_IsNumber(node)) {
@@ -144,13 +70,11 @@ static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_
         snprintf(e->explanation, sizeof e->explanation, "nothing was handed in here");
         return 0;
     }
-    *status = hn_exam_parse(exam, text, given, &diag);
+
+    // an unreadable entry is a wrong entry, no failure of the grader
+    *status = parse_entry(v, exam, text, e, given);
     if (*status == HN_ERR_INPUT || *status == HN_ERR_LIMIT) {
         *status = HN_OK;
-        set_mistake(v, e, "unreadable");
-        snprintf(e->explanation, sizeof e->explanation,
-                 "the formula cannot be read: %.240s%s%.110s", diag.message,
-                 diag.hint[0] ? "; " : "", diag.hint);
         return 0;
     }
     return *status == HN_OK;
@@ -160,26 +84,25 @@ static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_
 /// right.
 static int compare(hn_exam *exam, int index, hn_entry_verdict *e, const double *value) {
     const double *expected = exam->expected[index];
+    const double allowed = hn_exam_allowed(exam, exam->size[index]);
     double worst = -1;
-    int wrong = 0;
     for (int s = 0; s < exam->problem->n_closed; s++) {
-        double difference = fabs(value[s] - expected[s]);
-        if (difference <= hn_exam_allowed(exam, expected[s])) {
-            continue;
-        }
-        wrong = 1;
-        if (!isfinite(value[s]) || difference > worst) {
-            worst = isfinite(value[s]) ? difference : HUGE_VAL;
+        const double difference = isfinite(value[s]) ? fabs(value[s] - expected[s]) : HUGE_VAL;
+        if (difference > allowed && difference > worst) {
+            worst = difference;
             e->state = s;
             e->given_value = value[s];
             e->expected_value = expected[s];
-            e->allowed = hn_exam_allowed(exam, expected[s]);
+            e->allowed = allowed;
         }
     }
-    for (int s = exam->problem->n_closed; s < exam->n_states && !wrong; s++) {
-        e->closed_only |= !(fabs(value[s] - expected[s]) <= hn_exam_allowed(exam, expected[s]));
+
+    // right on closed loops only: still right, and said
+    const int right = e->state < 0;
+    for (int s = exam->problem->n_closed; s < exam->n_states && right; s++) {
+        e->closed_only |= !(fabs(value[s] - expected[s]) <= allowed);
     }
-    return !wrong;
+    return right;
 }
 
 static void explain(hn_verdict *v, hn_exam *exam, hn_entry_verdict *e, hn_ex given,
@@ -204,19 +127,21 @@ static hn_status grade_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn
     if (!read_entry(v, exam, node, e, &given, &status)) {
         return status;
     }
+
+    // the values decide, not the form
     for (int s = 0; s < exam->n_states; s++) {
         value[s] = hn_exam_value(exam, given, s);
     }
     e->right = compare(exam, index, e, value);
-    if (e->right) {
-        e->points = e->max_points;
-        if (e->closed_only) {
-            snprintf(e->explanation, sizeof e->explanation,
-                     "right wherever the loop is closed, though not the derivative of phi as a "
-                     "formula; accepted");
-        }
-    } else {
+    if (!e->right) {
         explain(v, exam, e, given, value);
+    } else {
+        e->points = e->max_points;
+    }
+    if (e->closed_only) {
+        snprintf(e->explanation, sizeof e->explanation,
+                 "right wherever the loop is closed, though not the derivative of phi as a "
+                 "formula; accepted");
     }
     return hn_graph_failed(exam->graph) ? HN_ERR_MEMORY : HN_OK;
 }
@@ -232,31 +157,63 @@ static int column_has_sign(const hn_verdict *v, int j) {
     return all;
 }
 
-static void summarise(hn_verdict *v) {
-    const hn_exercise *p = v->problem;
-    int wrong = v->n_entries - v->n_right, columns = 0;
+/// The columns whose sign is wrong in every row, as "1, 3"; returns how many.
+static int list_sign_columns(const hn_verdict *v, char *list, size_t size) {
+    int columns = 0;
+    list[0] = 0;
+    for (int j = 0; j < v->problem->n_columns; j++) {
+        if (column_has_sign(v, j)) {
+            const size_t used = strlen(list);
+            snprintf(list + used, size - used, "%s%d", columns++ ? ", " : "", j + 1);
+        }
+    }
+    return columns;
+}
+
+/// The mistake that all wrong entries share; "" when they do not.
+static const char *common_mistake(const hn_verdict *v) {
     const char *common = NULL;
-    char list[64] = "";
     for (int k = 0; k < v->n_entries; k++) {
         const hn_entry_verdict *e = &v->entry[k];
         if (!e->right) {
             common = !common ? e->mistake : strcmp(common, e->mistake) == 0 ? common : "";
         }
     }
-    for (int j = 0; j < p->n_columns; j++) {
-        if (column_has_sign(v, j)) {
-            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%d", columns++ ? ", " : "",
-                     j + 1);
+    return common ? common : "";
+}
+
+/// The entries that cannot be read, behind the rest of the sentence.
+static void add_unreadable(hn_verdict *v) {
+    if (v->n_unreadable == 0) {
+        return;
+    }
+    size_t used = strlen(v->summary);
+    used += (size_t)snprintf(v->summary + used, sizeof v->summary - used,
+                             "; %d cannot be read: ", v->n_unreadable);
+    for (int k = 0, n = 0; k < v->n_entries && used < sizeof v->summary; k++) {
+        if (strcmp(v->entry[k].mistake, "unreadable") == 0) {
+            used += (size_t)snprintf(v->summary + used, sizeof v->summary - used, "%s%s",
+                                     n++ ? ", " : "", v->entry[k].name);
         }
     }
+}
+
+static void summarise(hn_verdict *v) {
+    char list[64];
+    const int wrong = v->n_entries - v->n_right;
+    const int columns = list_sign_columns(v, list, sizeof list);
+    const char *common = common_mistake(v);
+
+    // a mistake with one cause is named rather than counted
     if (wrong == 0) {
         snprintf(v->summary, sizeof v->summary, "all %d entries are right", v->n_entries);
-    } else if (columns > 0 && columns * p->n_rows == wrong && columns < p->n_columns) {
+    } else if (columns > 0 && columns * v->problem->n_rows == wrong &&
+               columns < v->problem->n_columns) {
         snprintf(v->summary, sizeof v->summary,
-                 "column%s %s: wrong sign in every row, so look at the side on which these links "
-                 "stand in the loop equation",
+                 "column%s %s: wrong sign in every row; check the side of the loop equation on "
+                 "which these links are",
                  columns > 1 ? "s" : "", list);
-    } else if (wrong > 1 && common[0] && strcmp(common, "other") != 0) {
+    } else if (wrong > 1 && common[0] && strcmp(common, "other") != 0 && v->n_unreadable == 0) {
         snprintf(v->summary, sizeof v->summary,
                  "%d of %d entries are right; the other %d share one mistake: %s", v->n_right,
                  v->n_entries, wrong, common);
@@ -264,6 +221,22 @@ static void summarise(hn_verdict *v) {
         snprintf(v->summary, sizeof v->summary, "%d of %d entries are right", v->n_right,
                  v->n_entries);
     }
+    add_unreadable(v);
+}
+
+/// 1, and ungradable, when no formula that was handed in can be read.
+static int refuse_unreadable(hn_verdict *v) {
+    int handed_in = 0, first = -1;
+    for (int k = v->n_entries; k-- > 0;) {
+        handed_in += strcmp(v->entry[k].mistake, "blank") != 0;
+        first = strcmp(v->entry[k].mistake, "unreadable") == 0 ? k : first;
+    }
+    if (v->n_unreadable == 0 || v->n_unreadable < handed_in) {
+        return 0;
+    }
+    hn_submission_refuse(v, v->entry[first].explanation, "none of the %d formulas can be read (%s)",
+                         v->n_unreadable, v->entry[first].name);
+    return 1;
 }
 
 /// The whole matrix handed in transposed: each right entry earns its share.
@@ -316,16 +289,19 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
     const hn_exercise *p = v->problem;
     v->n_entries = p->n_rows * p->n_columns;
     v->n_states = p->n_closed;
+
     for (int k = 0; k < v->n_entries; k++) {
         int i = k / p->n_columns, j = k % p->n_columns;
         const cJSON *node =
             cJSON_GetArrayItem(cJSON_GetArrayItem(answer, transposed ? j : i), transposed ? i : j);
         begin_entry(v, exam, k);
-        hn_status status = grade_entry(v, exam, node, &v->entry[k]);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(grade_entry(v, exam, node, &v->entry[k]));
         v->n_right += v->entry[k].right;
+    }
+
+    // one sentence on the whole, then the points
+    if (refuse_unreadable(v)) {
+        return HN_OK;
     }
     summarise(v);
     if (transposed) {
@@ -339,14 +315,9 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
 }
 
 static hn_status grade_tree(hn_verdict *v, const cJSON *root) {
-    const cJSON *answer = cJSON_GetObjectItemCaseSensitive(root, v->problem->answer);
-    int transposed = 0;
-    if (!cJSON_IsObject(root)) {
-        refuse(v, "as in {\"J\": [[\"...\", ...], ...]}",
-               "the submission is %s, expected an object", kind_of(root));
-        return HN_OK;
-    }
-    if (!check_fields(v, root) || !check_shape(v, answer, &transposed)) {
+    const cJSON *answer;
+    int transposed;
+    if (!hn_submission_read(v, root, &answer, &transposed)) {
         return HN_OK;
     }
     hn_exam *exam = malloc(sizeof *exam);
@@ -354,8 +325,9 @@ static hn_status grade_tree(hn_verdict *v, const cJSON *root) {
     if (status == HN_OK) {
         status = grade_matrix(v, exam, answer, transposed);
     } else if (status != HN_ERR_MEMORY) {
-        status = HN_ERR_INTERNAL; // the problem was sound when it was loaded
+        status = HN_ERR_INTERNAL; // the exercise was sound when it was loaded
     }
+
     if (exam) {
         hn_exam_reset(exam);
     }
@@ -377,11 +349,17 @@ hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, 
     begin(out, problem, seed);
     hn_diag diag = {0};
     if (n > HN_GRADE_MAX_BYTES) {
-        refuse(out, NULL, "the submission has more than the %d bytes allowed", HN_GRADE_MAX_BYTES);
+        hn_submission_refuse(out, NULL, "the submission has more than the %d bytes allowed",
+                             HN_GRADE_MAX_BYTES);
         return HN_OK;
     }
+    if (!hn_submission_decode(out, &text, &n)) {
+        return HN_OK;
+    }
+
+    // the text is checked before a parser sees it
     if (hn_json_text_check(text, n, MAX_DEPTH, &diag) != HN_OK) {
-        refuse(out, diag.hint, "the submission is not JSON: %s", diag.message);
+        hn_submission_refuse(out, diag.hint, "the submission is not JSON: %s", diag.message);
         return HN_OK;
     }
     cJSON *root = cJSON_ParseWithLength(text, n);
@@ -394,14 +372,14 @@ hn_status hn_grade_file(const hn_exercise *problem, const char *path, uint64_t s
                         hn_verdict *out) {
     HN_ASSERT(problem && path && out);
     begin(out, problem, seed);
+    hn_diag diag = {0};
     hn_strbuf text;
-    hn_diag diag;
     hn_strbuf_init(&text);
     hn_status status = hn_file_read(path, HN_GRADE_MAX_BYTES, &text, &diag);
     if (status == HN_OK) {
         status = hn_grade_json(problem, hn_strbuf_text(&text), text.n, seed, out);
-    } else if (status != HN_ERR_MEMORY) { // the submission is at fault, not the program
-        refuse(out, diag.hint, "%s", diag.message);
+    } else if (status != HN_ERR_MEMORY) {
+        hn_submission_refuse(out, diag.hint, "%s", diag.message);
         status = HN_OK;
     }
     hn_strbuf_reset(&text);

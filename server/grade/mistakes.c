@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Known mistakes: each row makes the formulas that a wrong entry would show. The first row one of
-// whose formulas agrees with the entry at every state, closed or open, names the mistake; so more
-// special rows stand first.
-#include "grade/exercise.h"
+// Each row makes the formulas that a wrong entry would show. The first row one of whose formulas
+// agrees with the entry at every state, closed or open, names the mistake; so more special rows
+// come first.
+#include "grade/mistakes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -126,8 +126,11 @@ static void make_variable(const place *at, variants *v) {
         if (!hn_depends_on(g, at->reference, at->exam->symbol[i])) {
             continue;
         }
-        for (int k = i < p->n_params ? 0 : p->n_params;
-             k < (i < p->n_params ? p->n_params : p->n_names); k++) {
+
+        // a parameter in place of a parameter, a coordinate in place of a coordinate
+        const int first = i < p->n_params ? 0 : p->n_params;
+        const int end = i < p->n_params ? p->n_params : p->n_names;
+        for (int k = first; k < end; k++) {
             char by[32];
             hn_ex with = hn_graph_symbol_expr(g, at->exam->symbol[k]), e = at->reference;
             hn_substitute(g, &at->reference, 1, &at->exam->symbol[i], &with, 1, &e);
@@ -186,20 +189,26 @@ int hn_grade_is_mistake(const char *id) {
     return known;
 }
 
+/// 1 if the formula has the values of the entry at all states, within the tolerance.
 static int agrees(const place *at, hn_ex e, const double *value) {
+    double worst = 0, size = 0;
     for (int s = 0; s < at->exam->n_states; s++) {
-        double x = hn_exam_value(at->exam, e, s);
-        if (!(fabs(x - value[s]) <= hn_exam_allowed(at->exam, x))) {
+        const double x = hn_exam_value(at->exam, e, s), difference = fabs(x - value[s]);
+        if (!isfinite(difference)) {
             return 0;
         }
+        worst = fmax(worst, difference);
+        size = fmax(size, fabs(x));
     }
-    return 1;
+    return worst <= hn_exam_allowed(at->exam, size);
 }
 
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value) {
     place at = {.exam = exam, .row = row, .column = column, .given = given};
     at.reference = reference_at(&at, row, column);
+
+    // the first row that explains the entry
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
         variants v = {.n = 0};
         MISTAKES[k].make(&at, &v);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One verdict, told to a person, to a program, and to Gradescope.
+#include "grade/verdict.h"
+
 #include "base/hash.h"
-#include "grade/exercise.h"
-#include "grade/grade.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,6 +50,8 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         }
         return;
     }
+
+    // the sum, then entry by entry
     hn_strbuf_printf(b, "score %g of %g: %s\n", v->score, v->max_score, v->summary);
     if (v->note[0]) {
         hn_strbuf_printf(b, "note: %s\n", v->note);
@@ -138,6 +139,8 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_strbuf detail;
     hn_strbuf_init(&detail);
     add_entry_detail(&detail, e, "");
+
+    // the keys are Gradescope's
     snprintf(number, sizeof number, "%d.%d", e->row + 1, e->column + 1);
     hn_json_object(b);
     hn_strbuf name;
@@ -166,6 +169,8 @@ void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_t
     if (graded && v->note[0]) {
         hn_strbuf_printf(&output, "\nNote: %s.", v->note);
     }
+
+    // the keys are Gradescope's
     hn_json_object(b);
     hn_json_put_number(b, "score", v->score);
     if (execution_time >= 0) {
@@ -177,6 +182,7 @@ void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_t
     hn_json_put_string(b, "test_name_format", "text");
     hn_json_put_string(b, "visibility", "visible");
     hn_json_put_string(b, "stdout_visibility", "hidden");
+
     hn_json_key(b, "tests");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {

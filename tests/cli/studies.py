@@ -13,7 +13,7 @@ from html.parser import HTMLParser
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
 
-DONE, INPUT, ENDED = 0, 2, 4
+DONE, INPUT, PROGRAM, ENDED = 0, 2, 3, 4
 VOID = {"meta", "input", "br", "circle", "path", "rect"}
 
 

@@ -1,11 +1,8 @@
-<<<<<<< HEAD
-// holonom problem and holonom grade. A wrong answer graded low is done (0); a submission that cannot be read is 2.
-#include "base/clock.h"
-=======
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom problem and holonom grade. A wrong answer graded low is done (0); a submission that
-// cannot be read is 2.
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+// holonom problem and holonom grade. Exit statuses: 0 graded, however low; 2 a submission that cannot
+// be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot be written.
+#include "base/clock.h"
+#include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -13,11 +10,16 @@
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
+
+/// An unknown id is the fault of the command line; an exercise that does not load is the program's.
+static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_status status,
+                               const hn_diags *diags) {
+    const hn_exit result = hn_report_diags(args, status, diags);
+    return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
+}
 
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     hn_exercise *problem = NULL;
@@ -26,7 +28,7 @@ hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&b);
     hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &problem, &diags);
     if (status != HN_OK) {
-        return hn_report_diags(args, status, &diags);
+        return report_exercise(lib, args, status, &diags);
     }
     if (args->json) {
         hn_exercise_json(&b, problem);
@@ -54,6 +56,11 @@ static hn_status choose_form(const hn_args *args, verdict_form *form, hn_diag *d
                        "'%.40s' is not a form of verdicts", wanted);
 }
 
+/// Ending of the files in --out.
+static const char *ending_of(verdict_form form) {
+    return form == FORM_TEXT ? "txt" : "json";
+}
+
 static void write_verdict(hn_strbuf *b, const hn_verdict *v, verdict_form form, double seconds) {
     switch (form) {
     case FORM_TEXT:
@@ -68,115 +75,114 @@ static void write_verdict(hn_strbuf *b, const hn_verdict *v, verdict_form form, 
     }
 }
 
-/// Makes the folder and those above it.
-static hn_status make_folder(const char *path, hn_diag *diag) {
-    char part[1024];
-    size_t n = strlen(path);
-    for (size_t i = 1; i <= n && n < sizeof part; i++) {
-        if (path[i] == '/' || path[i] == 0) {
-            snprintf(part, sizeof part, "%.*s", (int)i, path);
-            if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-                return hn_diag_set(diag, HN_ERR_IO, NULL, NULL,
-                                   "cannot make the folder '%.200s': %s", part, strerror(errno));
-            }
-        }
-    }
-    return HN_OK;
-}
-
-/// DIR/results.json for one submission to Gradescope, otherwise DIR/NAME.json or .txt after the
-/// submission's file.
-static void name_file(char *out, size_t size, const hn_args *args, verdict_form form,
-                      const char *submission, const char *ending) {
-    const char *slash = strrchr(submission, '/'), *name = slash ? slash + 1 : submission;
-    const char *dot = strrchr(name, '.');
-    int n = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-    if (form == FORM_GRADESCOPE && args->words.n == 2) {
-        snprintf(out, size, "%s/results.%s", args->out, ending);
-    } else {
-        snprintf(out, size, "%s/%.*s.%s", args->out, n, name, ending);
-    }
-}
+/// One submission, graded: what all of them share, and where its verdict goes.
+typedef struct task {
+    const hn_library *lib;
+    const hn_args *args;
+    const hn_exercise *exercise;
+    verdict_form form;
+    const char *submission;
+    const char *target; ///< path without ending; NULL: standard output
+} task;
 
 /// The picture of the state at which a wrong entry shows; without one nothing is written.
-static hn_exit write_picture(const hn_library *lib, const hn_args *args, verdict_form form,
-                             const char *submission, const hn_verdict *v) {
-    hn_strbuf png;
+static hn_exit write_picture(const task *t, const hn_verdict *v) {
+    hn_strbuf png, path;
     hn_strbuf_init(&png);
+    hn_strbuf_init(&path);
     hn_diags diags = {0};
-    hn_status status = hn_shelf_verdict_png(&png, lib, v, &diags);
+    hn_exit result = HN_EXIT_DONE;
+    hn_status status = hn_shelf_verdict_png(&png, t->lib, v, &diags);
     if (status == HN_OK) {
-        char path[2048];
-        name_file(path, sizeof path, args, form, submission, "png");
-        return hn_cli_write_file(args, path, &png);
+        hn_strbuf_printf(&path, "%s.png", t->target);
+        result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &png);
+    } else if (status != HN_ERR_UNSUPPORTED || diags.n > 0) {
+        hn_report_diags(t->args, status, &diags);
+        result = HN_EXIT_PROGRAM;
     }
     hn_strbuf_reset(&png);
-    if (status == HN_ERR_UNSUPPORTED && diags.n == 0) {
-        return HN_EXIT_DONE;
-    }
-    hn_report_diags(args, status, &diags);
-    return HN_EXIT_PROGRAM;
+    hn_strbuf_reset(&path);
+    return result;
 }
 
-static hn_exit grade_one(const hn_library *lib, const hn_args *args, const hn_exercise *problem,
-                         verdict_form form, const char *submission) {
-    double start = hn_clock_wall();
-    hn_verdict *v = calloc(1, sizeof *v);
-    hn_diag diag = {0};
-    uint64_t seed = isnan(args->seed) ? 0 : (uint64_t)args->seed;
-    hn_status status = v ? hn_grade_file(problem, submission, seed, v) : HN_ERR_MEMORY;
-    if (status != HN_OK) {
-        free(v);
-        hn_diag_set(&diag, status, NULL, NULL, "the grader failed on '%.200s': %s", submission,
-                    hn_status_text(status));
-        hn_report_diag(args, &diag);
-        return HN_EXIT_PROGRAM;
-    }
-    hn_strbuf b;
+/// The verdict, and under --out the picture and a line on standard output.
+static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) {
+    hn_strbuf b, path;
     hn_strbuf_init(&b);
-    if (args->words.n > 2 && form == FORM_TEXT && !args->out) {
-        hn_strbuf_printf(&b, "== %s\n", submission);
+    hn_strbuf_init(&path);
+    if (t->args->words.n > 2 && t->form == FORM_TEXT && !t->target) {
+        hn_strbuf_printf(&b, "== %s\n", t->submission);
     }
-    write_verdict(&b, v, form, hn_clock_wall() - start);
-    hn_exit result;
-    if (args->out) {
-        char path[2048];
-        name_file(path, sizeof path, args, form, submission, form == FORM_TEXT ? "txt" : "json");
-        result = hn_cli_write_file(args, path, &b);
-        if (result == HN_EXIT_DONE) {
-            result = write_picture(lib, args, form, submission, v);
-        }
-        printf("%s: %s\n", submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
+    write_verdict(&b, v, t->form, seconds);
+    if (!t->target) {
+        return hn_cli_print(&b);
+    }
+
+    hn_strbuf_printf(&path, "%s.%s", t->target, ending_of(t->form));
+    hn_exit result = hn_cli_write_file(t->args, hn_strbuf_text(&path), &b);
+    hn_strbuf_reset(&path);
+    if (result == HN_EXIT_DONE) {
+        result = write_picture(t, v);
+    }
+    printf("%s: %s\n", t->submission, v->kind == HN_VERDICT_UNGRADABLE ? v->reason : v->summary);
+    return result;
+}
+
+static hn_exit grade_one(const task *t) {
+    const double start = hn_clock_wall();
+    hn_verdict *v = calloc(1, sizeof *v);
+    uint64_t seed = isnan(t->args->seed) ? 0 : (uint64_t)t->args->seed;
+    hn_status status = v ? hn_grade_file(t->exercise, t->submission, seed, v) : HN_ERR_MEMORY;
+    hn_exit result = HN_EXIT_PROGRAM;
+    if (status == HN_OK) {
+        result = write_result(t, v, hn_clock_wall() - start);
+        result =
+            result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;
     } else {
-        result = hn_cli_print(&b);
+        hn_diag diag;
+        hn_diag_set(&diag, status, NULL, NULL, "the grader failed on '%.200s': %s", t->submission,
+                    hn_status_text(status));
+        hn_report_diag(t->args, &diag);
     }
-    int ungradable = v->kind == HN_VERDICT_UNGRADABLE;
     free(v);
-    return result == HN_EXIT_DONE && ungradable ? HN_EXIT_INPUT : result;
+    return result;
+}
+
+/// One bad submission never stops the rest; the worst outcome is the exit status.
+static hn_exit grade_all(task t, const hn_verdict_names *names) {
+    hn_exit worst = HN_EXIT_DONE;
+    for (int i = 1; i < t.args->words.n; i++) {
+        t.submission = t.args->words.word[i];
+        t.target = t.args->out ? names->path[i - 1] : NULL;
+        const hn_exit one = grade_one(&t);
+        worst = one > worst ? one : worst;
+    }
+    return worst;
 }
 
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args) {
-    hn_exercise *problem = NULL;
+    task t = {.lib = lib, .args = args};
+    hn_exercise *exercise = NULL;
     hn_diags diags = {0};
     hn_diag diag = {0};
-    verdict_form form = FORM_TEXT;
-    hn_status status = choose_form(args, &form, &diag);
-    if (status == HN_OK && args->out) {
-        status = make_folder(args->out, &diag);
-    }
-    if (status != HN_OK) {
+    if (choose_form(args, &t.form, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
-    status = hn_shelf_exercise_load(lib, args->words.word[0], &problem, &diags);
+    hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &exercise, &diags);
     if (status != HN_OK) {
-        return hn_report_diags(args, status, &diags);
+        return report_exercise(lib, args, status, &diags);
     }
-    // one bad submission never stops the rest; the worst outcome is the exit status
-    hn_exit worst = HN_EXIT_DONE;
-    for (int i = 1; i < args->words.n; i++) {
-        hn_exit one = grade_one(lib, args, problem, form, args->words.word[i]);
-        worst = one > worst ? one : worst;
+
+    // every name is chosen, and every folder made, before the first verdict is written
+    hn_verdict_names names = {0};
+    if (args->out) {
+        status = hn_verdict_names_choose(&names, args->out, args->words.word + 1, args->words.n - 1,
+                                         ending_of(t.form), t.form == FORM_GRADESCOPE, &diags);
     }
-    hn_exercise_free(problem);
-    return worst;
+    t.exercise = exercise;
+    const hn_exit result =
+        status == HN_OK ? grade_all(t, &names) : hn_report_diags(args, status, &diags);
+    hn_verdict_names_reset(&names);
+    hn_exercise_free(exercise);
+    return result;
 }

@@ -1,11 +1,7 @@
-<<<<<<< HEAD
-// holonom import: a mechanism written for another program, as a scene; what of it is not in the scene is told.
-#include "base/file.h"
-=======
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom import: a mechanism written for another program, as a scene; what of it is not in the
 // scene is told.
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+#include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"

@@ -2,6 +2,7 @@
 // holonom snapshot: a picture of where several methods have taken a scene.
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/forms.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
@@ -28,6 +29,11 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
     if (!args->out) {
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
                             "where should the picture go?");
+    }
+    if (strcmp(args->out, "-") != 0 && !hn_path_ends_in(args->out, ".png")) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/out", "end it in .png",
+                            "'%.200s' is no name for a picture: snapshots are written as PNG",
+                            args->out);
     }
     return HN_OK;
 }
@@ -62,6 +68,8 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
         status = hn_model_picture(&png, &description, model, &request, &ended, &diags);
     }
     hn_model_free(model);
+
+    // the picture, then what it shows
     if (status != HN_OK) {
         hn_strbuf_reset(&png);
         hn_strbuf_reset(&description);

@@ -5,15 +5,17 @@
 #include "cli/shell/print.h"
 
 #include <stdio.h>
+#include <string.h>
 
-static hn_exit exit_of(hn_status status) {
-    switch (status) {
-    case HN_ERR_MEMORY:
-    case HN_ERR_INTERNAL:
-        return HN_EXIT_PROGRAM;
-    default:
-        return HN_EXIT_INPUT;
-    }
+/// An output that cannot be written is not the fault of the input.
+static int is_output(const hn_diags *diags) {
+    return diags->n > 0 && diags->item[0].status == HN_ERR_IO &&
+           strcmp(diags->item[0].pointer, "/out") == 0;
+}
+
+static hn_exit exit_of(hn_status status, const hn_diags *diags) {
+    const int ours = status == HN_ERR_MEMORY || status == HN_ERR_INTERNAL || is_output(diags);
+    return ours ? HN_EXIT_PROGRAM : HN_EXIT_INPUT;
 }
 
 static void tell(const hn_diag *d) {
@@ -41,8 +43,10 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
         hn_json_diags(&b, diags);
         hn_json_end_object(&b);
         hn_cli_print(&b);
-        return exit_of(status);
+        return exit_of(status, diags);
     }
+
+    // sentences for people, the first fault first
     for (int i = 0; i < diags->n; i++) {
         tell(&diags->item[i]);
     }
@@ -52,7 +56,7 @@ hn_exit hn_report_diags(const hn_args *args, hn_status status, const hn_diags *d
     if (diags->found > diags->n) {
         fprintf(stderr, "holonom: and %d more\n", diags->found - diags->n);
     }
-    return exit_of(status);
+    return exit_of(status, diags);
 }
 
 hn_exit hn_report_diag(const hn_args *args, const hn_diag *diag) {

@@ -7,10 +7,11 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 int hn_path_ends_in(const char *path, const char *suffix) {
     const size_t n = strlen(path), m = strlen(suffix);
-    return n > m && strcmp(path + n - m, suffix) == 0;
+    return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
 
 static int count(const hn_forms *forms) {

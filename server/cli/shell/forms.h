@@ -26,6 +26,6 @@ typedef struct hn_forms {
 HN_MUST_CHECK hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *diags);
 /// Where these options say; into the file first, so that a broken pipe does not cost it.
 hn_exit hn_forms_write(const hn_forms *forms, const hn_args *args, const void *work);
-/// 1 when path ends in suffix and has something before it.
+/// Returns 1 when the path ends in the suffix, in small or capital letters, and has a name before it.
 int hn_path_ends_in(const char *path, const char *suffix);
 #endif

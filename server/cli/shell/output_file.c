@@ -9,19 +9,29 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes) {
     if (!path || strcmp(path, "-") == 0) {
         return hn_cli_print(bytes);
     }
-    hn_diag diag;
-    const hn_status status =
-        bytes->failed ? hn_diag_set(&diag, HN_ERR_MEMORY, NULL, NULL, "cannot write '%.200s': %s",
-                                    path, hn_status_text(HN_ERR_MEMORY))
-                      : hn_file_write(path, hn_strbuf_text(bytes), bytes->n, &diag);
+    hn_diag diag = {0};
+    hn_status status = HN_ERR_MEMORY;
+    if (bytes->failed) {
+        hn_diag_set(&diag, status, "/out", NULL, "cannot write '%.200s': %s", path,
+                    hn_status_text(status));
+    } else {
+        status = hn_file_write(path, hn_strbuf_text(bytes), bytes->n, &diag);
+    }
+
+    // the fault is not in the input
     hn_strbuf_reset(bytes);
-    return status == HN_OK ? HN_EXIT_DONE : hn_report_diag(args, &diag);
+    if (status != HN_OK) {
+        hn_report_diag(args, &diag);
+        return HN_EXIT_PROGRAM;
+    }
+    return HN_EXIT_DONE;
 }
 
 hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
@@ -36,4 +46,31 @@ hn_status hn_cli_check_folder(const char *path, hn_diags *diags) {
     }
     return hn_diags_add(diags, HN_ERR_IO, "/out", NULL, "cannot write '%.200s': %s", path,
                         n < (int)sizeof folder ? strerror(errno) : "its name is too long");
+}
+
+int hn_cli_same_file(const char *a, const char *b) {
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/// Refuses to write over the file `input`; NULL and standard input are no files.
+static hn_status protect(const char *out, const char *input, hn_diags *diags) {
+    if (!input || strcmp(input, "-") == 0 || !hn_cli_same_file(out, input)) {
+        return HN_OK;
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/out", "choose another name for --out",
+                        "'%.200s' is the input '%.200s': it would be overwritten", out, input);
+}
+
+hn_status hn_cli_protect_inputs(const hn_args *args, hn_diags *diags) {
+    struct stat st;
+    if (!args->out || strcmp(args->out, "-") == 0 ||
+        (stat(args->out, &st) == 0 && !S_ISREG(st.st_mode))) {
+        return HN_OK;
+    }
+    for (int i = 0; i < args->words.n; i++) {
+        HN_TRY(protect(args->out, args->words.word[i], diags));
+    }
+    return protect(args->out, args->loops, diags);
 }

@@ -3,11 +3,19 @@
 #define HN_CLI_OUTPUT_FILE_H
 // Results that go to a file.
 
+#include "base/diag.h"
+#include "base/strbuf.h"
 #include "cli/shell/args.h"
 
-/// The same into a file; "-" or NULL is standard output.
+/// Writes and frees the buffer's text: into a file, which is replaced as a whole or left as it was,
+/// or to standard output ("-" or NULL). Returns HN_EXIT_PROGRAM when it cannot be written.
 hn_exit hn_cli_write_file(const hn_args *args, const char *path, hn_strbuf *bytes);
 /// Before a computation of minutes whose result goes to `path` (NULL: nowhere): HN_ERR_IO where its
 /// folder is not there or takes no files.
 HN_MUST_CHECK hn_status hn_cli_check_folder(const char *path, hn_diags *diags);
+/// Returns 1 when both paths lead to one existing file.
+int hn_cli_same_file(const char *a, const char *b);
+/// Refuses an --out that is one of the files the command reads: HN_ERR_INPUT. A folder is let
+/// through: the command names the files in it.
+HN_MUST_CHECK hn_status hn_cli_protect_inputs(const hn_args *args, hn_diags *diags);
 #endif

@@ -149,7 +149,8 @@ hn_exit hn_command_reference(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         result = tell_failure(args, status, &diags);
     } else if (args->out && hn_reference_save(args->out, model, ref, &diag) != HN_OK) {
-        result = hn_report_diag(args, &diag);
+        hn_report_diag(args, &diag);
+        result = HN_EXIT_PROGRAM; // the output is at fault, not the scene
     } else {
         result = print(args, model, ref, source);
     }

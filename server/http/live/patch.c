@@ -149,12 +149,7 @@ static hn_status carry_out(hn_session *session, const change *c, hn_subject *fre
         session->bench = *fresh;
         *fresh = (hn_subject){0};
     } else if (c->reset) {
-<<<<<<< HEAD
-        hn_comparison_reset(live->bench.comparison);
-=======
         hn_comparison_reset(session->bench.comparison);
-        memset(session->bench.told, 0, sizeof session->bench.told);
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     }
     if (c->methods || c->settings || c->reset) {
         status = restart(session);

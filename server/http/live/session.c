@@ -1,8 +1,5 @@
-<<<<<<< HEAD
-#include "base/clock.h"
-=======
 // SPDX-License-Identifier: GPL-3.0-or-later
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+#include "base/clock.h"
 #include "http/live/session_internal.h"
 #include "http/live/stream.h"
 
@@ -132,58 +129,32 @@ static void put_with_generation(hn_strbuf *b, const hn_session *session, const h
     b->failed |= object->failed;
 }
 
-<<<<<<< HEAD
 /// Publishes an incident as an event.
-static void publish_incident(hn_session *live, int method, const hn_incident *incident) {
+static void publish_incident(hn_session *session, int method, const hn_incident *incident) {
     hn_strbuf text, event;
     hn_strbuf_init(&text);
     hn_strbuf_init(&event);
     hn_incident_json(&text, method, incident);
-    put_with_generation(&event, live, &text);
-    pthread_mutex_lock(&live->lock);
-    hn_history_add(&live->history, HN_EVENT_INCIDENT, &event);
-    pthread_mutex_unlock(&live->lock);
+    put_with_generation(&event, session, &text);
+    pthread_mutex_lock(&session->lock);
+    hn_history_add(&session->history, HN_EVENT_INCIDENT, &event);
+    pthread_mutex_unlock(&session->lock);
     hn_strbuf_reset(&text);
 }
 
 /// Publishes the incidents that were written or completed since the last frame.
-static void publish_incidents(hn_session *live) {
-    for (int i = 0; i < hn_comparison_n_methods(live->bench.comparison); i++) {
-        const hn_incident *list;
-        int n = hn_run_incidents(hn_comparison_run(live->bench.comparison, i), &list);
-        unsigned newest = live->bench.published[i];
-        for (int k = 0; k < n; k++) {
-            if (list[k].revision > live->bench.published[i]) {
-                newest = list[k].revision > newest ? list[k].revision : newest;
-                publish_incident(live, i, &list[k]);
-            }
-        }
-        live->bench.published[i] = newest;
-=======
-/// The incidents that are new since the last frame, or whose message has grown (what became of the
-/// run there), an event each.
 static void publish_incidents(hn_session *session) {
     for (int i = 0; i < hn_comparison_n_methods(session->bench.comparison); i++) {
         const hn_incident *list;
         int n = hn_run_incidents(hn_comparison_run(session->bench.comparison, i), &list);
+        unsigned newest = session->bench.published[i];
         for (int k = 0; k < n; k++) {
-            const size_t length = strlen(list[k].message);
-            if (k < session->bench.told[i] && length == session->bench.told_length[i][k]) {
-                continue;
+            if (list[k].revision > session->bench.published[i]) {
+                newest = list[k].revision > newest ? list[k].revision : newest;
+                publish_incident(session, i, &list[k]);
             }
-            session->bench.told_length[i][k] = length;
-            hn_strbuf incident, event;
-            hn_strbuf_init(&incident);
-            hn_strbuf_init(&event);
-            hn_incident_json(&incident, i, &list[k]);
-            put_with_generation(&event, session, &incident);
-            pthread_mutex_lock(&session->lock);
-            hn_history_add(&session->history, HN_EVENT_INCIDENT, &event);
-            pthread_mutex_unlock(&session->lock);
-            hn_strbuf_reset(&incident);
         }
-        session->bench.told[i] = n;
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+        session->bench.published[i] = newest;
     }
 }
 
@@ -231,15 +202,9 @@ void hn_session_advance(hn_session *session) {
     hn_session_publish_frame(session);
 }
 
-<<<<<<< HEAD
-void hn_session_set_anchor(hn_session *live) {
-    live->anchor_time = hn_clock_wall();
-    live->anchor_frame = live->frame;
-=======
 void hn_session_set_anchor(hn_session *session) {
-    session->anchor_time = hn_wall_seconds();
+    session->anchor_time = hn_clock_wall();
     session->anchor_frame = session->frame;
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 }
 
 void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason) {
@@ -283,21 +248,9 @@ static hn_request *take_patch(hn_session *session) {
 }
 
 /// Nobody reads along: 1 when the comparison should pause itself.
-<<<<<<< HEAD
-static int is_unwatched(const hn_session *live) {
-    return live->n_streams == 0 && hn_clock_wall() - live->touched > live->opts->idle_pause;
-}
-
-/// A frame that is due; its lateness is kept as lag rather than caught up in a burst.
-static void advance_on_time(hn_session *live, double due) {
-    pthread_mutex_unlock(&live->lock);
-    hn_session_advance(live);
-    pthread_mutex_lock(&live->lock);
-    double late = hn_clock_wall() - due;
-=======
 static int is_unwatched(const hn_session *session) {
     return session->n_streams == 0 &&
-           hn_wall_seconds() - session->touched > session->opts->idle_pause;
+           hn_clock_wall() - session->touched > session->opts->idle_pause;
 }
 
 /// A frame that is due; its lateness is kept as lag rather than caught up in a burst.
@@ -305,8 +258,7 @@ static void advance_on_time(hn_session *session, double due) {
     pthread_mutex_unlock(&session->lock);
     hn_session_advance(session);
     pthread_mutex_lock(&session->lock);
-    double late = hn_wall_seconds() - due;
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+    double late = hn_clock_wall() - due;
     if (late > LATE) {
         session->lag += late;
         hn_session_set_anchor(session);
@@ -333,15 +285,9 @@ static void do_next(hn_session *session) {
         pthread_mutex_lock(&session->lock);
         return;
     }
-<<<<<<< HEAD
-    double due = next_due(live);
-    if (hn_clock_wall() < due) {
-        wait_until(live, due);
-=======
     double due = next_due(session);
-    if (hn_wall_seconds() < due) {
+    if (hn_clock_wall() < due) {
         wait_until(session, due);
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     } else {
         advance_on_time(session, due);
     }
@@ -421,19 +367,6 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
         name = (uint64_t)(hn_clock_wall() * 1e9);
     }
-<<<<<<< HEAD
-    snprintf(live->id, sizeof live->id, "%016llx", (unsigned long long)name);
-    live->refs = 1;
-    live->opts = opts;
-    live->lib = lib;
-    live->asked_frame_dt = order->frame_dt;
-    live->asked_duration = order->duration;
-    live->speed = order->speed;
-    live->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
-    live->touched = hn_clock_wall();
-    live->patches_end = &live->patches;
-    return live;
-=======
     snprintf(session->id, sizeof session->id, "%016llx", (unsigned long long)name);
     session->refs = 1;
     session->opts = opts;
@@ -442,10 +375,9 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     session->asked_duration = order->duration;
     session->speed = order->speed;
     session->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
-    session->touched = hn_wall_seconds();
+    session->touched = hn_clock_wall();
     session->patches_end = &session->patches;
     return session;
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
 }
 
 /// The thread holds a reference of its own.
@@ -500,33 +432,18 @@ const char *hn_session_id(const hn_session *session) {
     return session->id;
 }
 
-<<<<<<< HEAD
-void hn_session_json(hn_strbuf *b, hn_session *live) {
-    pthread_mutex_lock(&live->lock);
-    live->touched = hn_clock_wall();
-    hn_session_put_json(b, live);
-    pthread_mutex_unlock(&live->lock);
-}
-
-void hn_session_patch(hn_session *live, hn_request *r) {
-    pthread_mutex_lock(&live->lock);
-    live->touched = hn_clock_wall();
-    if (live->thread_ended) {
-        reply_gone(live, r);
-=======
 void hn_session_json(hn_strbuf *b, hn_session *session) {
     pthread_mutex_lock(&session->lock);
-    session->touched = hn_wall_seconds();
+    session->touched = hn_clock_wall();
     hn_session_put_json(b, session);
     pthread_mutex_unlock(&session->lock);
 }
 
 void hn_session_patch(hn_session *session, hn_request *r) {
     pthread_mutex_lock(&session->lock);
-    session->touched = hn_wall_seconds();
+    session->touched = hn_clock_wall();
     if (session->thread_ended) {
         reply_gone(session, r);
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     } else {
         r->next = NULL;
         *session->patches_end = r;
@@ -545,21 +462,12 @@ void hn_session_end(hn_session *session, int deleted) {
     pthread_mutex_unlock(&session->lock);
 }
 
-<<<<<<< HEAD
-int hn_session_tick(hn_session *live) {
-    double now = hn_clock_wall();
-    pthread_mutex_lock(&live->lock);
-    int expired =
-        live->n_streams == 0 && !live->patches && now - live->touched > live->opts->expiry;
-    for (hn_stream *s = live->streams; s; s = hn_stream_next(s)) {
-=======
 int hn_session_tick(hn_session *session) {
-    double now = hn_wall_seconds();
+    double now = hn_clock_wall();
     pthread_mutex_lock(&session->lock);
     int expired = session->n_streams == 0 && !session->patches &&
                   now - session->touched > session->opts->expiry;
     for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
         hn_stream_tick(s, now);
     }
     pthread_mutex_unlock(&session->lock);

@@ -111,11 +111,7 @@ static void fill(hn_stream *s) {
         s->said_end = 1;
     }
     if (s->text.n == 0 && !is_at_end(s) &&
-<<<<<<< HEAD
-        hn_clock_wall() - s->last_sent >= s->live->opts->keep_alive) {
-=======
-        hn_wall_seconds() - s->last_sent >= s->session->opts->keep_alive) {
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+        hn_clock_wall() - s->last_sent >= s->session->opts->keep_alive) {
         hn_strbuf_add(&s->text, ": still here\n\n");
     }
 }
@@ -160,15 +156,9 @@ static void close_stream(void *cls) {
         place = &(*place)->next;
     }
     *place = s->next;
-<<<<<<< HEAD
-    live->n_streams--;
-    live->touched = hn_clock_wall();
-    pthread_mutex_unlock(&live->lock);
-=======
     session->n_streams--;
-    session->touched = hn_wall_seconds();
+    session->touched = hn_clock_wall();
     pthread_mutex_unlock(&session->lock);
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
     atomic_fetch_sub(s->n_open, 1);
     hn_strbuf_reset(&s->text);
     free(s);
@@ -226,15 +216,9 @@ static void reply_stream(hn_stream *s, hn_request *r) {
 
 /// Puts the stream on the comparison's list; 0 when the reply is made here.
 static int attach(hn_stream *s, hn_request *r) {
-<<<<<<< HEAD
-    hn_session *live = s->live;
-    pthread_mutex_lock(&live->lock);
-    live->touched = hn_clock_wall();
-=======
     hn_session *session = s->session;
     pthread_mutex_lock(&session->lock);
-    session->touched = hn_wall_seconds();
->>>>>>> 6b1bd2d (Server: comments within 100 columns, one style of ruler, licence lines; the check of circles knows rooms in rooms)
+    session->touched = hn_clock_wall();
     int open = choose_cursor(s, r, read_last_id(r));
     if (open) {
         session->refs++;

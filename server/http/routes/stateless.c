@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "grade/exercise_shelf.h"
+#include "grade/grade.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/request/scene_request.h"

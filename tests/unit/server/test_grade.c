@@ -90,6 +90,85 @@ static void a_right_entry_is_right_in_any_spelling(void **state) {
     }
 }
 
+static void a_right_entry_is_right_in_the_spelling_of_other_languages(void **state) {
+    static const char *const spellings[] = {"-l_1*np.sin(theta_1)",
+                                            "-l1*math.sin(th_1)",
+                                            "-l1*Sin[theta1]",
+                                            "−l₁·sin(θ₁)",
+                                            "-l_1 \\\\sin\\\\theta_1",
+                                            "-l_{1}\\\\sin\\\\left(\\\\theta_{1}\\\\right)",
+                                            "-\\\\frac{2 l_1}{2}\\\\sin{\\\\theta_1}",
+                                            "\xef\xbb\xbf-l1*sin(th1)"};
+    for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
+        hn_verdict v;
+        grade_with(*state, 0, spellings[i], &v);
+        if (!v.entry[0].right) {
+            fail_msg("%s: %s", spellings[i], v.entry[0].explanation);
+        }
+    }
+}
+
+static void a_constant_of_seven_digits_passes_in_every_entry_and_with_every_seed(void **state) {
+    // sin(x) = cos(x - pi/2): the error of 3.141593 shows most where the entry itself crosses zero
+    static const char *const form = "%s%s*%s(%s %s 3.141593/2)";
+    static const struct {
+        const char *sign, *function, *turn;
+    } rows[2] = {{"-", "cos", "-"}, {"", "sin", "+"}};
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        char text[1024] = "{\"J\": [[";
+        for (int k = 0; k < 8; k++) {
+            const int row = k / 4, side = k % 4 < 2, j = k % 4 + 1;
+            char entry[80], l[4], th[5];
+            snprintf(l, sizeof l, "l%d", j);
+            snprintf(th, sizeof th, "th%d", j);
+            const char *sign = side ? rows[row].sign : rows[row].sign[0] ? "" : "-";
+            snprintf(entry, sizeof entry, form, sign, l, rows[row].function, th, rows[row].turn);
+            snprintf(text + strlen(text), sizeof text - strlen(text), "%s\"%s\"",
+                     k == 4 ? "],["
+                     : k    ? ","
+                            : "",
+                     entry);
+        }
+        strcat(text, "]]}");
+        hn_verdict v;
+        assert_int_equal(hn_grade_json(*state, text, strlen(text), seed, &v), HN_OK);
+        if (v.n_right != 8) {
+            fail_msg("seed %llu: %s", (unsigned long long)seed, v.summary);
+        }
+    }
+}
+
+static void a_constant_of_four_digits_does_not_pass(void **state) {
+    hn_verdict v;
+    grade_with(*state, 0, "-l1*sin(th1 + 2*3.1416)", &v);
+    assert_false(v.entry[0].right);
+}
+
+static void unreadable_formulas_are_in_the_summary(void **state) {
+    hn_verdict v;
+    grade_with(*state, 2, "l3*sen(th3)", &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_int_equal(v.n_unreadable, 1);
+    assert_string_equal(v.summary, "7 of 8 entries are right; 1 cannot be read: J13");
+}
+
+static void a_submission_without_a_readable_formula_is_ungradable(void **state) {
+    hn_verdict v;
+    grade(*state, "{\"J\": [[\"a\",\"b\",\"\",null],[\"(\",\"c d\",\"g\",\"f\"]]}", &v);
+    assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+    assert_non_null(strstr(v.reason, "none of the 6 formulas can be read (J11)"));
+    assert_near(v.score, 0, 0);
+}
+
+static void the_encoding_of_a_file_is_no_reason_to_refuse_it(void **state) {
+    hn_verdict v;
+    grade(*state, "\xef\xbb\xbf{\"J\": [[1,1,1,1],[1,1,1,1]]}", &v);
+    assert_int_equal(v.kind, HN_VERDICT_GRADED);
+    assert_int_equal(hn_grade_json(*state, "\xff\xfe{\0}\0", 6, 0, &v), HN_OK);
+    assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+    assert_non_null(strstr(v.reason, "UTF-16"));
+}
+
 static void a_formula_that_uses_the_closed_loop_is_right_and_told(void **state) {
     hn_verdict v;
     // phi_2 = 0 says -l1 sin th1 = l2 sin th2 - l3 sin th3 - l4 sin th4
@@ -488,6 +567,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_lessons_jacobian_has_full_score),
         cmocka_unit_test(a_right_entry_is_right_in_any_spelling),
+        cmocka_unit_test(a_right_entry_is_right_in_the_spelling_of_other_languages),
+        cmocka_unit_test(a_constant_of_seven_digits_passes_in_every_entry_and_with_every_seed),
+        cmocka_unit_test(a_constant_of_four_digits_does_not_pass),
+        cmocka_unit_test(unreadable_formulas_are_in_the_summary),
+        cmocka_unit_test(a_submission_without_a_readable_formula_is_ungradable),
+        cmocka_unit_test(the_encoding_of_a_file_is_no_reason_to_refuse_it),
         cmocka_unit_test(a_formula_that_uses_the_closed_loop_is_right_and_told),
         cmocka_unit_test(each_known_mistake_is_named_and_shown_at_a_state),
         cmocka_unit_test(the_state_shown_closes_the_loop_and_holds_the_expected_value),

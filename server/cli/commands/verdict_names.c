@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/commands/verdict_names.h"
+
+#include "cli/shell/output_file.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+/// How much of a submission's path its verdict's name keeps.
+typedef enum kept { NAME_ALONE, WITH_FOLDERS, WITH_ENDING, N_KEPT } kept;
+
+void hn_verdict_names_reset(hn_verdict_names *names) {
+    for (int i = 0; i < names->n; i++) {
+        free(names->path[i]);
+    }
+    names->n = 0;
+}
+
+/// The path from the root, or as it was typed where there is no such file.
+static const char *full_path(const char *path, char buffer[PATH_MAX]) {
+    return realpath(path, buffer) ? buffer : path;
+}
+
+/// Length of the folders, with the slash behind them, that all submissions share.
+static size_t common_folders(const char *const *submissions, int n) {
+    char first[PATH_MAX], other[PATH_MAX];
+    const char *a = full_path(submissions[0], first);
+    size_t common = strlen(a);
+    for (int i = 0; i < n; i++) {
+        const char *b = full_path(submissions[i], other);
+        size_t k = 0;
+        while (k < common && a[k] == b[k]) {
+            k++;
+        }
+        common = k;
+    }
+    while (common > 0 && a[common - 1] != '/') {
+        common--;
+    }
+    return common;
+}
+
+/// Adds the part of a submission's path that its verdict keeps. Dots that lead upwards do not leave
+/// the folder of the verdicts.
+static void put_name(hn_strbuf *b, const char *submission, kept keep, size_t common) {
+    char buffer[PATH_MAX];
+    const char *path = keep == NAME_ALONE ? submission : full_path(submission, buffer);
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    const char *from = keep == NAME_ALONE ? name : path + common;
+    size_t n = keep != WITH_ENDING && dot && dot > name ? (size_t)(dot - from) : strlen(from);
+    for (size_t i = 0; i < n; i++) {
+        const int upwards = from[i] == '.' && i + 1 < n && from[i + 1] == '.';
+        hn_strbuf_add_n(b, upwards ? "_" : from + i, 1);
+    }
+}
+
+static hn_status put_paths(hn_verdict_names *names, const char *folder,
+                           const char *const *submissions, int n, kept keep, int single) {
+    const size_t common = common_folders(submissions, n);
+    hn_verdict_names_reset(names);
+    for (int i = 0; i < n; i++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_strbuf_printf(&b, "%s/", folder);
+        if (single && n == 1) {
+            hn_strbuf_add(&b, "results");
+        } else {
+            put_name(&b, submissions[i], keep, common);
+        }
+        names->path[i] = hn_strbuf_take(&b);
+        if (!names->path[i]) {
+            return HN_ERR_MEMORY;
+        }
+        names->n = i + 1;
+    }
+    return HN_OK;
+}
+
+/// The first pair with one name, capital letters ignored as some file systems do; 0 when there is none.
+static int find_pair(const hn_verdict_names *names, int *first, int *second) {
+    for (int i = 0; i < names->n; i++) {
+        for (int k = 0; k < i; k++) {
+            if (strcasecmp(names->path[i], names->path[k]) == 0) {
+                *first = k;
+                *second = i;
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/// Makes the folders of a path, the last part being a file.
+static hn_status make_folders(const char *path, hn_diags *diags) {
+    char part[PATH_MAX];
+    const size_t n = strlen(path);
+    if (n >= sizeof part) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/out", NULL, "the path '%.200s' is too long",
+                            path);
+    }
+    for (size_t i = 1; i < n; i++) {
+        if (path[i] == '/') {
+            snprintf(part, sizeof part, "%.*s", (int)i, path);
+            if (mkdir(part, 0777) != 0 && errno != EEXIST) {
+                return hn_diags_add(diags, HN_ERR_IO, "/out", NULL,
+                                    "cannot make the folder '%.200s': %s", part, strerror(errno));
+            }
+        }
+    }
+    return HN_OK;
+}
+
+/// A verdict, or its picture, must not be one of the submissions.
+static hn_status check_overwriting(const hn_verdict_names *names, const char *const *submissions,
+                                   const char *ending, hn_diags *diags) {
+    const char *const endings[] = {ending, "png"};
+    for (int i = 0; i < names->n; i++) {
+        for (int e = 0; e < 2; e++) {
+            char path[PATH_MAX + 8];
+            snprintf(path, sizeof path, "%s.%s", names->path[i], endings[e]);
+            for (int k = 0; k < names->n; k++) {
+                if (hn_cli_same_file(path, submissions[k])) {
+                    return hn_diags_add(diags, HN_ERR_INPUT, "/out", "choose another folder",
+                                        "the verdict '%.200s' would overwrite the submission",
+                                        path);
+                }
+            }
+        }
+    }
+    return HN_OK;
+}
+
+hn_status hn_verdict_names_choose(hn_verdict_names *names, const char *folder,
+                                  const char *const *submissions, int n, const char *ending,
+                                  int single, hn_diags *diags) {
+    // as little of the path as keeps them apart
+    int first = 0, second = 0, pair = 1;
+    for (kept keep = NAME_ALONE; keep < N_KEPT && pair; keep++) {
+        HN_TRY(put_paths(names, folder, submissions, n, keep, single));
+        pair = find_pair(names, &first, &second);
+    }
+    if (pair) {
+        return hn_diags_add(diags, HN_ERR_INPUT, NULL, "give each submission once",
+                            "'%.150s' and '%.150s' are one submission, or differ in capital "
+                            "letters alone",
+                            submissions[first], submissions[second]);
+    }
+
+    for (int i = 0; i < n; i++) {
+        HN_TRY(make_folders(names->path[i], diags));
+    }
+    return check_overwriting(names, submissions, ending, diags);
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/submission.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    vsnprintf(v->reason, sizeof v->reason, format, args);
+    va_end(args);
+    snprintf(v->hint, sizeof v->hint, "%s", hint ? hint : "");
+    v->kind = HN_VERDICT_UNGRADABLE;
+    return 0;
+}
+
+static const char *kind_of(const cJSON *node) {
+    return cJSON_IsNumber(node)   ? "a number"
+           : cJSON_IsString(node) ? "a text"
+           : cJSON_IsArray(node)  ? "a list"
+           : cJSON_IsObject(node) ? "an object"
+           : cJSON_IsNull(node)   ? "null"
+                                  : "true or false";
+}
+
+/// Notes fields that are not read; refuses the file of another exercise.
+static int check_fields(hn_verdict *v, const cJSON *root) {
+    const hn_exercise *p = v->problem;
+    const char *fields[] = {p->answer, "problem", "student", "seed", "comment"};
+    for (const cJSON *m = root->child; m; m = m->next) {
+        int known = 0;
+        for (int i = 0; i < 5; i++) {
+            known |= strcmp(m->string, fields[i]) == 0;
+        }
+        if (!known && !v->note[0]) {
+            snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
+        }
+    }
+
+    // a file may say which exercise it answers
+    const cJSON *id = cJSON_GetObjectItemCaseSensitive(root, "problem");
+    if (cJSON_IsString(id) && strcmp(id->valuestring, p->id) != 0) {
+        return hn_submission_refuse(v, NULL,
+                                    "the submission says it answers problem '%.40s', this is '%s'",
+                                    id->valuestring, p->id);
+    }
+    return 1;
+}
+
+/// The answer must be there; a first field of nearly its name is suggested.
+static int check_answer(hn_verdict *v, const cJSON *root) {
+    const char *answer = v->problem->answer, *found = root->child ? root->child->string : NULL;
+    if (cJSON_GetObjectItemCaseSensitive(root, answer)) {
+        return 1;
+    }
+    char hint[HN_GRADE_TEXT];
+    if (found && hn_nearest_name(found, &answer, 1)) {
+        snprintf(hint, sizeof hint, "rename '%.60s' to '%s'", found, answer);
+    } else {
+        snprintf(hint, sizeof hint, "as in {\"%s\": [[\"...\", ...], ...]}", answer);
+    }
+    return hn_submission_refuse(v, hint, "the field '%s' is missing%s", answer,
+                                found ? "" : ": the object is empty");
+}
+
+/// Rows are lists of one length. Writes that length, or -1 when there is no row.
+static int check_rows(hn_verdict *v, const cJSON *answer, int *columns) {
+    const hn_exercise *p = v->problem;
+    int i = 0;
+    *columns = -1;
+    for (const cJSON *row = answer->child; row; row = row->next) {
+        i++;
+        if (!cJSON_IsArray(row)) {
+            return hn_submission_refuse(v, NULL,
+                                        "row %d of '%s' is %s, expected a list of %d formulas", i,
+                                        p->answer, kind_of(row), p->n_columns);
+        }
+        int n = cJSON_GetArraySize(row);
+        if (*columns >= 0 && n != *columns) {
+            return hn_submission_refuse(v, NULL,
+                                        "row %d of '%s' has %d entries, the rows before have %d", i,
+                                        p->answer, n, *columns);
+        }
+        *columns = n;
+    }
+    return 1;
+}
+
+/// Entries are texts; numbers and null are let through and graded as such.
+static int check_entries(hn_verdict *v, const cJSON *answer) {
+    for (const cJSON *row = answer->child; row; row = row->next) {
+        for (const cJSON *m = row->child; m; m = m->next) {
+            if (!cJSON_IsString(m) && !cJSON_IsNumber(m) && !cJSON_IsNull(m)) {
+                return hn_submission_refuse(v, "write each entry as a text in quotes",
+                                            "an entry of '%s' is %s, expected a formula in quotes",
+                                            v->problem->answer, kind_of(m));
+            }
+        }
+    }
+    return 1;
+}
+
+/// Rows and columns of the answer; a matrix of the transposed shape is let through.
+static int check_shape(hn_verdict *v, const cJSON *answer, int *transposed) {
+    const hn_exercise *p = v->problem;
+    int rows = cJSON_GetArraySize(answer), columns;
+    if (!cJSON_IsArray(answer)) {
+        return hn_submission_refuse(v, NULL, "'%s' is %s, expected a list of %d rows", p->answer,
+                                    kind_of(answer), p->n_rows);
+    }
+    if (!check_rows(v, answer, &columns)) {
+        return 0;
+    }
+
+    *transposed = rows == p->n_columns && columns == p->n_rows && rows != columns;
+    if (!*transposed && (rows != p->n_rows || columns != p->n_columns)) {
+        return hn_submission_refuse(v, "one row for each equation, one column for each coordinate",
+                                    "'%s' has %d rows of %d entries, expected %d rows of %d",
+                                    p->answer, rows, columns < 0 ? 0 : columns, p->n_rows,
+                                    p->n_columns);
+    }
+    return check_entries(v, answer);
+}
+
+int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed) {
+    if (!cJSON_IsObject(root)) {
+        return hn_submission_refuse(v, "as in {\"J\": [[\"...\", ...], ...]}",
+                                    "the submission is %s, expected an object", kind_of(root));
+    }
+    *transposed = 0;
+    *answer = cJSON_GetObjectItemCaseSensitive(root, v->problem->answer);
+    return check_fields(v, root) && check_answer(v, root) && check_shape(v, *answer, transposed);
+}
+
+int hn_submission_decode(hn_verdict *v, const char **text, size_t *n) {
+    const unsigned char *bytes = (const unsigned char *)*text;
+    if (*n >= 3 && bytes[0] == 0xef && bytes[1] == 0xbb && bytes[2] == 0xbf) {
+        *text += 3;
+        *n -= 3;
+    }
+    if (*n >= 2 &&
+        ((bytes[0] == 0xff && bytes[1] == 0xfe) || (bytes[0] == 0xfe && bytes[1] == 0xff))) {
+        return hn_submission_refuse(v, "save it as UTF-8", "the submission is UTF-16");
+    }
+    return 1;
+}

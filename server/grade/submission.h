@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_SUBMISSION_H
+#define HN_GRADE_SUBMISSION_H
+// The shape of a submission. Each function returns 0 after it has made the verdict ungradable.
+
+#include "grade/verdict.h"
+
+#include <cjson/cJSON.h>
+
+/// Makes the verdict ungradable, with a reason and what to do; returns 0. `hint` may be NULL.
+int hn_submission_refuse(hn_verdict *v, const char *hint, const char *format, ...) HN_PRINTF(3, 4);
+/// Steps over a byte-order mark; refuses UTF-16.
+int hn_submission_decode(hn_verdict *v, const char **text, size_t *n);
+/// Checks fields and shape. `answer` receives the list of rows, `transposed` whether its shape is
+/// that of the transposed matrix.
+int hn_submission_read(hn_verdict *v, const cJSON *root, const cJSON **answer, int *transposed);
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_VERDICT_H
+#define HN_GRADE_VERDICT_H
+// The verdict on one submission, and its three forms: for a person, for a program, for Gradescope.
+
+#include "grade/exercise.h"
+
+/// What became of one entry.
+typedef struct hn_entry_verdict {
+    char name[32]; ///< "J11"
+    int row, column;
+    double points, max_points;
+    int right;
+    int closed_only; ///< right where the loop is closed, though not the derivative as a formula
+    /// id of a known mistake ("sign", "degrees", ...), "other", or "" when right; static
+    const char *mistake;
+    char explanation[HN_GRADE_TEXT]; ///< a sentence for the student, "" when right
+    char given[HN_GRADE_TEXT];       ///< the formula as handed in, cut
+    char expected[HN_GRADE_TEXT];    ///< the reference formula
+    int state;                       ///< the state where it shows, -1 if right or unreadable
+    double given_value, expected_value, allowed; ///< at that state; meaningless while state is -1
+} hn_entry_verdict;
+
+typedef enum hn_verdict_kind { HN_VERDICT_GRADED, HN_VERDICT_UNGRADABLE } hn_verdict_kind;
+
+typedef struct hn_verdict {
+    hn_verdict_kind kind;
+    char reason[HN_GRADE_TEXT];  ///< ungradable: why, and where
+    char hint[HN_GRADE_TEXT];    ///< ungradable: what to do
+    char summary[HN_GRADE_TEXT]; ///< one sentence on the whole
+    char note[HN_GRADE_TEXT];    ///< fields that were not read, "" if none
+    double score, max_score;
+    int n_entries, n_right;
+    int n_unreadable; ///< entries whose formula cannot be read
+    hn_entry_verdict entry[HN_GRADE_MAX_ENTRIES];
+    // the state at which the first wrong entry shows, for a picture: names as in the scene,
+    // parameters first
+    int shown_entry;                       ///< index of that entry, -1 if there is none
+    int n_names, n_params;                 ///< parameters first, then coordinates
+    const char *names[HN_GRADE_MAX_NAMES]; ///< borrowed from the problem
+    double values[HN_GRADE_MAX_NAMES];     ///< [m], [rad]
+    int n_states;                          ///< states at which entries were compared
+    uint64_t seed;
+    const hn_exercise *problem; ///< borrowed
+} hn_verdict;
+
+/// For a person: one line an entry, and under a wrong one given, expected, allowed difference and
+/// the kind of mistake.
+void hn_verdict_text(hn_strbuf *b, const hn_verdict *v);
+/// The whole verdict as one JSON object.
+void hn_verdict_json(hn_strbuf *b, const hn_verdict *v);
+/// Gradescope's results.json. execution_time [s] is written if >= 0.
+void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_time);
+#endif

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Formulas as students type them, in the parser's spelling.
+#include "grade/spelling.h"
+
+#include "support/near.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void check(const char *typed, const char *expected) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_spelling_normalise(&b, typed);
+    if (strcmp(hn_strbuf_text(&b), expected) != 0) {
+        fail_msg("%s: '%s', expected '%s'", typed, hn_strbuf_text(&b), expected);
+    }
+    hn_strbuf_reset(&b);
+}
+
+static void a_formula_of_the_parser_stays_as_it_is(void **state) {
+    static const char *const formulas[] = {
+        "-l1*sin(th1)",
+        "2^-3^2",
+        "1e-3 + 2.5E+7*x_1",
+        "atan2(y, x)",
+        "-l1 * sin( th1 )",
+        "(a+b)*(c - d)^2",
+        "pi/180*th1",
+        "l1**2",
+        ".5*a",
+        "max(a, b)",
+        "2exp(x)",
+        "sin th1",
+        "sin 2*th1",
+        "((((",
+        ")(",
+        "a b",
+        "",
+        "\t a\n+ b",
+        "hypot(a,b)",
+        "1e",
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof formulas / sizeof *formulas; i++) {
+        check(formulas[i], formulas[i]);
+    }
+}
+
+static void spellings_of_programs_become_the_parsers(void **state) {
+    (void)state;
+    check("-l1*np.sin(th1)", "-l1*sin(th1)");
+    check("math.sin(math.pi/2)", "sin(pi/2)");
+    check("Math.sin(x)", "sin(x)");
+    check("l1 Sin[th1]", "l1 sin(th1)"); // no product is guessed outside LaTeX
+    check("l1*Sin[th1 + Pi]", "l1*sin(th1 + pi)");
+    check("ArcTan[x]", "atan(x)");
+    check("np.arctan2(y, x)", "atan2(y, x)");
+    check("sin^2(th1)", "sin(th1)^2");
+}
+
+static void typographic_characters_become_ascii(void **state) {
+    (void)state;
+    check("−l₁·sin(θ₁)", "-l1*sin(theta1)");
+    check("–l1×cos(θ1)", "-l1*cos(theta1)");
+    check("sin²(θ)", "sin(theta)^2");
+    check("\xef\xbb\xbfl1", "l1");
+    check("l1\xc2\xa0* l2", "l1 * l2");
+    check("π", "pi");
+    check("ж\xff", "ж\xff"); // the parser reports what is no formula
+}
+
+static void latex_is_read(void **state) {
+    (void)state;
+    check("-l_1\\sin\\theta_1", "-l_1*sin(theta_1)");
+    check("-l_{1} \\sin(\\theta_{12})", "-l_1 *sin(theta_12)");
+    check("\\frac{l_1}{2}\\cos\\left(\\theta_1\\right)", "((l_1)/(2))*cos(theta_1)");
+    check("$\\sqrt{x}$", "sqrt(x)");
+    check("2\\pi", "2*pi");
+    check("\\sin^2\\theta", "sin(theta)^2");
+    check("\\cos^{2}{x} \\cdot y", "cos(x)^2 * y");
+    check("l_1 \\, \\theta_1", "l_1  *theta_1");
+    // an argument whose end would be a guess is left to the parser to refuse
+    check("\\sin 2\\theta", "sin 2*theta");
+}
+
+static void any_bytes_end_and_grow_by_a_factor_alone(void **state) {
+    static const char alphabet[] = "\\{}[]()^_.$abcsin fracleft12\xce\xb8\xe2\x88\x92pi-+*";
+    char text[401];
+    unsigned long seed = 12345;
+    (void)state;
+    for (int k = 0; k < 3000; k++) {
+        for (size_t i = 0; i < sizeof text - 1; i++) {
+            seed = seed * 6364136223846793005ul + 1442695040888963407ul;
+            text[i] = alphabet[(seed >> 33) % (sizeof alphabet - 1)];
+        }
+        text[sizeof text - 1] = 0;
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_spelling_normalise(&b, text);
+        // the longest replacement makes seven bytes of two, with brackets and a product sign round it
+        assert_true(b.n < 8 * sizeof text);
+        hn_strbuf_reset(&b);
+    }
+}
+
+static void an_index_is_part_of_the_name(void **state) {
+    char out[16];
+    (void)state;
+    assert_true(hn_spelling_join("theta_1", out, sizeof out));
+    assert_string_equal(out, "theta1");
+    assert_false(hn_spelling_join("theta1", out, sizeof out));
+    assert_false(hn_spelling_join("_", out, sizeof out));
+    assert_false(hn_spelling_join("a_name_that_is_far_too_long", out, sizeof out));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_formula_of_the_parser_stays_as_it_is),
+        cmocka_unit_test(spellings_of_programs_become_the_parsers),
+        cmocka_unit_test(typographic_characters_become_ascii),
+        cmocka_unit_test(latex_is_read),
+        cmocka_unit_test(any_bytes_end_and_grow_by_a_factor_alone),
+        cmocka_unit_test(an_index_is_part_of_the_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
