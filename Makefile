@@ -13,6 +13,7 @@ say  = $(if $(V),,@echo '$(if $(filter release,$(VARIANT)),,[$(VARIANT)] )$(1)')
 # all processors, unless make was told how many
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
 
+VERSION := 1.0
 PREFIX ?= /usr/local
 PORT   ?= 8080
 
@@ -39,7 +40,7 @@ ROOMS_integrators  := step: explicit:step implicit:step constrained:step externa
                       list:step method:step,list
 ROOMS_study        := incidents: run:incidents truth:incidents,run account:incidents,run \
                       stability:incidents,run cost:incidents,run,truth
-ROOMS_session      := store: model:store compare:store,model references:store,model \
+ROOMS_session      := store: model:store compare:store,model references:store,model face:model \
                       precision:store,model,compare,references \
                       accounts:store,model,references,precision \
                       stability:store,model,references,precision \
@@ -90,6 +91,7 @@ HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
+EXAMPLES       := tests/library/example.c
 TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
                   $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES)
@@ -104,7 +106,7 @@ UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
 TABLES        := $(call programs,$(TABLE_SOURCES))
-SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/scenes/test_* tests/mechanisms/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
+SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/library/test_* tests/scenes/test_* tests/mechanisms/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
 # ---- building -------------------------------------------------------------------------------------------------
@@ -166,7 +168,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev \
                  libxml2-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
-TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev python3:python3 python3-jsonschema locales chromium:chromium \
+TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
@@ -202,15 +204,31 @@ run: all
 	    fi; \
 	done
 
+# the program, the library with its one header, and what they read: page, lessons, schema
+define PKG_CONFIG
+prefix=$(PREFIX)
+home=$${prefix}/share/holonom
+
+Name: holonom
+Description: Mechanisms with closed kinematic loops, by many methods
+Version: $(VERSION)
+Cflags: -I$${prefix}/include
+Libs: -L$${prefix}/lib -lholonom
+Libs.private: -pthread $(filter-out -lmicrohttpd,$(LDLIBS))
+endef
+export PKG_CONFIG
+
+INSTALLED := $(DESTDIR)$(PREFIX)
 install: all
 	@$(if $(WEB_READY),$(MAKE) -s --no-print-directory $(WEB_READY))
-	install -D -m 755 build/holonom $(DESTDIR)$(PREFIX)/bin/holonom
-	install -D -m 644 build/libholonom.a $(DESTDIR)$(PREFIX)/lib/libholonom.a
-	@for f in $$(find core -name '*.h'); do \
-	    install -D -m 644 $$f $(DESTDIR)$(PREFIX)/include/holonom/$${f#core/} || exit 1; done
+	install -D -m 755 build/holonom $(INSTALLED)/bin/holonom
+	install -D -m 644 build/libholonom.a $(INSTALLED)/lib/libholonom.a
+	install -D -m 644 core/session/face/holonom.h $(INSTALLED)/include/holonom.h
+	@mkdir -p $(INSTALLED)/lib/pkgconfig
+	@printf '%s\n' "$$PKG_CONFIG" >$(INSTALLED)/lib/pkgconfig/holonom.pc
 	@for f in $$(find web lessons core -path '*/node_modules' -prune -o -type f \
-	    ! -name '*.[ch]' ! -name 'package*.json' -print 2>/dev/null); do \
-	    install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/holonom/$$f || exit 1; done
+	    ! -name '*.[ch]' ! -name 'package*.json' ! -name 'README.md' -print 2>/dev/null); do \
+	    install -D -m 644 $$f $(INSTALLED)/share/holonom/$$f || exit 1; done
 
 clean:
 	rm -rf build
@@ -364,7 +382,7 @@ check-layers:
 	    $(LAYERED_C) $(filter-out tests/%,$(HEADERS))
 
 check-width:
-	@LC_ALL=C awk -f tests/tools/check-width.awk $(ALL_C) $(HEADERS)
+	@LC_ALL=C awk -f tests/tools/check-width.awk $(ALL_C) $(EXAMPLES) $(HEADERS)
 
 check-names:
 	@python3 tests/tools/check-names.py tests/tools/names.txt $(LAYERED_C) $(SUPPORT)
@@ -389,7 +407,7 @@ check-web: $(WEB_READY) $(BROWSER_READY)
 	@npm --prefix tests/browser run --silent check
 
 check-format:
-	@clang-format --dry-run --Werror $(ALL_C) $(HEADERS)
+	@clang-format --dry-run --Werror $(ALL_C) $(EXAMPLES) $(HEADERS)
 
 format:
-	@clang-format -i $(ALL_C) $(HEADERS)
+	@clang-format -i $(ALL_C) $(EXAMPLES) $(HEADERS)

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HOLONOM_H
+#define HOLONOM_H
+// holonom as a library: load a mechanism, run it by several methods, compare them. This header is
+// the whole interface; it needs nothing but the C library, and compiles as C and as C++.
+//
+//     holonom_mechanism *m;
+//     holonom_fault fault;
+//     if (holonom_load("four-bar", &m, &fault) != HOLONOM_OK) {
+//         fprintf(stderr, "%s\n", fault.message);
+//     }
+//
+// Link with what `pkg-config --libs --static holonom` prints. Units are SI: m, kg, s, rad, N.
+// Coordinates are those of the scene, in its order. tests/library/example.c is a first program.
+//
+// Memory: every object is freed by its own function, and NULL may be freed. Pointers that a
+// function returns belong to the object, until its next call.
+// Threads: an object belongs to one thread at a time; different mechanisms may run in parallel.
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// How a call ended; the numbers are the exit statuses of the program.
+typedef enum holonom_status {
+    HOLONOM_OK = 0,
+    HOLONOM_INPUT = 2,   ///< the scene, the method or an argument is at fault; `fault` says where
+    HOLONOM_PROGRAM = 3, ///< the library is at fault, or memory ran out
+    HOLONOM_ENDED = 4    ///< a run ended early and says why: singular, diverged, step too small
+} holonom_status;
+
+/// What went wrong. Filled whenever a call does not return HOLONOM_OK; a NULL pointer is legal.
+typedef struct holonom_fault {
+    char where[192];   ///< JSON pointer into the scene ("/joints/2/axis"), or ""
+    char message[512]; ///< what was found and what is allowed
+    char hint[192];    ///< what to try, or ""
+} holonom_fault;
+
+// ---- mechanisms ----
+
+/// A scene, compiled to equations and assembled: its loops are closed at the start.
+typedef struct holonom_mechanism holonom_mechanism;
+
+typedef struct holonom_sizes {
+    int coordinates; ///< entries of q and v
+    int constraints; ///< entries of lambda: closure rows, redundant ones included
+    int dof;         ///< degrees of freedom at the start
+    int redundant;   ///< constraints that depend on others at the start
+    int points;      ///< points that a drawing needs
+} holonom_sizes;
+
+/// Loads a scene. `scene` is the name of a shipped one ("four-bar"), or the path of a file: it then
+/// ends in .json or contains a '/'. Shipped scenes are found as the program finds them: where
+/// HOLONOM_HOME points, or where `make install` put them.
+/// Fails: HOLONOM_INPUT (no such scene, a scene at fault, loops that cannot be closed).
+holonom_status holonom_load(const char *scene, holonom_mechanism **out, holonom_fault *fault);
+/// Loads a scene from n bytes of JSON text.
+holonom_status holonom_load_text(const char *json, size_t n, holonom_mechanism **out,
+                                 holonom_fault *fault);
+/// Changes a parameter of the scene, compiles and assembles it anew. Runs made before keep the old
+/// mechanism. Fails: HOLONOM_INPUT; the mechanism is then unchanged.
+holonom_status holonom_set(holonom_mechanism *m, const char *parameter, double value,
+                           holonom_fault *fault);
+void holonom_free(holonom_mechanism *m);
+
+holonom_sizes holonom_get_sizes(const holonom_mechanism *m);
+/// Name of coordinate i ("th1"), or of its rate ("w1"); NULL when there is no such coordinate.
+const char *holonom_coordinate_name(const holonom_mechanism *m, int i);
+const char *holonom_rate_name(const holonom_mechanism *m, int i);
+/// Copies the assembled start: q and v, one entry a coordinate.
+void holonom_start(const holonom_mechanism *m, double *q, double *v);
+
+/// Solves  M a = f + J' lambda,  J a + gamma = 0  at one state.
+///
+/// q, v    in  one entry a coordinate; the loops need not be closed
+/// a       out one entry a coordinate [m/s^2 | rad/s^2]
+/// lambda  out one entry a constraint; the least-norm choice where constraints depend on each
+///             other; may be NULL
+/// Fails: HOLONOM_ENDED (singular, contradicting constraints), a and lambda are then untouched
+holonom_status holonom_accelerations(holonom_mechanism *m, double t, const double *q,
+                                     const double *v, double *a, double *lambda,
+                                     holonom_fault *fault);
+
+// ---- runs ----
+
+/// One method on one mechanism.
+typedef struct holonom_run holonom_run;
+
+/// A state of a run. The arrays belong to the run, until its next call.
+typedef struct holonom_sample {
+    double t;
+    const double *q, *v, *a; ///< one entry a coordinate
+    const double *lambda;    ///< one entry a constraint; NaN where they are not determined
+    const double *points;    ///< x, y, z of each point [m]
+    double gap;              ///< constraint violation of the positions
+    double velocity_gap;     ///< constraint violation of the velocities
+    double energy_change;    ///< of kinetic plus potential energy since the start [J]
+} holonom_sample;
+
+/// What a run has cost and how well it has kept the constraints, so far.
+typedef struct holonom_result {
+    holonom_status status; ///< HOLONOM_ENDED when it ended early
+    char reason[256];      ///< why, or ""
+    double t;              ///< reached [s]
+    double gap;            ///< largest, over all steps
+    double velocity_gap;   ///< largest, over all steps
+    double energy_change;  ///< largest, over all steps [J]
+    long long steps, evaluations;
+    double operations; ///< arithmetic operations, exact
+    double seconds;    ///< CPU time of stepping
+} holonom_result;
+
+/// Starts a run. `method` is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as in
+/// "projection@rk4:h=1e-3". Fails: HOLONOM_INPUT (unknown method, a method that cannot serve this
+/// mechanism).
+holonom_status holonom_run_create(const holonom_mechanism *m, const char *method, holonom_run **out,
+                                  holonom_fault *fault);
+/// Steps to the time t and samples there. `out` may be NULL. Times must not decrease.
+/// Fails: HOLONOM_ENDED with the reason; the run then stays at its last good state.
+holonom_status holonom_run_to(holonom_run *run, double t, holonom_sample *out,
+                              holonom_fault *fault);
+holonom_result holonom_run_result(const holonom_run *run);
+void holonom_run_free(holonom_run *run);
+
+/// Runs n methods over the same time and reports each: `results` has n entries. A method that ends
+/// early stays in the table with its status and reason. Fails: HOLONOM_INPUT at the first method
+/// that cannot be started; `fault->where` is then "/methods/2".
+holonom_status holonom_compare(const holonom_mechanism *m, const char *const *methods, int n,
+                               double time, holonom_result *results, holonom_fault *fault);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
