@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom tui: the workbench in a terminal, or one frame of it as text.
+#include "tui/tui.h"
+
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/plain.h"
+#include "cli/shell/print.h"
+#include "cli/shell/scene_word.h"
+#include "render/look.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/// What is to be opened: from words and options, or from a link of the page.
+typedef struct opening {
+    char scene[HN_TUI_LINE];
+    hn_setting settings[HN_TUI_SETTINGS];
+    char names[HN_TUI_SETTINGS][64];
+    char spellings[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    int n_settings, n_methods;
+} opening;
+
+static hn_status see_setting(void *user, const char *name, double value) {
+    opening *o = user;
+    if (o->n_settings < HN_TUI_SETTINGS) {
+        snprintf(o->names[o->n_settings], sizeof *o->names, "%s", name);
+        o->settings[o->n_settings] = (hn_setting){o->names[o->n_settings], value};
+        o->n_settings++;
+    }
+    return HN_OK;
+}
+
+static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) {
+    const char *word = args->words.n > 0 ? args->words.word[0] : "four-bar";
+    if (!hn_workbench_read_link(word, o->scene, o->settings, o->names, &o->n_settings, o->spellings, &o->n_methods)) {
+        snprintf(o->scene, sizeof o->scene, "%s", word);
+    }
+    HN_TRY(hn_assignments_read(&args->set, "--set", see_setting, o, diags));
+    for (int i = 0; i < o->n_methods; i++) {
+        o->methods[i] = o->spellings[i];
+    }
+    for (int i = 0; i < args->methods.n && i < HN_COMPARISON_MAX_METHODS; i++) {
+        o->methods[i] = args->methods.word[i];
+        o->n_methods = i + 1;
+    }
+    return HN_OK;
+}
+
+/// "100x30"; left at 0 x 0 where nothing is given.
+static hn_status read_size(const char *text, hn_tui_opts *opts, hn_diags *diags) {
+    char behind;
+    if (text && (sscanf(text, "%dx%d%c", &opts->columns, &opts->rows, &behind) != 2 || opts->columns < 20 ||
+                 opts->rows < 8 || opts->columns > 1000 || opts->rows > 500)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/size", NULL,
+                            "--size is '%.40s'; COLUMNSxROWS from 20x8 to 1000x500 is needed, as 100x30", text);
+    }
+    return HN_OK;
+}
+
+static bool colours_wanted(void) {
+    const char *no = getenv("NO_COLOR"), *term = getenv("TERM");
+    return !(no && no[0]) && !(term && strcmp(term, "dumb") == 0);
+}
+
+static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
+    const bool terminal = isatty(STDOUT_FILENO) && isatty(STDIN_FILENO);
+    opts->colours = colours_wanted() && isatty(STDOUT_FILENO);
+    if (terminal && !args->once) {
+        if (hn_tui_run(w, opts)) {
+            return HN_EXIT_DONE;
+        }
+        fprintf(stderr, "holonom: the terminal '%s' cannot be driven; this is one frame as text\n",
+                getenv("TERM") ? getenv("TERM") : "");
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    opts->t = isnan(args->t) ? hn_recording_duration(w->recording) : args->t;
+    hn_tui_frame(&b, w, opts);
+    return opts->ascii ? hn_cli_print_text(&b) : hn_cli_print(&b);
+}
+
+hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
+    opening o = {0};
+    hn_diags diags = {0};
+    hn_workbench w;
+    hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT : HN_THEME_DARK,
+                        .frames = isnan(args->frames) ? 0 : (int)args->frames,
+                        .blocks = args->blocks};
+    opts.ascii = args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
+    hn_status status = read_size(args->size, &opts, &diags);
+    status = status == HN_OK ? read_opening(args, &o, &diags) : status;
+    if (status == HN_OK) {
+        status = hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods, o.n_methods, &diags);
+    }
+    if (status != HN_OK) {
+        return hn_report_diags(args, status, &diags);
+    }
+    const hn_exit result = show(args, &w, &opts);
+    hn_workbench_close(&w);
+    return result;
+}

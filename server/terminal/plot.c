@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terminal/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LABEL_COLUMNS = 8, LEAST_COLUMNS = LABEL_COLUMNS + 8, LEAST_ROWS = 4, ACROSS = 2, DOWN = 4 };
+
+typedef struct range {
+    double low, high;
+} range;
+
+/// The height of a value in the units of the axis: its logarithm, or itself; NaN where it cannot be shown.
+static double height_of(const hn_plot *plot, double y) {
+    return plot->logarithmic ? log10(fmax(fabs(y), plot->floor)) : y;
+}
+
+static range find_range(const hn_plot *plot) {
+    range r = {INFINITY, -INFINITY};
+    for (int s = 0; s < plot->n; s++) {
+        for (int k = 0; k < plot->series[s].n; k++) {
+            const double h = height_of(plot, plot->series[s].y[k]);
+            if (isfinite(plot->series[s].y[k])) {
+                r.low = fmin(r.low, h);
+                r.high = fmax(r.high, h);
+            }
+        }
+    }
+    if (!(r.low <= r.high)) {
+        return plot->logarithmic ? (range){log10(plot->floor), 0} : (range){-1, 1};
+    }
+    if (plot->logarithmic) {
+        // whole decades, at least two of them
+        r.low = floor(r.low);
+        r.high = fmax(ceil(r.high), r.low + 2);
+    } else if (r.high - r.low < 1e-12 * (fabs(r.high) + fabs(r.low)) || r.high == r.low) {
+        const double room = r.high == 0 ? 1 : fabs(r.high) * 0.1;
+        r.low -= room;
+        r.high += room;
+    }
+    return r;
+}
+
+static void label_of(const hn_plot *plot, double height, char *out, size_t size) {
+    if (plot->logarithmic) {
+        snprintf(out, size, "1e%+03.0f", height);
+    } else {
+        snprintf(out, size, "%.3g", height);
+    }
+}
+
+static int row_of(double height, range r, int rows) {
+    return (int)lround((r.high - height) / (r.high - r.low) * (rows - 1));
+}
+
+static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *plot, range r) {
+    // four or five labels: every decade, or every second, third ... one
+    const int most = inner.rows / 2 > 2 ? inner.rows / 2 : 2;
+    const double span = r.high - r.low;
+    const double step = plot->logarithmic ? ceil(span / most) : span / (most > 4 ? 4 : most);
+    for (double h = r.high; h >= r.low - 1e-9 * span; h -= step) {
+        char label[HN_PLOT_LABEL * 2];
+        label_of(plot, h, label, sizeof label);
+        const int row = row_of(h, r, inner.rows);
+        hn_cells_printf(c, area, 0, row, HN_CELL_MUTED, 0, "%*s", LABEL_COLUMNS - 1, label);
+        hn_cells_put(c, area, LABEL_COLUMNS - 1, row, HN_CELL_MUTED, 0, "┤");
+    }
+    // time, from 0 to the end
+    char end[32];
+    const int columns = snprintf(end, sizeof end, "%.4g s", plot->t_end);
+    hn_cells_put(c, area, LABEL_COLUMNS, area.rows - 1, HN_CELL_MUTED, 0, "0");
+    hn_cells_put(c, area, area.columns - columns, area.rows - 1, HN_CELL_MUTED, 0, end);
+    if (plot->unit && plot->unit[0]) {
+        hn_cells_printf(c, area, 0, area.rows - 1, HN_CELL_MUTED, 0, "[%s]", plot->unit);
+    }
+}
+
+static void draw_series(hn_dots *d, const hn_plot *plot, const hn_series *s, range r) {
+    const double width = d->columns * ACROSS - 1, tall = d->rows * DOWN - 1;
+    double x0 = NAN, y0 = NAN;
+    for (int k = 0; k < s->n; k++) {
+        const double x = k * plot->dt / plot->t_end * width;
+        const double h = height_of(plot, s->y[k]);
+        const double y = isfinite(s->y[k]) ? (r.high - h) / (r.high - r.low) * tall : NAN;
+        if (isnan(x0) || isnan(y)) {
+            hn_dots_line(d, x, y, x, y, s->colour, 1, 0);
+        } else {
+            hn_dots_line(d, x0, y0, x, y, s->colour, s->on, s->off);
+        }
+        x0 = x;
+        y0 = y;
+    }
+}
+
+/// The method's glyph where its line ends, so that lines are told apart without colour.
+static void mark_end(hn_cells *c, hn_area inner, const hn_plot *plot, const hn_series *s, range r) {
+    int last = s->n - 1;
+    while (last >= 0 && !isfinite(s->y[last])) {
+        last--;
+    }
+    if (last < 0) {
+        return;
+    }
+    const double share = last * plot->dt / plot->t_end;
+    int x = (int)lround(share * (inner.columns - 1));
+    const int y = row_of(height_of(plot, s->y[last]), r, inner.rows);
+    // lines that end together stand side by side
+    while (x > 0 && c->at[(inner.y + y) * c->columns + inner.x + x].glyph[0]) {
+        x--;
+    }
+    hn_cells_put(c, inner, x, y, s->colour, HN_CELL_BOLD, s->glyph);
+}
+
+void hn_plot_draw(hn_cells *c, hn_area area, const hn_plot *plot, hn_dot_form form) {
+    if (area.columns < LEAST_COLUMNS || area.rows < LEAST_ROWS || !(plot->t_end > 0)) {
+        return;
+    }
+    const hn_area inner = {area.x + LABEL_COLUMNS, area.y, area.columns - LABEL_COLUMNS,
+                           area.rows - 1};
+    const range r = find_range(plot);
+    hn_dots dots = {0};
+    draw_axes(c, area, inner, plot, r);
+    if (!hn_dots_resize(&dots, inner.columns, inner.rows)) {
+        return;
+    }
+
+    // glyphs first: dots leave them room
+    for (int s = 0; s < plot->n; s++) {
+        mark_end(c, inner, plot, &plot->series[s], r);
+        draw_series(&dots, plot, &plot->series[s], r);
+    }
+    if (isfinite(plot->cursor)) {
+        const double x = plot->cursor / plot->t_end * (inner.columns * ACROSS - 1);
+        hn_dots_line(&dots, x, 0, x, inner.rows * DOWN, HN_CELL_MUTED, 1, 3);
+    }
+    hn_dots_show(c, inner, &dots, form);
+    hn_dots_free(&dots);
+}

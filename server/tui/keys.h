@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_KEYS_H
+#define HN_TUI_KEYS_H
+// The keys of the workbench as one table: the loop obeys it, the help shows it. Letters are those of the page (web/state/keys.js).
+
+#include <stdbool.h>
+
+/// What a terminal sends, apart from characters: the loop translates to these.
+enum {
+    HN_KEY_LEFT = 0x110000,
+    HN_KEY_RIGHT,
+    HN_KEY_UP,
+    HN_KEY_DOWN,
+    HN_KEY_PAGE_UP,
+    HN_KEY_PAGE_DOWN,
+    HN_KEY_HOME,
+    HN_KEY_END,
+    HN_KEY_BACKSPACE,
+    HN_KEY_ENTER,
+    HN_KEY_ESCAPE,
+    HN_KEY_TAB,
+    HN_KEY_SHIFT_LEFT,
+    HN_KEY_SHIFT_RIGHT
+};
+
+#define HN_TUI_ACTIONS(X)                                       \
+    X(PLAY, ' ', "Space", "play or pause")                       \
+    X(NEXT, HN_KEY_RIGHT, "→", "one frame on")                  \
+    X(BACK, HN_KEY_LEFT, "←", "one frame back")                 \
+    X(NEXT_TEN, HN_KEY_SHIFT_RIGHT, "Shift →", "ten frames on")  \
+    X(BACK_TEN, HN_KEY_SHIFT_LEFT, "Shift ←", "ten frames back") \
+    X(START, HN_KEY_BACKSPACE, "Backspace", "back to the start") \
+    X(SLOWER, '-', "-", "slower")                                \
+    X(FASTER, '=', "=", "faster")                                \
+    X(UP, HN_KEY_UP, "↑", "select the method above")            \
+    X(DOWN, HN_KEY_DOWN, "↓", "select the method below")        \
+    X(HIDE, 'v', "v", "hide or show the selected method")        \
+    X(PLOT, 'g', "g", "next plot: gap, error, energy")           \
+    X(WHY, 'y', "y", "why: the incidents of the method")         \
+    X(STEP, 'd', "d", "type another step dt")                    \
+    X(PARAMETERS, 'p', "p", "change parameters")                 \
+    X(METHODS, 'm', "m", "add, change or remove methods")        \
+    X(SCENES, 's', "s", "choose another scene")                  \
+    X(FORMULAS, 'f', "f", "formulas: the equations of motion")   \
+    X(LESSONS, 't', "t", "texts of the lessons")                 \
+    X(STUDY, 'w', "w", "what accuracy costs (work-precision)")   \
+    X(MAP, 'b', "b", "map of stability over alpha and beta")     \
+    X(BUDGET, 'e', "e", "where the error comes from")            \
+    X(LINK, 'l', "l", "copy a link that opens this in the page") \
+    X(EXPORT, 'x', "x", "write the recording as CSV")            \
+    X(HELP, '?', "?", "this table")                              \
+    X(QUIT, 'q', "q", "quit")
+
+typedef enum hn_tui_action {
+    HN_TUI_NONE,
+#define HN_TUI_ACTION_ENUM(action, key, shown, means) HN_TUI_##action,
+    HN_TUI_ACTIONS(HN_TUI_ACTION_ENUM)
+#undef HN_TUI_ACTION_ENUM
+        HN_TUI_N_ACTIONS
+} hn_tui_action;
+
+typedef struct hn_tui_key {
+    hn_tui_action action;
+    int key;
+    const char *shown, *means;
+} hn_tui_key;
+
+/// The table, in the order of the help; returns how many rows.
+int hn_tui_keys(const hn_tui_key **out);
+/// The action of a key on the main view; HN_TUI_NONE: it has none (digits select methods).
+hn_tui_action hn_tui_action_of(int key);
+#endif

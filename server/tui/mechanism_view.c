@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/mechanism_view.h"
+
+#include "base/units.h"
+#include "render/look.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { ACROSS = 2, DOWN = 4 };
+
+/// From world points to dots: the envelope of the motion fills the area, as much room to all sides.
+typedef struct placing {
+    const hn_workbench *w;
+    hn_dots *dots;
+    const double *points;
+    double scale, x, y; ///< dots per metre; dot of the view's origin
+} placing;
+
+static placing place(const hn_workbench *w, hn_dots *dots) {
+    const double *box = w->envelope.box;
+    const double wide = fmax(box[2] - box[0], 1e-12), tall = fmax(box[3] - box[1], 1e-12);
+    const double columns = dots->columns * ACROSS, rows = dots->rows * DOWN;
+    // a dot of braille is about as wide as it is high
+    const double scale = fmin((columns - 4) / wide, (rows - 4) / tall);
+    return (placing){.w = w,
+                     .dots = dots,
+                     .scale = scale,
+                     .x = columns / 2 - scale * (box[0] + box[2]) / 2,
+                     .y = rows / 2 + scale * (box[1] + box[3]) / 2};
+}
+
+static void dot_of(const placing *p, int point, double out[2]) {
+    double plane[2];
+    hn_view_project(&p->w->envelope.look, p->points + 3 * point, plane);
+    out[0] = p->x + p->scale * plane[0];
+    out[1] = p->y - p->scale * plane[1];
+}
+
+static void line(const placing *p, int from, int to, int colour, int on, int off) {
+    double a[2], b[2];
+    dot_of(p, from, a);
+    dot_of(p, to, b);
+    hn_dots_line(p->dots, a[0], a[1], b[0], b[1], colour, on, off);
+}
+
+/// A small square of dots at a point: half wide and high by `size`.
+static void knob(const placing *p, int point, int size, int colour) {
+    double a[2];
+    dot_of(p, point, a);
+    for (int dy = -size; dy <= size; dy++) {
+        for (int dx = -size; dx <= size; dx++) {
+            if (abs(dx) == size || abs(dy) == size) {
+                hn_dots_set(p->dots, (int)lround(a[0]) + dx, (int)lround(a[1]) + dy, colour);
+            }
+        }
+    }
+}
+
+/// Hatching below a support.
+static void support(const placing *p, int point) {
+    double a[2];
+    dot_of(p, point, a);
+    for (int x = -4; x <= 4; x++) {
+        hn_dots_set(p->dots, (int)lround(a[0]) + x, (int)lround(a[1]) + 3, HN_CELL_MUTED);
+        if (x % 2 == 0) {
+            hn_dots_set(p->dots, (int)lround(a[0]) + x - 1, (int)lround(a[1]) + 4, HN_CELL_MUTED);
+        }
+    }
+}
+
+static void draw_shape(const placing *p, const hn_shape *s, int colour, bool full) {
+    const int on = full ? 1 : 2, off = full ? 0 : 2;
+    switch (s->kind) {
+    case HN_SHAPE_BAR:
+        line(p, s->p, s->q, colour, on, off);
+        break;
+    case HN_SHAPE_SPRING:
+    case HN_SHAPE_DAMPER:
+        line(p, s->p, s->q, HN_CELL_MUTED, 1, 1);
+        break;
+    case HN_SHAPE_GUIDE:
+        line(p, s->p, s->q, HN_CELL_MUTED, 1, 3);
+        break;
+    case HN_SHAPE_POLYGON:
+        for (int k = 0; k < s->n; k++) {
+            line(p, s->p + k, s->p + (k + 1) % s->n, colour, on, off);
+        }
+        break;
+    case HN_SHAPE_PIVOT:
+        knob(p, s->p, 1, colour);
+        break;
+    case HN_SHAPE_SLIDER:
+        knob(p, s->p, 2, colour);
+        break;
+    case HN_SHAPE_GROUND:
+        support(p, s->p);
+        break;
+    default:
+        break;
+    }
+}
+
+/// A configuration with its open loops: half-joints that are apart are joined by a line of alarm.
+static void draw_pose(placing *p, const double *points, int colour, bool full) {
+    const hn_drawing drawing = hn_system_drawing(hn_model_system(p->w->model));
+    if (!points || isnan(points[0])) {
+        return;
+    }
+    p->points = points;
+    for (int i = 0; i < drawing.n_shapes; i++) {
+        draw_shape(p, &drawing.shapes[i], colour, full);
+    }
+    for (int i = 0; i < drawing.n_tears; i++) {
+        double a[2], b[2];
+        dot_of(p, drawing.tears[i][0], a);
+        dot_of(p, drawing.tears[i][1], b);
+        if (hypot(b[0] - a[0], b[1] - a[1]) > 1) {
+            hn_dots_line(p->dots, a[0], a[1], b[0], b[1], HN_CELL_ALARM, 1, 0);
+        }
+    }
+}
+
+/// A length of 1, 2 or 5 times a power of ten that takes about a quarter of the width.
+static void scale_bar(hn_cells *c, hn_area area, const placing *p) {
+    const double want = area.columns * ACROSS / 4.0 / p->scale;
+    const double power = pow(10, floor(log10(want))), lead = want / power;
+    const double metres = power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+    const int columns = (int)lround(metres * p->scale / ACROSS);
+    char text[HN_SI_TEXT];
+    hn_si_format(metres, "m", 1, text);
+    for (int x = 0; x < columns && columns < area.columns; x++) {
+        hn_cells_put(c, area, 1 + x, area.rows - 1, HN_CELL_MUTED, 0, x == 0 ? "├" : x == columns - 1 ? "┤" : "─");
+    }
+    hn_cells_put(c, area, 2 + columns, area.rows - 1, HN_CELL_MUTED, 0, text);
+}
+
+void hn_mechanism_view(hn_cells *c, hn_area area, const hn_workbench *w) {
+    hn_dots dots = {0};
+    if (area.columns < 4 || area.rows < 3 || !hn_dots_resize(&dots, area.columns, area.rows)) {
+        return;
+    }
+    const int frame = hn_workbench_frame(w);
+    const size_t n = 3 * (size_t)hn_system_get_info(hn_model_system(w->model)).n_points;
+    placing p = place(w, &dots);
+
+    // from below: reference, ghosts, the selected method
+    draw_pose(&p, hn_recording_reference(w->recording, frame), HN_LOOK_REFERENCE, true);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int m = 0; m < w->n_methods; m++) {
+            const hn_track *track = hn_recording_track(w->recording, m);
+            if (!w->hidden[m] && (m == w->selected) == (pass == 1)) {
+                draw_pose(&p, track->points + (size_t)frame * n, track->slot, pass == 1);
+            }
+        }
+    }
+    scale_bar(c, area, &p);
+    hn_dots_show(c, area, &dots, w->form);
+    hn_dots_free(&dots);
+}

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/recording.h"
+
+#include "base/clock.h"
+#include "session/references/references.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_INCIDENTS = 64 * HN_COMPARISON_MAX_METHODS, MOST_FRAMES = 20000 };
+
+typedef struct track_store {
+    double *gap, *velocity_gap, *energy, *energy_error, *error, *points, *evaluations;
+} track_store;
+
+typedef struct told_incident {
+    hn_incident incident;
+    int method;
+} told_incident;
+
+struct hn_recording {
+    const hn_model *model;
+    hn_comparison *comparison;
+    int n_tracks, n_points, last;
+    double frame_dt;
+    hn_track tracks[HN_COMPARISON_MAX_METHODS];
+    track_store stores[HN_COMPARISON_MAX_METHODS];
+    double *reference; ///< 3 n_points a frame, NaN where there is none
+    double *reference_energy; ///< change since the start [J] a frame, likewise
+    hn_recording_truth truth;
+    atomic_int frames, wanted, reference_frames;
+    atomic_bool stop;
+    _Atomic double frame_seconds;
+    pthread_t thread;
+    bool started;
+    pthread_mutex_t lock; ///< guards what follows, and the waiting
+    pthread_cond_t more;
+    hn_track_end ends[HN_COMPARISON_MAX_METHODS];
+    told_incident *incidents;
+    int n_incidents;
+};
+
+// ---- the reference ----
+
+/// Copies the points of the reference motion to its frames; between its samples nothing is shown.
+static void take_motion(hn_recording *r, const cJSON *document, int stride) {
+    const cJSON *motion = cJSON_GetObjectItem(document, "motion"), *row, *number;
+    const cJSON *energy = cJSON_GetObjectItem(motion, "energy");
+    const cJSON *value = energy ? energy->child : NULL;
+    const double start = value ? value->valuedouble : 0;
+    int frame = 0;
+    cJSON_ArrayForEach(row, cJSON_GetObjectItem(motion, "points")) {
+        int k = 0;
+        if (frame > r->last) {
+            break;
+        }
+        cJSON_ArrayForEach(number, row) {
+            if (k < 3 * r->n_points) {
+                r->reference[(size_t)frame * 3 * (size_t)r->n_points + (size_t)k++] =
+                    number->valuedouble;
+            }
+        }
+        if (value) {
+            r->reference_energy[frame] = value->valuedouble - start;
+            value = value->next;
+        }
+        frame += stride;
+    }
+    atomic_store(&r->reference_frames, frame - stride + 1);
+}
+
+static double number_of(const cJSON *object, const char *name) {
+    const cJSON *item = cJSON_GetObjectItem(object, name);
+    return cJSON_IsNumber(item) ? item->valuedouble : 0;
+}
+
+/// The stored reference of the scene with these parameters, if there is one; without it there is no error to show.
+static void fetch_reference(hn_recording *r) {
+    hn_ref_request request = hn_ref_request_default();
+    request.only_stored = 1;
+    hn_ref *ref = NULL;
+    hn_ref_source source;
+    hn_diags diags = {0};
+    if (hn_reference_get(r->model, &request, &ref, &source, &diags) != HN_OK) {
+        return;
+    }
+    const int stride = 1 + r->last / 1000;
+    const hn_walk_limits limits = {0};
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    if (hn_reference_motion_json(&text, r->model, ref, source, stride * r->frame_dt, &limits,
+                                 &diags) == HN_OK) {
+        cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
+        const cJSON *scales = cJSON_GetObjectItem(document, "scales");
+        r->truth.digits = number_of(document, "digits");
+        r->truth.energy_scale = number_of(scales, "energy");
+        take_motion(r, document, stride);
+        cJSON_Delete(document);
+    }
+    hn_strbuf_reset(&text);
+    hn_ref_free(ref);
+}
+
+/// Largest distance of a drawn point from where the reference has it; NaN: not known.
+static double error_of(const hn_recording *r, const double *points, int frame) {
+    const double *at = hn_recording_reference(r, frame);
+    double most = at ? 0 : (double)NAN;
+    for (int p = 0; at && p < r->n_points; p++) {
+        const double d = hypot(hypot(points[3 * p] - at[3 * p], points[3 * p + 1] - at[3 * p + 1]),
+                               points[3 * p + 2] - at[3 * p + 2]);
+        most = d > most || isnan(d) ? d : most;
+    }
+    return most;
+}
+
+// ---- frames ----
+
+static void keep_sample(hn_recording *r, int m, int frame, const hn_sample *sample) {
+    track_store *to = &r->stores[m];
+    double *points = to->points + (size_t)frame * 3 * (size_t)r->n_points;
+    memcpy(points, sample->points, 3 * (size_t)r->n_points * sizeof *points);
+    to->gap[frame] = sample->gap;
+    to->velocity_gap[frame] = sample->velocity_gap;
+    to->energy[frame] = sample->energy_change;
+    to->error[frame] = error_of(r, points, frame);
+    to->energy_error[frame] = hn_recording_reference(r, frame)
+                                  ? sample->energy_change - r->reference_energy[frame]
+                                  : (double)NAN;
+}
+
+/// A method that ended keeps its last configuration on the screen, but has no numbers any more.
+static void keep_end(hn_recording *r, int m, int frame) {
+    track_store *to = &r->stores[m];
+    const size_t n = 3 * (size_t)r->n_points;
+    to->gap[frame] = to->velocity_gap[frame] = to->energy[frame] = to->error[frame] = (double)NAN;
+    to->energy_error[frame] = (double)NAN;
+    for (size_t k = 0; k < n; k++) {
+        to->points[(size_t)frame * n + k] =
+            frame > 0 ? to->points[(size_t)(frame - 1) * n + k] : (double)NAN;
+    }
+}
+
+static void keep_words(hn_recording *r) {
+    pthread_mutex_lock(&r->lock);
+    r->n_incidents = 0;
+    for (int m = 0; m < r->n_tracks; m++) {
+        const hn_run *run = hn_comparison_run(r->comparison, m);
+        const hn_run_summary summary = hn_run_get_summary(run);
+        const hn_incident *list;
+        const int n = hn_run_incidents(run, &list);
+        r->ends[m].failed = summary.state == HN_RUN_FAILED;
+        r->ends[m].t = summary.t;
+        memcpy(r->ends[m].reason, summary.reason, sizeof r->ends[m].reason);
+        for (int i = 0; i < n && r->n_incidents < MOST_INCIDENTS; i++) {
+            r->incidents[r->n_incidents++] = (told_incident){list[i], m};
+        }
+    }
+    pthread_mutex_unlock(&r->lock);
+}
+
+static void keep_frame(hn_recording *r, int frame) {
+    for (int m = 0; m < r->n_tracks; m++) {
+        hn_sample sample = {0};
+        const int good = hn_comparison_sample(r->comparison, m, &sample);
+        const hn_run_summary summary = hn_run_get_summary(hn_comparison_run(r->comparison, m));
+        r->stores[m].evaluations[frame] = (double)summary.cost.evals;
+        if (good && sample.points) {
+            keep_sample(r, m, frame, &sample);
+        } else {
+            keep_end(r, m, frame);
+        }
+    }
+    keep_words(r);
+    atomic_store(&r->frames, frame + 1);
+}
+
+/// Waits until a frame beyond the recorded ones is wanted; false: stop.
+static bool wait_for_work(hn_recording *r) {
+    pthread_mutex_lock(&r->lock);
+    while (!atomic_load(&r->stop) && atomic_load(&r->wanted) < atomic_load(&r->frames)) {
+        pthread_cond_wait(&r->more, &r->lock);
+    }
+    pthread_mutex_unlock(&r->lock);
+    return !atomic_load(&r->stop);
+}
+
+static void *record(void *user) {
+    hn_recording *r = user;
+    if (r->reference) {
+        fetch_reference(r);
+    }
+    keep_frame(r, 0);
+    while (atomic_load(&r->frames) <= r->last && wait_for_work(r)) {
+        const double start = hn_clock_wall();
+        hn_comparison_next(r->comparison);
+        keep_frame(r, atomic_load(&r->frames));
+        atomic_store(&r->frame_seconds, hn_clock_wall() - start);
+    }
+    return NULL;
+}
+
+// ---- making ----
+
+static bool allocate_track(hn_recording *r, int m) {
+    track_store *to = &r->stores[m];
+    const size_t frames = (size_t)r->last + 1;
+    double **const columns[] = {&to->gap,          &to->velocity_gap, &to->energy,
+                                &to->energy_error, &to->error,        &to->evaluations};
+    bool good = true;
+    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
+        *columns[i] = calloc(frames, sizeof(double));
+        good = good && *columns[i];
+    }
+    to->points = calloc(frames * 3 * (size_t)r->n_points + 1, sizeof(double));
+    r->tracks[m].gap = to->gap;
+    r->tracks[m].velocity_gap = to->velocity_gap;
+    r->tracks[m].energy = to->energy;
+    r->tracks[m].energy_error = to->energy_error;
+    r->tracks[m].evaluations = to->evaluations;
+    r->tracks[m].error = to->error;
+    r->tracks[m].points = to->points;
+    r->tracks[m].evaluations = to->evaluations;
+    return good && to->points;
+}
+
+static void describe_track(hn_recording *r, int m) {
+    const hn_method_spec *spec = hn_run_spec(hn_comparison_run(r->comparison, m));
+    hn_track *track = &r->tracks[m];
+    hn_method_format(spec, track->spelling);
+    track->name = spec->formulation->short_name;
+    track->rule = spec->formulation->rule;
+    track->model_error = spec->formulation->model_error;
+    track->slot = hn_comparison_slot(r->comparison, m);
+}
+
+static bool allocate(hn_recording *r) {
+    const size_t numbers = ((size_t)r->last + 1) * 3 * (size_t)r->n_points;
+    r->incidents = calloc(MOST_INCIDENTS, sizeof *r->incidents);
+    r->reference = malloc((numbers + 1) * sizeof(double));
+    for (size_t k = 0; r->reference && k < numbers; k++) {
+        r->reference[k] = (double)NAN;
+    }
+    r->reference_energy = calloc((size_t)r->last + 1, sizeof(double));
+    bool good = r->incidents && r->reference && r->reference_energy;
+    for (int m = 0; m < r->n_tracks; m++) {
+        describe_track(r, m);
+        good = allocate_track(r, m) && good;
+    }
+    return good;
+}
+
+static hn_status open_comparison(hn_recording *r, const char *const *methods, int n_methods,
+                                 double duration, hn_diags *diags) {
+    hn_comparison_opts opts = hn_comparison_opts_default();
+    const double end = duration > 0 ? duration : hn_model_scene(r->model)->duration;
+    opts.duration = end;
+    // whole frames to the end: sixty a second, or fewer where there would be too many to keep
+    const double frames = fmin(ceil(fmax(end * 60, 240)), MOST_FRAMES);
+    opts.frame_dt = end / frames;
+    r->last = (int)frames;
+    r->frame_dt = opts.frame_dt;
+    HN_TRY(hn_comparison_create(r->model, methods, n_methods, &opts, &r->comparison, diags));
+    r->n_tracks = hn_comparison_n_methods(r->comparison);
+    r->n_points = hn_system_get_info(hn_model_system(r->model)).n_points;
+    return HN_OK;
+}
+
+hn_status hn_recording_create(const hn_model *model, const char *const *methods, int n_methods,
+                              double duration, hn_recording **out, hn_diags *diags) {
+    hn_recording *r = calloc(1, sizeof *r);
+    if (!r) {
+        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    r->model = model;
+    pthread_mutex_init(&r->lock, NULL);
+    pthread_cond_init(&r->more, NULL);
+    hn_status status = open_comparison(r, methods, n_methods, duration, diags);
+    if (status == HN_OK && !allocate(r)) {
+        status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    }
+    if (status == HN_OK) {
+        r->started = pthread_create(&r->thread, NULL, record, r) == 0;
+        status = r->started ? HN_OK
+                            : hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
+                                           "the system gives no thread for the recording");
+    }
+    if (status != HN_OK) {
+        hn_recording_free(r);
+        return status;
+    }
+    *out = r;
+    return HN_OK;
+}
+
+void hn_recording_free(hn_recording *r) {
+    if (!r) {
+        return;
+    }
+    if (r->started) {
+        atomic_store(&r->stop, true);
+        pthread_mutex_lock(&r->lock);
+        pthread_cond_signal(&r->more);
+        pthread_mutex_unlock(&r->lock);
+        pthread_join(r->thread, NULL);
+    }
+    for (int m = 0; m < HN_COMPARISON_MAX_METHODS; m++) {
+        track_store *s = &r->stores[m];
+        free(s->gap);
+        free(s->velocity_gap);
+        free(s->energy);
+        free(s->energy_error);
+        free(s->error);
+        free(s->evaluations);
+        free(s->points);
+    }
+    hn_comparison_free(r->comparison);
+    free(r->reference);
+    free(r->reference_energy);
+    free(r->incidents);
+    pthread_cond_destroy(&r->more);
+    pthread_mutex_destroy(&r->lock);
+    free(r);
+}
+
+// ---- reading ----
+
+void hn_recording_want(hn_recording *r, int frame) {
+    pthread_mutex_lock(&r->lock);
+    if (frame > atomic_load(&r->wanted)) {
+        atomic_store(&r->wanted, frame < r->last ? frame : r->last);
+        pthread_cond_signal(&r->more);
+    }
+    pthread_mutex_unlock(&r->lock);
+}
+
+int hn_recording_frames(const hn_recording *r) {
+    return atomic_load(&r->frames);
+}
+
+int hn_recording_last(const hn_recording *r) {
+    return r->last;
+}
+
+double hn_recording_frame_dt(const hn_recording *r) {
+    return r->frame_dt;
+}
+
+double hn_recording_duration(const hn_recording *r) {
+    return r->last * r->frame_dt;
+}
+
+int hn_recording_n_tracks(const hn_recording *r) {
+    return r->n_tracks;
+}
+
+const hn_track *hn_recording_track(const hn_recording *r, int i) {
+    return &r->tracks[i];
+}
+
+hn_track_end hn_recording_end(const hn_recording *r, int i) {
+    pthread_mutex_t *lock = (pthread_mutex_t *)&r->lock;
+    pthread_mutex_lock(lock);
+    const hn_track_end end = r->ends[i];
+    pthread_mutex_unlock(lock);
+    return end;
+}
+
+const double *hn_recording_reference(const hn_recording *r, int frame) {
+    const double *at = r->reference + (size_t)frame * 3 * (size_t)r->n_points;
+    const bool there = r->n_points > 0 && frame < atomic_load(&r->reference_frames) && !isnan(at[0]);
+    return there ? at : NULL;
+}
+
+int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most) {
+    pthread_mutex_t *lock = (pthread_mutex_t *)&r->lock;
+    pthread_mutex_lock(lock);
+    const int n = r->n_incidents < most ? r->n_incidents : most;
+    for (int i = 0; i < n; i++) {
+        out[i] = r->incidents[i].incident;
+        method[i] = r->incidents[i].method;
+    }
+    pthread_mutex_unlock(lock);
+    return n;
+}
+
+hn_recording_truth hn_recording_get_truth(const hn_recording *r) {
+    const hn_recording_truth none = {0};
+    return atomic_load(&r->reference_frames) > 0 ? r->truth : none;
+}
+
+double hn_recording_frame_seconds(const hn_recording *r) {
+    return atomic_load(&r->frame_seconds);
+}

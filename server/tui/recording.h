@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_RECORDING_H
+#define HN_TUI_RECORDING_H
+// A comparison that is recorded: a thread steps it ahead of the viewer, every frame is kept, and nothing is computed twice.
+//
+//   worker thread:  reference motion -> frame 0, 1, 2 ... up to the wanted one -> waits
+//   viewer:         wants a frame; reads all frames below hn_recording_frames(), which never change again
+
+#include "session/compare/comparison.h"
+
+#include <stdbool.h>
+
+typedef struct hn_recording hn_recording;
+
+/// One method over all frames. Numbers at frames below hn_recording_frames() are final; NaN: the method had ended.
+typedef struct hn_track {
+    char spelling[HN_SPEC_MAX];
+    const char *name, *rule; ///< short name, sentence on its drift; static
+    int slot;                ///< colour and glyph (render/look.h)
+    bool model_error;        ///< a counter-example: it solves other equations
+    const double *gap, *velocity_gap;
+    const double *energy; ///< change since the start [J]
+    const double *energy_error; ///< the same less that of the reference [J]; NaN: no reference there
+    const double *error;  ///< largest distance of a drawn point from the reference [m]; NaN: no reference there
+    const double *points; ///< 3 n_points a frame
+    const double *evaluations; ///< since the start
+} hn_track;
+
+/// How a method ended, as far as it is known now.
+typedef struct hn_track_end {
+    bool failed;
+    double t; ///< [s] reached
+    char reason[256];
+} hn_track_end;
+
+/// Starts recording; the model must outlive it. duration 0: the scene's. Faults of a spelling are in diags ("/methods/2").
+HN_MUST_CHECK hn_status hn_recording_create(const hn_model *model, const char *const *methods,
+                                            int n_methods, double duration, hn_recording **out,
+                                            hn_diags *diags);
+/// Stops the thread after the frame that it is at, and frees all.
+void hn_recording_free(hn_recording *r);
+
+/// Asks for all frames up to this one.
+void hn_recording_want(hn_recording *r, int frame);
+int hn_recording_frames(const hn_recording *r);       ///< recorded so far, at least 1
+int hn_recording_last(const hn_recording *r);         ///< index of the frame at the duration
+double hn_recording_frame_dt(const hn_recording *r);  ///< [s]
+double hn_recording_duration(const hn_recording *r);  ///< [s]
+int hn_recording_n_tracks(const hn_recording *r);
+const hn_track *hn_recording_track(const hn_recording *r, int i);
+hn_track_end hn_recording_end(const hn_recording *r, int i);
+/// What the reference is good for; digits 0: none is stored for these parameters.
+typedef struct hn_recording_truth {
+    double digits, energy_scale; ///< [-], [J]
+} hn_recording_truth;
+hn_recording_truth hn_recording_get_truth(const hn_recording *r);
+/// Points of the reference motion at a frame (3 n_points); NULL: none.
+const double *hn_recording_reference(const hn_recording *r, int frame);
+/// Incidents of all methods so far, copied: at most `most`; method[i] is whose. Returns how many.
+int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most);
+/// Seconds of wall time that the last frame took; above frame_dt the methods are slower than the clock.
+double hn_recording_frame_seconds(const hn_recording *r);
+#endif

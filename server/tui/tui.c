@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/tui.h"
+
+#include "base/clock.h"
+#include "tui/keys.h"
+#include "tui/screen.h"
+#include "tui/views.h"
+
+#include <langinfo.h>
+#include <locale.h>
+#include <math.h>
+#include <poll.h>
+#include <string.h>
+
+static const double FRAME = 1.0 / 30; // [s] between two pictures; a slow line shows fewer
+
+static hn_dot_form form_of(const hn_tui_opts *opts) {
+    return opts->ascii ? HN_DOTS_ASCII : opts->blocks ? HN_DOTS_BLOCKS : HN_DOTS_BRAILLE;
+}
+
+/// ncurses writes wide characters only where the locale has them; numbers keep their points.
+static void choose_characters(void) {
+    setlocale(LC_CTYPE, "");
+    if (strcmp(nl_langinfo(CODESET), "UTF-8") != 0) {
+        setlocale(LC_CTYPE, "C.UTF-8");
+    }
+}
+
+static bool inside(hn_area area, hn_mouse m) {
+    return m.x >= area.x && m.y >= area.y && m.x < area.x + area.columns && m.y < area.y + area.rows;
+}
+
+/// A click selects a method in the table, or a time in the plot.
+static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
+    enum { LABELS = 9 };
+    const hn_places places = hn_views_places(c->columns, c->rows, w);
+    const int row = mouse.y - places.table.y - 1;
+    if (w->panel != HN_PANEL_MAIN) {
+        return;
+    }
+    if (inside(places.table, mouse) && row >= 0 && row < w->n_methods) {
+        w->selected = row;
+    } else if (inside(places.plot, mouse) && !w->why) {
+        const double share = (mouse.x - places.plot.x - LABELS) / (double)(places.plot.columns - LABELS - 1);
+        w->clock = fmax(0, fmin(1, share)) * hn_recording_last(w->recording);
+        w->playing = false;
+    }
+}
+
+static void obey(hn_workbench *w, const hn_cells *c, int key, hn_mouse mouse) {
+    if (key == HN_KEY_MOUSE) {
+        point_at(w, c, mouse);
+    } else if (key != HN_KEY_NONE && key != HN_KEY_RESIZE) {
+        hn_workbench_key(w, key);
+    }
+    if (w->copy) {
+        w->copy = false;
+        hn_screen_copy(w->message);
+    }
+}
+
+bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
+    hn_cells cells = {0};
+    choose_characters();
+    if (!hn_screen_open(opts->theme, opts->colours)) {
+        return false;
+    }
+    w->form = form_of(opts);
+    double before = hn_clock_wall();
+    for (int n = 0; !w->quit && (opts->frames == 0 || n < opts->frames); n++) {
+        int columns, rows;
+        hn_screen_size(&columns, &rows);
+        if ((columns != cells.columns || rows != cells.rows) && !hn_cells_resize(&cells, columns, rows)) {
+            break;
+        }
+        hn_views_draw(&cells, w);
+        hn_screen_show(&cells, opts->ascii);
+
+        // all keys that have come, so that nothing lags behind a held key
+        hn_mouse mouse = {0};
+        int key = hn_screen_key(FRAME, &mouse);
+        while (key != HN_KEY_NONE && !w->quit) {
+            obey(w, &cells, key, mouse);
+            key = hn_screen_key(0, &mouse);
+        }
+        const double now = hn_clock_wall();
+        hn_workbench_tick(w, now - before);
+        before = now;
+    }
+    hn_cells_free(&cells);
+    hn_screen_close();
+    return true;
+}
+
+void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
+    const int frame = (int)lround(opts->t / hn_recording_frame_dt(w->recording));
+    const int last = hn_recording_last(w->recording), at = frame < 0 ? 0 : frame < last ? frame : last;
+    hn_cells cells = {0};
+    hn_recording_want(w->recording, at);
+    while (hn_recording_frames(w->recording) <= at) {
+        poll(NULL, 0, 5);
+    }
+    w->clock = at;
+    w->playing = false;
+    w->form = form_of(opts);
+    if (hn_cells_resize(&cells, opts->columns > 0 ? opts->columns : HN_TUI_COLUMNS,
+                        opts->rows > 0 ? opts->rows : HN_TUI_ROWS)) {
+        hn_views_draw(&cells, w);
+        hn_cells_text(b, &cells, opts->colours);
+        hn_cells_free(&cells);
+    }
+}

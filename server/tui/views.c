@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/views.h"
+
+#include "base/units.h"
+#include "render/look.h"
+#include "terminal/plot.h"
+#include "tui/keys.h"
+#include "tui/mechanism_view.h"
+#include "tui/verdict.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NAME_COLUMNS = 14, NUMBER_COLUMNS = 9, MOST_INCIDENTS = 512 };
+
+// ---- places ----
+
+static hn_area header_area(const hn_cells *c) {
+    return (hn_area){1, 0, c->columns - 2, 1};
+}
+
+static hn_area table_area(int columns, int rows, const hn_workbench *w) {
+    const int height = w->n_methods + 2;
+    return (hn_area){0, rows - height - 2, columns, height};
+}
+
+hn_places hn_views_places(int columns, int rows, const hn_workbench *w) {
+    const hn_area table = table_area(columns, rows, w);
+    const int left = columns * 9 / 20;
+    return (hn_places){.table = table, .plot = {left, 1, columns - left, table.y - 1}};
+}
+
+// ---- lines above and below ----
+
+static void draw_header(hn_cells *c, const hn_workbench *w) {
+    const hn_area area = header_area(c);
+    const double t = hn_workbench_frame(w) * hn_recording_frame_dt(w->recording);
+    const hn_scene *scene = hn_model_scene(w->model);
+    int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, "holonom  ");
+    x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "%.30s  ", scene->id);
+    x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "t %.3f s of %.4g s  ×%g  %s  ", t,
+                         hn_recording_duration(w->recording), w->speed, w->playing ? "▶ running" : "■ paused");
+    const double slow = hn_recording_frame_seconds(w->recording) / hn_recording_frame_dt(w->recording);
+    if (w->playing && slow > 2) {
+        hn_cells_printf(c, area, x, 0, HN_CELL_ALARM, 0, "%.0f times slower than the clock", slow);
+    }
+}
+
+/// The last line: what is typed, what was said, or the keys.
+static void draw_footer(hn_cells *c, const hn_workbench *w) {
+    static const char *const asks[] = {[HN_PROMPT_STEP] = "dt [s, or 20 ms]: ",
+                                       [HN_PROMPT_METHOD] = "method: ",
+                                       [HN_PROMPT_PARAMETER] = "value: ",
+                                       [HN_PROMPT_EXPORT] = "write to: "};
+    const hn_area area = {1, c->rows - 1, c->columns - 2, 1};
+    if (w->prompt != HN_PROMPT_NONE) {
+        const int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, asks[w->prompt]);
+        const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input);
+        hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
+    } else {
+        hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0,
+                     "Space run  ←→ step  1-8 method  d dt  g plot  y why  m methods  s scene  p values  ? help  q");
+    }
+}
+
+/// The latest incident up to the time shown, of the selected method first; or what was said.
+static void draw_notice(hn_cells *c, const hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const hn_area area = {1, c->rows - 2, c->columns - 2, 1};
+    const double t = hn_workbench_frame(w) * hn_recording_frame_dt(w->recording);
+    if (w->message[0]) {
+        hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, w->message);
+        return;
+    }
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    int last = -1;
+    for (int i = 0; i < n; i++) {
+        const bool chosen = last >= 0 && whose[last] == w->selected;
+        const bool better = whose[i] == w->selected || !chosen;
+        if (list[i].t <= t && !w->hidden[whose[i]] && better) {
+            last = i;
+        }
+    }
+    if (last >= 0) {
+        hn_cells_printf(c, area, 0, 0, HN_CELL_ALARM, 0, "! %s at %.4g s: %s",
+                        hn_recording_track(w->recording, whose[last])->name, list[last].t, list[last].message);
+    }
+}
+
+// ---- the method table ----
+
+static bool has_loops(const hn_workbench *w) {
+    return hn_system_get_info(hn_model_system(w->model)).nc > 0;
+}
+
+static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *label, double value,
+                        const char *unit) {
+    char text[HN_SI_TEXT];
+    if (isfinite(value)) {
+        hn_si_format(value, unit, 2, text);
+    } else {
+        snprintf(text, sizeof text, "-");
+    }
+    const int room = NUMBER_COLUMNS - hn_text_columns(text);
+    int used = hn_cells_put(c, area, x, y, HN_CELL_MUTED, 0, label);
+    used += room > 0 ? room : 0;
+    used += hn_cells_put(c, area, x + used, y, HN_CELL_INK, 0, text);
+    return used + 2;
+}
+
+static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, int frame) {
+    const hn_track *track = hn_recording_track(w->recording, m);
+    const double length = hn_system_length(hn_model_system(w->model));
+    const hn_verdict v = hn_verdict_at(w->recording, m, frame, length, has_loops(w));
+    const int style = m == w->selected ? HN_CELL_REVERSE : HN_CELL_PLAIN;
+    int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1, hn_look_get(track->slot)->glyph);
+    hn_cells_printf(c, area, x + 1, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%s", track->name);
+    x += 1 + NAME_COLUMNS;
+    x += put_quantity(c, area, x, m, "gap", track->gap[frame], "m");
+    // narrow terminals leave out the energy, then the error
+    if (area.columns >= 100) {
+        x += put_quantity(c, area, x, m, "energy", track->energy[frame], "J");
+    }
+    if (area.columns >= 76) {
+        x += put_quantity(c, area, x, m, "error", track->error[frame], "m");
+    }
+    hn_cells_printf(c, area, x, m, v.tone == HN_TONE_CALM ? HN_CELL_INK : HN_CELL_ALARM,
+                    v.tone == HN_TONE_CALM ? HN_CELL_PLAIN : HN_CELL_BOLD, "%s %s", v.arrow, v.text);
+}
+
+static void draw_table(hn_cells *c, const hn_workbench *w) {
+    const hn_area inside = hn_cells_frame(c, table_area(c->columns, c->rows, w), "methods");
+    const int frame = hn_workbench_frame(w);
+    for (int m = 0; m < w->n_methods; m++) {
+        draw_row(c, inside, w, m, frame);
+    }
+}
+
+// ---- the plot ----
+
+static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
+    static const char *const titles[] = {"loop gap (constraint violation) [m]", "error against the reference [m]",
+                                         "energy change, size [J]"};
+    const hn_area inside = hn_cells_frame(c, area, titles[w->plot]);
+    const double dt = hn_recording_frame_dt(w->recording);
+    hn_plot plot = {.dt = dt,
+                    .t_end = hn_recording_duration(w->recording),
+                    .cursor = hn_workbench_frame(w) * dt,
+                    .logarithmic = true,
+                    .floor = 1e-17,
+                    .unit = w->plot == HN_TUI_ENERGY ? "J" : "m"};
+    for (int m = 0; m < w->n_methods; m++) {
+        const hn_track *t = hn_recording_track(w->recording, m);
+        const double *const columns[] = {t->gap, t->error, t->energy};
+        if (!w->hidden[m]) {
+            const bool dashed = hn_look_get(t->slot)->n_dash > 0;
+            plot.series[plot.n++] = (hn_series){.y = columns[w->plot],
+                                                .n = hn_workbench_frame(w) + 1,
+                                                .colour = t->slot,
+                                                .glyph = hn_look_get(t->slot)->glyph,
+                                                .on = dashed ? 3 : 1,
+                                                .off = dashed ? 2 : 0};
+        }
+    }
+    hn_plot_draw(c, inside, &plot, w->form);
+}
+
+// ---- panels ----
+
+static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
+    static hn_incident list[MOST_INCIDENTS];
+    static int whose[MOST_INCIDENTS];
+    const hn_track *track = hn_recording_track(w->recording, w->selected);
+    const hn_track_end end = hn_recording_end(w->recording, w->selected);
+    char title[96];
+    snprintf(title, sizeof title, "why: %s (y closes)", track->name);
+    const hn_area in = hn_cells_frame(c, area, title);
+    int y = hn_cells_fold(c, in, 0, HN_CELL_INK, track->rule ? track->rule : "");
+    if (end.failed) {
+        y = hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
+    }
+    const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
+    int same = 0;
+    for (int i = 0; i < n && y < in.rows; i++) {
+        // incidents of one cause are one entry with a count
+        const bool again = i > 0 && whose[i - 1] == whose[i] && list[i - 1].code == list[i].code;
+        same += whose[i] == w->selected && again;
+        if (whose[i] != w->selected || again) {
+            continue;
+        }
+        char line[512];
+        snprintf(line, sizeof line, "%.4g s: %s", list[i].t, list[i].message);
+        y = hn_cells_fold(c, in, y + 1, HN_CELL_ALARM, line);
+        for (int k = 0; k < 3 && list[i].remedy[k][0]; k++) {
+            snprintf(line, sizeof line, "  try %s", list[i].remedy[k]);
+            y = hn_cells_fold(c, in, y, HN_CELL_INK, line);
+        }
+    }
+    if (same > 0 && y + 1 < in.rows) {
+        hn_cells_printf(c, in, 0, y + 1, HN_CELL_MUTED, 0, "and %d more of the same causes", same);
+    }
+}
+
+static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
+    const hn_area in = hn_cells_frame(c, area, w->title);
+    const int below = w->list == HN_LIST_SCENES ? 4 : 2, rows = in.rows - below;
+    const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
+    for (int i = first; i < w->n_items && i - first < rows; i++) {
+        const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
+        const int x = hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%-26.60s", w->items[i].name);
+        hn_cells_printf(c, in, x + 3, i - first, HN_CELL_MUTED, 0, "%s", w->items[i].about);
+    }
+    if (w->n_items > 0) {
+        const hn_area foot = {in.x + 1, in.y + in.rows - below + 1, in.columns - 2, below - 1};
+        hn_cells_fold(c, foot, 0, HN_CELL_INK, w->items[w->cursor].about);
+    }
+}
+
+static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
+    const hn_area in = hn_cells_frame(c, area, w->title);
+    const char *text = hn_strbuf_text(&w->text);
+    int line = 0, y = 0;
+    for (const char *at = text; *at && y < in.rows; line++) {
+        const size_t n = strcspn(at, "\n");
+        char row[1024];
+        snprintf(row, sizeof row, "%.*s", (int)(n < sizeof row ? n : sizeof row - 1), at);
+        if (line >= w->scroll) {
+            const hn_area rest = {in.x + 1, in.y + y, in.columns - 2, in.rows - y};
+            const int used = hn_cells_fold(c, rest, 0, HN_CELL_INK, row);
+            y += used > 0 ? used : 1;
+        }
+        at += n + (at[n] == '\n');
+    }
+}
+
+void hn_views_draw(hn_cells *c, const hn_workbench *w) {
+    hn_cells_clear(c);
+    draw_header(c, w);
+    const hn_area whole = {0, 1, c->columns, c->rows - 3};
+    if (w->panel == HN_PANEL_LIST) {
+        draw_list(c, whole, w);
+    } else if (w->panel == HN_PANEL_TEXT) {
+        draw_text(c, whole, w);
+    } else {
+        const hn_places places = hn_views_places(c->columns, c->rows, w);
+        const hn_area left = {0, 1, places.plot.x, places.plot.rows};
+        hn_mechanism_view(c, hn_cells_frame(c, left, "mechanism"), w);
+        if (w->why) {
+            draw_why(c, places.plot, w);
+        } else {
+            draw_plot(c, places.plot, w);
+        }
+        draw_table(c, w);
+    }
+    draw_notice(c, w);
+    draw_footer(c, w);
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_VIEWS_H
+#define HN_TUI_VIEWS_H
+// One frame of the workbench, drawn into cells: header, mechanism, plot, method table, notice, keys.
+//
+//    holonom  four-bar  t 3.42 s of 10 s  x1  running
+//   +- mechanism -----------+- loop gap [m] -----------------+
+//   |                       |                                |
+//   +- methods -------------+--------------------------------+
+//   | 1 * index-1    gap 3.2 mm  energy 0.28 J  open by ...  |
+//    ! what happened last                          keys
+
+#include "tui/workbench.h"
+
+/// Least size of a screen that shows everything; smaller ones show what fits.
+enum { HN_TUI_COLUMNS = 80, HN_TUI_ROWS = 24 };
+
+void hn_views_draw(hn_cells *c, const hn_workbench *w);
+/// The places where the last frame of this size has its table and plot, for the mouse.
+typedef struct hn_places {
+    hn_area table, plot;
+} hn_places;
+hn_places hn_views_places(int columns, int rows, const hn_workbench *w);
+#endif

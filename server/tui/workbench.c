@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/workbench.h"
+
+#include "tui/panels.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double SPEEDS[] = {0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10};
+enum { N_SPEEDS = sizeof SPEEDS / sizeof *SPEEDS, AHEAD = 60 };
+
+// ---- opening ----
+
+static hn_status load(hn_workbench *w, hn_diags *diags) {
+    const bool shipped = hn_library_scene_path(w->library, w->scene) != NULL;
+    const hn_model_source source = {.name = shipped || !strpbrk(w->scene, "./") ? w->scene : NULL,
+                                    .path = shipped || !strpbrk(w->scene, "./") ? NULL : w->scene,
+                                    .settings = w->settings,
+                                    .n_settings = w->n_settings};
+    HN_TRY(hn_model_load(w->library, &source, &w->model, diags));
+    hn_model_envelope(w->model, NULL, &w->envelope);
+    return HN_OK;
+}
+
+/// The scene's own methods, or where it names none the two that tell drift from its cure.
+static void choose_methods(hn_workbench *w, const char *const *methods, int n_methods) {
+    static const char *const plain[] = {"index1@rk4", "projection@rk4"};
+    const hn_scene *scene = hn_model_scene(w->model);
+    if (n_methods == 0) {
+        methods = scene->n_methods > 0 ? scene->methods : plain;
+        n_methods = scene->n_methods > 0 ? scene->n_methods : 2;
+    }
+    w->n_methods = n_methods < HN_COMPARISON_MAX_METHODS ? n_methods : HN_COMPARISON_MAX_METHODS;
+    for (int i = 0; i < w->n_methods; i++) {
+        snprintf(w->methods[i], sizeof w->methods[i], "%s", methods[i]);
+    }
+}
+
+hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags) {
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    for (int i = 0; i < w->n_methods; i++) {
+        methods[i] = w->methods[i];
+    }
+    hn_recording *fresh = NULL;
+    HN_TRY(hn_recording_create(w->model, methods, w->n_methods, 0, &fresh, diags));
+    hn_recording_free(w->recording);
+    w->recording = fresh;
+    w->clock = 0;
+    w->selected = w->selected < w->n_methods ? w->selected : 0;
+    hn_recording_want(fresh, AHEAD);
+    return HN_OK;
+}
+
+static void keep_settings(hn_workbench *w, const hn_setting *settings, int n) {
+    w->n_settings = n < HN_TUI_SETTINGS ? n : HN_TUI_SETTINGS;
+    for (int i = 0; i < w->n_settings; i++) {
+        snprintf(w->setting_names[i], sizeof w->setting_names[i], "%s", settings[i].name);
+        w->settings[i] = (hn_setting){w->setting_names[i], settings[i].value};
+    }
+}
+
+hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const char *scene,
+                            const hn_setting *settings, int n_settings, const char *const *methods,
+                            int n_methods, hn_diags *diags) {
+    *w = (hn_workbench){.library = library, .speed = 1, .playing = true};
+    hn_strbuf_init(&w->text);
+    snprintf(w->scene, sizeof w->scene, "%s", scene);
+    keep_settings(w, settings, n_settings);
+    w->items = calloc(HN_TUI_ITEMS, sizeof *w->items);
+    hn_status status = w->items ? load(w, diags) : hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    if (status == HN_OK) {
+        choose_methods(w, methods, n_methods);
+        status = hn_workbench_record(w, diags);
+    }
+    if (status != HN_OK) {
+        hn_workbench_close(w);
+    }
+    return status;
+}
+
+void hn_workbench_close(hn_workbench *w) {
+    hn_child_stop(&w->child);
+    hn_recording_free(w->recording);
+    hn_model_free(w->model);
+    hn_strbuf_reset(&w->text);
+    free(w->items);
+    w->recording = NULL;
+    w->model = NULL;
+    w->items = NULL;
+}
+
+void hn_workbench_say(hn_workbench *w, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    vsnprintf(w->message, sizeof w->message, format, list);
+    va_end(list);
+}
+
+void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags) {
+    const hn_diag *d = &diags->item[0];
+    hn_workbench_say(w, "%s%s%s", diags->n > 0 ? d->message : "that failed, and nothing says why",
+                     diags->n > 0 && d->hint[0] ? "; " : "", diags->n > 0 ? d->hint : "");
+}
+
+// what was open stays open when the change fails
+void hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
+                         int n_settings, bool keep_methods) {
+    hn_workbench fresh;
+    hn_diags diags = {0};
+    const char *methods[HN_COMPARISON_MAX_METHODS];
+    for (int i = 0; i < w->n_methods; i++) {
+        methods[i] = w->methods[i];
+    }
+    if (hn_workbench_open(&fresh, w->library, scene, settings, n_settings, methods,
+                          keep_methods ? w->n_methods : 0, &diags) != HN_OK) {
+        hn_workbench_say_fault(w, &diags);
+        return;
+    }
+    fresh.form = w->form;
+    fresh.plot = w->plot;
+    fresh.speed = w->speed;
+    hn_workbench_close(w);
+    *w = fresh;
+    // the names moved with the structure
+    for (int i = 0; i < w->n_settings; i++) {
+        w->settings[i].name = w->setting_names[i];
+    }
+}
+
+// ---- time ----
+
+int hn_workbench_frame(const hn_workbench *w) {
+    const int ready = hn_recording_frames(w->recording) - 1, now = (int)w->clock;
+    return now < 0 ? 0 : now > ready ? (ready < 0 ? 0 : ready) : now;
+}
+
+void hn_workbench_tick(hn_workbench *w, double seconds) {
+    const int last = hn_recording_last(w->recording);
+    if (w->playing && w->panel == HN_PANEL_MAIN) {
+        const double ready = hn_recording_frames(w->recording) - 1;
+        const double next = w->clock + seconds * w->speed / hn_recording_frame_dt(w->recording);
+        w->clock = fmin(fmin(next, ready + 0.999), last);
+        if (w->clock >= last) {
+            w->playing = false;
+        }
+    }
+    hn_recording_want(w->recording, (int)w->clock + AHEAD);
+    if (w->child.pid != 0 && !hn_child_read(&w->child, &w->text)) {
+        hn_strbuf_add(&w->text, "\n(done; Esc goes back)\n");
+    }
+}
+
+static void go(hn_workbench *w, double frame) {
+    const int last = hn_recording_last(w->recording);
+    w->clock = frame < 0 ? 0 : frame > last ? last : frame;
+    w->playing = false;
+}
+
+static void change_speed(hn_workbench *w, int by) {
+    int i = 0;
+    while (i < N_SPEEDS - 1 && SPEEDS[i] < w->speed) {
+        i++;
+    }
+    i += by;
+    w->speed = SPEEDS[i < 0 ? 0 : i >= N_SPEEDS ? N_SPEEDS - 1 : i];
+}
+
+// ---- keys of the main view ----
+
+static void play(hn_workbench *w) {
+    if (!w->playing && w->clock >= hn_recording_last(w->recording)) {
+        w->clock = 0;
+    }
+    w->playing = !w->playing;
+}
+
+static void copy_link(hn_workbench *w) {
+    hn_strbuf link;
+    hn_strbuf_init(&link);
+    hn_workbench_link(w, &link);
+    hn_workbench_say(w, "%s", hn_strbuf_text(&link));
+    hn_strbuf_reset(&link);
+    w->copy = true;
+}
+
+static void select_method(hn_workbench *w, int by) {
+    w->selected = (w->selected + by + w->n_methods) % w->n_methods;
+}
+
+static void act(hn_workbench *w, hn_tui_action action) {
+    switch (action) {
+    case HN_TUI_PLAY: play(w); break;
+    case HN_TUI_NEXT: go(w, floor(w->clock) + 1); break;
+    case HN_TUI_BACK: go(w, floor(w->clock) - 1); break;
+    case HN_TUI_NEXT_TEN: go(w, floor(w->clock) + 10); break;
+    case HN_TUI_BACK_TEN: go(w, floor(w->clock) - 10); break;
+    case HN_TUI_START: go(w, 0); break;
+    case HN_TUI_SLOWER: change_speed(w, -1); break;
+    case HN_TUI_FASTER: change_speed(w, 1); break;
+    case HN_TUI_UP: select_method(w, -1); break;
+    case HN_TUI_DOWN: select_method(w, 1); break;
+    case HN_TUI_HIDE: w->hidden[w->selected] = !w->hidden[w->selected]; break;
+    case HN_TUI_PLOT: w->plot = (w->plot + 1) % HN_TUI_PLOTS; break;
+    case HN_TUI_WHY: w->why = !w->why; break;
+    case HN_TUI_LINK: copy_link(w); break;
+    case HN_TUI_QUIT: w->quit = true; break;
+    default: hn_panel_open(w, action); break;
+    }
+}
+
+void hn_workbench_key(hn_workbench *w, int key) {
+    w->message[0] = '\0';
+    if (w->prompt != HN_PROMPT_NONE) {
+        hn_prompt_key(w, key);
+    } else if (w->panel != HN_PANEL_MAIN) {
+        hn_panel_key(w, key);
+    } else if (key >= '1' && key < '1' + w->n_methods) {
+        w->selected = key - '1';
+    } else if (key == HN_KEY_ESCAPE) {
+        w->why = false;
+    } else {
+        act(w, hn_tui_action_of(key));
+    }
+}

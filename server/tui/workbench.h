@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_TUI_WORKBENCH_H
+#define HN_TUI_WORKBENCH_H
+// What the terminal workbench knows: a model, its recording, what is shown, and the panel that lies over it. Keys change it, time
+// moves it on, views (views.h) draw it; it knows neither a screen nor a clock.
+
+#include "session/model/envelope.h"
+#include "terminal/dots.h"
+#include "tui/child.h"
+#include "tui/recording.h"
+
+typedef enum hn_panel {
+    HN_PANEL_MAIN,
+    HN_PANEL_LIST, ///< scenes, methods or parameters to choose from
+    HN_PANEL_TEXT  ///< a text to scroll: help, equations, a lesson, a study
+} hn_panel;
+
+typedef enum hn_list_kind { HN_LIST_SCENES, HN_LIST_METHODS, HN_LIST_PARAMETERS, HN_LIST_LESSONS } hn_list_kind;
+typedef enum hn_prompt_kind {
+    HN_PROMPT_NONE,
+    HN_PROMPT_STEP,
+    HN_PROMPT_METHOD,
+    HN_PROMPT_PARAMETER,
+    HN_PROMPT_EXPORT
+} hn_prompt_kind;
+typedef enum hn_tui_plot { HN_TUI_GAP, HN_TUI_ERROR, HN_TUI_ENERGY, HN_TUI_PLOTS } hn_tui_plot;
+
+enum { HN_TUI_LINE = 256, HN_TUI_ITEMS = 400, HN_TUI_MESSAGE = 400, HN_TUI_SETTINGS = 64 };
+
+typedef struct hn_item {
+    char name[HN_TUI_LINE], about[HN_TUI_LINE];
+} hn_item;
+
+typedef struct hn_workbench {
+    const hn_library *library;
+    char scene[HN_TUI_LINE]; ///< shipped name or path
+    hn_setting settings[HN_TUI_SETTINGS];
+    char setting_names[HN_TUI_SETTINGS][64];
+    int n_settings;
+    hn_model *model;
+    hn_recording *recording;
+    hn_envelope envelope;
+    char methods[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    int n_methods;
+
+    // what is shown
+    double clock, speed; ///< [frames] now; times real time
+    bool playing, quit;
+    int selected;
+    bool hidden[HN_COMPARISON_MAX_METHODS];
+    bool why;
+    hn_tui_plot plot;
+    hn_dot_form form;
+    char message[HN_TUI_MESSAGE];
+    bool copy; ///< `message` holds a link for the clipboard; the screen takes it and puts this back
+
+    // the panel over it
+    hn_panel panel;
+    hn_list_kind list;
+    hn_item *items; ///< HN_TUI_ITEMS, owned
+    int n_items, cursor, scroll;
+    char title[HN_TUI_LINE];
+    hn_strbuf text;
+    hn_child child; ///< the study whose text this is, while it runs
+
+    hn_prompt_kind prompt;
+    char input[HN_TUI_LINE];
+    int n_input;
+} hn_workbench;
+
+/// Opens a scene by its name or path, with changed parameters (copied). methods: n spellings; 0: the scene's own.
+/// On failure nothing is open and diags say why.
+HN_MUST_CHECK hn_status hn_workbench_open(hn_workbench *w, const hn_library *library,
+                                          const char *scene, const hn_setting *settings,
+                                          int n_settings, const char *const *methods, int n_methods,
+                                          hn_diags *diags);
+void hn_workbench_close(hn_workbench *w);
+
+/// A key of hn_tui_keys() or a character, or one of HN_KEY_*.
+void hn_workbench_key(hn_workbench *w, int key);
+/// Time goes on by `seconds`: the recording is asked for what comes, and the clock moves as far as there are frames.
+void hn_workbench_tick(hn_workbench *w, double seconds);
+/// The frame shown.
+int hn_workbench_frame(const hn_workbench *w);
+/// The address of the page's link to what is shown: "http://127.0.0.1:8080/#scene=...".
+void hn_workbench_link(const hn_workbench *w, hn_strbuf *b);
+/// Where the scene and its methods come from in a link of the page (the part after #, or the whole address); false: no link.
+bool hn_workbench_read_link(const char *link, char scene[HN_TUI_LINE], hn_setting *settings,
+                            char (*names)[64], int *n_settings, char (*methods)[HN_SPEC_MAX],
+                            int *n_methods);
+#endif
