@@ -87,7 +87,8 @@ static hn_cell *cell_at(hn_cells *c, hn_area area, int x, int y) {
 }
 
 static void set_glyph(hn_cell *cell, const char *text, int n) {
-    const bool control = n == 1 && ((unsigned char)text[0] < 0x20 || (unsigned char)text[0] >= 0x7f);
+    const bool control =
+        n == 1 && ((unsigned char)text[0] < 0x20 || (unsigned char)text[0] >= 0x7f);
     memset(cell->glyph, 0, sizeof cell->glyph);
     if (control) {
         cell->glyph[0] = ' ';

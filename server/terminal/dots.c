@@ -8,7 +8,8 @@
 enum { ACROSS = 2, DOWN = 4 };
 
 /// Bit of the dot in row y and column x of a cell (Unicode 2800).
-static const unsigned char BITS[DOWN][ACROSS] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+static const unsigned char BITS[DOWN][ACROSS] = {
+    {0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
 
 bool hn_dots_resize(hn_dots *d, int columns, int rows) {
     const size_t n = (size_t)(columns > 0 ? columns : 0) * (size_t)(rows > 0 ? rows : 0);

@@ -78,11 +78,11 @@ static void draw_axes(hn_cells *c, hn_area area, hn_area inner, const hn_plot *p
 
 static void draw_series(hn_dots *d, const hn_plot *plot, const hn_series *s, range r) {
     const double width = d->columns * ACROSS - 1, tall = d->rows * DOWN - 1;
-    double x0 = NAN, y0 = NAN;
+    double x0 = (double)NAN, y0 = (double)NAN;
     for (int k = 0; k < s->n; k++) {
         const double x = k * plot->dt / plot->t_end * width;
         const double h = height_of(plot, s->y[k]);
-        const double y = isfinite(s->y[k]) ? (r.high - h) / (r.high - r.low) * tall : NAN;
+        const double y = isfinite(s->y[k]) ? (r.high - h) / (r.high - r.low) * tall : (double)NAN;
         if (isnan(x0) || isnan(y)) {
             hn_dots_line(d, x, y, x, y, s->colour, 1, 0);
         } else {

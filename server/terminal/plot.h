@@ -16,11 +16,11 @@ typedef struct hn_series {
 } hn_series;
 
 typedef struct hn_plot {
-    double dt, t_end;     ///< [s] between values; end of the axis
-    double cursor;        ///< [s]; NaN: none
-    bool logarithmic;     ///< values are shown by their size; 0 stands at the floor
-    double floor;         ///< least value shown on a logarithmic axis, above 0
-    const char *unit;     ///< of y; a logarithmic axis shows powers of ten of it
+    double dt, t_end; ///< [s] between values; end of the axis
+    double cursor;    ///< [s]; NaN: none
+    bool logarithmic; ///< values are shown by their size; 0 stands at the floor
+    double floor;     ///< least value shown on a logarithmic axis, above 0
+    const char *unit; ///< of y; a logarithmic axis shows powers of ten of it
     int n;
     hn_series series[HN_PLOT_SERIES];
 } hn_plot;

@@ -22,9 +22,11 @@ bool hn_child_start(hn_child *child, const char *const *arguments) {
     while (*arguments && n <= MOST_ARGUMENTS) {
         argv[n++] = (char *)(size_t)*arguments++;
     }
-    if (pipe2(pipe_ends, O_CLOEXEC) != 0) {
+    if (pipe(pipe_ends) != 0) {
         return false;
     }
+    fcntl(pipe_ends[0], F_SETFD, FD_CLOEXEC);
+    fcntl(pipe_ends[1], F_SETFD, FD_CLOEXEC);
 
     // standard output and errors into the pipe, no input, a group of its own so that all of it can be stopped
     posix_spawn_file_actions_t actions;
@@ -35,7 +37,8 @@ bool hn_child_start(hn_child *child, const char *const *arguments) {
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 1);
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 2);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    const int failed = posix_spawn(&child->pid, "/proc/self/exe", &actions, &attributes, argv, environ);
+    const int failed =
+        posix_spawn(&child->pid, "/proc/self/exe", &actions, &attributes, argv, environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     close(pipe_ends[1]);

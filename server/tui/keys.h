@@ -23,17 +23,17 @@ enum {
     HN_KEY_SHIFT_RIGHT
 };
 
-#define HN_TUI_ACTIONS(X)                                       \
+#define HN_TUI_ACTIONS(X)                                        \
     X(PLAY, ' ', "Space", "play or pause")                       \
-    X(NEXT, HN_KEY_RIGHT, "→", "one frame on")                  \
-    X(BACK, HN_KEY_LEFT, "←", "one frame back")                 \
+    X(NEXT, HN_KEY_RIGHT, "→", "one frame on")                   \
+    X(BACK, HN_KEY_LEFT, "←", "one frame back")                  \
     X(NEXT_TEN, HN_KEY_SHIFT_RIGHT, "Shift →", "ten frames on")  \
     X(BACK_TEN, HN_KEY_SHIFT_LEFT, "Shift ←", "ten frames back") \
     X(START, HN_KEY_BACKSPACE, "Backspace", "back to the start") \
     X(SLOWER, '-', "-", "slower")                                \
     X(FASTER, '=', "=", "faster")                                \
-    X(UP, HN_KEY_UP, "↑", "select the method above")            \
-    X(DOWN, HN_KEY_DOWN, "↓", "select the method below")        \
+    X(UP, HN_KEY_UP, "↑", "select the method above")             \
+    X(DOWN, HN_KEY_DOWN, "↓", "select the method below")         \
     X(HIDE, 'v', "v", "hide or show the selected method")        \
     X(PLOT, 'g', "g", "next plot: gap, error, energy")           \
     X(WHY, 'y', "y", "why: the incidents of the method")         \

@@ -130,7 +130,10 @@ static void scale_bar(hn_cells *c, hn_area area, const placing *p) {
     char text[HN_SI_TEXT];
     hn_si_format(metres, "m", 1, text);
     for (int x = 0; x < columns && columns < area.columns; x++) {
-        hn_cells_put(c, area, 1 + x, area.rows - 1, HN_CELL_MUTED, 0, x == 0 ? "├" : x == columns - 1 ? "┤" : "─");
+        hn_cells_put(c, area, 1 + x, area.rows - 1, HN_CELL_MUTED, 0,
+                     x == 0             ? "├"
+                     : x == columns - 1 ? "┤"
+                                        : "─");
     }
     hn_cells_put(c, area, 2 + columns, area.rows - 1, HN_CELL_MUTED, 0, text);
 }

@@ -65,8 +65,8 @@ static void list_parameters(hn_workbench *w) {
     for (int i = 0; i < scene->n_params; i++) {
         const hn_param *p = &scene->params[i];
         char line[HN_TUI_LINE];
-        snprintf(line, sizeof line, "%.9g %s   (%g to %g)  %s", p->value, p->unit ? p->unit : "", p->min,
-                 p->max, p->about ? p->about : "");
+        snprintf(line, sizeof line, "%.9g %s   (%g to %g)  %.150s", p->value,
+                 p->unit ? p->unit : "", p->min, p->max, p->about ? p->about : "");
         add_item(w, p->name, line);
     }
 }
@@ -100,14 +100,16 @@ static void show_help(hn_workbench *w) {
     const int n = hn_tui_keys(&keys);
     begin_text(w, "keys: Esc goes back");
     for (int i = 0; i < n; i++) {
-        hn_strbuf_printf(&w->text, "%-*s %s\n", 12 + (int)strlen(keys[i].shown) - hn_text_columns(keys[i].shown),
+        hn_strbuf_printf(&w->text, "%-*s %s\n",
+                         12 + (int)strlen(keys[i].shown) - hn_text_columns(keys[i].shown),
                          keys[i].shown, keys[i].means);
     }
-    hn_strbuf_add(&w->text, "1 to 8       select a method\n\n"
-                            "gap     how far the loop stands open: the size of the constraint violation [m]\n"
-                            "error   largest distance of a drawn point from the reference solution [m]\n"
-                            "energy  change of the energy since the start [J]\n\n"
-                            "The mouse selects a method in the table and a time in the plot.\n");
+    hn_strbuf_add(&w->text,
+                  "1 to 8       select a method\n\n"
+                  "gap     how far the loop stands open: the size of the constraint violation [m]\n"
+                  "error   largest distance of a drawn point from the reference solution [m]\n"
+                  "energy  change of the energy since the start [J]\n\n"
+                  "The mouse selects a method in the table and a time in the plot.\n");
 }
 
 static void show_equations(hn_workbench *w) {
@@ -137,14 +139,16 @@ static void show_lesson(hn_workbench *w, const char *id) {
 /// Runs a study of this scene beside the workbench; its text is shown as it comes.
 static void run_study(hn_workbench *w, const char *kind, const char *option, const char *value) {
     char settings[HN_TUI_SETTINGS][128];
-    const char *arguments[16 + 2 * HN_TUI_SETTINGS + HN_COMPARISON_MAX_METHODS] = {"study", w->scene, kind};
+    const char *arguments[16 + 2 * HN_TUI_SETTINGS + HN_COMPARISON_MAX_METHODS] = {"study",
+                                                                                   w->scene, kind};
     int n = 3;
     if (option) {
         arguments[n++] = option;
         arguments[n++] = value;
     }
     for (int i = 0; i < w->n_settings; i++) {
-        snprintf(settings[i], sizeof settings[i], "%s=%.17g", w->settings[i].name, w->settings[i].value);
+        snprintf(settings[i], sizeof settings[i], "%s=%.17g", w->settings[i].name,
+                 w->settings[i].value);
         arguments[n++] = "--set";
         arguments[n++] = settings[i];
     }
@@ -166,7 +170,7 @@ static void begin_prompt(hn_workbench *w, hn_prompt_kind kind, const char *initi
 
 /// Writes the value of `key` behind the integrator of a spelling, in place of the one that stands there.
 static void set_integrator_option(char spelling[HN_SPEC_MAX], const char *key, double value) {
-    char head[HN_SPEC_MAX], rest[HN_SPEC_MAX] = "", find[32];
+    char head[HN_SPEC_MAX], rest[2 * HN_SPEC_MAX] = "", find[32];
     snprintf(find, sizeof find, "%s=", key);
     char *at = strchr(spelling, '@');
     char *colon = at ? strchr(at, ':') : NULL;
@@ -174,11 +178,12 @@ static void set_integrator_option(char spelling[HN_SPEC_MAX], const char *key, d
         return;
     }
     // the other options are kept in their order
-    snprintf(head, sizeof head, "%.*s", colon ? (int)(colon - spelling) : (int)strlen(spelling), spelling);
+    snprintf(head, sizeof head, "%.*s", colon ? (int)(colon - spelling) : (int)strlen(spelling),
+             spelling);
     for (char *option = colon ? strtok(colon + 1, ",") : NULL; option; option = strtok(NULL, ",")) {
         if (strncmp(option, find, strlen(find)) != 0) {
             const size_t used = strlen(rest);
-            snprintf(rest + used, sizeof rest - used, ",%s", option);
+            snprintf(rest + used, sizeof rest - used, ",%.250s", option);
         }
     }
     snprintf(spelling, HN_SPEC_MAX, "%.180s:%s%.9g%.40s", head, find, value, rest);
@@ -247,7 +252,8 @@ static void accept_parameter(hn_workbench *w) {
 static void accept_export(hn_workbench *w) {
     FILE *file = fopen(w->input, "wx");
     if (!file) {
-        hn_workbench_say(w, "%.200s: cannot be written, or is there already; type another name", w->input);
+        hn_workbench_say(w, "%.200s: cannot be written, or is there already; type another name",
+                         w->input);
         return;
     }
     fprintf(file, "t");
@@ -269,7 +275,8 @@ static void accept_export(hn_workbench *w) {
         fprintf(file, "\n");
     }
     const bool good = fclose(file) == 0;
-    hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames", w->input, n);
+    hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
+                     w->input, n);
 }
 
 void hn_prompt_key(hn_workbench *w, int key) {
@@ -324,7 +331,8 @@ static void remove_method(hn_workbench *w) {
         return;
     }
     memcpy(before, w->methods, sizeof before);
-    memmove(w->methods[w->cursor], w->methods[w->cursor + 1], (size_t)(n - w->cursor - 1) * sizeof *before);
+    memmove(w->methods[w->cursor], w->methods[w->cursor + 1],
+            (size_t)(n - w->cursor - 1) * sizeof *before);
     w->n_methods = n - 1;
     record_again(w, before, n);
 }
@@ -332,13 +340,20 @@ static void remove_method(hn_workbench *w) {
 /// How far a key moves in a list or a text; 0: it does not.
 static int step_of(int key) {
     switch (key) {
-    case HN_KEY_UP: return -1;
-    case HN_KEY_DOWN: return 1;
-    case HN_KEY_PAGE_UP: return -15;
-    case HN_KEY_PAGE_DOWN: return 15;
-    case HN_KEY_HOME: return -1000000;
-    case HN_KEY_END: return 1000000;
-    default: return 0;
+    case HN_KEY_UP:
+        return -1;
+    case HN_KEY_DOWN:
+        return 1;
+    case HN_KEY_PAGE_UP:
+        return -15;
+    case HN_KEY_PAGE_DOWN:
+        return 15;
+    case HN_KEY_HOME:
+        return -1000000;
+    case HN_KEY_END:
+        return 1000000;
+    default:
+        return 0;
     }
 }
 
@@ -380,17 +395,40 @@ void hn_panel_key(hn_workbench *w, int key) {
 
 void hn_panel_open(hn_workbench *w, hn_tui_action action) {
     switch (action) {
-    case HN_TUI_STEP: begin_prompt(w, HN_PROMPT_STEP, ""); break;
-    case HN_TUI_PARAMETERS: list_parameters(w); break;
-    case HN_TUI_METHODS: list_methods(w); break;
-    case HN_TUI_SCENES: list_scenes(w); break;
-    case HN_TUI_FORMULAS: show_equations(w); break;
-    case HN_TUI_LESSONS: list_lessons(w); break;
-    case HN_TUI_STUDY: run_study(w, "work-precision", "--time", "2"); break;
-    case HN_TUI_MAP: run_study(w, "stability", "--preset", "baumgarte"); break;
-    case HN_TUI_BUDGET: run_study(w, "budget", NULL, NULL); break;
-    case HN_TUI_EXPORT: begin_prompt(w, HN_PROMPT_EXPORT, "recording.csv"); break;
-    case HN_TUI_HELP: show_help(w); break;
-    default: break;
+    case HN_TUI_STEP:
+        begin_prompt(w, HN_PROMPT_STEP, "");
+        break;
+    case HN_TUI_PARAMETERS:
+        list_parameters(w);
+        break;
+    case HN_TUI_METHODS:
+        list_methods(w);
+        break;
+    case HN_TUI_SCENES:
+        list_scenes(w);
+        break;
+    case HN_TUI_FORMULAS:
+        show_equations(w);
+        break;
+    case HN_TUI_LESSONS:
+        list_lessons(w);
+        break;
+    case HN_TUI_STUDY:
+        run_study(w, "work-precision", "--time", "2");
+        break;
+    case HN_TUI_MAP:
+        run_study(w, "stability", "--preset", "baumgarte");
+        break;
+    case HN_TUI_BUDGET:
+        run_study(w, "budget", NULL, NULL);
+        break;
+    case HN_TUI_EXPORT:
+        begin_prompt(w, HN_PROMPT_EXPORT, "recording.csv");
+        break;
+    case HN_TUI_HELP:
+        show_help(w);
+        break;
+    default:
+        break;
     }
 }

@@ -29,7 +29,7 @@ struct hn_recording {
     double frame_dt;
     hn_track tracks[HN_COMPARISON_MAX_METHODS];
     track_store stores[HN_COMPARISON_MAX_METHODS];
-    double *reference; ///< 3 n_points a frame, NaN where there is none
+    double *reference;        ///< 3 n_points a frame, NaN where there is none
     double *reference_energy; ///< change since the start [J] a frame, likewise
     hn_recording_truth truth;
     atomic_int frames, wanted, reference_frames;
@@ -193,7 +193,6 @@ static void *record(void *user) {
     if (r->reference) {
         fetch_reference(r);
     }
-    keep_frame(r, 0);
     while (atomic_load(&r->frames) <= r->last && wait_for_work(r)) {
         const double start = hn_clock_wall();
         hn_comparison_next(r->comparison);
@@ -283,6 +282,7 @@ hn_status hn_recording_create(const hn_model *model, const char *const *methods,
         status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     if (status == HN_OK) {
+        keep_frame(r, 0);
         r->started = pthread_create(&r->thread, NULL, record, r) == 0;
         status = r->started ? HN_OK
                             : hn_diags_add(diags, HN_ERR_LIMIT, NULL, NULL,
@@ -371,7 +371,8 @@ hn_track_end hn_recording_end(const hn_recording *r, int i) {
 
 const double *hn_recording_reference(const hn_recording *r, int frame) {
     const double *at = r->reference + (size_t)frame * 3 * (size_t)r->n_points;
-    const bool there = r->n_points > 0 && frame < atomic_load(&r->reference_frames) && !isnan(at[0]);
+    const bool there =
+        r->n_points > 0 && frame < atomic_load(&r->reference_frames) && !isnan(at[0]);
     return there ? at : NULL;
 }
 

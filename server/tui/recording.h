@@ -20,9 +20,11 @@ typedef struct hn_track {
     bool model_error;        ///< a counter-example: it solves other equations
     const double *gap, *velocity_gap;
     const double *energy; ///< change since the start [J]
-    const double *energy_error; ///< the same less that of the reference [J]; NaN: no reference there
-    const double *error;  ///< largest distance of a drawn point from the reference [m]; NaN: no reference there
-    const double *points; ///< 3 n_points a frame
+    const double
+        *energy_error; ///< the same less that of the reference [J]; NaN: no reference there
+    const double *
+        error; ///< largest distance of a drawn point from the reference [m]; NaN: no reference there, and at frame 0
+    const double *points;      ///< 3 n_points a frame
     const double *evaluations; ///< since the start
 } hn_track;
 
@@ -42,10 +44,10 @@ void hn_recording_free(hn_recording *r);
 
 /// Asks for all frames up to this one.
 void hn_recording_want(hn_recording *r, int frame);
-int hn_recording_frames(const hn_recording *r);       ///< recorded so far, at least 1
-int hn_recording_last(const hn_recording *r);         ///< index of the frame at the duration
-double hn_recording_frame_dt(const hn_recording *r);  ///< [s]
-double hn_recording_duration(const hn_recording *r);  ///< [s]
+int hn_recording_frames(const hn_recording *r);      ///< recorded so far, at least 1
+int hn_recording_last(const hn_recording *r);        ///< index of the frame at the duration
+double hn_recording_frame_dt(const hn_recording *r); ///< [s]
+double hn_recording_duration(const hn_recording *r); ///< [s]
 int hn_recording_n_tracks(const hn_recording *r);
 const hn_track *hn_recording_track(const hn_recording *r, int i);
 hn_track_end hn_recording_end(const hn_recording *r, int i);

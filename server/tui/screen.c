@@ -19,7 +19,8 @@ static struct {
 
 // ---- leaving the terminal as it was ----
 
-static const int FATAL[] = {SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGPIPE};
+static const int FATAL[] = {SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS,
+                            SIGABRT, SIGFPE, SIGILL,  SIGPIPE};
 enum { N_FATAL = sizeof FATAL / sizeof *FATAL };
 
 /// Only calls that a signal may interrupt: writes the sequences that ncurses would have written.
@@ -63,7 +64,8 @@ static void make_colours(int theme) {
     use_default_colors();
     for (int i = 0; i < HN_CELL_COLOURS; i++) {
         const int colour = hn_cell_colour_256(i, theme);
-        init_pair((short)(i + 1), (short)(colour < 0 || COLORS >= 256 ? colour : of_eight(colour)), -1);
+        init_pair((short)(i + 1), (short)(colour < 0 || COLORS >= 256 ? colour : of_eight(colour)),
+                  -1);
     }
 }
 
@@ -130,12 +132,24 @@ void hn_screen_show(const hn_cells *c, bool ascii) {
 static int translate(int key) {
     static const struct {
         int from, to;
-    } table[] = {{KEY_LEFT, HN_KEY_LEFT},       {KEY_RIGHT, HN_KEY_RIGHT},   {KEY_UP, HN_KEY_UP},
-                 {KEY_DOWN, HN_KEY_DOWN},       {KEY_PPAGE, HN_KEY_PAGE_UP}, {KEY_NPAGE, HN_KEY_PAGE_DOWN},
-                 {KEY_HOME, HN_KEY_HOME},       {KEY_END, HN_KEY_END},       {KEY_BACKSPACE, HN_KEY_BACKSPACE},
-                 {127, HN_KEY_BACKSPACE},       {8, HN_KEY_BACKSPACE},       {KEY_ENTER, HN_KEY_ENTER},
-                 {'\n', HN_KEY_ENTER},          {'\r', HN_KEY_ENTER},        {27, HN_KEY_ESCAPE},
-                 {'\t', HN_KEY_TAB},            {KEY_SLEFT, HN_KEY_SHIFT_LEFT}, {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
+    } table[] = {{KEY_LEFT, HN_KEY_LEFT},
+                 {KEY_RIGHT, HN_KEY_RIGHT},
+                 {KEY_UP, HN_KEY_UP},
+                 {KEY_DOWN, HN_KEY_DOWN},
+                 {KEY_PPAGE, HN_KEY_PAGE_UP},
+                 {KEY_NPAGE, HN_KEY_PAGE_DOWN},
+                 {KEY_HOME, HN_KEY_HOME},
+                 {KEY_END, HN_KEY_END},
+                 {KEY_BACKSPACE, HN_KEY_BACKSPACE},
+                 {127, HN_KEY_BACKSPACE},
+                 {8, HN_KEY_BACKSPACE},
+                 {KEY_ENTER, HN_KEY_ENTER},
+                 {'\n', HN_KEY_ENTER},
+                 {'\r', HN_KEY_ENTER},
+                 {27, HN_KEY_ESCAPE},
+                 {'\t', HN_KEY_TAB},
+                 {KEY_SLEFT, HN_KEY_SHIFT_LEFT},
+                 {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
                  {KEY_RESIZE, HN_KEY_RESIZE}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].from == key) {
@@ -165,7 +179,8 @@ void hn_screen_copy(const char *text) {
     const size_t n = strlen(text);
     printf("\033]52;c;");
     for (size_t i = 0; i < n; i += 3) {
-        const unsigned bits = (unsigned)in[i] << 16 | (i + 1 < n ? in[i + 1] : 0u) << 8 | (i + 2 < n ? in[i + 2] : 0u);
+        const unsigned bits = (unsigned)in[i] << 16 | (i + 1 < n ? in[i + 1] : 0u) << 8 |
+                              (i + 2 < n ? in[i + 2] : 0u);
         printf("%c%c%c%c", digits[bits >> 18 & 63], digits[bits >> 12 & 63],
                i + 1 < n ? digits[bits >> 6 & 63] : '=', i + 2 < n ? digits[bits & 63] : '=');
     }

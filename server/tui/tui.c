@@ -27,7 +27,8 @@ static void choose_characters(void) {
 }
 
 static bool inside(hn_area area, hn_mouse m) {
-    return m.x >= area.x && m.y >= area.y && m.x < area.x + area.columns && m.y < area.y + area.rows;
+    return m.x >= area.x && m.y >= area.y && m.x < area.x + area.columns &&
+           m.y < area.y + area.rows;
 }
 
 /// A click selects a method in the table, or a time in the plot.
@@ -41,7 +42,8 @@ static void point_at(hn_workbench *w, const hn_cells *c, hn_mouse mouse) {
     if (inside(places.table, mouse) && row >= 0 && row < w->n_methods) {
         w->selected = row;
     } else if (inside(places.plot, mouse) && !w->why) {
-        const double share = (mouse.x - places.plot.x - LABELS) / (double)(places.plot.columns - LABELS - 1);
+        const double share =
+            (mouse.x - places.plot.x - LABELS) / (double)(places.plot.columns - LABELS - 1);
         w->clock = fmax(0, fmin(1, share)) * hn_recording_last(w->recording);
         w->playing = false;
     }
@@ -70,7 +72,8 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
     for (int n = 0; !w->quit && (opts->frames == 0 || n < opts->frames); n++) {
         int columns, rows;
         hn_screen_size(&columns, &rows);
-        if ((columns != cells.columns || rows != cells.rows) && !hn_cells_resize(&cells, columns, rows)) {
+        if ((columns != cells.columns || rows != cells.rows) &&
+            !hn_cells_resize(&cells, columns, rows)) {
             break;
         }
         hn_views_draw(&cells, w);
@@ -94,7 +97,9 @@ bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts) {
 
 void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts) {
     const int frame = (int)lround(opts->t / hn_recording_frame_dt(w->recording));
-    const int last = hn_recording_last(w->recording), at = frame < 0 ? 0 : frame < last ? frame : last;
+    const int last = hn_recording_last(w->recording), at = frame < 0      ? 0
+                                                           : frame < last ? frame
+                                                                          : last;
     hn_cells cells = {0};
     hn_recording_want(w->recording, at);
     while (hn_recording_frames(w->recording) <= at) {

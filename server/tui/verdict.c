@@ -9,11 +9,11 @@
 
 /// A gap that more than doubles from the first half of the motion to the second grows.
 static const double GROWTH = 1.5;
-static const int EARLIEST = 6;         // [frames] before it there is nothing to judge
-static const double OPEN = 1e-3;       // of the scene's length: a gap that can be seen
-static const double WRONG = 1e-2;      // of the scene's length or energy: one digit is right at most
-static const double CLOSED = 1e-12;    // of the scene's length: rounding
-static const double ROUNDING = 1e-13;  // [m] some hundred roundings of coordinates of a metre or so
+static const int EARLIEST = 6;        // [frames] before it there is nothing to judge
+static const double OPEN = 1e-3;      // of the scene's length: a gap that can be seen
+static const double WRONG = 1e-2;     // of the scene's length or energy: one digit is right at most
+static const double CLOSED = 1e-12;   // of the scene's length: rounding
+static const double ROUNDING = 1e-13; // [m] some hundred roundings of coordinates of a metre or so
 static const double MOST_DIGITS = 15;
 
 /// The largest magnitude of the frames from..to; NaN where none has one.
@@ -48,7 +48,8 @@ typedef struct sizes {
 
 static void put(hn_verdict *v, hn_tone tone, const char *first, const char *second) {
     v->tone = tone;
-    snprintf(v->text, sizeof v->text, "%s%s%s", first, first[0] && second[0] ? ", " : "", second);
+    snprintf(v->text, sizeof v->text, "%.80s%s%.70s", first, first[0] && second[0] ? ", " : "",
+             second);
 }
 
 /// "closed", "closed to 4.2 um", or nothing for a mechanism without loops.
@@ -66,7 +67,7 @@ static void closed_words(const sizes *s, char *out, size_t size) {
 
 static void judge_wrong(hn_verdict *v, const sizes *s, double value, const char *unit,
                         const char *what) {
-    char first[64], number[HN_SI_TEXT], second[96];
+    char first[64], number[HN_SI_TEXT], second[128];
     closed_words(s, first, sizeof first);
     hn_si_format(value, unit, 2, number);
     snprintf(second, sizeof second, "%s%s %s", first[0] ? "but " : "", number, what);
@@ -85,8 +86,9 @@ static void judge_right(hn_verdict *v, const sizes *s) {
         put(v, tone, drift[0] ? drift : first, "error unknown");
         return;
     }
-    const double share = fmax(fmax(s->off / s->length, s->energy_scale > 0 ? s->energy / s->energy_scale : 0),
-                              pow(10, -MOST_DIGITS));
+    const double share =
+        fmax(fmax(s->off / s->length, s->energy_scale > 0 ? s->energy / s->energy_scale : 0),
+             pow(10, -MOST_DIGITS));
     const double digits = fmin(floor(fmin(MOST_DIGITS, s->digits)), floor(-log10(share)));
     snprintf(first, sizeof first, "right to %.0f digits", digits);
     put(v, tone, first, drift);

@@ -12,7 +12,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_COLUMNS = 14, NUMBER_COLUMNS = 9, MOST_INCIDENTS = 512 };
+enum { NAME_COLUMNS = 14, NUMBER_COLUMNS = 10, MOST_INCIDENTS = 512 };
+
+/// Below a nano of a unit a prefix pictures nothing; such values are written with a power of ten.
+static const double SMALLEST_PREFIXED = 1e-9;
 
 // ---- places ----
 
@@ -40,8 +43,10 @@ static void draw_header(hn_cells *c, const hn_workbench *w) {
     int x = hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, "holonom  ");
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "%.30s  ", scene->id);
     x += hn_cells_printf(c, area, x, 0, HN_CELL_INK, 0, "t %.3f s of %.4g s  ×%g  %s  ", t,
-                         hn_recording_duration(w->recording), w->speed, w->playing ? "▶ running" : "■ paused");
-    const double slow = hn_recording_frame_seconds(w->recording) / hn_recording_frame_dt(w->recording);
+                         hn_recording_duration(w->recording), w->speed,
+                         w->playing ? "▶ running" : "■ paused");
+    const double slow =
+        hn_recording_frame_seconds(w->recording) / hn_recording_frame_dt(w->recording);
     if (w->playing && slow > 2) {
         hn_cells_printf(c, area, x, 0, HN_CELL_ALARM, 0, "%.0f times slower than the clock", slow);
     }
@@ -59,8 +64,12 @@ static void draw_footer(hn_cells *c, const hn_workbench *w) {
         const int end = x + hn_cells_put(c, area, x, 0, HN_CELL_INK, 0, w->input);
         hn_cells_put(c, area, end, 0, HN_CELL_INK, HN_CELL_REVERSE, " ");
     } else {
-        hn_cells_put(c, area, 0, 0, HN_CELL_MUTED, 0,
-                     "Space run  ←→ step  1-8 method  d dt  g plot  y why  m methods  s scene  p values  ? help  q");
+        hn_cells_put(
+            c, area, 0, 0, HN_CELL_MUTED, 0,
+            area.columns < 92
+                ? "Space run  ←→ step  1-8 method  d dt  g plot  y why  s scene  ? help  q"
+                : "Space run  ←→ step  1-8 method  d dt  g plot  y why  m methods  s scene  p "
+                  "values  ? help  q");
     }
 }
 
@@ -85,7 +94,8 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
     }
     if (last >= 0) {
         hn_cells_printf(c, area, 0, 0, HN_CELL_ALARM, 0, "! %s at %.4g s: %s",
-                        hn_recording_track(w->recording, whose[last])->name, list[last].t, list[last].message);
+                        hn_recording_track(w->recording, whose[last])->name, list[last].t,
+                        list[last].message);
     }
 }
 
@@ -98,10 +108,12 @@ static bool has_loops(const hn_workbench *w) {
 static int put_quantity(hn_cells *c, hn_area area, int x, int y, const char *label, double value,
                         const char *unit) {
     char text[HN_SI_TEXT];
-    if (isfinite(value)) {
-        hn_si_format(value, unit, 2, text);
-    } else {
+    if (!isfinite(value)) {
         snprintf(text, sizeof text, "-");
+    } else if (fabs(value) < SMALLEST_PREFIXED && value != 0) {
+        snprintf(text, sizeof text, "%.1e %s", value, unit);
+    } else {
+        hn_si_format(value, unit, 2, text);
     }
     const int room = NUMBER_COLUMNS - hn_text_columns(text);
     int used = hn_cells_put(c, area, x, y, HN_CELL_MUTED, 0, label);
@@ -115,19 +127,22 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
     const double length = hn_system_length(hn_model_system(w->model));
     const hn_verdict v = hn_verdict_at(w->recording, m, frame, length, has_loops(w));
     const int style = m == w->selected ? HN_CELL_REVERSE : HN_CELL_PLAIN;
-    int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1, hn_look_get(track->slot)->glyph);
-    hn_cells_printf(c, area, x + 1, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%s", track->name);
+    int x = hn_cells_printf(c, area, 0, m, track->slot, HN_CELL_BOLD, "%d%s", m + 1,
+                            hn_look_get(track->slot)->glyph);
+    hn_cells_printf(c, area, x + 1, m, w->hidden[m] ? HN_CELL_MUTED : HN_CELL_INK, style, "%s",
+                    track->name);
     x += 1 + NAME_COLUMNS;
     x += put_quantity(c, area, x, m, "gap", track->gap[frame], "m");
     // narrow terminals leave out the energy, then the error
-    if (area.columns >= 100) {
+    if (area.columns >= 124) {
         x += put_quantity(c, area, x, m, "energy", track->energy[frame], "J");
     }
-    if (area.columns >= 76) {
+    if (area.columns >= 98) {
         x += put_quantity(c, area, x, m, "error", track->error[frame], "m");
     }
     hn_cells_printf(c, area, x, m, v.tone == HN_TONE_CALM ? HN_CELL_INK : HN_CELL_ALARM,
-                    v.tone == HN_TONE_CALM ? HN_CELL_PLAIN : HN_CELL_BOLD, "%s %s", v.arrow, v.text);
+                    v.tone == HN_TONE_CALM ? HN_CELL_PLAIN : HN_CELL_BOLD, "%s %s", v.arrow,
+                    v.text);
 }
 
 static void draw_table(hn_cells *c, const hn_workbench *w) {
@@ -141,7 +156,8 @@ static void draw_table(hn_cells *c, const hn_workbench *w) {
 // ---- the plot ----
 
 static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
-    static const char *const titles[] = {"loop gap (constraint violation) [m]", "error against the reference [m]",
+    static const char *const titles[] = {"loop gap (constraint violation) [m]",
+                                         "error against the reference [m]",
                                          "energy change, size [J]"};
     const hn_area inside = hn_cells_frame(c, area, titles[w->plot]);
     const double dt = hn_recording_frame_dt(w->recording);
@@ -209,7 +225,8 @@ static void draw_list(hn_cells *c, hn_area area, const hn_workbench *w) {
     const int first = w->cursor < rows ? 0 : w->cursor - rows + 1;
     for (int i = first; i < w->n_items && i - first < rows; i++) {
         const int style = i == w->cursor ? HN_CELL_REVERSE : HN_CELL_PLAIN;
-        const int x = hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%-26.60s", w->items[i].name);
+        const int x =
+            hn_cells_printf(c, in, 1, i - first, HN_CELL_INK, style, "%-26.60s", w->items[i].name);
         hn_cells_printf(c, in, x + 3, i - first, HN_CELL_MUTED, 0, "%s", w->items[i].about);
     }
     if (w->n_items > 0) {

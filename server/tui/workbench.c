@@ -70,7 +70,8 @@ hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const ch
     snprintf(w->scene, sizeof w->scene, "%s", scene);
     keep_settings(w, settings, n_settings);
     w->items = calloc(HN_TUI_ITEMS, sizeof *w->items);
-    hn_status status = w->items ? load(w, diags) : hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    hn_status status =
+        w->items ? load(w, diags) : hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     if (status == HN_OK) {
         choose_methods(w, methods, n_methods);
         status = hn_workbench_record(w, diags);
@@ -192,22 +193,54 @@ static void select_method(hn_workbench *w, int by) {
 
 static void act(hn_workbench *w, hn_tui_action action) {
     switch (action) {
-    case HN_TUI_PLAY: play(w); break;
-    case HN_TUI_NEXT: go(w, floor(w->clock) + 1); break;
-    case HN_TUI_BACK: go(w, floor(w->clock) - 1); break;
-    case HN_TUI_NEXT_TEN: go(w, floor(w->clock) + 10); break;
-    case HN_TUI_BACK_TEN: go(w, floor(w->clock) - 10); break;
-    case HN_TUI_START: go(w, 0); break;
-    case HN_TUI_SLOWER: change_speed(w, -1); break;
-    case HN_TUI_FASTER: change_speed(w, 1); break;
-    case HN_TUI_UP: select_method(w, -1); break;
-    case HN_TUI_DOWN: select_method(w, 1); break;
-    case HN_TUI_HIDE: w->hidden[w->selected] = !w->hidden[w->selected]; break;
-    case HN_TUI_PLOT: w->plot = (w->plot + 1) % HN_TUI_PLOTS; break;
-    case HN_TUI_WHY: w->why = !w->why; break;
-    case HN_TUI_LINK: copy_link(w); break;
-    case HN_TUI_QUIT: w->quit = true; break;
-    default: hn_panel_open(w, action); break;
+    case HN_TUI_PLAY:
+        play(w);
+        break;
+    case HN_TUI_NEXT:
+        go(w, floor(w->clock) + 1);
+        break;
+    case HN_TUI_BACK:
+        go(w, floor(w->clock) - 1);
+        break;
+    case HN_TUI_NEXT_TEN:
+        go(w, floor(w->clock) + 10);
+        break;
+    case HN_TUI_BACK_TEN:
+        go(w, floor(w->clock) - 10);
+        break;
+    case HN_TUI_START:
+        go(w, 0);
+        break;
+    case HN_TUI_SLOWER:
+        change_speed(w, -1);
+        break;
+    case HN_TUI_FASTER:
+        change_speed(w, 1);
+        break;
+    case HN_TUI_UP:
+        select_method(w, -1);
+        break;
+    case HN_TUI_DOWN:
+        select_method(w, 1);
+        break;
+    case HN_TUI_HIDE:
+        w->hidden[w->selected] = !w->hidden[w->selected];
+        break;
+    case HN_TUI_PLOT:
+        w->plot = (w->plot + 1) % HN_TUI_PLOTS;
+        break;
+    case HN_TUI_WHY:
+        w->why = !w->why;
+        break;
+    case HN_TUI_LINK:
+        copy_link(w);
+        break;
+    case HN_TUI_QUIT:
+        w->quit = true;
+        break;
+    default:
+        hn_panel_open(w, action);
+        break;
     }
 }
 

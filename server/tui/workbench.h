@@ -15,7 +15,12 @@ typedef enum hn_panel {
     HN_PANEL_TEXT  ///< a text to scroll: help, equations, a lesson, a study
 } hn_panel;
 
-typedef enum hn_list_kind { HN_LIST_SCENES, HN_LIST_METHODS, HN_LIST_PARAMETERS, HN_LIST_LESSONS } hn_list_kind;
+typedef enum hn_list_kind {
+    HN_LIST_SCENES,
+    HN_LIST_METHODS,
+    HN_LIST_PARAMETERS,
+    HN_LIST_LESSONS
+} hn_list_kind;
 typedef enum hn_prompt_kind {
     HN_PROMPT_NONE,
     HN_PROMPT_STEP,

@@ -37,7 +37,8 @@ static hn_status see_setting(void *user, const char *name, double value) {
 
 static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) {
     const char *word = args->words.n > 0 ? args->words.word[0] : "four-bar";
-    if (!hn_workbench_read_link(word, o->scene, o->settings, o->names, &o->n_settings, o->spellings, &o->n_methods)) {
+    if (!hn_workbench_read_link(word, o->scene, o->settings, o->names, &o->n_settings, o->spellings,
+                                &o->n_methods)) {
         snprintf(o->scene, sizeof o->scene, "%s", word);
     }
     HN_TRY(hn_assignments_read(&args->set, "--set", see_setting, o, diags));
@@ -54,10 +55,12 @@ static hn_status read_opening(const hn_args *args, opening *o, hn_diags *diags) 
 /// "100x30"; left at 0 x 0 where nothing is given.
 static hn_status read_size(const char *text, hn_tui_opts *opts, hn_diags *diags) {
     char behind;
-    if (text && (sscanf(text, "%dx%d%c", &opts->columns, &opts->rows, &behind) != 2 || opts->columns < 20 ||
-                 opts->rows < 8 || opts->columns > 1000 || opts->rows > 500)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/size", NULL,
-                            "--size is '%.40s'; COLUMNSxROWS from 20x8 to 1000x500 is needed, as 100x30", text);
+    if (text &&
+        (sscanf(text, "%dx%d%c", &opts->columns, &opts->rows, &behind) != 2 || opts->columns < 20 ||
+         opts->rows < 8 || opts->columns > 1000 || opts->rows > 500)) {
+        return hn_diags_add(
+            diags, HN_ERR_INPUT, "/size", NULL,
+            "--size is '%.40s'; COLUMNSxROWS from 20x8 to 1000x500 is needed, as 100x30", text);
     }
     return HN_OK;
 }
@@ -81,21 +84,31 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
     hn_strbuf_init(&b);
     opts->t = isnan(args->t) ? hn_recording_duration(w->recording) : args->t;
     hn_tui_frame(&b, w, opts);
-    return opts->ascii ? hn_cli_print_text(&b) : hn_cli_print(&b);
+    if (opts->ascii) {
+        hn_strbuf plain;
+        hn_strbuf_init(&plain);
+        hn_plain_add(&plain, hn_strbuf_text(&b));
+        hn_strbuf_reset(&b);
+        return hn_cli_print(&plain);
+    }
+    return hn_cli_print(&b);
 }
 
 hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     opening o = {0};
     hn_diags diags = {0};
     hn_workbench w;
-    hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT : HN_THEME_DARK,
+    hn_tui_opts opts = {.theme = args->theme && strcmp(args->theme, "light") == 0 ? HN_THEME_LIGHT
+                                                                                  : HN_THEME_DARK,
                         .frames = isnan(args->frames) ? 0 : (int)args->frames,
                         .blocks = args->blocks};
-    opts.ascii = args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
+    opts.ascii =
+        args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
     hn_status status = read_size(args->size, &opts, &diags);
     status = status == HN_OK ? read_opening(args, &o, &diags) : status;
     if (status == HN_OK) {
-        status = hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods, o.n_methods, &diags);
+        status = hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,
+                                   o.n_methods, &diags);
     }
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);

@@ -28,12 +28,13 @@ typedef struct hn_args {
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard, *over, *preset,
-        *grid, *plots;
-    double time, every, t, port, width, height, seed, frame_dt;
+        *grid, *plots, *size;
+    double time, every, t, port, width, height, seed, frame_dt, frames;
     double budget, levels, samples;
     double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
     int again, hold;
     int json, csv, open, help, raw_lambda, reactions, run_long;
+    int once, ascii, blocks;
 } hn_args;
 
 /// Parses what follows the command's name. HN_ERR_INPUT with a near miss in diag. hn_args_reset()

@@ -21,5 +21,6 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_problem(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_grade(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_import(const hn_library *lib, const hn_args *args);
+hn_exit hn_command_tui(const hn_library *lib, const hn_args *args);
 hn_exit hn_command_serve(const hn_library *lib, const hn_args *args);
 #endif
