@@ -35,9 +35,9 @@ NEEDS_server      := session $(NEEDS_session)
 # ---- rooms of the larger layers, lowest first: room:rooms below it that it may include -------------------------
 ROOMS_dynamics     := compile: evaluate:compile assembly:compile,evaluate analyse:compile,evaluate \
                       reactions:compile,evaluate
-ROOMS_formulations := ground: chart:ground rows:ground,chart list:ground
+ROOMS_formulations := ground: chart:ground rows:ground,chart list:ground,chart,rows
 ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
-                      list:step method:step,list
+                      list:step,explicit,implicit,constrained,external method:step,list
 ROOMS_study        := incidents: run:incidents truth:incidents,run account:incidents,run \
                       stability:incidents,run cost:incidents,run,truth
 ROOMS_session      := store: model:store compare:store,model references:store,model face:model \

@@ -28,10 +28,14 @@ static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor,
 
 static int init_memory(hn_chart *chart, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv, nc = (size_t)chart->nc;
+
+    // points of the chart
     int ok = hn_qr_init(&chart->all, arena, chart->nc, chart->nv);
     ok = init_point(chart, &chart->here, 1, arena) && ok;
     ok = init_point(chart, &chart->probe, 1, arena) && ok;
     ok = init_point(chart, &chart->base, 0, arena) && ok;
+
+    // columns of J: which are dependent, and where they stand
     chart->jd_entry = hn_arena_ints(arena, (size_t)chart->n_J);
     chart->jd_row = hn_arena_ints(arena, (size_t)chart->n_J);
     chart->jd_col = hn_arena_ints(arena, (size_t)chart->n_J);
@@ -43,6 +47,8 @@ static int init_memory(hn_chart *chart, hn_arena *arena) {
     chart->order = hn_arena_ints(arena, nv);
     chart->new_dep = hn_arena_ints(arena, nv);
     chart->first_dep = hn_arena_ints(arena, nv);
+
+    // scratch
     chart->scale = hn_arena_doubles(arena, nv);
     chart->c = hn_arena_doubles(arena, nv);
     chart->Mx = hn_arena_doubles(arena, nv * nv);
@@ -65,17 +71,22 @@ hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate, hn
     chart->rank = chart->r = -1;
     chart->with_rate = with_rate;
     chart->length = hn_system_length(sys);
+
+    // evaluators
     hn_status status =
         hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F | (with_rate ? HN_TERM_GAMMA : 0), arena,
                                 &chart->full);
     }
+
+    // patterns and memory
     if (status == HN_OK) {
         chart->n_J = hn_eval_pattern(chart->loop, HN_TERM_J, &chart->J_row, &chart->J_col);
         chart->n_M = hn_eval_pattern(chart->full, HN_TERM_M, &chart->M_row, &chart->M_col);
         status = init_memory(chart, arena) ? HN_OK : HN_ERR_MEMORY;
     }
+
     for (int i = 0; status == HN_OK && i < chart->nv; i++) {
         chart->at[i] = hn_system_position_of(sys, i);
     }
@@ -219,6 +230,8 @@ static hn_status close_by_dyads(hn_chart *chart, hn_chart_point *p, double t, do
     if (!hn_all_finite(chart->nq, p->q)) {
         return hn_chart_fail(chart, HN_ERR_DIVERGED, t, q, "the state is not finite");
     }
+
+    // dyads one after the other, then check the gap that they leave
     const int failed = hn_dyads_solve(chart->dyads, t, p->q);
     if (failed >= 0) {
         return fail_torn(chart, t, p->q, failed);
@@ -228,6 +241,8 @@ static hn_status close_by_dyads(hn_chart *chart, hn_chart_point *p, double t, do
         return hn_chart_fail(chart, HN_ERR_CHART, t, p->q,
                              "the closed form leaves a gap: coordinates too large for its digits");
     }
+
+    // the factor of J_d is needed for the basis
     if (!hn_chart_factor(chart, p)) {
         return fail_singular(chart, t, p->q);
     }
@@ -245,6 +260,8 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
     if (chart->dyads) {
         return close_by_dyads(chart, p, t, q);
     }
+
+    // Newton's method on the dependent coordinates
     for (int i = 0; i < MAX_NEWTON; i++) {
         eval_loop(chart, p, t);
         if (!isfinite(p->gap)) {
@@ -262,6 +279,7 @@ hn_status hn_chart_close(hn_chart *chart, hn_chart_point *p, double t, double *q
             p->valid = 1;
             return HN_OK;
         }
+
         last = p->gap;
         newton_step(chart, p);
     }
@@ -305,6 +323,8 @@ hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
     const int nv = chart->nv, nc = chart->nc, r = chart->r;
     const hn_chart_point *p = &chart->here;
     HN_ASSERT(p->valid);
+
+    // c of (2), from gamma
     hn_eval_run(chart->full, p->t, p->q, v);
     const double *M = hn_eval_get(chart->full, HN_TERM_M), *f = hn_eval_get(chart->full, HN_TERM_F);
     memset(chart->c, 0, (size_t)nv * sizeof(double));
@@ -315,6 +335,7 @@ hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
             chart->c[chart->dep[k]] = -chart->dq[k] * chart->scale[chart->dep[k]];
         }
     }
+
     // N' (f - M c)
     double *force = chart->dq;
     const hn_mass_entries at = {nv, chart->n_M, chart->M_row, chart->M_col};
@@ -322,6 +343,8 @@ hn_status hn_chart_accel(hn_chart *chart, const double *v, double *u_dot) {
     for (int i = 0; i < nv; i++) {
         force[i] = f[i] - force[i];
     }
+
+    // N' M N
     hn_mass_multiply(&at, M, p->N, r, chart->Mx);
     hn_mass_project(nv, r, p->N, chart->Mx, chart->A);
     hn_mat_t_vec(nv, r, p->N, force, u_dot);

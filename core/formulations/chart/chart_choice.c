@@ -271,6 +271,8 @@ static hn_status choose_again(hn_chart *chart, double t, const double *q, int fi
 static hn_status choose_first(hn_chart *chart, double t, const double *q, int first) {
     double best = 0;
     const int rank_before = chart->rank;
+
+    // the rank, and the best choice by pivoting
     fill_scaled(chart);
     const int rank = choose_by_pivots(chart, &best);
     if (rank_before >= 0 && rank != rank_before) {
@@ -279,12 +281,16 @@ static hn_status choose_first(hn_chart *chart, double t, const double *q, int fi
     }
     chart->rank = rank;
     chart->r = chart->nv - rank;
+
+    // the choice by preference, and whether the coordinate asked for can serve
     const double preferred = choose_by_order(chart, first, rank);
     if (first >= 0 && !(preferred > best + log(DEAD_POINT))) {
         chart->ind[0] = first;
         return hn_chart_fail(chart, HN_ERR_CHART, t, q,
                              "a dead point: this coordinate cannot be independent here");
     }
+
+    // pivots decide where the preferred choice is poor
     sort_choice(chart);
     const int preferred_serves = preferred > -HUGE_VAL && serves(chart);
     if (first == HN_CHART_BEST ||
@@ -295,6 +301,7 @@ static hn_status choose_first(hn_chart *chart, double t, const double *q, int fi
             (void)choose_by_order(chart, first, rank);
         }
     }
+
     begin(chart);
     chart->pivot_start = 0;
     return serves(chart) ? HN_OK : refuse_ball(chart, t);

@@ -43,12 +43,15 @@ double hn_chart_volume(const hn_chart *chart) {
 }
 
 void hn_chart_set_columns(hn_chart *chart) {
+    // number the dependent columns
     for (int j = 0; j < chart->nv; j++) {
         chart->dep_at[j] = -1;
     }
     for (int k = 0; k < chart->rank; k++) {
         chart->dep_at[chart->dep[k]] = k;
     }
+
+    // collect the entries of J in them
     int n = 0;
     for (int e = 0; e < chart->n_J; e++) {
         const int k = chart->dep_at[chart->J_col[e]];
@@ -59,6 +62,7 @@ void hn_chart_set_columns(hn_chart *chart) {
         }
     }
     chart->n_jd = n;
+
     if (is_square(chart)) {
         hn_sparse_lu_set_pattern(chart->here.lu, chart->rank, n, chart->jd_row, chart->jd_col);
         hn_sparse_lu_set_pattern(chart->probe.lu, chart->rank, n, chart->jd_row, chart->jd_col);
@@ -121,6 +125,8 @@ void hn_chart_solve_dependent(hn_chart *chart, const hn_chart_point *p, double *
 void hn_chart_make_basis(hn_chart *chart, hn_chart_point *p) {
     const int nv = chart->nv, nc = chart->nc, rank = chart->rank, r = chart->r;
     double *b = chart->z, *x = chart->dq;
+
+    // N: ones on the independent columns, -J_d^-1 J_i on the dependent ones
     memset(p->N, 0, (size_t)nv * (size_t)r * sizeof(double));
     for (int j = 0; j < r; j++) {
         p->N[chart->ind[j] * r + j] = 1;
@@ -133,6 +139,8 @@ void hn_chart_make_basis(hn_chart *chart, hn_chart_point *p) {
             p->N[chart->dep[k] * r + j] = x[k] * chart->scale[chart->dep[k]];
         }
     }
+
+    // s: the velocity that closures moving with time demand
     memset(p->s, 0, (size_t)nv * sizeof(double));
     const double *phi_t = hn_eval_get(chart->loop, HN_TERM_PHI_T);
     if (hn_norm_max(nc, phi_t) > 0) {

@@ -49,6 +49,8 @@ void hn_chart_jacobian_along(hn_chart_jacobian *c, hn_chart *chart, const double
                              const double *du, double *du_dot) {
     const int nv = chart->nv, r = chart->r;
     const hn_chart_point *p = &chart->here;
+
+    // the change of v along dx at fixed u
     memset(c->dv, 0, (size_t)nv * sizeof *c->dv);
     if (dx) {
         hn_accel_jacobian_carry(c->slopes, dx, c->rows);
@@ -60,9 +62,13 @@ void hn_chart_jacobian_along(hn_chart_jacobian *c, hn_chart *chart, const double
             c->dv[chart->dep[k]] = chart->dq[k] * chart->scale[chart->dep[k]];
         }
     }
+
+    // plus N du
     for (int i = 0; i < nv && du; i++) {
         c->dv[i] += hn_dot(r, p->N + (size_t)i * (size_t)r, du);
     }
+
+    // the change of the accelerations, read off the independent coordinates
     hn_accel_jacobian_along(c->slopes, dx, c->dv, c->da);
     for (int i = 0; i < r; i++) {
         du_dot[i] = c->da[chart->ind[i]];

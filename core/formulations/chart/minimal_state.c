@@ -240,6 +240,8 @@ static hn_status check_dyads(hn_minimal_state *s, double t, const double *y) {
 hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     hn_chart *chart = &s->chart;
     const double h = t - chart->base.t;
+
+    // close the loops at the end of the step, in the same assembly mode
     HN_TRY(place(s, t, y, HN_CHART_TOL_FINE));
     HN_TRY(check_dyads(s, t, y));
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
@@ -248,6 +250,8 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
         return hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
                              "a dead point lies inside this step: the coordinate turns back there");
     }
+
+    // note how fast the volume of J_d changes, for the next step's check
     hn_status status = hn_chart_settle(chart);
     if (status == HN_OK && h != 0) {
         const double volume = hn_chart_volume(chart);
@@ -256,6 +260,7 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
         s->has_rate = 1;
         memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
     }
+
     if (status == HN_OK) {
         compare_costs(s, t);
     }

@@ -42,12 +42,15 @@ static hn_status allocate(hn_reduced_terms *w, hn_arena *arena) {
                                 w->quadratic + 2,
                                 w->quadratic + 3};
     double **const matrices[] = {&w->Phi, &w->M_r, &w->C_r, &w->basis, &w->rates, &w->square};
+
+    // one spare entry, so that systems without coordinates get memory too
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = hn_arena_doubles(arena, n + 1);
     }
     for (size_t i = 0; i < sizeof matrices / sizeof *matrices; i++) {
         *matrices[i] = hn_arena_doubles(arena, n * n + 1);
     }
+
     w->ind = hn_arena_ints(arena, n + 1);
     w->pivot = hn_arena_ints(arena, n + 1);
     const int ok = hn_qr_init(&w->rows, arena, w->nv, w->nv);
@@ -161,6 +164,7 @@ static void sort_ints(int *list, int n) {
 
 /// Motors, then the chart's own, as long as they are not much worse than the best there are.
 static int choose_coordinates(hn_reduced_terms *w) {
+    // the largest volume there is
     for (int i = 0; i < w->nv; i++) {
         put_row(w, i, i);
     }
@@ -169,8 +173,11 @@ static int choose_coordinates(hn_reduced_terms *w) {
     if (!isfinite(best) && w->r > 0) {
         return 0;
     }
+
     memcpy(w->pivot, w->rows.perm, (size_t)w->r * sizeof *w->pivot);
     sort_ints(w->pivot, w->r);
+
+    // prefer motors, then the chart's own coordinates, then the best ones
     w->choice = HN_REDUCED_BY_MOTORS;
     if (w->r > 0 && list_motors(w, w->ind) && volume_of(w, w->ind) >= best + log(HN_CHART_TAU)) {
         return 1;
@@ -267,12 +274,16 @@ static double size_of(const hn_reduced_terms *w, const double *x) {
 static void calc_coriolis(hn_reduced_terms *w) {
     enum { AT_X, AT_Y, AT_BOTH, AT_REST };
     double **Q = w->quadratic;
+
+    // velocity parts at rest and at the present velocity
     memset(w->unit, 0, (size_t)w->nv * sizeof *w->unit);
     memset(w->y, 0, (size_t)w->nv * sizeof *w->y);
     expand(w, w->v_r, w->x);
     calc_velocity_part(w, w->y, Q[AT_REST]);
     calc_velocity_part(w, w->x, Q[AT_X]);
     const double speed = size_of(w, w->x);
+
+    // column j from a probing velocity along coordinate j
     for (int j = 0; j < w->r; j++) {
         for (int i = 0; i < w->nv; i++) {
             w->y[i] = w->basis[i * w->r + j];
@@ -380,6 +391,8 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     chart->has_first = 0;
     chart->rank = -1;
     chart->why[0] = '\0';
+
+    // a chart with as many degrees of freedom as expected
     hn_status status = hn_chart_choose(chart, t, q, HN_CHART_PREFERRED);
     if (status == HN_OK && freedoms >= 0 && chart->r != freedoms) {
         snprintf(chart->why, sizeof chart->why,
@@ -394,6 +407,8 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
     if (status != HN_OK) {
         return status;
     }
+
+    // scene coordinates that carry the motion
     w->r = chart->r;
     make_rates(w);
     if (!choose_coordinates(w) || rebase(w) != HN_OK) {

@@ -18,16 +18,22 @@ static int init_memory(hn_tspace *ts, hn_arena *arena) {
     const size_t nq = (size_t)ts->nq, nv = (size_t)ts->nv, nc = (size_t)ts->nc;
     const int ok = hn_qr_init(&ts->base_qr, arena, ts->nv, ts->nc) &&
                    hn_qr_init(&ts->jy, arena, ts->nc, ts->nv);
+
+    // the base
     ts->q0 = hn_arena_doubles(arena, nq);
     ts->q = hn_arena_doubles(arena, nq);
     ts->scale = hn_arena_doubles(arena, nv);
     ts->new_scale = hn_arena_doubles(arena, nv);
     ts->N0 = hn_arena_doubles(arena, nv * nv);
     ts->Y0 = hn_arena_doubles(arena, nv * nv);
+
+    // where the bases were last taken
     ts->N = hn_arena_doubles(arena, nv * nv);
     ts->s = hn_arena_doubles(arena, nv);
     ts->JN = hn_arena_doubles(arena, nc * nv);
     ts->X = hn_arena_doubles(arena, nv * nv);
+
+    // scratch
     ts->b = hn_arena_doubles(arena, nv + nc);
     ts->x = hn_arena_doubles(arena, nv + nc);
     ts->c = hn_arena_doubles(arena, nv);
@@ -46,6 +52,8 @@ hn_status hn_tspace_init(hn_tspace *ts, const hn_system *sys, hn_arena *arena, h
     ts->nc = info.nc;
     ts->rank = ts->r = -1;
     ts->length = hn_system_length(sys);
+
+    // evaluators
     hn_status status =
         hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &ts->loop);
     if (status == HN_OK) {
@@ -54,6 +62,8 @@ hn_status hn_tspace_init(hn_tspace *ts, const hn_system *sys, hn_arena *arena, h
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_M, arena, &ts->mass);
     }
+
+    // patterns and memory
     if (status == HN_OK) {
         ts->M_at.nv = ts->nv;
         ts->M_at.n = hn_eval_pattern(ts->full, HN_TERM_M, &ts->M_at.row, &ts->M_at.col);
@@ -159,6 +169,8 @@ hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q, hn_tspace
         return fail(ts, HN_ERR_DIVERGED, t, "the state is not finite");
     }
     const int carried = basis == HN_TSPACE_CARRIED && is_at(ts, t, q);
+
+    // directions across the constraints: QR of W^1/2 J'
     measure(ts, t, q);
     factor_rows(ts, t, q);
     if (ts->rank >= 0 && ts->base_qr.rank != ts->rank) {
@@ -166,13 +178,18 @@ hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q, hn_tspace
                     "the number of freedoms changed: the pose is singular, and the basis of the "
                     "free speeds changes its width there");
     }
+
     ts->rank = ts->base_qr.rank;
     ts->r = ts->nv - ts->rank;
+
+    // N0 is carried from the last base or taken from the factor
     memcpy(ts->scale, ts->new_scale, (size_t)ts->nv * sizeof(double));
     take_columns(ts, 0, ts->rank, ts->Y0);
     if (!carried || !carry_basis(ts)) {
         take_columns(ts, ts->rank, ts->r, ts->N0);
     }
+
+    // the base, and its pivot as a measure for steps from here
     memmove(ts->q0, q, (size_t)ts->nq * sizeof *q);
     ts->t0 = t;
     ts->has_base = 1;
@@ -241,6 +258,8 @@ static void pull_back(hn_tspace *ts, const double *rhs, double *y) {
 static void make_basis(hn_tspace *ts) {
     const int nv = ts->nv, nc = ts->nc, rank = ts->rank, r = ts->r;
     const double *J = hn_eval_get(ts->loop, HN_TERM_J);
+
+    // X = (J Y0)^-1 J N0
     memset(ts->JN, 0, (size_t)nc * (size_t)r * sizeof(double));
     for (int e = 0; e < ts->n_J; e++) {
         const size_t i = (size_t)ts->J_row[e], j = (size_t)ts->J_col[e];
@@ -255,12 +274,15 @@ static void make_basis(hn_tspace *ts) {
             ts->X[k * r + j] = ts->x[k];
         }
     }
+
+    // N = N0 - Y0 X
     memcpy(ts->N, ts->N0, (size_t)nv * (size_t)r * sizeof(double));
     for (int i = 0; i < nv; i++) {
         for (int k = 0; k < rank; k++) {
             hn_axpy(r, -ts->Y0[i * rank + k], ts->X + k * r, ts->N + i * r);
         }
     }
+
     ts->cost.ops += 2.0 * ts->n_J * r + hn_flops_product(nv, rank, r);
     pull_back(ts, hn_eval_get(ts->loop, HN_TERM_PHI_T), ts->s);
 }
@@ -286,6 +308,7 @@ hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *d
     double last = HUGE_VAL;
     ts->valid = 0;
     for (int turn = 0; turn < MAX_NEWTON; turn++) {
+        // the position moved by the present displacement
         memcpy(ts->q, from, (size_t)ts->nq * sizeof *q);
         hn_system_move(ts->sys, ts->q, delta);
         eval_loop(ts, t);
@@ -296,6 +319,7 @@ hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *d
         if (status != HN_OK) {
             return status;
         }
+
         // a gap that stopped falling at rounding level is as closed as it gets
         const int at_floor = ts->gap <= 1e-11 * ts->length && ts->gap >= 0.5 * last;
         if (ts->gap <= tol * ts->length || at_floor) {
@@ -304,6 +328,8 @@ hn_status hn_tspace_close(hn_tspace *ts, double t, const double *from, double *d
             ts->valid = 1;
             return HN_OK;
         }
+
+        // Newton's step across the constraints
         last = ts->gap;
         pull_back(ts, hn_eval_get(ts->loop, HN_TERM_PHI), ts->c);
         hn_axpy(ts->nv, 1, ts->c, delta);
@@ -331,6 +357,8 @@ void hn_tspace_coordinates(const hn_tspace *ts, const double *v, double *u) {
 hn_status hn_tspace_accel(hn_tspace *ts, const double *v, double *u_dot) {
     const int nv = ts->nv, r = ts->r;
     HN_ASSERT(ts->valid);
+
+    // force left after the rate of the basis: N' (f - M c)
     hn_eval_run(ts->full, ts->t, ts->q, v);
     const double *M = hn_eval_get(ts->full, HN_TERM_M), *f = hn_eval_get(ts->full, HN_TERM_F);
     pull_back(ts, hn_eval_get(ts->full, HN_TERM_GAMMA), ts->c);
@@ -338,9 +366,13 @@ hn_status hn_tspace_accel(hn_tspace *ts, const double *v, double *u_dot) {
     for (int i = 0; i < nv; i++) {
         ts->force[i] = f[i] - ts->force[i];
     }
+
+    // N' M N u' = N' (f - M c)
     hn_mass_multiply(&ts->M_at, M, ts->N, r, ts->MN);
     hn_mass_project(nv, r, ts->N, ts->MN, ts->A);
     hn_mat_t_vec(nv, r, ts->N, ts->force, u_dot);
+
+    // the reduced mass matrix must be positive
     double largest = 0;
     for (int i = 0; i < r; i++) {
         largest = fmax(largest, fabs(ts->A[i * r + i]));

@@ -73,6 +73,7 @@ static hn_status create_matrices(hn_accel_jacobian *j, hn_arena *arena) {
         hn_linear_entries(l, HN_LINEAR_J) + hn_linear_entries(l, HN_LINEAR_GAMMA_Q) +
         hn_linear_entries(l, HN_LINEAR_GAMMA_V) + hn_linear_entries(j->twist, HN_LINEAR_V) +
         (j->stabilised ? hn_linear_entries(l, HN_LINEAR_V) + hn_linear_entries(l, HN_LINEAR_J) : 0);
+
     // by position an entry of a ball is spread over its three speeds
     const int spread = j->n_balls > 0 ? 3 : 1;
     const int n = j->nv + j->nc;
@@ -80,6 +81,8 @@ static hn_status create_matrices(hn_accel_jacobian *j, hn_arena *arena) {
     const int puts = spread * (square + 2 * rows * (j->may_combine ? j->nc + 1 : 1)) + j->nc;
     const int sparse = hn_newton_matrix_wants_sparse(n, (long long)square / 2 + rows);
     j->product_ops = 2.0 * (square + rows);
+
+    // one matrix per kind of system
     for (int k = 0; k < HN_SLOPES_MATRICES; k++) {
         j->matrix[k] = hn_newton_matrix_create(arena, k == HN_SLOPES_COMPLEX ? HN_COMPLEX : HN_REAL,
                                                sparse, n, puts);
@@ -126,6 +129,8 @@ hn_status hn_accel_jacobian_create(const hn_system *sys, const hn_accel_law *law
                              .has_time = info.has_time,
                              .stabilised = law->alpha != 0 || law->beta != 0,
                              .gives = law->give > 0};
+
+    // tapes, memory, matrices
     hn_status status = create_tapes(j, arena);
     if (status == HN_OK) {
         status = allocate(j, arena);
@@ -277,6 +282,8 @@ static void combine_rows(hn_accel_jacobian *j, int rank) {
     const int nv = j->nv, nc = j->nc;
     double *column = j->work[0][0];
     const double *scale = scale_rows(j);
+
+    // QR of the weighted rows
     for (int i = 0; i < nc; i++) {
         for (int k = 0; k < nv; k++) {
             j->qr.a[k * nc + i] = scale[i] * weigh_entry(j, i, k);
@@ -285,6 +292,8 @@ static void combine_rows(hn_accel_jacobian *j, int rank) {
     hn_qr_factor(&j->qr, nc, nv, 0);
     j->combined = 1;
     j->n_kept = rank < j->qr.rank ? rank : j->qr.rank;
+
+    // columns of Q span what the rows hold
     for (int k = 0; k < j->n_kept; k++) {
         memset(column, 0, (size_t)nc * sizeof *column);
         column[k] = 1;
@@ -389,10 +398,14 @@ hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, const double *q, 
                                const hn_accel_law *law) {
     hn_accel_info info = {.rank = j->nc};
     hn_status status;
+
+    // copy the state; balls with unit quaternions
     memcpy(j->state, q, (size_t)j->nq * sizeof *q);
     memcpy(j->state + j->nq, v, (size_t)j->nv * sizeof *v);
     j->pose = hn_unit_positions(j->sys, j->q, j->unit);
     j->law = *law;
+
+    // accelerations and multipliers
     if (j->gives) {
         status = give_way(j, t);
     } else {
@@ -400,6 +413,8 @@ hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, const double *q, 
                                &info);
         j->evals++;
     }
+
+    // linearised terms with the rows in use
     if (status == HN_OK) {
         hn_linear_run(j->terms, t, j->pose, j->v, j->a, j->lambda);
         keep_rows(j, info.rank);
@@ -409,6 +424,7 @@ hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, const double *q, 
         }
         find_twist(j, t);
     }
+
     if (status != HN_OK) {
         return status;
     }
@@ -454,6 +470,8 @@ static void unpack_rows(const hn_accel_jacobian *j, const double *packed, double
 void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out) {
     const int nv = j->nv;
     double *top = j->work[0][0], *rows = j->work[0][1];
+
+    // the adjoint of (2)
     memcpy(top, w + nv, (size_t)nv * sizeof *top);
     memset(rows, 0, (size_t)j->nc * sizeof *rows);
     hn_slopes_pack(j, 1, 0, top, rows);
@@ -462,11 +480,14 @@ void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out) 
         j->packed[nv + k] = -j->packed[nv + k];
     }
     unpack_rows(j, j->packed + nv, rows);
+
+    // products with the derivatives by positions and velocities
     memset(out, 0, (size_t)nv * sizeof *out);
     memcpy(out + nv, w, (size_t)nv * sizeof *out);
     add_transposed(j, HN_LINEAR_K, -1, j->packed, out);
     add_transposed(j, HN_LINEAR_C, -1, j->packed, out + nv);
     subtract_transposed(j, rows, out, out + nv);
+
     // a displacement along a ball's own axes: dx' = dv - v x dx
     for (int k = 0; k < j->n_balls; k++) {
         const int at = j->balls[k].speed;
@@ -488,6 +509,8 @@ static void fill_ball(const hn_accel_jacobian *j, const hn_ball_place *b, double
     const double *q = j->q + b->position, *omega = j->v + b->speed;
     const double back[4] = {q[0], -q[1], -q[2], -q[3]}, size = hn_dot(4, q, q);
     double unit[4], rate[4], dx[4];
+
+    // derivatives by the four entries of the quaternion
     for (int k = 0; k < 4; k++) {
         const int col = b->position + k;
         memset(unit, 0, sizeof unit);
@@ -506,6 +529,8 @@ static void fill_ball(const hn_accel_jacobian *j, const hn_ball_place *b, double
             }
         }
     }
+
+    // derivatives of its rate by the three velocities
     for (int c = 0; c < 3; c++) {
         double along[3] = {0};
         along[c] = 1;

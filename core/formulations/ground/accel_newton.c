@@ -217,12 +217,15 @@ static void find_offset(const hn_accel_jacobian *j, hn_complex s, int parts, dou
 
 // positions of the solution from its speeds, in place of r1
 static void find_positions(const hn_accel_jacobian *j, hn_complex s, int parts, double *const *r) {
+    // plain coordinates
     for (int i = 0; i < j->nv; i++) {
         if (j->at[i] >= 0) {
             const hn_complex sum = plus(load(parts, r, j->at[i]), load(parts, r, j->nq + i));
             store(parts, r, j->at[i], times(inverse(s), sum));
         }
     }
+
+    // balls
     for (int k = 0; k < j->n_balls; k++) {
         const hn_ball_place *b = &j->balls[k];
         const turn p = turn_of(j, k, s);
@@ -246,6 +249,8 @@ void hn_accel_jacobian_solve(hn_accel_jacobian *j, int parts, double *const *x) 
     const hn_complex s = j->s[which], one = inverse(s);
     double *const g[2] = {j->work[0][2], j->work[1][2]};
     find_offset(j, s, parts, x, g);
+
+    // right side of (3)
     for (int part = 0; part < parts; part++) {
         double *top = j->work[part][0], *rows = j->work[part][1];
         memset(top, 0, (size_t)nv * sizeof *top);
@@ -256,6 +261,8 @@ void hn_accel_jacobian_solve(hn_accel_jacobian *j, int parts, double *const *x) 
         hn_slopes_subtract_by_position(j, g[part], rows);
         hn_slopes_pack(j, parts, part, top, rows);
     }
+
+    // divided by s, then solved
     for (int i = 0; i < nv + j->n_kept; i++) {
         const hn_complex value = {j->packed[parts * i], parts == 2 ? j->packed[2 * i + 1] : 0};
         const hn_complex over = times(one, value);
@@ -265,6 +272,8 @@ void hn_accel_jacobian_solve(hn_accel_jacobian *j, int parts, double *const *x) 
         }
     }
     hn_newton_matrix_solve(j->matrix[which], j->packed);
+
+    // velocities of the solution, and positions from them
     for (int i = 0; i < nv; i++) {
         for (int part = 0; part < parts; part++) {
             x[part][nq + i] = j->packed[parts * i + part];

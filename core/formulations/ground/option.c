@@ -79,6 +79,8 @@ static int read_unit(const hn_option *option, const char *unit, double *parts) {
 // none.
 static size_t number_length(const char *s) {
     size_t i = s[0] == '+' || s[0] == '-';
+
+    // digits with at most one point
     size_t digits = 0;
     for (; isdigit((unsigned char)s[i]); i++) {
         digits++;
@@ -91,6 +93,8 @@ static size_t number_length(const char *s) {
     if (digits == 0) {
         return 0;
     }
+
+    // exponent, where digits follow it
     if (s[i] == 'e' || s[i] == 'E') {
         size_t j = i + 1;
         j += s[j] == '+' || s[j] == '-';
@@ -107,6 +111,8 @@ static size_t number_length(const char *s) {
 hn_status hn_option_parse(const hn_option *option, const char *text, double *value, hn_diag *diag) {
     char word[MAX_VALUE];
     size_t n = 0;
+
+    // the word without blanks, a decimal comma read as a point
     while (isspace((unsigned char)*text)) {
         text++;
     }
@@ -118,9 +124,13 @@ hn_status hn_option_parse(const hn_option *option, const char *text, double *val
         n--;
     }
     word[n] = '\0';
+
+    // a named value
     if (option->choices && !too_long) {
         return find_choice(option, word, value, diag);
     }
+
+    // a number with its unit
     const size_t length = too_long ? 0 : number_length(word);
     if (length == 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs a number, found '%s'",
@@ -137,6 +147,7 @@ hn_status hn_option_parse(const hn_option *option, const char *text, double *val
                            option->key, unit, own ? "its unit is " : "it has no unit",
                            own ? own : "");
     }
+
     word[length] = '\0';
     // dividing by a power of ten keeps "20 ms" equal to 0.02 to the last bit
     const double number = strtod(word, NULL) / parts;

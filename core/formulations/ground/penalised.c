@@ -98,6 +98,8 @@ static void fill(hn_penalised *p, double weight) {
 hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
     const int nv = p->ode.base.nv;
     fill(p, weight);
+
+    // unit diagonal
     for (int i = 0; i < nv; i++) {
         const double g = p->G[i]; // the diagonal was numbered first
         if (!(g > 0)) {
@@ -111,6 +113,8 @@ hn_status hn_penalised_factor(hn_penalised *p, double t, double weight) {
     for (int k = 0; k < p->n_G; k++) {
         p->G[k] *= p->scale[p->G_row[k]] * p->scale[p->G_col[k]];
     }
+
+    // factor
     p->ode.base.cost.factorisations++;
     p->ode.base.cost.ops += 2.0 * p->n_G + hn_sparse_spd_factor_ops(p->spd);
     if (hn_sparse_spd_factor(p->spd, p->G, 4 * nv * DBL_EPSILON) != HN_OK) {

@@ -5,8 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-// lambda_1 = 0, then for k = 1, 2, ...
-// (1)
+// lambda_1 = 0, then for k = 1, 2, ...                                                    (1)
 //  (M + a J' J) acc_k = f + J' lambda_k - a J' r,
 //      r = gamma + 2 xi omega (J v + phi_t) + omega^2 phi
 //  lambda_(k+1) = lambda_k - a (J acc_k + r)
@@ -89,6 +88,8 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
     const double weight = choose_weight(al);
     hn_dense_ode_pull(&p->ode, v, p->omega, p->xi, p->pull);
     HN_TRY(hn_penalised_factor(p, t, weight));
+
+    // iterate from lambda = 0, so that the result depends on the state alone
     memset(al->lambda, 0, (size_t)nc * sizeof *al->lambda);
     memset(acc, 0, (size_t)nv * sizeof *acc);
     for (int i = 0; i < al->iterations; i++) {
@@ -102,6 +103,7 @@ static hn_status accelerate(void *self, double t, const double *v, double *acc) 
         p->ode.base.cost.newton++;
         p->ode.base.cost.ops += 6.0 * p->ode.n_J + 4.0 * p->ode.n_M + 6.0 * nc;
     }
+
     p->ode.base.cost.ops += 5.0 * p->ode.n_J;
     return HN_OK;
 }

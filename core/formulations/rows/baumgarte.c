@@ -33,10 +33,13 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     }
     *self = b;
     const hn_scene *scene = hn_system_scene(sys);
+
     b->rule = (int)options[HN_STABILISED_RULE];
     b->ode.alpha = options[HN_STABILISED_ALPHA];
     b->ode.beta = options[HN_STABILISED_BETA];
     b->n_user = hn_system_get_info(sys).n_user;
+
+    // for the automatic rule: rates of the user's coordinates in 1/s
     b->user_rates = hn_arena_doubles(arena, (size_t)b->n_user);
     b->rate_scale = hn_arena_doubles(arena, (size_t)b->n_user);
     if (!b->user_rates || !b->rate_scale) {

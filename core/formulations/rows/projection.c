@@ -74,6 +74,8 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     if (!p->projector) {
         return HN_OK; // no loop to close
     }
+
+    // positions
     *changed = 1;
     p->ode.base.cost.projections++;
     if (p->what != WHAT_VELOCITY) {
@@ -82,6 +84,8 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
             return tell(p, status, t, "the position");
         }
     }
+
+    // velocities, at the new positions
     if (p->what != WHAT_POSITION) {
         const hn_status status = hn_project_velocity(p->projector, t, y, y + p->ode.base.nq, &info);
         if (status != HN_OK) {

@@ -58,12 +58,16 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     if (status != HN_OK) {
         return status;
     }
+
+    // terms of (2)
     status =
         hn_eval_create(sys, HN_TERM_M | HN_TERM_J | HN_TERM_PHI | HN_TERM_PHI_T, arena, &s->terms);
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "the projection cannot be set up: %s",
                            hn_status_text(status));
     }
+
+    // scratch
     const size_t nv = (size_t)s->ode.base.nv, nc = (size_t)s->ode.base.nc;
     double **of_nv[] = {&s->N0_mu, &s->N0_nu, &s->N1_mu, &s->push, &s->zero};
     double **of_nc[] = {&s->mu, &s->nu, &s->rate, &s->x};
@@ -73,6 +77,8 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     for (size_t i = 0; i < sizeof of_nc / sizeof *of_nc; i++) {
         *of_nc[i] = hn_arena_doubles(arena, nc);
     }
+
+    // factors, and copies of the start of the step
     s->L = hn_arena_doubles(arena, nv * nv);
     s->L0 = hn_arena_doubles(arena, nv * nv);
     s->J0 = hn_arena_doubles(arena, nc * nv);
@@ -80,6 +86,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     s->start = hn_arena_doubles(arena, (size_t)s->ode.base.nq + nv);
     s->saddle = hn_saddle_ws_create(arena, (int)nv, (int)nc);
     s->length = hn_system_length(sys);
+
     s->M = hn_eval_get(s->terms, HN_TERM_M);
     s->J = hn_eval_get(s->terms, HN_TERM_J);
     s->phi = hn_eval_get(s->terms, HN_TERM_PHI);
@@ -114,6 +121,8 @@ static hn_status tell(symmetric *s, hn_status status, double t) {
     const hn_system *sys = s->ode.base.sys;
     const int no_mass = status == HN_ERR_NO_CONVERGENCE ? -1 : find_massless(s);
     const char *reason = hn_status_text(status);
+
+    // M^-1 does not exist: name the coordinate without mass
     if (no_mass >= 0) {
         const char *name =
             no_mass < hn_system_get_info(sys).n_user
@@ -125,6 +134,8 @@ static hn_status tell(symmetric *s, hn_status status, double t) {
                  t, name);
         return HN_ERR_MASS;
     }
+
+    // otherwise the reason by status
     if (status == HN_ERR_NO_CONVERGENCE) {
         reason = "it does not converge: the step is too long for it, or the pose is close to one "
                  "where the loops lose rank";
@@ -241,6 +252,8 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
     if (s->ode.base.nc == 0) {
         return hn_step_call_make(base, t, h, y, y_new, err);
     }
+
+    // push, step, push, until (2) is met
     hn_status status = begin(s, t, y);
     memcpy(s->q1, y, (size_t)s->ode.base.nq * sizeof *y);
     for (int i = 0; i < MAX_TURNS && status == HN_OK; i++) {

@@ -97,6 +97,8 @@ static void apply_pseudo_inverse(udwadia_kalaba *u, const double *b, double *x) 
         hn_qr_least_norm(rows, b, x);
         return;
     }
+
+    // rows were dropped: R' z = P' b in least squares
     for (int i = 0; i < rank; i++) {
         for (int k = 0; k < nc; k++) {
             kept->a[(size_t)i * nc + k] = k >= i ? rows->a[(size_t)k * rows->m + i] : 0;
@@ -108,6 +110,8 @@ static void apply_pseudo_inverse(udwadia_kalaba *u, const double *b, double *x) 
     }
     hn_qr_apply_qt(kept, u->right);
     hn_qr_solve_r(kept, u->right);
+
+    // x = Q z
     memset(x, 0, (size_t)u->ode.base.nv * sizeof *x);
     for (int i = 0; i < kept->rank; i++) {
         x[kept->perm[i]] = u->right[i];
@@ -118,6 +122,8 @@ static void apply_pseudo_inverse(udwadia_kalaba *u, const double *b, double *x) 
 
 static void correct_free_motion(udwadia_kalaba *u, double *a) {
     const int nv = u->ode.base.nv, nc = u->ode.base.nc;
+
+    // the free acceleration M^-1 f
     for (int i = 0; i < nv; i++) {
         a[i] = u->scale[i] * u->ode.f[i];
     }
@@ -125,6 +131,8 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
     for (int i = 0; i < nv; i++) {
         a[i] *= u->scale[i];
     }
+
+    // L^-1 J', factored
     for (int k = 0; k < nc; k++) {
         for (int j = 0; j < nv; j++) {
             u->rows.a[(size_t)k * nv + j] = u->scale[j] * u->ode.J[(size_t)k * nv + j];
@@ -132,6 +140,8 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
         hn_lower_solve(nv, u->L, nv, u->rows.a + (size_t)k * nv);
     }
     factor_rows(u);
+
+    // the correction that meets the constraints
     for (int k = 0; k < nc; k++) {
         u->b[k] = -u->row_scale[k] * (u->ode.gamma[k] + hn_dot(nv, u->ode.J + (size_t)k * nv, a));
     }
@@ -140,6 +150,7 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
     for (int i = 0; i < nv; i++) {
         a[i] += u->scale[i] * u->x[i];
     }
+
     u->ode.base.cost.solves++;
     u->ode.base.cost.ops +=
         hn_flops_cholesky_solve(nv) * (1.5 + 0.5 * nc) + 2 * hn_flops_product(nc, nv, 1);
@@ -150,13 +161,19 @@ static void correct_free_motion(udwadia_kalaba *u, double *a) {
 // columns of [(I - J^+ J) M; J] into u->stack at unit length; the index of an empty one, or -1
 static int fill_stack(udwadia_kalaba *u) {
     const int nv = u->ode.base.nv, nc = u->ode.base.nc;
+
+    // masses in units of the largest
     double heaviest = 0;
     for (int i = 0; i < nv; i++) {
         heaviest = fmax(heaviest, u->ode.M[(size_t)i * nv + i]);
     }
     u->mass_scale = heaviest > 0 ? 1 / heaviest : 1;
+
+    // J^+ by the factor of J
     memcpy(u->rows.a, u->ode.J, (size_t)nv * (size_t)nc * sizeof *u->rows.a);
     factor_rows(u);
+
+    // columns of (2) at unit length
     for (int j = 0; j < nv; j++) {
         double *column = u->stack.a + (size_t)j * (nv + nc);
         for (int i = 0; i < nv; i++) {
@@ -191,6 +208,8 @@ static hn_status solve_stack(udwadia_kalaba *u, double t, double *a) {
     if (empty >= 0) {
         return no_mass(u, empty, t);
     }
+
+    // right side of (2)
     for (int i = 0; i < nv; i++) {
         u->right[i] = u->mass_scale * u->ode.f[i];
     }
@@ -198,16 +217,20 @@ static hn_status solve_stack(udwadia_kalaba *u, double t, double *a) {
     for (int k = 0; k < nc; k++) {
         u->right[nv + k] = -u->row_scale[k] * u->ode.gamma[k];
     }
+
+    // least squares, which must have one solution
     hn_qr_factor(&u->stack, nv + nc, nv, STACK_TOL);
     if (u->stack.rank < nv) {
         return no_mass(u, u->stack.perm[u->stack.rank], t);
     }
+
     hn_qr_apply_qt(&u->stack, u->right);
     hn_qr_solve_r(&u->stack, u->right);
     for (int i = 0; i < nv; i++) {
         const int j = u->stack.perm[i];
         a[j] = u->stack_scale[j] * u->right[i];
     }
+
     u->ode.base.cost.fallbacks++;
     u->ode.base.cost.factorisations++;
     u->ode.base.cost.solves++;
@@ -236,7 +259,9 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     *self = u;
     u->ode.accelerate = accelerate;
     HN_TRY(hn_dense_ode_init(&u->ode, sys, 1, arena, diag));
+
     const int nv = u->ode.base.nv, nc = u->ode.base.nc, small = nv < nc ? nv : nc, big = nv + nc;
+    // factors, scales and the right sides of (1) and (2)
     u->L = hn_arena_doubles(arena, (size_t)nv * (size_t)nv);
     u->scale = hn_arena_doubles(arena, (size_t)nv);
     u->row_scale = hn_arena_doubles(arena, (size_t)nc);
@@ -245,6 +270,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     u->x = hn_arena_doubles(arena, (size_t)big);
     u->stack_scale = hn_arena_doubles(arena, (size_t)nv);
     u->right = hn_arena_doubles(arena, (size_t)big);
+
     if (!hn_qr_init(&u->rows, arena, nv, nc) || !hn_qr_init(&u->kept, arena, nc, small) ||
         !hn_qr_init(&u->stack, arena, big, nv) || hn_arena_failed(arena)) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

@@ -64,6 +64,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     }
     *self = s;
     HN_TRY(hn_newmark_init(&s->n, sys, form == HN_FORM_GGL, arena, diag));
+
+    // coefficients of (2), and room for what the start and the steps carry
     const size_t nv = (size_t)s->n.base.nv, nc = (size_t)s->n.base.nc;
     choose_coefficients(s, options[OPT_RHO]);
     s->a0 = (int)options[OPT_A0];

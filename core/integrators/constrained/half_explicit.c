@@ -160,12 +160,16 @@ static hn_status solve_stage(half_explicit *s, int i, double step) {
     if (status != HN_OK) {
         return status;
     }
+
+    // the right side: forces, and the velocity violation that the step has to remove
     memcpy(s->x, b->f, (size_t)nv * sizeof *s->x);
     hn_dae_speed_gap(b, s->V, s->x + nv);
     for (int k = 0; k < b->nr; k++) {
         s->x[nv + k] /= -step;
     }
     hn_newton_matrix_solve(s->matrix, s->x);
+
+    // slopes of this stage, and its multipliers with the sign of (1)
     memcpy(s->k + (size_t)i * nv, s->x, (size_t)nv * sizeof *s->x);
     memset(s->raw_next, 0, (size_t)b->nc * sizeof *s->raw_next);
     for (int k = 0; k < b->nr; k++) {
@@ -187,10 +191,14 @@ static hn_status advance(half_explicit *s, double t, double h, const double *y, 
     hn_dae_base *b = &s->base;
     const int nq = b->nq, nv = b->nv, stages = s->scheme->stages;
     const double *q = y, *v = y + nq;
+
+    // the first stage is the start itself
     memcpy(s->Q, q, (size_t)nq * sizeof *q);
     memcpy(s->V, v, (size_t)nv * sizeof *v);
     hn_dae_loops(b, t, s->Q);
     hn_dae_choose_rows(b);
+
+    // a stage: forces at its own state, velocities of the next stage closed
     for (int i = 0; i < stages; i++) {
         const double *row = s->scheme->A + (size_t)(i + 1) * stages;
         const double t_next = t + h * (i + 1 < stages ? abscissa(s->scheme, i + 1) : 1);
@@ -206,6 +214,7 @@ static hn_status advance(half_explicit *s, double t, double h, const double *y, 
         }
         hn_axpy(nv, h * row[i], s->k + (size_t)i * nv, s->V);
     }
+
     memcpy(y_new, s->Q, (size_t)nq * sizeof *q);
     memcpy(y_new + nq, s->V, (size_t)nv * sizeof *v);
     (void)hn_system_normalise(b->sys, y_new);

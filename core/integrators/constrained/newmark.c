@@ -197,9 +197,13 @@ static void put_stabiliser(hn_newmark *s, double h) {
     const double *J = hn_linear_get(s->matrices, HN_LINEAR_J);
     const double *M = hn_linear_get(s->matrices, HN_LINEAR_M);
     const double *C = hn_linear_get(s->matrices, HN_LINEAR_C);
+
+    // the derivative of the equilibrium with respect to velocities
     for (int i = 0; i < nv * nv; i++) {
         s->factor[i] = s->weight * M[i] + s->gamma * h * C[i];
     }
+
+    // columns of eta: the push M0^-1 J0' eta moves positions and velocities
     put_term(s, HN_LINEAR_V, s->beta * h / s->gamma, nv + nr, 0);
     for (int k = 0; k < nr; k++) {
         const double *P = s->P + (size_t)k * nv;
@@ -250,12 +254,16 @@ static hn_status iterate(hn_newmark *s, double t, double h, const double *y, dou
     for (;;) {
         move_state(s, h, y, q1);
         find_residual(s, t + h, h, q1);
+
+        // a new factor only where the old one no longer contracts
         if (newton.iterations == 0 || newton.contraction > KEEP_FACTOR_BELOW) {
             const hn_status status = factor_newton(s, t + h, h, q1);
             if (status != HN_OK) {
                 return status;
             }
         }
+
+        // D, eta and the multipliers move together
         correct(s);
         const hn_newton_verdict verdict =
             hn_newton_look(&newton, hn_dae_newton_size(&s->base, s->x, s->D, y));
@@ -280,6 +288,8 @@ hn_status hn_newmark_step(hn_newmark *s, double t, double h, const double *y, do
         hn_dae_tell_massless(b->sys, b->M, t, b->why, sizeof b->why);
         return HN_ERR_MASS;
     }
+
+    // predictor: constant acceleration, and the multipliers of the last step
     for (int i = 0; i < b->nv; i++) {
         s->D[i] = h * v0[i] + h * h / 2 * s->a0[i];
     }
@@ -287,6 +297,8 @@ hn_status hn_newmark_step(hn_newmark *s, double t, double h, const double *y, do
         s->scaled[k] = s->beta * h * h * s->guess[b->rows[k]];
         s->eta[k] = 0;
     }
+
+    // corrector
     const hn_status status = iterate(s, t, h, y, y_new);
     memcpy(y_new + b->nq, s->v1, (size_t)b->nv * sizeof *y_new);
     return status == HN_OK ? HN_OK : hn_dae_fail(b, status, t + h, "the step");

@@ -96,6 +96,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     }
     *self = s;
     HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
+
+    // the terms of the Lagrangian and the geometry of the balls
     hn_status status = hn_lagrange_create(sys, arena, &s->terms);
     if (status == HN_OK) {
         status = hn_ball_step_init(&s->balls, sys, arena);
@@ -107,6 +109,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, status, NULL, NULL, "rattle cannot be set up: %s",
                            hn_status_text(status));
     }
+
+    // a constant mass matrix needs no middle point; dampers are not variational
     s->constant = hn_lagrange_mass_is_constant(s->terms) && s->balls.n == 0;
     s->split = hn_lagrange_has_dissipation(s->terms);
     if (s->split && (int)options[OPT_SPEED_FORCES] == REFUSE) {
@@ -188,6 +192,8 @@ static const double *discrete_forces(rattle *s, double t, double h, const double
         s->w[i] = s->D[i] / 2;
         s->leave[i] = 0;
     }
+
+    // the middle of the step and the mean velocity across it
     memcpy(s->middle, q, (size_t)s->base.nq * sizeof *q);
     hn_system_move(s->base.sys, s->middle, s->w);
     for (int i = 0; i < nv; i++) {
@@ -198,6 +204,8 @@ static const double *discrete_forces(rattle *s, double t, double h, const double
     } else {
         hn_lagrange_forces(s->terms, t + h / 2, s->middle, s->w, &momentum, &force);
     }
+
+    // impulses of the forces, and of the multipliers at the start
     for (int i = 0; i < nv; i++) {
         s->force[i] = h / 2 * force[i];
         s->pull[i] = 0;
@@ -259,18 +267,23 @@ static hn_status find_position(rattle *s, double t, double h, const double *q, d
     hn_newton newton = {0};
     memset(s->lambda, 0, (size_t)b->nc * sizeof *s->lambda);
     for (;;) {
+        // the position that the present displacement leads to
         for (int i = 0; i < b->nv; i++) {
             s->kick[i] = s->D[i] + s->next.q_low[i];
         }
         memcpy(q1, q, (size_t)b->nq * sizeof *q1);
         hn_system_move(b->sys, q1, s->kick);
         const double *momentum = residual(s, t, h, q, q1);
+
+        // two factors at first, then only where contraction is slow
         if (newton.iterations < KEEP_FACTOR_FROM || newton.contraction > 0.05) {
             const hn_status status = factor_newton(s, t, h, momentum);
             if (status != HN_OK) {
                 return status;
             }
         }
+
+        // the correction of displacement and multipliers
         solve(s);
         b->cost.newton++;
         hn_axpy(b->nv, 1, s->x, s->D);
@@ -298,6 +311,8 @@ static hn_status find_speeds(rattle *s, double t, double h, const double *q, con
     } else {
         hn_axpy(nv, 1, s->force, s->pull);
     }
+
+    // momentum at the end, and the velocity that meets the constraints with it
     hn_dae_dynamics(b, t + h, q1, s->w);
     hn_dae_loops(b, t + h, q1);
     for (int i = 0; i < nv; i++) {
@@ -305,6 +320,8 @@ static hn_status find_speeds(rattle *s, double t, double h, const double *q, con
     }
     HN_TRY(speeds_from(s, s->kick, 1));
     memcpy(v1, s->x, (size_t)nv * sizeof *v1);
+
+    // the impulse of the velocity multipliers completes the momentum
     hn_dae_add_rows(b, b->J, -1, s->x + nv, s->pull);
     hn_add_kept(nv, s->next.p, s->next.p_low, s->pull);
     hn_dae_spread_rows(b, s->x + nv, s->next.raw);
@@ -324,12 +341,16 @@ static hn_status begin(rattle *s, double t, double h, const double *y) {
     hn_dae_loops(b, t, y);
     hn_dae_choose_rows(b);
     hn_dae_copy_rows(b, s->J0);
+
+    // dampers act in a half-step of their own
     if (s->split) {
         const hn_status status = damp(s, t, h / 2, y, s->v);
         if (status != HN_OK) {
             return status;
         }
     }
+
+    // momenta are carried with their rounding; they are rebuilt from v where v is not theirs
     memcpy(s->next.q_low, s->now.q_low, size);
     memcpy(s->next.p, s->now.p, size);
     memcpy(s->next.p_low, s->now.p_low, size);
@@ -352,6 +373,8 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     if (status != HN_OK) {
         return hn_dae_fail(b, status, t, "the damping half-step");
     }
+
+    // positions: a guess along v, then the discrete equations of motion
     for (int i = 0; i < b->nv; i++) {
         s->D[i] = h * s->v[i];
     }
@@ -361,8 +384,12 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
         return hn_dae_fail(b, status, t, "the positions of the step");
     }
     HN_TRY(look_at_turns(s, t));
+
+    // positions again, with the rounding of the sum kept
     memcpy(q1, y, (size_t)b->nq * sizeof *q1);
     hn_ball_step_move(&s->balls, q1, s->next.q_low, s->D, s->kick);
+
+    // velocities at the end
     status = find_speeds(s, t, h, y, q1, v1);
     if (status == HN_OK && s->split) {
         status = damp(s, t + h, h / 2, q1, v1);

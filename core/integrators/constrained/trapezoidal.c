@@ -14,7 +14,7 @@
 // Lagrangian. With weight w
 //
 //  v1 = (2/h) D - v0,    a1 = (4/h^2) D - (4/h) v0 - a0,    q1 = q0 + D                    (1)
-//  T delta = -h^2/4 (M a1 - f + J' (lambda* + w phi(q1))), D += delta, THEN lambda* += w phi(q1) (2)
+// T delta = -h^2/4 (M a1 - f + J' (lambda* + w phi(q1))), D += delta, THEN lambda* += w phi(q1) (2)
 //  T = M + h/2 C + h^2/4 (w J' J + K)
 //
 // The force of the loop is -J' lambda*. The update of lambda* belongs after that of q1: with the
@@ -123,6 +123,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     const int augmented = form == HN_FORM_AUGMENTED;
     s->given_weight = augmented ? form_options[HN_AUGMENTED_WEIGHT] : 0;
     s->project = augmented && (int)form_options[HN_AUGMENTED_PROJECTIONS] == HN_PROJECTIONS_ON;
+
     hn_status status = hn_linear_create(sys, terms, arena, &s->matrices);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &s->rate);
@@ -288,6 +289,7 @@ static hn_status iterate(trapezoidal *s, double t1, double h, double weight, con
     hn_newton newton = {0};
     move_state(s, h, y, q1);
     for (;;) {
+        // Newton's step with the penalty inside the tangent matrix
         linearise(s, t1, q1);
         find_residual(s, h, weight);
         const hn_status status = factor_tangent(s, h, weight);
@@ -299,7 +301,10 @@ static hn_status iterate(trapezoidal *s, double t1, double h, double weight, con
         hn_axpy(b->nv, 1, s->x, s->D);
         move_state(s, h, y, q1);
         hn_dae_loops(b, t1, q1);
+
         hn_axpy(b->nc, weight, b->phi, s->next.lambda); // after D has moved, see (2)
+
+        // done when the step has converged, and the last update of lambda was small too
         const double size = hn_dae_newton_size(b, s->x, s->D, y);
         const hn_newton_verdict verdict = hn_newton_look(&newton, size);
         if (verdict == HN_NEWTON_DIVERGES) {
@@ -332,14 +337,20 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     hn_dae_dynamics(b, t, y, v0);
     hn_dae_loops(b, t, y);
     const double weight = choose_weight(s, h);
+
+    // predictor: constant acceleration and multipliers
     memcpy(s->next.lambda, s->now.lambda, (size_t)b->nc * sizeof *s->next.lambda);
     for (int i = 0; i < b->nv; i++) {
         s->D[i] = h * v0[i] + h * h / 2 * s->now.a[i];
     }
+
+    // corrector
     const hn_status status = iterate(s, t + h, h, weight, y, y_new);
     if (status != HN_OK) {
         return hn_dae_fail(b, status, t + h, "the step");
     }
+
+    // project velocities and accelerations onto the constraints
     if (s->project) {
         project(s, h, weight, b->phi_t, s->v1);
         hn_eval_run(s->rate, t + h, y_new, s->v1);

@@ -33,11 +33,15 @@ void *hn_explicit_rk_create(const hn_tableau *tableau, int n, hn_arena *arena) {
     }
     rk->tab = tableau;
     rk->n = n;
+
+    // one slope per stage, and the scratch of the stages
     for (int i = 0; i < tableau->stages + tableau->extra; i++) {
         rk->k[i] = hn_arena_doubles(arena, (size_t)n);
     }
     rk->stage = hn_arena_doubles(arena, (size_t)n);
     rk->near = tableau->stiff_stage ? hn_arena_doubles(arena, (size_t)n) : NULL;
+
+    // coefficients of the dense output, and the ends of the step that they belong to
     for (int i = 0; tableau->d && i < HERMITE_TERMS + tableau->dense_rows; i++) {
         rk->dense[i] = hn_arena_doubles(arena, (size_t)n);
     }
@@ -115,6 +119,8 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
                               double *y_new, double *err) {
     explicit_rk *rk = self;
     const hn_tableau *tab = rk->tab;
+
+    // the first slope may be left from the last step or from a trial
     if (!rk->has_first) {
         const hn_status status = ode->rhs(ode->self, t, y, rk->k[0]);
         if (status != HN_OK) {
@@ -125,6 +131,8 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
     if (rk->has_near) {
         compare_slopes(rk, y);
     }
+
+    // the other stages
     for (int i = 1; i < tab->stages; i++) {
         const hn_status status = eval_stage(rk, ode, i, t, h, y);
         if (status != HN_OK) {
@@ -134,6 +142,7 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
             memcpy(rk->near, rk->stage, (size_t)rk->n * sizeof *rk->near);
         }
     }
+
     // the last stage of a FSAL method was evaluated at y1 itself: take that very point
     if (tab->fsal) {
         memcpy(y_new, rk->stage, (size_t)rk->n * sizeof *y_new);
@@ -141,6 +150,8 @@ hn_status hn_explicit_rk_step(void *self, const hn_ode *ode, double t, double h,
         combine(rk, tab->b, tab->stages, NULL, h, rk->stage);
         hn_compensated_add(&rk->sum, 0, rk->n, y, rk->stage, y_new);
     }
+
+    // error estimate and ends of the step for the dense output
     if (err && tab->e) {
         estimate_error(rk, h, err);
     }

@@ -109,6 +109,7 @@ static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, in
     // the library's own way to report faults ends the program; with it off they come back as
     // numbers
     gsl_set_error_handler_off();
+
     *s = (gsl_stepper){.type = type, .start_order = start_order, .n = n, .fresh = 1};
     s->f0 = room;
     s->f1 = room + n;
@@ -116,6 +117,8 @@ static gsl_stepper *create(const gsl_odeiv2_step_type *type, int start_order, in
     s->rtol = s->atol = 1e-6;
     s->hmax = FAR_STEP;
     s->system = (gsl_odeiv2_system){give_slope, give_jacobian, (size_t)n, s};
+
+    // a system without coordinates has nothing for the library to step
     if (n > 0) {
         s->driver = gsl_odeiv2_driver_alloc_y_new(&s->system, type, 1, s->atol, s->rtol);
         return s->driver ? s : NULL;
@@ -183,6 +186,8 @@ static hn_status advance(void *self, const hn_ode *ode, double t, double t_stop,
         *t_new = fmin(t + s->hmax, t_stop);
         return HN_OK;
     }
+
+    // a run that meets too many refused states ends
     s->ode = ode;
     s->refused = HN_OK;
     s->refusals = 0;
@@ -195,6 +200,8 @@ static hn_status advance(void *self, const hn_ode *ode, double t, double t_stop,
             return status;
         }
     }
+
+    // one step of the library, held to hmax and to the stop
     gsl_odeiv2_evolve *e = s->driver->e;
     const double wish = s->h;
     s->h = fmin(s->h, s->hmax);
@@ -202,6 +209,8 @@ static hn_status advance(void *self, const hn_ode *ode, double t, double t_stop,
     *t_new = t;
     const int code = gsl_odeiv2_evolve_apply(e, s->driver->c, s->driver->s, &s->system, t_new,
                                              fmin(t_stop, FAR), &s->h, y_new);
+
+    // count what the library rejected, and explain a failure
     s->rejected += (long long)(e->failed_steps - s->failed_before);
     s->failed_before = e->failed_steps;
     s->trouble += s->refusals > 0 ? REFUSED_TRIAL * s->refusals : -(s->trouble > 0);

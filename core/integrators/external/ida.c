@@ -179,6 +179,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *self = s;
+
+    // options and equations that the library cannot serve
     if (hn_dae_close_option(form, form_options) > 0) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "use ggl@ida, or index2@radau5",
                            "ida cannot take projected positions (close): its history of steps "
@@ -193,6 +195,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     if (status != HN_OK) {
         return status;
     }
+
+    // derivatives of the residual
     if (!s->by_differences) {
         status = hn_ida_jacobian_init(&s->jacobian, &s->problem, arena);
     }
@@ -200,6 +204,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
         return hn_diag_set(diag, status, NULL, "jacobian=differences needs less", "%s",
                            hn_status_text(status));
     }
+
+    // start values and the context of the library
     const size_t room = (size_t)hn_ida_problem_room(&s->problem);
     s->start_y = hn_arena_doubles(arena, room);
     s->start_ydot = hn_arena_doubles(arena, room);
@@ -297,6 +303,8 @@ static void add_counters(const ida_stepper *s, hn_cost *cost) {
     if (!s->ida) {
         return;
     }
+
+    // counters of the library
     IDAGetNumResEvals(s->ida, &residuals);
     IDAGetNumLinResEvals(s->ida, &extra);
     IDAGetNumLinSolvSetups(s->ida, &setups);
@@ -304,6 +312,8 @@ static void add_counters(const ida_stepper *s, hn_cost *cost) {
     IDAGetNumErrTestFails(s->ida, &errors);
     IDAGetNumStepSolveFails(s->ida, &failures);
     const linear_work work = work_of(s, setups);
+
+    // the same work in the units of the other methods
     cost->evals += residuals + extra;
     cost->factorisations += setups;
     cost->solves += iterations;
@@ -368,6 +378,7 @@ static hn_status advance(void *self, double t, double t_stop, const double *y, d
     if (isfinite(t_stop)) {
         IDASetStopTime(s->ida, t_stop);
     }
+
     // the time asked for only sets the scale of the first step
     const int flag = IDASolve(s->ida, t + 1, t_new, s->y, s->ydot, IDA_ONE_STEP);
     HN_TRY(hn_ida_status(flag, t, s->why, sizeof s->why));

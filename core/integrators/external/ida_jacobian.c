@@ -71,6 +71,8 @@ hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem
     const hn_ida_problem *p = problem;
     const size_t nq = (size_t)p->nq, nv = (size_t)p->nv, nc = (size_t)p->nc;
     *j = (hn_ida_jacobian){.problem = p};
+
+    // scratch; G and its rate exist for balls only
     j->unit = hn_arena_doubles(arena, nq + nv);
     j->rate = hn_arena_doubles(arena, nq + nv);
     j->still = hn_arena_doubles(arena, nq + nv);
@@ -82,6 +84,8 @@ hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // linearised terms, and for index 1 those that turn J
     j->offset = hn_system_get_info(p->sys).has_time;
     hn_status status = hn_linear_create(p->sys, terms_of(p->form), arena, &j->terms);
     if (status == HN_OK && is_index1(p)) {
@@ -185,12 +189,16 @@ static void subtract_turning(hn_ida_jacobian *j, const double *v) {
 
 static void put_kinematics(hn_ida_jacobian *j, double c, const double *y) {
     const hn_ida_problem *p = j->problem;
+
+    // ggl has M (q' - v) + J' mu = 0
     if (p->form == HN_FORM_GGL) {
         add_term(j, j->terms, HN_LINEAR_M, &(target){0}, c);
         add_term(j, j->terms, HN_LINEAR_M, &(target){.col = p->nq}, -1);
         subtract_transpose(j, 0, p->nq + p->nv + p->n_kept);
         return;
     }
+
+    // the others q' - G v = 0; without balls G is the identity
     for (int i = 0; i < p->nq; i++) {
         add(j, i, i, c);
     }
@@ -200,6 +208,7 @@ static void put_kinematics(hn_ida_jacobian *j, double c, const double *y) {
         }
         return;
     }
+
     find_G(j, y);
     for (int i = 0; i < p->nq * p->nv; i++) {
         add(j, i / p->nv, p->nq + i % p->nv, -j->G[i]);

@@ -110,8 +110,12 @@ static hn_status residual(void *self, int stage, double t, const double *u, cons
     implicit_dae *s = self;
     const int nv = s->nv, nc = s->nc;
     (void)stage;
+
+    // derivatives and multipliers of the stage
     place(s, u, 1);
     hn_linear_run(s->at_stage, t, s->q, s->v, rate + nv, u + 2 * nv);
+
+    // kinematics: X' - D(X) (v0 + W) - Y mu
     memcpy(r, s->v, (size_t)nv * sizeof *r);
     apply_D(s, s->x, r);
     for (int i = 0; i < nv; i++) {
@@ -121,7 +125,11 @@ static hn_status residual(void *self, int stage, double t, const double *u, cons
         hn_implicit_linear_push(&s->lin, u + 2 * nv + nc, s->pushed);
         hn_axpy(nv, -1, s->pushed, r);
     }
+
+    // dynamics
     memcpy(r + nv, s->R, (size_t)nv * sizeof *r);
+
+    // constraints at the stage itself, or at the end of the step (midpoint)
     if (!s->opts.at_end) {
         put_constraints(s, 1, r + 2 * nv);
     } else {
@@ -180,6 +188,8 @@ static hn_status allocate(implicit_dae *s, const hn_collocation *col, hn_arena *
                   {&s->pushed, nv},
                   {&s->last_lambda, stages * nc},
                   {&s->raw, nc}};
+
+    // all from one list, so that none is forgotten
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
         *arrays[i].to = hn_arena_doubles(arena, arrays[i].n);
     }
@@ -290,7 +300,10 @@ static void set_scale(implicit_dae *s, double h) {
 static void guess_stages(implicit_dae *s, double h) {
     const hn_collocation *col = &s->st.col;
     const int stages = col->stages, nv = s->nv, nc = s->nc, n = s->st.n;
+
     double l[HN_IMPLICIT_STAGES], *a = s->st.rate; // stages x nv
+
+    // accelerations and multipliers: of the last step extrapolated, or of its start
     for (int i = 0; i < stages; i++) {
         double *lambda = s->st.u + i * n + 2 * nv;
         memset(s->st.u + i * n, 0, (size_t)n * sizeof *s->st.u);
@@ -311,12 +324,16 @@ static void guess_stages(implicit_dae *s, double h) {
             }
         }
     }
+
+    // velocities by the tableau
     for (int i = 0; i < stages; i++) {
         double *x = s->st.u + i * n, *w = x + nv;
         for (int j = 0; j < stages; j++) {
             hn_axpy(nv, h * col->A[i][j], a + j * nv, w);
         }
     }
+
+    // positions by the tableau, once all velocities are known
     for (int i = 0; i < stages; i++) {
         double *x = s->st.u + i * n;
         hn_axpy(nv, h * col->c[i], s->v0, x);
@@ -476,6 +493,8 @@ hn_status hn_implicit_dae_step(void *self, double t, double h, const double *y, 
     s->h = h;
     s->why[0] = '\0';
     HN_TRY(begin(s, t, y));
+
+    // scale of the error norm, and stages from the last step
     set_scale(s, h);
     guess_stages(s, h);
     hn_status status = hn_stages_solve(&s->st, t, h);
@@ -483,12 +502,15 @@ hn_status hn_implicit_dae_step(void *self, double t, double h, const double *y, 
         snprintf(s->why, sizeof s->why, "%s", s->st.why);
         return status;
     }
+
+    // the end of the step by the stages, then its constraints
     double *end = s->st.parts;
     hn_stages_end(&s->st, end);
     place(s, end, 1);
     memcpy(y_new, s->q, (size_t)s->nq * sizeof *y);
     memcpy(y_new + s->nq, s->v, (size_t)s->nv * sizeof *y);
     status = close_end(s, t + h, y_new, y_new + s->nq);
+
     if (status == HN_OK && err && s->opts.rtol > 0) {
         estimate_error(s, t, h, y, y_new, err);
         if (s->is_driven) {

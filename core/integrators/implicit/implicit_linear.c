@@ -77,12 +77,16 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     l->place = hn_arena_ints(arena, nc);
     l->unit = hn_arena_doubles(arena, nc);
     l->seen = hn_arena_doubles(arena, nc);
+
+    // the projection M^-1 J' of the ggl form
     if (has_stabiliser(l) && !l->sparse) {
         l->Y = hn_arena_doubles(arena, nv * nc);
         l->S = hn_arena_doubles(arena, nc * nc);
         l->damped = hn_arena_doubles(arena, nv * nv);
         l->mass = hn_arena_doubles(arena, nv * nv);
     }
+
+    // right sides and products, two parts for complex systems
     for (int part = 0; part < 2; part++) {
         for (int k = 0; k < 5; k++) {
             l->work[part][k] = hn_arena_doubles(arena, n);
@@ -91,6 +95,8 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     if (has_stabiliser(l) && l->sparse && !create_mass_factor(l, arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // matrices and the choice of rows
     const int good = create_matrices(l, arena) && hn_qr_init(&l->qr, arena, l->nv, l->nc);
     return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
@@ -145,10 +151,14 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
                                  const double *v) {
     const int nv = l->nv, nc = l->nc;
     hn_linear_run(l->terms, t, q, v, NULL, NULL);
+
+    // the quick check: all rows count
     if (l->check && hn_row_check_run(l->check, l->J)) {
         keep_all(l);
         return 1;
     }
+
+    // lengths of the rows, not below those of earlier poses and of the longest
     double longest = 0;
     for (int i = 0; i < nc; i++) {
         l->unit[i] = hn_norm2(nv, l->J + (size_t)i * (size_t)nv);
@@ -163,6 +173,8 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
             l->qr.a[i * nv + j] = row[j] * l->unit[i];
         }
     }
+
+    // independent rows by pivoted QR
     hn_qr_factor(&l->qr, nv, nc, RANK_TOL);
     l->n_kept = l->qr.rank;
     for (int k = 0; k < l->n_kept; k++) {
@@ -191,6 +203,8 @@ static hn_status prepare_stabiliser(hn_implicit_linear *l) {
     double *column = l->work[0][0];
     l->ops += hn_flops_cholesky(nv) + nk * hn_flops_cholesky_solve(nv) +
               hn_flops_product(nk, nv, nk) + hn_flops_cholesky(nk);
+
+    // factor of M
     memcpy(l->mass, l->M, (size_t)(nv * nv) * sizeof *l->mass);
     double largest = 0;
     for (int i = 0; i < nv; i++) {
@@ -199,6 +213,8 @@ static hn_status prepare_stabiliser(hn_implicit_linear *l) {
     if (hn_cholesky(nv, l->mass, nv, 1e-14 * largest) != HN_OK) {
         return HN_ERR_SINGULAR;
     }
+
+    // Y = M^-1 J' and S = J Y of the rows that count
     memset(l->Y, 0, (size_t)(nv * l->nc) * sizeof *l->Y);
     for (int k = 0; k < nk; k++) {
         memcpy(column, l->J + (size_t)l->kept[k] * (size_t)nv, (size_t)nv * sizeof *column);
@@ -210,6 +226,8 @@ static hn_status prepare_stabiliser(hn_implicit_linear *l) {
             l->S[i * nk + k] = hn_dot(nv, l->J + (size_t)l->kept[i] * (size_t)nv, column);
         }
     }
+
+    // factor of S
     largest = 0;
     for (int i = 0; i < nk; i++) {
         largest = fmax(largest, l->S[i * nk + i]);
@@ -309,17 +327,23 @@ static void fill(const hn_implicit_linear *l, hn_newton_matrix *to, hn_complex o
     const hn_complex two = product(one, one), plus = {1, 0}, minus = {-1, 0};
     const int stabilised = has_stabiliser(l), extended = stabilised && l->sparse;
     hn_newton_matrix_begin(to, extended ? 2 * n : n);
+
+    // equilibrium
     put_term(l, to, HN_LINEAR_M, plus, 0, 0);
     put_term(l, to, HN_LINEAR_C, one, 0, 0);
     put_term(l, to, HN_LINEAR_K, two, 0, 0);
     if (stabilised && l->has_damping && !l->sparse) {
         put_damped(l, to, two);
     }
+
+    // constraint forces and constraints
     put_rows(l, to, HN_LINEAR_J, 1, minus, 0, nv);
     put_rows(l, to, HN_LINEAR_J, 0, plus, nv, 0);
     if (l->form == HN_FORM_INDEX2) {
         put_rows(l, to, HN_LINEAR_V, 0, one, nv, 0);
     }
+
+    // with M^-1 J' mu as an unknown of its own
     if (extended) {
         put_term(l, to, HN_LINEAR_C, (hn_complex){-one.re, -one.im}, 0, n);
         put_term(l, to, HN_LINEAR_M, plus, n, n);

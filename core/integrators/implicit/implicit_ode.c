@@ -44,9 +44,13 @@ static hn_status residual(void *self, int stage, double t, const double *u, cons
 static hn_status factor(void *self, int which, double re, double im) {
     implicit_ode *s = self;
     const int n = s->n;
+
+    // by the structure of the equations where they offer it
     if (s->ode->newton) {
         return s->ode->newton->factor(s->ode->self, which, re, im);
     }
+
+    // one real system
     if (which == 0) {
         for (int i = 0; i < n * n; i++) {
             s->real[i] = -s->jacobian[i];
@@ -56,6 +60,8 @@ static hn_status factor(void *self, int which, double re, double im) {
         }
         return hn_lu_factor(n, s->real, s->pivot[0], s->scale);
     }
+
+    // one complex system
     for (int i = 0; i < n * n; i++) {
         s->complex_matrix[i] = (hn_complex){-s->jacobian[i], 0};
     }
@@ -68,6 +74,8 @@ static hn_status factor(void *self, int which, double re, double im) {
 
 static void solve(void *self, hn_parts r) {
     implicit_ode *s = self;
+
+    // by the structure of the equations; signs are those of (s - J)
     if (s->ode->newton) {
         for (int part = 0; part < r.n; part++) {
             for (int i = 0; i < s->n; i++) {
@@ -77,6 +85,7 @@ static void solve(void *self, hn_parts r) {
         s->ode->newton->solve(s->ode->self, r.n, r.at);
         return;
     }
+
     if (r.n == 1) {
         for (int i = 0; i < s->n; i++) {
             r.at[0][i] = -r.at[0][i];
@@ -158,6 +167,8 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
     if (!s) {
         return NULL;
     }
+
+    // the equations of the stages, as stages.h sees them
     *s = (implicit_ode){.n = n, .arena = arena};
     const hn_stage_equations eq = {.self = s,
                                    .n_diff = n,
@@ -165,6 +176,8 @@ void *hn_implicit_ode_create(const hn_collocation *col, int n, hn_arena *arena) 
                                    .factor = factor,
                                    .solve = solve,
                                    .relinearise = relinearise};
+
+    // room for states, slopes and the guess
     s->y0 = hn_arena_doubles(arena, w);
     s->slope0 = hn_arena_doubles(arena, w);
     s->stage = hn_arena_doubles(arena, w);
@@ -228,17 +241,22 @@ static hn_status estimate_error(implicit_ode *s, double t, double h, const doubl
     const hn_collocation *col = &s->nw.col;
     const int n = s->n;
     double *const weighted = s->nw.parts;
+
+    // the embedded weights give the difference of two slopes
     for (int k = 0; k < n; k++) {
         weighted[k] = 0;
         for (int i = 0; i < col->stages; i++) {
             weighted[k] += col->e[i] * s->nw.u[i * n + k] / h;
         }
     }
+
+    // filtered by (s - J)^-1; a second pass where the first refuses the step
     const double *slope = s->slope0;
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < n; k++) {
             err[k] = -(slope[k] + weighted[k]);
         }
+
         solve(s, (hn_parts){1, {err, NULL}});
         for (int k = 0; k < n; k++) {
             err[k] *= s->weight;

@@ -10,12 +10,16 @@ enum { S = HN_IMPLICIT_STAGES };
 // inverse of the leading n x n block by Gauss-Jordan with row exchanges
 static void invert(int n, double (*A)[S], double (*out)[S]) {
     double w[S][2 * S] = {{0}};
+
+    // [A | 1]
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             w[i][j] = A[i][j];
         }
         w[i][n + i] = 1;
     }
+
+    // Gauss-Jordan elimination with row pivoting
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++) {
@@ -37,6 +41,8 @@ static void invert(int n, double (*A)[S], double (*out)[S]) {
             }
         }
     }
+
+    // the inverse stands on the right
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             out[i][j] = w[i][n + j];
@@ -74,12 +80,16 @@ void hn_collocation_dense(const hn_collocation *col, double theta, double *w) {
 static void integrate_basis(hn_collocation *col) {
     const int s = col->stages;
     double V[S][S], V_inverse[S][S];
+
+    // Vandermonde matrix of the nodes
     for (int j = 0; j < s; j++) {
         for (int k = 0; k < s; k++) {
             V[j][k] = pow(col->c[j], k);
         }
     }
     invert(s, V, V_inverse);
+
+    // integrals of the Lagrange polynomials: b over the step, A up to each node
     for (int j = 0; j < s; j++) {
         col->b[j] = 0;
         for (int k = 0; k < s; k++) {
@@ -111,6 +121,8 @@ static double real_root(double t, double m, double d) {
 // columns of T: the eigenvector of a number is perpendicular to the rows of A^-1 minus that number
 static void find_vectors_of_three(hn_collocation *col) {
     double row[2][3], part[3], other[3], turned[3];
+
+    // two rows of A^-1 determine the eigenvectors up to scale
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 3; j++) {
             row[i][j] = col->A_inverse[i][j];
@@ -123,6 +135,8 @@ static void find_vectors_of_three(hn_collocation *col) {
             complex_part[i][j] = row[i][j] - (i == j ? col->alpha : 0);
         }
     }
+
+    // real eigenvector
     hn_num3_cross(real[0], real[1], part);
     for (int i = 0; i < 3; i++) {
         col->T[i][0] = part[i];
@@ -173,8 +187,12 @@ void hn_collocation_init(hn_collocation *col, int stages, int order, const doubl
     for (int i = 0; i < stages; i++) {
         col->c[i] = c[i];
     }
+
+    // weights of the quadrature and their inverse
     integrate_basis(col);
     invert(stages, col->A, col->A_inverse);
+
+    // the end of the step as a combination of the stages
     for (int j = 0; j < stages; j++) {
         for (int i = 0; i < stages; i++) {
             col->end[j] += col->b[i] * col->A_inverse[i][j];
@@ -185,6 +203,8 @@ void hn_collocation_init(hn_collocation *col, int stages, int order, const doubl
             col->end[j] = j == stages - 1;
         }
     }
+
+    // real blocks and complex pairs of A^-1
     if (stages == 1) {
         col->n_real = 1;
         col->gamma = col->A_inverse[0][0];

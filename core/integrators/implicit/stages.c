@@ -93,6 +93,8 @@ static hn_status residuals(hn_stages *nw, double t, double h) {
 // u += correction; returns its size
 static double correct(hn_stages *nw) {
     const int s = nw->col.stages, n = nw->n, nd = nw->eq.n_diff;
+
+    // one real or complex system per block of A^-1
     combine(nw, nw->col.T_inverse, nw->r, nw->parts);
     for (int block = 0; block < nw->col.n_real + nw->col.n_pairs; block++) {
         const int real = block < nw->col.n_real;
@@ -100,8 +102,12 @@ static double correct(hn_stages *nw) {
         nw->eq.solve(nw->eq.self, (hn_parts){real ? 1 : 2, {first, real ? NULL : first + n}});
         nw->solves++;
     }
+
+    // back to the stages
     combine(nw, nw->col.T, nw->parts, nw->r);
     hn_axpy(s * n, 1, nw->r, nw->u);
+
+    // the largest correction of a stage in the error norm
     double worst = 0;
     for (int i = 0; i < s; i++) {
         double sum = 0;
@@ -177,7 +183,10 @@ hn_status hn_stages_solve(hn_stages *nw, double t, double h) {
     const int most = nw->tol > 0 ? MOST_TO_TOLERANCE : MOST_TO_ROUNDING;
     progress p = {0};
     nw->why[0] = '\0';
+
     hn_status status = factor(nw, t, h);
+
+    // corrections until they are below the tolerance, or grow
     for (int k = 1; status == HN_OK && k <= most; k++) {
         status = residuals(nw, t, h);
         if (status != HN_OK) {
@@ -192,6 +201,8 @@ hn_status hn_stages_solve(hn_stages *nw, double t, double h) {
             find_rates(nw, h);
             return HN_OK;
         }
+
+        // a slow iteration gets a new factor
         status = help(nw, t, h, &p);
         if (p.grown == 2) {
             break;

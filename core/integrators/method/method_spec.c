@@ -114,6 +114,8 @@ static hn_status parse_option(piece p, const hn_option *table, int n, double *se
         return at_column(diag, p, HN_ERR_INPUT);
     }
     const piece right = {p.text, equals + 1, p.to};
+
+    // the option of this name, given once
     copy_word(left, key);
     copy_word(right, value);
     for (int i = 0; i < n; i++) {
@@ -255,6 +257,8 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     if (diag) {
         *diag = (hn_diag){0};
     }
+
+    // the parts of FORMULATION@INTEGRATOR
     const piece all = {text, 0, n};
     if (n >= HN_SPEC_MAX) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
@@ -272,6 +276,8 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     }
     const piece left = {text, 0, at}, right = {text, at + 1, n};
     const size_t left_colon = find_char(left, ':'), right_colon = find_char(right, ':');
+
+    // names, whether they fit, and their options
     HN_TRY(find_formulation((piece){text, 0, left_colon}, &spec.formulation, diag));
     HN_TRY(find_stepper((piece){text, right.from, right_colon}, &spec.stepper, diag));
     HN_TRY(check_pair(right, &spec, diag));
@@ -279,6 +285,8 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
                       spec.formulation_set, diag));
     HN_TRY(parse_side(right, right_colon, spec.stepper->options, spec.stepper->n_options,
                       spec.stepper_set, diag));
+
+    // no fault: the message may hold a warning
     if (diag) {
         *diag = (hn_diag){0};
     }

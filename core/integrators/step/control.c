@@ -21,6 +21,8 @@ double hn_step_factor(hn_step_control *control, double err, int k) {
         control->just_rejected = 1;
         return HN_STEP_SHRINK;
     }
+
+    // PI control
     const double floor_err = fmax(err, 1e-10);
     double factor = HN_STEP_SAFETY * pow(floor_err, -0.7 / k) * pow(control->last, 0.4 / k);
     factor = fmin(HN_STEP_GROW, fmax(HN_STEP_SHRINK, factor));
@@ -30,6 +32,8 @@ double hn_step_factor(hn_step_control *control, double err, int k) {
         control->just_rejected = 1;
         return factor;
     }
+
+    // no growth right after a rejection
     if (control->just_rejected) {
         factor = fmin(1, factor);
     }

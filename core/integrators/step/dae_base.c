@@ -32,6 +32,8 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
     const hn_accel_opts opts = {.baumgarte = 0, .want_lambda = 1};
     *b = (hn_dae_base){
         .sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc, .length = hn_system_length(sys)};
+
+    // evaluators
     hn_status status = hn_accel_create(sys, &opts, arena, &b->accel);
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F, arena, &b->dyn);
@@ -39,6 +41,8 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
     if (status == HN_OK) {
         status = hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &b->loop);
     }
+
+    // scratch and patterns
     b->rows = hn_arena_ints(arena, (size_t)b->nc);
     b->place = hn_arena_ints(arena, (size_t)b->nc);
     b->arm = hn_arena_doubles(arena, (size_t)b->nv);
@@ -49,11 +53,14 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
     if (status == HN_OK && (!hn_qr_init(&b->qr, arena, b->nv, b->nc) || hn_arena_failed(arena))) {
         status = HN_ERR_MEMORY;
     }
+
     if (status != HN_OK) {
         hn_dae_base_destroy(b);
         return hn_diag_set(diag, status, NULL, NULL, "the equations cannot be compiled: %s",
                            hn_status_text(status));
     }
+
+    // the terms live in the evaluators
     b->M = hn_eval_get(b->dyn, HN_TERM_M);
     b->f = hn_eval_get(b->dyn, HN_TERM_F);
     b->phi = hn_eval_get(b->loop, HN_TERM_PHI);

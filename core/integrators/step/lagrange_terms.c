@@ -201,12 +201,16 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
     memcpy(s->symbols, s->ex.q_symbols, (size_t)s->nq * sizeof *s->symbols);
     memcpy(s->symbols + s->nq, s->ex.v_symbols, (size_t)n * sizeof *s->symbols);
     s->symbols[s->nq + n] = s->ex.t_symbol;
+
+    // forces at rest separate the damping from the other forces
     for (int i = 0; i < n; i++) {
         s->zero[i] = hn_num(0);
     }
     hn_substitute(s->g, s->ex.f, n, s->ex.v_symbols, s->zero, n, s->still);
     build_momentum(s);
     build_kinetic(s);
+
+    // tapes of forces, matrices and the rest
     hn_status status = hn_graph_failed(s->g) ? HN_ERR_MEMORY : HN_OK;
     if (status == HN_OK) {
         status = compile_forces(s, arena, &l->forces);
@@ -217,6 +221,8 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
     if (status == HN_OK) {
         status = compile_rest(s, arena, &l->rest);
     }
+
+    // a mass matrix of numbers alone is constant
     l->constant = 1;
     for (int i = 0; i < n * n; i++) {
         l->constant &= hn_is_number(s->ex.M[i], NULL);
@@ -233,6 +239,8 @@ hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena, hn_lagrange 
                 .ex = hn_system_get_exprs(sys),
                 .nq = info.nq,
                 .n = info.nv};
+
+    // room for the expressions while they are built
     s.symbols = hn_arena_ints(arena, nq + n + 1);
     s.of_q = hn_arena_get(arena, nq * sizeof *s.of_q);
     s.momentum = hn_arena_get(arena, n * sizeof *s.momentum);
@@ -243,6 +251,8 @@ hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena, hn_lagrange 
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // the object itself outlives them
     l->sys = sys;
     l->nq = info.nq;
     l->n = info.nv;
