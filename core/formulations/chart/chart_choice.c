@@ -1,4 +1,6 @@
-#include "formulations/chart/chart.h"
+#include "formulations/chart/chart_choice.h"
+
+#include "formulations/chart/chart_dependent.h"
 
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"

@@ -1,5 +1,6 @@
+#include "formulations/chart/chart_dependent.h"
+
 #include "linalg/dense.h"
-#include "formulations/chart/chart.h"
 #include "formulations/ground/flops.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/pivot_noise.h"
-#include "formulations/ground/accel_jacobian_internal.h"
+#include "formulations/ground/slopes.h"
 
 #include "dynamics/compile/quaternion.h"
 #include "linalg/dense.h"
@@ -165,28 +165,6 @@ void hn_accel_jacobian_free(hn_accel_jacobian *j) {
 }
 
 // ---- products with the rows of (2) ----
-
-void hn_slopes_add_term(const hn_accel_jacobian *j, hn_linear_term term, double k, const double *x,
-                        double *out) {
-    const double *values = hn_linear_get(j->terms, term);
-    const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
-    for (int e = 0; e < n; e++) {
-        out[rows[e]] += k * values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]] * x[cols[e]];
-    }
-}
-
-// out (nc) -= B_q x
-void hn_slopes_subtract_by_position(const hn_accel_jacobian *j, const double *x, double *out) {
-    const int *rows, *cols, n = hn_linear_pattern(j->twist, HN_LINEAR_V, &rows, &cols);
-    for (int e = 0; e < n; e++) {
-        out[rows[e]] -= j->twisted[e] * x[cols[e]];
-    }
-    hn_slopes_add_term(j, HN_LINEAR_GAMMA_Q, -1, x, out);
-    if (j->stabilised) {
-        hn_slopes_add_term(j, HN_LINEAR_V, -2 * j->law.alpha, x, out);
-        hn_slopes_add_term(j, HN_LINEAR_J, -j->law.beta * j->law.beta, x, out);
-    }
-}
 
 // out (nc) -= B_v x
 static void subtract_by_speed(const hn_accel_jacobian *j, const double *x, double *out) {
@@ -357,20 +335,6 @@ static void find_twist(hn_accel_jacobian *j, double t) {
         for (int e = 0; e < n; e++) {
             j->twisted[e] -= V[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
         }
-    }
-}
-
-void hn_slopes_pack(hn_accel_jacobian *j, int parts, int part, const double *top,
-                    const double *rows) {
-    for (int i = 0; i < j->nv; i++) {
-        j->packed[parts * i + part] = top[i];
-    }
-    for (int k = 0; k < j->n_kept; k++) {
-        double value = 0;
-        for (int i = 0; i < j->nc && j->combined; i++) {
-            value += j->W[i * j->n_kept + k] * rows[i];
-        }
-        j->packed[parts * (j->nv + k) + part] = j->combined ? value : rows[j->kept[k]];
     }
 }
 

@@ -18,9 +18,9 @@
 //     [M + C/s + K P/s      -J' ] [dv       ]     [M r2 - K g  ]
 //     [J + B_v/s + B_q P/s  give] [dlambda/s] =   [J r2 - B_q g] / s                          (3)
 //
-// as sparse as the mechanism (linalg/newton_matrix.h). Rows of J that depend on others are left
-// out. The length of a quaternion, which no motion changes, is held: derivatives are those along
-// turns.
+// as sparse as the mechanism (linalg/newton_matrix.h); accel_newton.h solves it. Rows of J that
+// depend on others are left out. The length of a quaternion, which no motion changes, is held:
+// derivatives are those along rotations.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -58,12 +58,6 @@ void hn_accel_jacobian_back(hn_accel_jacobian *j, const double *w, double *out);
 void hn_accel_jacobian_carry(const hn_accel_jacobian *j, const double *dx, double *rows);
 /// d(q', v')/d(q, v), (nq + nv) square, row-major. Fails as hn_accel_jacobian_prepare().
 HN_MUST_CHECK hn_status hn_accel_jacobian_fill(hn_accel_jacobian *j, double *jac);
-/// Factors (3) with s = (re, im); which = 0: real, 1: complex. Fails: HN_ERR_SINGULAR,
-/// HN_ERR_DIVERGED.
-HN_MUST_CHECK hn_status hn_accel_jacobian_factor(hn_accel_jacobian *j, int which, double re,
-                                                 double im);
-/// x (nq + nv, in 1 or 2 parts: real and imaginary) <- (s - dF/dy)^-1 x
-void hn_accel_jacobian_solve(hn_accel_jacobian *j, int parts, double *const *x);
 /// a (nv) at the state of the last hn_accel_jacobian_at().
 const double *hn_accel_jacobian_accelerations(const hn_accel_jacobian *j);
 long long hn_accel_jacobian_evals(const hn_accel_jacobian *j); ///< accelerations found on the way

@@ -1,6 +1,6 @@
-// The systems (3) of accel_jacobian.h: filled, factored and solved.
-#include "formulations/ground/accel_jacobian_internal.h"
+#include "formulations/ground/accel_newton.h"
 
+#include "formulations/ground/slopes.h"
 #include "dynamics/compile/quaternion.h"
 #include "linalg/dense.h"
 
@@ -63,56 +63,24 @@ static hn_complex turn_entry(const turn *p, int row, int col) {
     return scaled(sign * p->omega[third] / 2, p->over);
 }
 
-/// Where terms go: all rows of the square ones, the kept ones of the others.
-typedef struct target {
-    hn_newton_matrix *to;
-    int rows_from; ///< first row; of constraint rows: nv
-    int by_row;    ///< 1: rows are constraints
-} target;
-
-static void put_entry(const hn_accel_jacobian *j, const target *at, int row, int col,
-                      hn_complex e) {
-    if (!at->by_row) {
-        hn_newton_matrix_put(at->to, row, col, e.re, e.im);
-        return;
-    }
-    for (int k = 0; k < j->n_kept && j->combined; k++) {
-        const double w = j->W[row * j->n_kept + k];
-        hn_newton_matrix_put(at->to, at->rows_from + k, col, w * e.re, w * e.im);
-    }
-    if (!j->combined && j->place[row] >= 0) {
-        hn_newton_matrix_put(at->to, at->rows_from + j->place[row], col, e.re, e.im);
-    }
-}
-
-// k X, the columns of X along the speeds
-static void put_term(const hn_accel_jacobian *j, const target *at, hn_linear_term term,
-                     hn_complex k) {
-    const double *values = hn_linear_get(j->terms, term);
-    const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
-    for (int e = 0; e < n; e++) {
-        const double x = values[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
-        put_entry(j, at, rows[e], cols[e], scaled(x, k));
-    }
-}
-
 // k x P at an entry (row, col) of X whose columns are displacements
-static void put_displaced(const hn_accel_jacobian *j, const target *at, int row, int col,
+static void put_displaced(const hn_accel_jacobian *j, const hn_slopes_target *at, int row, int col,
                           hn_complex s, hn_complex k, double x) {
     const int which = j->ball_of[col];
     if (which < 0) {
-        put_entry(j, at, row, col, scaled(x, times(k, inverse(s))));
+        hn_slopes_put_entry(j, at, row, col, scaled(x, times(k, inverse(s))));
         return;
     }
     const turn p = turn_of(j, which, s);
     const int first = j->balls[which].speed;
     for (int c = 0; c < 3; c++) {
-        put_entry(j, at, row, first + c, scaled(x, times(k, turn_entry(&p, col - first, c))));
+        hn_slopes_put_entry(j, at, row, first + c,
+                            scaled(x, times(k, turn_entry(&p, col - first, c))));
     }
 }
 
-static void put_term_displaced(const hn_accel_jacobian *j, const target *at, hn_linear_term term,
-                               hn_complex s, hn_complex k) {
+static void put_term_displaced(const hn_accel_jacobian *j, const hn_slopes_target *at,
+                               hn_linear_term term, hn_complex s, hn_complex k) {
     const double *values = hn_linear_get(j->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(j->terms, term, &rows, &cols);
     for (int e = 0; e < n; e++) {
@@ -121,7 +89,8 @@ static void put_term_displaced(const hn_accel_jacobian *j, const target *at, hn_
     }
 }
 
-static void put_rows_by_position(const hn_accel_jacobian *j, const target *at, hn_complex s) {
+static void put_rows_by_position(const hn_accel_jacobian *j, const hn_slopes_target *at,
+                                 hn_complex s) {
     const hn_complex one = inverse(s);
     const int *rows, *cols, n = hn_linear_pattern(j->twist, HN_LINEAR_V, &rows, &cols);
     for (int e = 0; e < n; e++) {
@@ -134,40 +103,17 @@ static void put_rows_by_position(const hn_accel_jacobian *j, const target *at, h
     }
 }
 
-// what (2) and (3) have in common
-void hn_slopes_put_saddle(const hn_accel_jacobian *j, hn_newton_matrix *to) {
-    const hn_complex one = {1, 0};
-    const double *J = hn_linear_get(j->terms, HN_LINEAR_J);
-    const int *rows, *cols, n = hn_linear_pattern(j->terms, HN_LINEAR_J, &rows, &cols);
-    hn_newton_matrix_begin(to, j->nv + j->n_kept);
-    put_term(j, &(target){to, 0, 0}, HN_LINEAR_M, one);
-    put_term(j, &(target){to, j->nv, 1}, HN_LINEAR_J, one);
-    for (int e = 0; e < n; e++) {
-        const int place = j->place[rows[e]];
-        const double x = J[(size_t)rows[e] * (size_t)j->nv + (size_t)cols[e]];
-        for (int k = 0; k < j->n_kept && j->combined; k++) {
-            hn_newton_matrix_put(to, cols[e], j->nv + k, -x * j->W[rows[e] * j->n_kept + k], 0);
-        }
-        if (!j->combined && place >= 0) {
-            hn_newton_matrix_put(to, cols[e], j->nv + place, -x, 0);
-        }
-    }
-    for (int k = 0; k < j->n_kept && j->gives; k++) {
-        hn_newton_matrix_put(to, j->nv + k, j->nv + k, j->law.give, 0);
-    }
-}
-
 hn_status hn_accel_jacobian_factor(hn_accel_jacobian *j, int which, double re, double im) {
     const hn_complex s = {re, which == HN_SLOPES_REAL ? 0 : im}, one = inverse(s);
     hn_newton_matrix *to = j->matrix[which];
-    const target square = {to, 0, 0}, rows = {to, j->nv, 1};
+    const hn_slopes_target square = {to, 0, 0}, rows = {to, j->nv, 1};
     j->s[which] = s;
     hn_slopes_put_saddle(j, to);
-    put_term(j, &square, HN_LINEAR_C, one);
+    hn_slopes_put_term(j, &square, HN_LINEAR_C, one);
     put_term_displaced(j, &square, HN_LINEAR_K, s, one);
-    put_term(j, &rows, HN_LINEAR_GAMMA_V, one);
+    hn_slopes_put_term(j, &rows, HN_LINEAR_GAMMA_V, one);
     if (j->stabilised) {
-        put_term(j, &rows, HN_LINEAR_J, scaled(2 * j->law.alpha, one));
+        hn_slopes_put_term(j, &rows, HN_LINEAR_J, scaled(2 * j->law.alpha, one));
     }
     put_rows_by_position(j, &rows, s);
     return hn_newton_matrix_factor(to);

@@ -1,5 +1,7 @@
 #include "formulations/ground/state_ode.h"
 
+#include "formulations/ground/accel_newton.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "formulations/ground/flops.h"
 

@@ -23,26 +23,13 @@ enum { A0_SHIFTED, A0_CONSISTENT, A0_ZERO };
 static const double SHIFT_STEP =
     1e-2; // of h: for the rate of v' at the start, by central differences
 
-// what is carried from step to step
-typedef struct carried {
-    double *a, *vdot; // nv
-    double *lambda;   // nc
-} carried;
-
 typedef struct genalpha {
     hn_newmark n; // first
     int a0, fresh;
     double alpha_m, alpha_f;
-    carried now, next;
+    hn_newmark_carried now, next;   // v' in e
     double *q, *v, *before, *after; // for the start
 } genalpha;
-
-static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
-    c->a = hn_arena_doubles(arena, nv);
-    c->vdot = hn_arena_doubles(arena, nv);
-    c->lambda = hn_arena_doubles(arena, nc);
-    return c->a && c->vdot && c->lambda;
-}
 
 static void choose_coefficients(genalpha *s, double rho) {
     s->alpha_m = (2 * rho - 1) / (rho + 1);
@@ -54,15 +41,8 @@ static void choose_coefficients(genalpha *s, double rho) {
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
                         const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "genalpha", diag);
-    if (refused != HN_OK) {
-        return refused;
-    }
-    genalpha *s = hn_arena_get(arena, sizeof *s);
-    if (!s) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    *self = s;
+    HN_TRY(hn_dae_instance(form, form_options, "genalpha", sizeof(genalpha), arena, self, diag));
+    genalpha *s = *self;
     HN_TRY(hn_newmark_init(&s->n, sys, form == HN_FORM_GGL, arena, diag));
 
     // coefficients of (2), and room for what the start and the steps carry
@@ -73,10 +53,10 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     s->v = hn_arena_doubles(arena, nv);
     s->before = hn_arena_doubles(arena, nv);
     s->after = hn_arena_doubles(arena, nv);
-    const int good = carried_init(&s->now, arena, nv, nc) && carried_init(&s->next, arena, nv, nc);
-    return good && !hn_arena_failed(arena)
-               ? HN_OK
-               : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    hn_newmark_carried_init(&s->now, arena, nv, nc);
+    hn_newmark_carried_init(&s->next, arena, nv, nc);
+    return hn_arena_failed(arena) ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory")
+                                  : HN_OK;
 }
 
 static void destroy(void *self) {
@@ -88,7 +68,7 @@ static hn_status start(void *self, double t, const double *y) {
     genalpha *s = self;
     hn_dae_base *b = &s->n.base;
     s->fresh = 1;
-    return hn_dae_accelerate(b, t, y, y + b->nq, s->now.vdot, s->now.lambda);
+    return hn_dae_accelerate(b, t, y, y + b->nq, s->now.e, s->now.lambda);
 }
 
 // v' at t + d along the motion, to the second order in d
@@ -96,19 +76,19 @@ static hn_status look_ahead(genalpha *s, double t, double d, const double *y, do
     hn_dae_base *b = &s->n.base;
     const double *v = y + b->nq;
     for (int i = 0; i < b->nv; i++) {
-        s->v[i] = d * (v[i] + d / 2 * s->now.vdot[i]);
+        s->v[i] = d * (v[i] + d / 2 * s->now.e[i]);
     }
     memcpy(s->q, y, (size_t)b->nq * sizeof *s->q);
     hn_system_move(b->sys, s->q, s->v);
     for (int i = 0; i < b->nv; i++) {
-        s->v[i] = v[i] + d * s->now.vdot[i];
+        s->v[i] = v[i] + d * s->now.e[i];
     }
     return hn_dae_accelerate(b, t + d, s->q, s->v, vdot, NULL);
 }
 
 static hn_status begin(genalpha *s, double t, double h, const double *y) {
     hn_dae_base *b = &s->n.base;
-    memcpy(s->now.a, s->now.vdot, (size_t)b->nv * sizeof *s->now.a);
+    memcpy(s->now.a, s->now.e, (size_t)b->nv * sizeof *s->now.a);
     if (s->a0 == A0_ZERO) {
         memset(s->now.a, 0, (size_t)b->nv * sizeof *s->now.a);
     }
@@ -134,18 +114,18 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     memcpy(s->n.a0, s->now.a, nv * sizeof *s->n.a0);
     memcpy(s->n.guess, s->now.lambda, nc * sizeof *s->n.guess);
     for (size_t i = 0; i < nv; i++) {
-        s->n.past[i] = (s->alpha_m * s->now.a[i] - s->alpha_f * s->now.vdot[i]) / (1 - s->alpha_f);
+        s->n.past[i] = (s->alpha_m * s->now.a[i] - s->alpha_f * s->now.e[i]) / (1 - s->alpha_f);
     }
     hn_status status = hn_newmark_step(&s->n, t, h, y, y_new);
     memcpy(s->next.a, s->n.a1, nv * sizeof *s->n.a1);
-    memcpy(s->next.vdot, s->n.e, nv * sizeof *s->n.e);
+    memcpy(s->next.e, s->n.e, nv * sizeof *s->n.e);
     memcpy(s->next.lambda, s->n.lambda, nc * sizeof *s->n.lambda);
     return status;
 }
 
 static void accepted(void *self, int changed) {
     genalpha *s = self;
-    const carried spare = s->now;
+    const hn_newmark_carried spare = s->now;
     (void)changed; // a small mending of the state leaves the accelerations as good as they were
     s->now = s->next;
     s->next = spare;

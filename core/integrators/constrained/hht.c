@@ -17,44 +17,26 @@
 
 enum { OPT_STEP, OPT_DAMPING, N_OPTIONS };
 
-typedef struct carried {
-    double *a, *force; // nv
-    double *lambda;    // nc
-} carried;
-
 typedef struct hht {
     hn_newmark n; // first
     double alpha;
-    carried now, next;
+    hn_newmark_carried now, next; // forces in e
 } hht;
-
-static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
-    c->a = hn_arena_doubles(arena, nv);
-    c->force = hn_arena_doubles(arena, nv);
-    c->lambda = hn_arena_doubles(arena, nc);
-    return c->a && c->force && c->lambda;
-}
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
                         const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "hht", diag);
-    if (refused != HN_OK) {
-        return refused;
-    }
-    hht *s = hn_arena_get(arena, sizeof *s);
-    if (!s) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    *self = s;
+    HN_TRY(hn_dae_instance(form, form_options, "hht", sizeof(hht), arena, self, diag));
+    hht *s = *self;
     HN_TRY(hn_newmark_init(&s->n, sys, 0, arena, diag));
     s->alpha = -options[OPT_DAMPING];
     s->n.gamma = (1 - 2 * s->alpha) / 2;
     s->n.beta = (1 - s->alpha) * (1 - s->alpha) / 4;
     s->n.weight = 1 / (1 + s->alpha);
     const size_t nv = (size_t)s->n.base.nv, nc = (size_t)s->n.base.nc;
-    return carried_init(&s->now, arena, nv, nc) && carried_init(&s->next, arena, nv, nc)
-               ? HN_OK
-               : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+    hn_newmark_carried_init(&s->now, arena, nv, nc);
+    hn_newmark_carried_init(&s->next, arena, nv, nc);
+    return hn_arena_failed(arena) ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory")
+                                  : HN_OK;
 }
 
 static void destroy(void *self) {
@@ -76,7 +58,7 @@ static hn_status start(void *self, double t, const double *y) {
     hht *s = self;
     hn_dae_base *b = &s->n.base;
     HN_TRY(hn_dae_accelerate(b, t, y, y + b->nq, s->now.a, s->now.lambda));
-    find_force(s, t, y, s->now.lambda, s->now.force);
+    find_force(s, t, y, s->now.lambda, s->now.e);
     return HN_OK;
 }
 
@@ -87,18 +69,18 @@ static hn_status step(void *self, double t, double h, const double *y, double *y
     memcpy(s->n.a0, s->now.a, nv * sizeof *s->n.a0);
     memcpy(s->n.guess, s->now.lambda, nc * sizeof *s->n.guess);
     for (size_t i = 0; i < nv; i++) {
-        s->n.carry[i] = s->alpha / (1 + s->alpha) * s->now.force[i];
+        s->n.carry[i] = s->alpha / (1 + s->alpha) * s->now.e[i];
     }
     HN_TRY(hn_newmark_step(&s->n, t, h, y, y_new));
     memcpy(s->next.a, s->n.a1, nv * sizeof *s->n.a1);
     memcpy(s->next.lambda, s->n.lambda, nc * sizeof *s->n.lambda);
-    find_force(s, t + h, y_new, s->next.lambda, s->next.force);
+    find_force(s, t + h, y_new, s->next.lambda, s->next.e);
     return HN_OK;
 }
 
 static void accepted(void *self, int changed) {
     hht *s = self;
-    const carried spare = s->now;
+    const hn_newmark_carried spare = s->now;
     (void)changed; // a small mending of the state leaves the forces as good as they were
     s->now = s->next;
     s->next = spare;

@@ -46,6 +46,12 @@ static hn_status allocate(hn_newmark *s, hn_arena *arena) {
     return hn_arena_failed(arena) ? HN_ERR_MEMORY : create_matrix(s, arena);
 }
 
+void hn_newmark_carried_init(hn_newmark_carried *c, hn_arena *arena, size_t nv, size_t nc) {
+    c->a = hn_arena_doubles(arena, nv);
+    c->e = hn_arena_doubles(arena, nv);
+    c->lambda = hn_arena_doubles(arena, nc);
+}
+
 hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised, hn_arena *arena,
                           hn_diag *diag) {
     const unsigned rest = HN_LINEAR_RESIDUAL | HN_LINEAR_PHI | HN_LINEAR_SPEED_GAP;

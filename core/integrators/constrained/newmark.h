@@ -33,7 +33,16 @@ typedef struct hn_newmark {
     double *pushed; ///< nv: M0^-1 J0' eta
 } hn_newmark;
 
-/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, told in diag.
+/// The part of a step's result that the next step needs.
+typedef struct hn_newmark_carried {
+    double *a, *e;  ///< nv each: auxiliary and equilibrium of (3) (accelerations or forces)
+    double *lambda; ///< nc
+} hn_newmark_carried;
+
+/// Memory for systems (nv, nc); a failure shows in the arena.
+void hn_newmark_carried_init(hn_newmark_carried *c, hn_arena *arena, size_t nv, size_t nc);
+
+/// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, with the reason in diag.
 HN_MUST_CHECK hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised,
                                         hn_arena *arena, hn_diag *diag);
 void hn_newmark_destroy(hn_newmark *s);

@@ -58,12 +58,11 @@ typedef struct rattle {
     double *v, *kick;     // nv
 } rattle;
 
-static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
+static void carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
     c->q_low = hn_arena_doubles(arena, nv);
     c->p = hn_arena_doubles(arena, nv);
     c->p_low = hn_arena_doubles(arena, nv);
     c->raw = hn_arena_doubles(arena, nc);
-    return c->q_low && c->p && c->p_low && c->raw;
 }
 
 static hn_status allocate(rattle *s, hn_arena *arena) {
@@ -79,22 +78,15 @@ static hn_status allocate(rattle *s, hn_arena *arena) {
     const int *rows, *cols, turning = hn_lagrange_pattern(s->terms, &rows, &cols);
     s->matrix = hn_dae_matrix_create(&s->base, arena, (int)(nv + nc), 1, 2,
                                      (s->balls.n > 0 ? 5 : 3) * turning + 6 * s->balls.n);
-    const int good =
-        carried_init(&s->now, arena, nv, nc) && carried_init(&s->next, arena, nv, nc) && s->matrix;
-    return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
+    carried_init(&s->now, arena, nv, nc);
+    carried_init(&s->next, arena, nv, nc);
+    return s->matrix && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
                         const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "rattle", diag);
-    if (refused != HN_OK) {
-        return refused;
-    }
-    rattle *s = hn_arena_get(arena, sizeof *s);
-    if (!s) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    *self = s;
+    HN_TRY(hn_dae_instance(form, form_options, "rattle", sizeof(rattle), arena, self, diag));
+    rattle *s = *self;
     HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
 
     // the terms of the Lagrangian and the geometry of the balls

@@ -56,10 +56,9 @@ typedef struct trapezoidal {
     double *push, *raw;             // nc: -lambda* of the iteration, of the accepted step
 } trapezoidal;
 
-static int carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
+static void carried_init(carried *c, hn_arena *arena, size_t nv, size_t nc) {
     c->a = hn_arena_doubles(arena, nv);
     c->lambda = hn_arena_doubles(arena, nc);
-    return c->a && c->lambda;
 }
 
 // the last entry of J that stands in the row of entry e, and one more
@@ -99,25 +98,19 @@ static hn_status allocate(trapezoidal *s, hn_arena *arena) {
     }
     s->push = hn_arena_doubles(arena, nc);
     s->raw = hn_arena_doubles(arena, nc);
-    const int good = carried_init(&s->now, arena, nv, nc) &&
-                     carried_init(&s->next, arena, nv, nc) && create_tangent(s, arena);
-    return good && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
+    carried_init(&s->now, arena, nv, nc);
+    carried_init(&s->next, arena, nv, nc);
+    return create_tangent(s, arena) && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
 static hn_status create(const hn_system *sys, hn_dae_form form, const double *options,
                         const double *form_options, hn_arena *arena, void **self, hn_diag *diag) {
-    const hn_status refused = hn_dae_refuse_projecting(form, form_options, "trapezoidal", diag);
-    if (refused != HN_OK) {
-        return refused;
-    }
     (void)options;
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_PHI;
-    trapezoidal *s = hn_arena_get(arena, sizeof *s);
-    if (!s) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    *self = s;
+    HN_TRY(
+        hn_dae_instance(form, form_options, "trapezoidal", sizeof(trapezoidal), arena, self, diag));
+    trapezoidal *s = *self;
     HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
     // on index3 it is the bare rule
     const int augmented = form == HN_FORM_AUGMENTED;

@@ -1,11 +1,10 @@
+#include "integrators/method/catalogue.h"
+
 #include "integrators/method/method_spec.h"
 #include "integrators/list/stepper_list.h"
 #include "formulations/list/formulation_list.h"
 
 #include <math.h>
-
-// The catalogue of methods as JSON: the cards that the page, the terminal and `holonom list
-// methods` show.
 
 static void put_option(hn_strbuf *b, const hn_option *info) {
     hn_json_object(b);

@@ -46,7 +46,4 @@ HN_MUST_CHECK hn_status hn_option_parse(const hn_option *info, const char *text,
 /// {"spelling","formulation","integrator","title","short_name","model_error","settings":{...}};
 /// options of the integrator follow those of the formulation, named choices are strings.
 void hn_method_json(hn_strbuf *b, const hn_method_spec *spec);
-/// The whole catalogue: {"formulations":[card...],"integrators":[card...]}; options with unit,
-/// range, default.
-void hn_methods_json(hn_strbuf *b);
 #endif

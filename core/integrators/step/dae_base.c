@@ -352,6 +352,13 @@ hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
                        integrator);
 }
 
+hn_status hn_dae_instance(hn_dae_form form, const double *form_options, const char *integrator,
+                          size_t size, hn_arena *arena, void **self, hn_diag *diag) {
+    HN_TRY(hn_dae_refuse_projecting(form, form_options, integrator, diag));
+    *self = hn_arena_get(arena, size);
+    return *self ? HN_OK : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
+}
+
 int hn_dae_closes(int close, long long n, int dependent) {
     return close == HN_CLOSE_DEPENDENT ? dependent : close > 0 && n % close == 0;
 }

@@ -103,6 +103,11 @@ int hn_dae_projects_speeds(hn_dae_form form, const double *form_options);
 /// The refusal of an integrator that does not do that; HN_OK where it is not asked for.
 HN_MUST_CHECK hn_status hn_dae_refuse_projecting(hn_dae_form form, const double *form_options,
                                                  const char *integrator, hn_diag *diag);
+/// Begins `create` of an integrator with a scheme of its own: refuses index 3 with projected
+/// velocities as above and takes `size` bytes for the instance.
+HN_MUST_CHECK hn_status hn_dae_instance(hn_dae_form form, const double *form_options,
+                                        const char *integrator, size_t size, hn_arena *arena,
+                                        void **self, hn_diag *diag);
 /// 1 when the position is to be closed at the end of step `n` (1, 2, ...), of which `dependent`
 /// says that rows were left out.
 int hn_dae_closes(int close, long long n, int dependent);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom list scenes|methods|lessons|problems
 #include "cli/shell/commands.h"
+#include "integrators/method/catalogue.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
 #include "cli/shell/print.h"

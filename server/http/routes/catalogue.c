@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "integrators/method/catalogue.h"
 #include "http/routes/catalogue.h"
 
 #include "build.h"

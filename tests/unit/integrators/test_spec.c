@@ -1,4 +1,5 @@
 #include "support/near.h"
+#include "integrators/method/catalogue.h"
 
 #include "integrators/method/method_spec.h"
 #include "integrators/list/stepper_list.h"

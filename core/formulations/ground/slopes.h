@@ -1,6 +1,7 @@
-#ifndef HN_FORMULATIONS_ACCEL_JACOBIAN_INTERNAL_H
-#define HN_FORMULATIONS_ACCEL_JACOBIAN_INTERNAL_H
-// Inside accel_jacobian.h: what its two files share.
+#ifndef HN_FORMULATIONS_SLOPES_H
+#define HN_FORMULATIONS_SLOPES_H
+// The object behind accel_jacobian.h, and the products and matrix entries that its derivatives
+// (accel_jacobian.c) and its Newton systems (accel_newton.c) have in common.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -48,9 +49,23 @@ void hn_slopes_add_term(const hn_accel_jacobian *j, hn_linear_term term, double 
                         double *out);
 /// out (nc) -= B_q x
 void hn_slopes_subtract_by_position(const hn_accel_jacobian *j, const double *x, double *out);
-/// Begins a matrix with what (2) and (3) have in common.
+/// Destination of terms in a matrix: all rows of the square terms, the rows in use of the others.
+typedef struct hn_slopes_target {
+    hn_newton_matrix *to;
+    int rows_from; ///< first row; of constraint rows: nv
+    int by_row;    ///< 1: rows are constraints
+} hn_slopes_target;
+
+/// Puts entry (row, col) of a term at its destination.
+void hn_slopes_put_entry(const hn_accel_jacobian *j, const hn_slopes_target *at, int row, int col,
+                         hn_complex e);
+/// Puts k X, the columns of X along the velocities.
+void hn_slopes_put_term(const hn_accel_jacobian *j, const hn_slopes_target *at, hn_linear_term term,
+                        hn_complex k);
+/// Begins a matrix with the part that (2) and (3) share.
 void hn_slopes_put_saddle(const hn_accel_jacobian *j, hn_newton_matrix *to);
 /// (nv) and the rows in use of (nc) into the packed right side, as part 0 or 1 of so many.
 void hn_slopes_pack(hn_accel_jacobian *j, int parts, int part, const double *top,
                     const double *rows);
+
 #endif

@@ -1,0 +1,31 @@
+#ifndef HN_FORMULATIONS_CHART_CHOICE_H
+#define HN_FORMULATIONS_CHART_CHOICE_H
+// The choice of the dependent and independent columns of a chart, and whether it still serves.
+
+#include "formulations/chart/chart_state.h"
+
+/// Which column has to be independent: the number of one, or
+enum {
+    HN_CHART_PREFERRED =
+        -1, ///< the actuated coordinates and then the first ones, as long as |det J_d| is at least
+            ///< HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide
+    HN_CHART_BEST =
+        -2 ///< when an earlier choice has become poor: columns change places while |det J_d| grows
+};
+/// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first`
+/// cannot be independent or the rank differs from the one of an earlier choice, HN_ERR_UNSUPPORTED
+/// when the turning of a ball would have to be independent (plain_only).
+HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
+/// The end of the chart was passed: HN_ERR_CHART with `what`; where nothing but the turning of a
+/// ball could have taken over since `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name,
+/// because a shorter step changes nothing about that.
+hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what);
+/// 1 when changing one dependent column for an independent one would make |det J_d| at `here`
+/// larger by more than 1 / tau, and at least double it. With one freedom this compares with the
+/// best choice there is.
+int hn_chart_is_poor(hn_chart *chart, double tau);
+/// 1 when all of J has full row rank nearby; for telling a dead point of the chart from a singular
+/// pose.
+int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q);
+
+#endif
