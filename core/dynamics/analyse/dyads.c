@@ -52,7 +52,7 @@ typedef struct builder {
     hn_dyads *d;
     const hn_system *sys;
     hn_arena *arena;
-    int *dep_at;           ///< per speed: its place in dep, -1
+    int *dep_at;           ///< per velocity: its place in dep, -1
     int *start, *rows;     ///< J_d by columns
     int *P, *Q, *R, *work; ///< of BTF
     double *x;             ///< a value per symbol

@@ -39,7 +39,7 @@ typedef enum hn_dyad_kind {
         HN_DYAD_KIND_COUNT
 } hn_dyad_kind;
 
-/// One step of the analysis, for telling.
+/// One step of the analysis, for reports.
 typedef struct hn_dyad {
     hn_dyad_kind kind;
     int n;          ///< 1 or 2

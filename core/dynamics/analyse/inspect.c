@@ -1,4 +1,5 @@
 #include "dynamics/analyse/inspect.h"
+
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
@@ -43,7 +44,7 @@ static void put_tree(hn_strbuf *b, const hn_system *sys) {
     hn_json_array(b);
     int at = sys->tree.ground;
     while (at >= 0) {
-        // a joint of several freedoms is told at its end, as the joint it is
+        // a joint of several degrees of freedom is reported at its end, as the joint it is
         if (!links[at].is_virtual) {
             put_branch(b, sys, at);
         }

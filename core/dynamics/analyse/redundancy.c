@@ -99,7 +99,7 @@ static void put_follower(hn_strbuf *b, const hn_system *sys, basis *s, int row) 
     hn_json_end_object(b);
 }
 
-/// diag(M)^-1/2, speeds without mass as the heaviest, as in the rank that assembly reports.
+/// diag(M)^-1/2, velocities without mass as the heaviest, as in the rank that assembly reports.
 static void weigh(const double *M, int n, double *d) {
     double heaviest = 0;
     for (int k = 0; k < n; k++) {

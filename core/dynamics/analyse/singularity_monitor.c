@@ -356,7 +356,7 @@ static double form(hn_singularity *r, double t, const double *q, const double *w
     return hn_dot(r->nc, w, hn_eval_get(r->gamma, HN_TERM_GAMMA));
 }
 
-/// Column k of Q as a direction of speeds.
+/// Column k of Q as a direction of velocities.
 static void kernel_column(hn_singularity *r, int k, double *v) {
     memset(v, 0, (size_t)r->nv * sizeof *v);
     v[k] = 1;

@@ -12,8 +12,8 @@
 //
 // Prediction. Along a smooth motion sigma_min^2 is smooth, and a zero of it is a double one: a
 // parabola through three looks whose lowest value is zero against the present one says when; one
-// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the speeds
-// v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two freedoms at the pose:
+// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the velocities
+// v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two degrees of freedom at the pose:
 // two real roots are two crossing branches, none means that the mechanism is locked, a double one
 // is a cusp.
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
@@ -39,7 +39,7 @@ typedef struct hn_singularity_info {
 
 /// What a pose where rows are nearly lost looks like.
 typedef struct hn_singularity_pose {
-    int mobility_before, mobility; ///< freedoms off the pose, and at it
+    int mobility_before, mobility; ///< degrees of freedom off the pose, and at it
     hn_branches branches;
     int n_rows, rows[4]; ///< rows with the largest part in what is lost, largest first
     double parts[4];     ///< and their parts, of 1
@@ -57,10 +57,10 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singu
 /// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look,
 /// and where one costs so much that not every state gets it. Allocates nothing.
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);
-/// D of the last look (nv): speeds divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
+/// D of the last look (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_singularity_scale(const hn_singularity *r);
 /// What is known of the pose that the last look or probe saw with this `sigma_min`, from all
-/// singular values (dense: for poses that are told).
+/// singular values (dense: for poses that are reported).
 void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,
                             hn_singularity_pose *pose);
 

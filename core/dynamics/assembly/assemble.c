@@ -1,4 +1,4 @@
-// Assembly in outline: pose, speeds, accelerations, and the report. The search itself is in
+// Assembly in outline: pose, velocities, accelerations, and the report. The search itself is in
 // assemble_position.c.
 
 #include "dynamics/assembly/assemble.h"
@@ -181,7 +181,7 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     return status;
 }
 
-// ---- speeds ----
+// ---- velocities ----
 
 /// gap = J v + phi_t, and whether it is more than rounding.
 static int velocity_gap(const hn_assembler *s, const double *v, double *gap) {

@@ -64,7 +64,7 @@ static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
     return n;
 }
 
-/// The joint cannot move: a fixed one, or one with all its freedoms pinned.
+/// The joint cannot move: a fixed one, or one with all its degrees of freedom pinned.
 static int is_pinned(const hn_assembler *s, int joint) {
     const hn_joint *j = &s->scene->joints[joint];
     if (j->type == HN_JOINT_FIXED) {

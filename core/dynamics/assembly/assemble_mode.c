@@ -23,7 +23,7 @@ typedef struct mode_search {
     double *values;
     double *start, *best; ///< n of the assembler
     int n_found;
-    char found[MAX_FOUND][MODE_TEXT]; ///< modes met, for telling
+    char found[MAX_FOUND][MODE_TEXT]; ///< modes met, for reports
 } mode_search;
 
 static void read_modes(mode_search *m) {

@@ -18,7 +18,7 @@ typedef struct hn_assembler {
     double length;
 
     hn_eval *eval; ///< M, phi, phi_t, J, energy
-    /// user coordinates, their start, system coordinates, speeds of zero
+    /// user coordinates, their start, system coordinates, velocities of zero
     double *x, *guess, *q, *rest;
     int *turn;              ///< n: 0, 1, 2 for the entries of a rotation vector, else -1
     double *reach;          ///< n

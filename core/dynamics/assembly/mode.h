@@ -7,7 +7,7 @@
 
 /// Watches the assembly modes of the loops: of each the sign of -det J_d, with J_d the loop's rows
 /// and the coordinates that depend on the others. Independent are the loop's actuated coordinates,
-/// then its pinned ones, then the first ones, as many as it has freedoms; the dependent ones are
+/// then its pinned ones, then the first ones, as many as it has degrees of freedom; the dependent ones are
 /// taken in the order of the ring. For a four-bar driven by th1 that is the sign of sin(th3 - th2):
 /// open +, crossed -. It passes through 0 where the independent coordinates stop serving (dead
 /// point); a change of sign without that is a branch jump.

@@ -18,13 +18,13 @@ enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
 // fraction of the move, a bias that a run adds up.
 static const double FROZEN_CONTRACTION = 1e-4;
 static const double CONTRACTION = 0.1; // velocity: the problem is linear, only convergence counts
-// a factor made this close (in any coordinate) is worth trying for the speeds
+// a factor made this close (in any coordinate) is worth trying for the velocities
 static const double NEAR = 1e-2;
 // a step this small that gains nothing meets the rounding of phi itself, which grows with the
 // extent of the mechanism
 static const double STEP_ROUNDING = 1e-12;
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
-// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far speeds are closed, and what will do
+// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far velocities are closed, and what will do
 // where they close no further
 static const double VELOCITY_TOL = 2e-16;
 static const double VELOCITY_ROUNDING = 4e-15;
@@ -51,7 +51,7 @@ struct hn_projector {
     int have_factor, dense, rank;
     double factor_t, *factor_q;
 
-    double *speed_unit; // nv: what a speed of 1 may do to J v
+    double *speed_unit; // nv: what a velocity of 1 may do to J v
 
     double *gap, *step, *multiplier; // nc, nv, nc
     double *best, *impulse, *closed; // nv; nc: sums over a velocity projection
@@ -112,7 +112,7 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     return HN_OK;
 }
 
-// Where all rows are lengths an angular speed counts by the length and nothing depends on the size
+// Where all rows are lengths an angular velocity counts by the length and nothing depends on the size
 // of the mechanism. Rows of a scene of formulas have no unit; the length of such a scene is the arm
 // by which angles move them, so it is the same there.
 static void find_speed_units(hn_projector *p) {

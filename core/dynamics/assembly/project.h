@@ -4,7 +4,7 @@
 // Rank-deficient J is handled (minimum-norm), never NaN. Source: Eich 1993; Ascher, Chin & Reich
 // 1994; Blajer 2002.
 //
-// Positions move along the speeds (hn_system_move), so that quaternions stay unit. Position: q <- q
+// Positions move along the velocities (hn_system_move), so that quaternions stay unit. Position: q <- q
 // - W^-1 J' S^-1 phi(q), S = J W^-1 J', with W and J frozen where the factor was made; it is made
 // again when the gap shrinks by less than 1e4 per step. Velocity: the same for J v + phi_t, with
 // the factor at hand while it contracts. The sparse factor of dynamics/evaluate/factor.h serves;

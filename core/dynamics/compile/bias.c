@@ -6,9 +6,10 @@
 // LOCAL REST
 //          f_i = m_i a_i + gf_i,  gf_i = B_i s_i + pf_i,  pf_i = sum of gf_c over revolute children
 //      so no m a is pushed down and rotated up again; moments about the joint point likewise
-//          n_own = I al + w x I w + s x a + sum r_c x gf_c                       (s, I: composite B of mech.h)
-//      and the moments of children that the link's rotation carries (n_new) or of all children (n_all).
+//          n_own = I al + w x I w + s x a + sum r_c x gf_c      (s, I: composite B of mech.h)
+//      and the moments of children that the link's rotation carries (n_new) or of all (n_all).
 #include "dynamics/compile/bias.h"
+
 #include "dynamics/compile/formula.h"
 
 static const double Z[3] = {0, 0, 1};
@@ -39,23 +40,33 @@ static void trace_base(hn_mech *m, int link) {
 static void trace_rotation(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     hn_link_trace *at = &m->at[link];
+
+    // turns as its parent does
     if (l->carry == HN_CARRY_RIGID) {
         at->w = m->at[l->parent].w;
         at->al = m->at[l->parent].al;
         at->B = m->at[l->parent].B;
         return;
     }
+
+    // the base first: what carries the group
     trace_base(m, link);
+
+    // a ball's frame is its link's own
     if (l->type == HN_JOINT_SPHERICAL) {
         at->w = m->base_w[l->group];
         at->al = m->base_al[l->group];
         at->B = hn_mat3_accel(m->g, at->w, at->al);
         return;
     }
+
+    // the base's motion plus the link's own turn about z
     hn_vec3 uz = hn_vec3_scale(m->g, m->sys->v[l->coordinate], hn_vec3_num(Z));
     hn_vec3 w = hn_vec3_add(m->g, m->base_w[l->group], uz);
     hn_vec3 al =
         hn_vec3_add(m->g, m->base_al[l->group], hn_vec3_cross(m->g, m->base_w[l->group], uz));
+
+    // into the work frame
     if (!hn_mech_is_planar(m, link)) { // into E
         hn_mat3 R = hn_mat3_turn_z(at->c, at->s);
         w = hn_mat3_apply_transposed(m->g, &R, w);
@@ -102,7 +113,10 @@ static void hand_inward(hn_mech *m, int link) {
     const hn_link_trace *at = &m->at[link];
     hn_link_trace *p = &m->at[l->parent];
     int moves = !hn_mech_is_planar(m, link);
+
     hn_vec3 rest;
+
+    // the child's rest, and the moments that its rotation carries
     if (l->carry == HN_CARRY_RIGID) {
         // its own B s stands in the parent's composite already
         rest = hn_vec3_add(m->g, hn_vec3_scale(m->g, at->m, at->kappa), at->pf);
@@ -121,6 +135,8 @@ static void hand_inward(hn_mech *m, int link) {
             }
         }
     }
+
+    // both at the parent's joint point
     p->pf = hn_vec3_add(m->g, p->pf, rest);
     p->n_rest = hn_vec3_add(m->g, p->n_rest, hn_mech_moment(m, l->parent, at->r, rest));
 }
@@ -150,17 +166,25 @@ void hn_mech_trace_bias(hn_mech *m) {
     const hn_tree *tree = m->tree;
     hn_link_trace *ground = &m->at[tree->ground];
     hn_vec3 none = hn_vec3_zero();
+
+    // the ground stands still, seen from free fall
     ground->gravity = scene_gravity(m);
     ground->a = hn_vec3_sub(m->g, none, ground->gravity);
     ground->w = ground->al = none;
     ground->B = hn_mat3_accel(m->g, none, none);
+
+    // nothing is handed inward yet
     for (int l = 0; l < tree->n_links; l++) {
         hn_link_trace *at = &m->at[l];
         at->pf = at->n_rest = at->n_new = at->n_all = none;
     }
+
+    // outward: motion
     for (int k = 0; k < tree->n_order; k++) {
         trace_motion(m, tree->order[k]);
     }
+
+    // inward: forces
     for (int k = tree->n_order - 1; k >= 0; k--) {
         int link = tree->order[k];
         close_link(m, link);

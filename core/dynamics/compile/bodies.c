@@ -1,5 +1,5 @@
-// A scene of bodies and joints, compiled: an outline of the passes of mech.h.
 #include "dynamics/compile/bodies.h"
+
 #include "dynamics/compile/bias.h"
 #include "dynamics/compile/constraints.h"
 #include "dynamics/compile/lagrangian.h"
@@ -52,6 +52,8 @@ static hn_status make_symbols(hn_system *sys) {
     if (!names || !rates) {
         return HN_ERR_MEMORY;
     }
+
+    // the scene's names where the coordinate is its own, else the body's
     static const char *const entries[4] = {"e0", "e1", "e2", "e3"};
     for (int i = 0; i < sys->nv; i++) {
         int link = sys->tree.link_of[i];
@@ -67,6 +69,8 @@ static hn_status make_symbols(hn_system *sys) {
             names[l->position + k] = angle_name(sys, entries[k], body);
         }
     }
+
+    // a name that could not be made is missing memory
     for (int i = 0; i < sys->nq; i++) {
         if (!names[i]) {
             return HN_ERR_MEMORY;
@@ -135,41 +139,44 @@ static hn_status trace_point(hn_mech *m, int at, int body, const hn_quantity *pl
 static hn_status trace_points(hn_mech *m) {
     hn_system *sys = m->sys;
     const hn_scene *scene = sys->scene;
-    hn_status status = HN_OK;
     int n = 0;
-    for (; n < scene->n_points && status == HN_OK; n++) {
-        status = trace_point(m, n, scene->points[n].body, scene->points[n].at);
+
+    // the scene's own points
+    for (; n < scene->n_points; n++) {
+        HN_TRY(trace_point(m, n, scene->points[n].body, scene->points[n].at));
     }
-    for (int k = 0; k < sys->tree.n_cut && status == HN_OK; k++) {
+
+    // the two halves of every cut joint
+    for (int k = 0; k < sys->tree.n_cut; k++) {
         const hn_joint *joint = &scene->joints[sys->tree.cut[k]];
-        status = trace_point(m, n++, joint->parent, joint->parent_at);
-        if (status == HN_OK) {
-            status = trace_point(m, n++, joint->child, joint->child_at);
-        }
+        HN_TRY(trace_point(m, n++, joint->parent, joint->parent_at));
+        HN_TRY(trace_point(m, n++, joint->child, joint->child_at));
     }
-    for (int k = 0; k < scene->n_constraints && status == HN_OK; k++) {
+
+    // where the points of constraints should be
+    for (int k = 0; k < scene->n_constraints; k++) {
         hn_vec3 foot;
         if (hn_constraint_has_points(&scene->constraints[k])) {
-            status = hn_mech_constraint_foot(m, &scene->constraints[k], &foot);
-            put_point(sys, n++, status == HN_OK ? foot : hn_vec3_zero());
+            HN_TRY(hn_mech_constraint_foot(m, &scene->constraints[k], &foot));
+            put_point(sys, n++, foot);
         }
     }
-    return status;
+    return HN_OK;
 }
 
 // ---- loads ----
 
+/// Relates point p to point q, or to the ground where q < 0.
 static hn_status get_span(hn_mech *m, int p, int q, hn_relative *rel) {
     const hn_point *points = m->sys->scene->points;
     int a = hn_tree_link(m->tree, points[p].body);
     int b = q >= 0 ? hn_tree_link(m->tree, points[q].body) : m->tree->ground;
     hn_vec3 arm_a, arm_b = hn_vec3_zero();
-    hn_status status = hn_mech_arm_of(m, a, points[p].at, &arm_a);
-    if (status == HN_OK && q >= 0) {
-        status = hn_mech_arm_of(m, b, points[q].at, &arm_b);
+    HN_TRY(hn_mech_arm_of(m, a, points[p].at, &arm_a));
+    if (q >= 0) {
+        HN_TRY(hn_mech_arm_of(m, b, points[q].at, &arm_b));
     }
-    int common = hn_tree_common(m->tree, a, b);
-    return status == HN_OK ? hn_mech_relate(m, common, a, arm_a, b, arm_b, rel) : status;
+    return hn_mech_relate(m, hn_tree_common(m->tree, a, b), a, arm_a, b, arm_b, rel);
 }
 
 static void add_levers(hn_mech *m, const hn_reach *end, double sign, const hn_mat3 *turn,
@@ -194,6 +201,8 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     hn_mech *m = self;
     hn_relative rel;
     HN_TRY(get_span(m, p, q, &rel));
+
+    // room for every lever of both ends
     size_t cap = (size_t)(rel.a.n + rel.b.n) + 1;
     out->n = 0;
     out->coordinate = hn_arena_ints(m->sys->arena, cap);
@@ -201,6 +210,8 @@ static hn_status span_of_points(void *self, int p, int q, hn_span *out) {
     if (!out->coordinate || !out->coefficient) {
         return HN_ERR_MEMORY;
     }
+
+    // in the loop's frame, or in world axes where the scene's origin is the other end
     hn_mat3 to_world = hn_mat3_identity();
     const hn_mat3 *turn = NULL;
     out->delta = hn_vec3_sub(m->g, rel.a.pos, rel.b.pos);
@@ -268,9 +279,13 @@ static hn_status check_size(const hn_mech *m) {
     const hn_tree *tree = m->tree;
     const hn_scene *scene = m->sys->scene;
     long long mass = 0, closure = 0;
+
+    // the mass matrix couples each body to all that carry it
     for (int j = 0; j < tree->n_coordinates; j++) {
         mass += tree->links[tree->link_of[j]].depth;
     }
+
+    // a closure row touches every body on its two paths
     for (int k = 0; k < tree->n_cut; k++) {
         const hn_joint *joint = &scene->joints[tree->cut[k]];
         const int a = hn_tree_link(tree, joint->parent), b = hn_tree_link(tree, joint->child);
@@ -278,6 +293,7 @@ static hn_status check_size(const hn_mech *m) {
         closure += ROWS_PER_JOINT * ((long long)tree->links[a].depth + tree->links[b].depth -
                                      2LL * tree->links[common].depth);
     }
+
     if (mass > MAX_MASS_ENTRIES || closure > MAX_CLOSURE_ENTRIES) {
         return hn_diags_add(hn_system_faults(m->sys), HN_ERR_LIMIT, "/bodies",
                             "long chains grow with the square of their length: shorten them",
@@ -306,7 +322,7 @@ static hn_status trace_terms(hn_mech *m) {
     return trace_points(m);
 }
 
-/// In the order of their speeds.
+/// In the order of their velocities.
 static hn_status list_balls(hn_system *sys) {
     const hn_tree *tree = &sys->tree;
     sys->balls = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *sys->balls);

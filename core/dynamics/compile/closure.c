@@ -1,4 +1,5 @@
 #include "dynamics/compile/closure.h"
+
 #include "dynamics/compile/system_build.h"
 
 #include <stdio.h>

@@ -12,12 +12,15 @@ static hn_status check_freedoms(hn_system *sys) {
     if (!touched) {
         return HN_ERR_MEMORY;
     }
+
+    // marks every coordinate with a mass or a closure
     for (int k = 0; k < sys->M.n; k++) {
         touched[sys->M.at[k].row] = touched[sys->M.at[k].col] = 1;
     }
     for (int k = 0; k < sys->J.n; k++) {
         touched[sys->J.at[k].col] = 1;
     }
+
     for (int i = 0; i < sys->nv; i++) {
         if (!touched[i]) {
             const hn_coordinate *c = &sys->scene->coordinates[hn_system_user_coordinate(sys, i)];
@@ -52,6 +55,8 @@ static hn_status finish(hn_system *sys) {
         hn_graph_failed(sys->g)) {
         return HN_ERR_MEMORY;
     }
+
+    // dense copies of the sorted entries, for printing and grading
     hn_entries_sort(&sys->M);
     hn_entries_sort(&sys->J);
     for (int k = 0; k < sys->M.n; k++) {
@@ -62,6 +67,8 @@ static hn_status finish(hn_system *sys) {
     for (int k = 0; k < sys->J.n; k++) {
         sys->J_dense[(size_t)sys->J.at[k].row * n + (size_t)sys->J.at[k].col] = sys->J.at[k].e;
     }
+
+    // the sizes that callers ask for
     sys->info.nq = sys->nq;
     sys->info.nv = sys->info.n_user = sys->nv;
     sys->info.nc = sys->nc;

@@ -1,15 +1,18 @@
 // Constraints beside the joints, as rows. D = p - q, seen from the common ancestor of the two
 // bodies; d, u, n fixed to q's body.
-//     distance  (D . D - L^2) / (2 L) [m].  Not |D| - L: its gradient D / |D| is undefined where the points meet, and a square
-//               root would stand in every derivative; to first order both measure the same gap.
+//     distance  (D . D - L^2) / (2 L) [m].  Not |D| - L: its gradient D / |D| is undefined where
+//               the points meet, and a square root would be in every derivative; to first order
+//               both measure the same gap.
 //     line      e1 . D,  e2 . D        e1, e2 across d
 //     plane     n . D - value
 //     gear      x + ratio y - value    constant J, gamma = 0 between coordinates of the tree
-//     rolling   u . D - r,   d . D + r theta    theta: the wheel's angle against q's body about d x u; zero velocity at the
-//               touching point D = way d + r u is d . D' = -r theta'. theta = 0 where the wheel's own direction lies along d.
+//     rolling   u . D - r,   d . D + r theta    theta: the wheel's angle against q's body about
+//               d x u; zero velocity at the touching point D = way d + r u is d . D' = -r theta'.
+//               theta = 0 where the wheel's own direction lies along d.
 //     formula   phi(x, t), x the scene's coordinates:   J = sum phi_x dx'/du,
 //               gamma = x'' phi_xx x' + 2 phi_xt x' + phi_tt + sum phi_x x'' at zero u-dot
 #include "dynamics/compile/constraints.h"
+
 #include "dynamics/compile/closure.h"
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/loops.h"
@@ -101,8 +104,12 @@ static hn_status add_rolling(hn_closure *c, const hn_constraint *k) {
     hn_num3_cross(k->direction, k->up, axle);
     HN_TRY(hn_system_quantity(c->m->sys, &k->value, &radius));
     HN_TRY(find_wheel_turn(c, k, axle, &turn));
+
+    // the wheel's centre stays at the radius from the line
     hn_closure_collect_rate(c);
     HN_TRY(add_across(c, "radius", k->up, radius));
+
+    // and moves along it as far as the wheel turns
     hn_direction d = hn_closure_direction(c, 1, k->direction), a = hn_closure_direction(c, 1, axle);
     hn_measured way = hn_closure_along(c, &d);
     for (int i = 0; i < 2; i++) {
@@ -111,6 +118,8 @@ static hn_status add_rolling(hn_closure *c, const hn_constraint *k) {
             way.n = hn_closure_add_entry(c, way.n, turn.speed[i], e);
         }
     }
+
+    // the multiplier's force acts at the touching point: its moment about p
     hn_vec3 moment = hn_vec3_scale(g, radius, a.v); // of the force at the touching point about p
     c->wrench.moment_a = hn_vec3_add(g, c->wrench.moment_a, moment);
     c->wrench.moment_b = hn_vec3_sub(g, c->wrench.moment_b, moment);
@@ -198,15 +207,21 @@ static hn_status add_coordinate_row(hn_system *sys, coordinate_row *row, hn_ex p
     if (!entries) {
         return HN_ERR_MEMORY;
     }
+
+    // phi_x and phi_t; the derivative along the motion, twice
     hn_diff_reverse(g, phi, row->symbols, row->n + 1, row->gradient);
     hn_diff_forward(g, &phi, 1, row->symbols, row->seeds, row->n + 1, &rate);
     hn_diff_forward(g, &rate, 1, row->symbols, row->seeds, row->n + 1, &gamma);
+
+    // in the system's coordinates
     phi_t = put_back(sys, row, row->gradient[row->n]);
     gamma = put_back(sys, row, gamma);
     for (int i = 0; i < row->n; i++) {
         row->gradient[i] = put_back(sys, row, row->gradient[i]);
         gamma = hn_add(g, gamma, hn_mul(g, row->gradient[i], sys->user_gamma[i]));
     }
+
+    // the row, and what its multiplier does along the scene's coordinates
     const int before = sys->nc;
     hn_new_row made = {.name = k->name,
                        .loop = index,
@@ -217,11 +232,11 @@ static hn_status add_coordinate_row(hn_system *sys, coordinate_row *row, hn_ex p
                        .J = entries,
                        .n_J = collect_entries(sys, row, entries),
                        .pointer = k->pointer};
-    hn_status status = hn_system_add_row(sys, &made);
-    for (int i = 0; i < row->n && status == HN_OK && sys->nc > before; i++) {
+    HN_TRY(hn_system_add_row(sys, &made));
+    for (int i = 0; i < row->n && sys->nc > before; i++) {
         hn_entries_add(&sys->efforts, before, i, row->gradient[i]);
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status add_formula(hn_system *sys, int index, const hn_constraint *k) {
@@ -317,12 +332,16 @@ hn_status hn_mech_constraint_foot(hn_mech *m, const hn_constraint *k, hn_vec3 *o
     HN_TRY(locate(m, k->p, &p));
     HN_TRY(locate(m, k->q, &q));
     HN_TRY(hn_system_quantity(m->sys, &k->value, &value));
+
+    // on the sphere round q
     hn_vec3 D = hn_vec3_sub(g, p, q);
     if (k->kind == HN_CONSTRAINT_DISTANCE) {
         hn_ex size = hn_sqrt(g, hn_vec3_dot(g, D, D));
         *out = hn_vec3_add(g, q, hn_vec3_scale(g, hn_div(g, value, size), D));
         return HN_OK;
     }
+
+    // on the plane, or on the line, which a wheel's centre follows at its radius
     hn_vec3 d = turn_to_world(m, m->sys->scene->points[k->q].body, k->direction);
     hn_ex way = hn_vec3_dot(g, d, D);
     if (k->kind == HN_CONSTRAINT_PLANE) {

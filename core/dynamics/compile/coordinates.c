@@ -7,7 +7,7 @@
 
 // ---- user and system coordinates ----
 //
-//     user_i = sign_i (q_i - q_ref(i) - offset_i), references first in tree order                (1)
+//     user_i = sign_i (q_i - q_ref(i) - offset_i), references first in tree order             (1)
 
 static const hn_link *link_of(const hn_system *sys, int coordinate) {
     return &sys->tree.links[sys->tree.link_of[coordinate]];

@@ -1,4 +1,5 @@
 #include "dynamics/compile/drawing.h"
+
 #include "dynamics/compile/system_impl.h"
 
 /// The scene's own point at a half-joint, so that the bars that end there are known to; else the
@@ -48,6 +49,8 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     if (!labels || !tears || !names) {
         return HN_ERR_MEMORY;
     }
+
+    // labels, and the pairs of points that part
     for (int i = 0; i < scene->n_points; i++) {
         labels[i] = scene->points[i].name;
     }
@@ -59,6 +62,7 @@ hn_status hn_system_make_drawing(hn_system *sys, int n_tears) {
     for (int k = 0; k < sys->n_loops && !scene->is_lagrangian; k++) {
         name_tear(sys, k, tears, names);
     }
+
     sys->drawing = (hn_drawing){.n_points = sys->info.n_points,
                                 .labels = labels,
                                 .n_shapes = scene->n_shapes,
@@ -90,12 +94,16 @@ void hn_drawing_json(hn_strbuf *b, const hn_system *sys) {
     hn_json_put_int(b, "points", d->n_points);
     hn_json_key(b, "labels");
     hn_json_strings(b, d->labels, (size_t)d->n_points);
+
+    // what to draw
     hn_json_key(b, "shapes");
     hn_json_array(b);
     for (int i = 0; i < d->n_shapes; i++) {
         write_shape(b, &d->shapes[i]);
     }
     hn_json_end_array(b);
+
+    // the pairs of points that part when a loop opens
     hn_json_key(b, "tears");
     hn_json_array(b);
     for (int i = 0; i < d->n_tears; i++) {

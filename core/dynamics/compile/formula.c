@@ -1,4 +1,5 @@
 #include "dynamics/compile/formula.h"
+
 #include "dynamics/compile/system_build.h"
 #include "expr/parse.h"
 
@@ -20,12 +21,16 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
         *out = sys->t;
         return 1;
     }
+
+    // a coordinate or its rate
     for (int i = 0; i < sys->scene->n_coordinates; i++) {
         const hn_coordinate *c = &sys->scene->coordinates[i];
         int is_position = !strcmp(c->name, name);
         if (!is_position && strcmp(c->rate, name) != 0) {
             continue;
         }
+
+        // a name that exists but has no expression: refused after parsing
         if (sys->user_known[i] == HN_KNOWN_NOTHING ||
             (is_position && sys->user_known[i] == HN_KNOWN_RATE)) {
             s->refused = c->name;
@@ -33,6 +38,7 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
             *out = hn_num(0);
             return 1;
         }
+
         *out = is_position ? s->positions[i] : s->rates[i];
         return 1;
     }
@@ -60,18 +66,26 @@ hn_status hn_system_quantity_of(const hn_system *sys, const hn_quantity *quantit
     if (!quantity->formula || (!quantity->varies && !sys->opts.symbolic_params)) {
         return HN_OK;
     }
+
+    // parse with the scene's names
     scope s = {.sys = sys, .with_state = quantity->varies, .positions = positions, .rates = rates};
     hn_parse_opts opts = {.lookup = find_name, .user = &s};
     hn_diag diag = {0};
     hn_status status = hn_parse(sys->g, quantity->formula, &opts, out, &diag);
-    if (status == HN_OK && s.refused && s.refused_ball) {
+
+    // say what kept a name from an expression
+    if (status != HN_OK) {
+        return hn_diags_add(hn_system_faults(sys), status, quantity->pointer, diag.hint,
+                            "in '%s': %s", quantity->formula, diag.message);
+    }
+    if (s.refused && s.refused_ball) {
         return hn_diags_add(hn_system_faults(sys), HN_ERR_UNSUPPORTED, quantity->pointer,
                             "use its rates, or a joint of revolutes in its place",
                             "'%s' is an entry of an orientation, which jumps where the turn passes "
                             "half a revolution, so it has no formula that holds at every pose",
                             s.refused);
     }
-    if (status == HN_OK && s.refused) {
+    if (s.refused) {
         return hn_diags_add(
             hn_system_faults(sys), HN_ERR_UNSUPPORTED, quantity->pointer,
             "cut another joint of its loop, or use coordinates of joints that are not cut",
@@ -79,11 +93,7 @@ hn_status hn_system_quantity_of(const hn_system *sys, const hn_quantity *quantit
             "it has no formula",
             s.refused);
     }
-    if (status != HN_OK) {
-        (void)hn_diags_add(hn_system_faults(sys), status, quantity->pointer, diag.hint,
-                           "in '%s': %s", quantity->formula, diag.message);
-    }
-    return status;
+    return HN_OK;
 }
 
 void hn_system_stand_ins(const hn_system *sys, const char *kind, hn_ex *out, int *symbols) {

@@ -16,8 +16,8 @@ HN_MUST_CHECK hn_status hn_system_quantity_of(const hn_system *sys, const hn_qua
 /// Three quantities at once.
 HN_MUST_CHECK hn_status hn_system_vector(const hn_system *sys, const hn_quantity *quantity,
                                          hn_vec3 *out);
-/// Makes symbols "kind name" that stand for the scene's coordinates (or their rates) while a formula
-/// is differentiated by them.
+/// Makes symbols "kind name" that stand for the scene's coordinates (or their rates) while a
+/// formula is differentiated by them.
 void hn_system_stand_ins(const hn_system *sys, const char *kind, hn_ex *out, int *symbols);
 
 #endif

@@ -1,4 +1,5 @@
 #include "dynamics/compile/lagrangian.h"
+
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/loads.h"
 #include "dynamics/compile/system_build.h"
@@ -155,15 +156,20 @@ hn_status hn_lagrangian_add_energies(hn_system *sys) {
     if (!p) {
         return HN_ERR_MEMORY;
     }
+
+    // p, its rate at zero u-dot, dT/dq, dV/dq
     hn_ex *p_rate = p + n, *T_q = p + 2 * n, *V_q = p + 3 * n;
     hn_diff_reverse(g, kinetic, c.v_symbols, c.n, p);
     hn_diff_forward(g, p, c.n, c.q_symbols, c.v, c.n, p_rate);
     hn_diff_reverse(g, kinetic, c.q_symbols, c.n, T_q);
     hn_diff_reverse(g, potential, c.q_symbols, c.n, V_q);
+
+    // f = Q - h of (1)
     for (int i = 0; i < c.n; i++) {
         hn_ex terms[4] = {sys->f[c.speed[i]], T_q[i], hn_neg(p_rate[i]), hn_neg(V_q[i])};
         sys->f[c.speed[i]] = hn_sum(g, terms, 4);
     }
+
     sys->kinetic = hn_add(g, sys->kinetic, kinetic);
     sys->potential = hn_add(g, sys->potential, potential);
     return trace_mass(sys, &c, p);
@@ -171,19 +177,45 @@ hn_status hn_lagrangian_add_energies(hn_system *sys) {
 
 // ---- constraints ----
 
+/// J (nv entries), phi_t and gamma of (2) for the row's phi.
+static hn_status differentiate_row(hn_system *sys, hn_new_row *row, hn_entry *entries) {
+    hn_graph *g = sys->g;
+    const int n = sys->nv;
+    hn_ex *along = hn_arena_get(sys->arena, 2 * ((size_t)n + 1) * sizeof *along);
+    int *symbols = hn_arena_ints(sys->arena, (size_t)n + 1);
+    if (!along || !symbols) {
+        return HN_ERR_MEMORY;
+    }
+
+    // along the motion: (q', v', t') = (v, 0, 1)
+    for (int j = 0; j < n; j++) {
+        symbols[j] = sys->q_symbols[j];
+        along[j] = sys->v[j];
+    }
+    symbols[n] = sys->t_symbol;
+    along[n] = hn_num(1);
+
+    hn_ex *J = along + n + 1, rate;
+    hn_diff_reverse(g, row->phi, sys->q_symbols, n, J);
+    hn_diff(g, row->phi, &sys->t_symbol, 1, &row->phi_t);
+    hn_diff_forward(g, &row->phi, 1, symbols, along, n + 1, &rate);
+    hn_diff_forward(g, &rate, 1, symbols, along, n + 1, &row->gamma);
+    for (int j = 0; j < n; j++) {
+        entries[j] = (hn_entry){0, j, J[j]};
+    }
+    return HN_OK;
+}
+
 static hn_status add_constraint(hn_system *sys, int i) {
     const hn_lagrangian *l = &sys->scene->lagrangian;
-    hn_graph *g = sys->g;
-    int n = sys->nv;
+    hn_entry *entries = hn_arena_get(sys->arena, (size_t)sys->nv * sizeof *entries);
     hn_new_row row = {.name = l->constraint_names[i],
                       .loop = i,
-                      .is_length = 0,
-                      .pointer = l->constraints[i].pointer};
-    hn_ex *along = hn_arena_get(sys->arena, 2 * ((size_t)n + 1) * sizeof *along);
-    hn_entry *entries = hn_arena_get(sys->arena, (size_t)n * sizeof *entries);
-    int *symbols = hn_arena_ints(sys->arena, (size_t)n + 1);
+                      .pointer = l->constraints[i].pointer,
+                      .J = entries,
+                      .n_J = sys->nv};
     HN_TRY(hn_system_quantity(sys, &l->constraints[i], &row.phi));
-    if (!along || !entries || !symbols) {
+    if (!entries) {
         return HN_ERR_MEMORY;
     }
     if (depends_on_any(sys, row.phi, sys->v_symbols)) {
@@ -192,27 +224,13 @@ static hn_status add_constraint(hn_system *sys, int i) {
             "write the constraint on positions",
             "constraint '%s' contains a rate; only constraints on positions are served", row.name);
     }
-    hn_ex *J = along + n + 1;
-    for (int j = 0; j < n; j++) {
-        symbols[j] = sys->q_symbols[j];
-        along[j] = sys->v[j];
-    }
-    symbols[n] = sys->t_symbol;
-    along[n] = hn_num(1);
-    hn_ex rate;
-    hn_diff_reverse(g, row.phi, sys->q_symbols, n, J);
-    hn_diff(g, row.phi, &sys->t_symbol, 1, &row.phi_t);
-    hn_diff_forward(g, &row.phi, 1, symbols, along, n + 1, &rate);
-    hn_diff_forward(g, &rate, 1, symbols, along, n + 1, &row.gamma);
-    for (int j = 0; j < n; j++) {
-        entries[j] = (hn_entry){0, j, J[j]};
-    }
-    row.J = entries;
-    row.n_J = n;
+
+    // the row, and what its multiplier does along the coordinates
     const int before = sys->nc;
+    HN_TRY(differentiate_row(sys, &row, entries));
     HN_TRY(hn_system_add_row(sys, &row));
-    for (int j = 0; j < n && sys->nc > before; j++) {
-        hn_entries_add(&sys->efforts, before, j, J[j]);
+    for (int j = 0; j < sys->nv && sys->nc > before; j++) {
+        hn_entries_add(&sys->efforts, before, j, entries[j].e);
     }
     return HN_OK;
 }
@@ -241,17 +259,23 @@ static hn_status find_length(hn_system *sys) {
     if (!x || !square) {
         return HN_ERR_MEMORY;
     }
+
+    // the start, and the parameters that stayed symbols
     for (int j = 0; j < sys->nv; j++) {
         x[sys->q_symbols[j]] = c[j].q0;
     }
     for (int i = 0; sys->opts.symbolic_params && i < sys->scene->n_params; i++) {
         x[hn_ex_symbol(sys->g, sys->params[i])] = sys->scene->params[i].value;
     }
+
+    // squared length of each column of J there
     for (int k = 0; k < sys->J.n; k++) {
         const hn_entry *at = &sys->J.at[k];
         const double value = hn_graph_eval(sys->g, at->e, x);
         square[at->col] += value * value;
     }
+
+    // the largest column of an angle
     for (int j = 0; j < sys->nv; j++) {
         largest = fmax(largest, c[j].kind == HN_ANGLE ? square[j] : 0);
     }

@@ -1,8 +1,9 @@
 #include "dynamics/compile/loads.h"
+
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/system_build.h"
 
-/// Kept for telling the wrenches of loads.
+/// Kept to report the wrenches of loads.
 static void note_value(hn_system *sys, const hn_load *load, hn_vec3 value) {
     hn_load_value *out = &sys->load_values[load - sys->scene->loads];
     for (int i = 0; i < 3; i++) {
@@ -16,7 +17,7 @@ static hn_status read_law(hn_system *sys, const hn_load *load, hn_ex *k, hn_ex *
     return hn_system_quantity(sys, &load->damping, c);
 }
 
-/// A spring whose law changes with the state has no potential that could be told.
+/// A spring whose law changes with the state has no potential.
 static void add_spring_energy(hn_system *sys, const hn_load *load, hn_ex k, hn_ex stretch_squared) {
     if (!load->stiffness.varies && !load->rest.varies) {
         sys->potential =
@@ -30,6 +31,8 @@ static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const h
     hn_span span;
     HN_TRY(read_law(sys, load, &k, &rest, &c));
     HN_TRY(geometry->span(geometry->self, load->p, load->q, &span));
+
+    // the elastic part
     hn_ex l2 = hn_vec3_dot(g, span.delta, span.delta);
     hn_ex pull = k; // force over length
     hn_ex stretch2 = l2;
@@ -39,6 +42,8 @@ static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const h
         pull = hn_mul(g, k, hn_sub(g, hn_num(1), hn_div(g, rest, l)));
         stretch2 = hn_mul(g, stretch, stretch);
     }
+
+    // the damper along the same line
     if (!hn_is_zero(c)) {
         hn_ex l_rate = hn_num(0); // l l'
         for (int i = 0; i < span.n; i++) {
@@ -47,6 +52,8 @@ static hn_status add_spring(hn_system *sys, const hn_geometry *geometry, const h
         }
         pull = hn_add(g, pull, hn_mul(g, c, hn_div(g, l_rate, l2)));
     }
+
+    // by virtual work
     note_value(sys, load, (hn_vec3){{pull, hn_num(0), hn_num(0)}});
     for (int i = 0; i < span.n; i++) {
         hn_ex e = hn_vec3_dot(g, span.delta, span.coefficient[i]);
@@ -139,7 +146,7 @@ static hn_status add_moment(hn_system *sys, const hn_geometry *geometry, const h
     return HN_OK;
 }
 
-/// No more than `limit` either way.
+/// e, but no more than `limit` either way.
 static hn_ex clamp(hn_graph *g, hn_ex e, hn_ex limit) {
     hn_ex below = hn_apply(g, HN_OP_MIN, (hn_ex[2]){e, limit});
     return hn_apply(g, HN_OP_MAX, (hn_ex[2]){below, hn_neg(limit)});
@@ -150,37 +157,35 @@ static hn_status add_follow(hn_system *sys, const hn_geometry *geometry, const h
     (void)geometry;
     hn_graph *g = sys->g;
     hn_ex k, rest, c, target, limit, target_rate;
-    hn_status status = read_law(sys, load, &k, &rest, &c);
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &load->value[0], &target);
-    }
-    if (status == HN_OK) {
-        status = hn_system_quantity(sys, &load->value[1], &limit);
-    }
-    if (status == HN_OK && sys->user_known[load->coordinate] == HN_KNOWN_RATE) {
+    HN_TRY(read_law(sys, load, &k, &rest, &c));
+    HN_TRY(hn_system_quantity(sys, &load->value[0], &target));
+    HN_TRY(hn_system_quantity(sys, &load->value[1], &limit));
+    if (sys->user_known[load->coordinate] == HN_KNOWN_RATE) {
         return refuse_position(sys, load, "a follower");
     }
-    if (status != HN_OK) {
-        return status;
-    }
+
+    // the target is a formula of t, so its rate is its derivative
     hn_diff(g, target, &sys->t_symbol, 1, &target_rate);
     hn_ex off = hn_sub(g, target, sys->user_q[load->coordinate]);
     hn_ex slow = hn_sub(g, target_rate, sys->user_v[load->coordinate]);
     hn_ex tau = hn_add(g, hn_mul(g, k, off), hn_mul(g, c, slow));
+
     if (load->value[1].value > 0) {
         tau = clamp(g, tau, limit);
     }
     return add_on_coordinate(sys, load, tau);
 }
 
-/// From value to value with every stretch as a number between 0 and 1: past its end it is 1
-/// exactly, and the sum of what stands before holds to rounding, however long ago it was.
+/// The table as a sum over its stretches, each a number between 0 and 1 times its change of value:
+/// past its end a stretch is 1 exactly, so the sum stays right to rounding for ever.
 static hn_status profile(hn_system *sys, const hn_profile *table, hn_ex *out) {
     hn_graph *g = sys->g;
     hn_ex *terms = hn_arena_get(sys->arena, ((size_t)table->n + 1) * sizeof *terms);
     if (!terms) {
         return HN_ERR_MEMORY;
     }
+
+    // from value to value, each stretch a number between 0 and 1
     terms[0] = hn_num(table->value[0]);
     for (int i = 1; i < table->n; i++) {
         hn_ex part;
@@ -195,6 +200,7 @@ static hn_status profile(hn_system *sys, const hn_profile *table, hn_ex *out) {
         }
         terms[i] = hn_scale(table->value[i] - table->value[i - 1], part);
     }
+
     *out = hn_sum(g, terms, table->n);
     return HN_OK;
 }

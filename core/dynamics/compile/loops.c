@@ -1,16 +1,18 @@
 // Loop closures. A cut joint is written as rows between its two halves, relative to the lowest
-// common ancestor of its bodies
-// and in that loop's frame (relate.c):
-//     revolute     position 3,  x_B . z_A,  y_B . z_A               universal  position 3,  x_B . z_A
+// common ancestor of its bodies and in that loop's frame (relate.c):
+//
+//     revolute     position 3,  x_B . z_A,  y_B . z_A           universal  position 3,  x_B . z_A
 //     prismatic    position 2 across the axis,  x_B . y_A,  x_B . z_A,  y_B . z_A
 //     cylindrical  position 2 across the axis,  x_B . z_A,  y_B . z_A
 //     planar       position 1 along the axis,  x_B . z_A,  y_B . z_A
-//     spherical    position 3                                       fixed      position 3, turns as prismatic
+//     spherical    position 3                                   fixed      position 3, as prismatic
+//
 // J comes as coefficients on the path's coordinates (axis x lever arm), gamma from the same
 // recursion for accelerations: (p . r)'' = p''. r + 2 p'. r' + p . r''. Differentiating phi instead
 // would cost more operations. Rows that vanish identically drop out when they are added, so a
 // planar loop keeps two, whatever plane it lies in.
 #include "dynamics/compile/loops.h"
+
 #include "dynamics/compile/closure.h"
 
 #include <math.h>
@@ -107,15 +109,14 @@ static hn_status turn_rows(loop *l, int turns, const hn_direction *parent,
 static hn_status close_joint(loop *l) {
     const closing *rule = &CLOSINGS[l->joint->type];
     hn_direction parent[3], child[3];
-    hn_status status = HN_OK;
-    for (int i = 0; i < 3 && rule->all_places && status == HN_OK; i++) {
-        status = hn_closure_position_row(&l->c, i);
+    for (int i = 0; i < 3 && rule->all_places; i++) {
+        HN_TRY(hn_closure_position_row(&l->c, i));
     }
     joint_axes(l, parent, child);
-    if (status == HN_OK && rule->along) {
-        status = measured_rows(l, rule->along, parent, child);
+    if (rule->along) {
+        HN_TRY(measured_rows(l, rule->along, parent, child));
     }
-    return status == HN_OK ? turn_rows(l, rule->turns, parent, child) : status;
+    return turn_rows(l, rule->turns, parent, child);
 }
 
 // ---- coordinates of cut joints ----
@@ -148,21 +149,29 @@ int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double 
     if (!constant_in_group(tree, a, group, Ca) || !constant_in_group(tree, b, group, Cb)) {
         return 0;
     }
+
+    // both references seen in the group's frame
     for (int i = 0; i < 3; i++) {
         za[i] = hn_num3_dot(Ca[i], axis);
         xa[i] = hn_num3_dot(Ca[i], ref_a);
         xb[i] = hn_num3_dot(Cb[i], ref_b);
     }
+
+    // the axis is the group's, and no reference lies along it
     if (fabs(fabs(za[2]) - 1) > 1e-12 || hypot(xa[0], xa[1]) < 1e-6 || hypot(xb[0], xb[1]) < 1e-6) {
         return 0;
     }
+
     double offset = remainder(atan2(xb[1], xb[0]) - atan2(xa[1], xa[0]), 2 * M_PI);
     hn_system *sys = m->sys;
     int ia = tree->links[a].angle, ib = tree->links[b].angle;
     hn_ex zero = hn_num(0);
+
+    // theta_b - theta_a, and its rate
     hn_ex angle =
         hn_sub(m->g, ib >= 0 ? hn_mech_q(m, ib) : zero, ia >= 0 ? hn_mech_q(m, ia) : zero);
     hn_ex rate = hn_sub(m->g, ib >= 0 ? sys->v[ib] : zero, ia >= 0 ? sys->v[ia] : zero);
+
     out->sign = za[2] > 0 ? 1 : -1;
     out->speed[0] = ia;
     out->speed[1] = ib;

@@ -1,4 +1,5 @@
 #include "dynamics/compile/mech.h"
+
 #include "dynamics/compile/formula.h"
 
 int hn_mech_is_planar(const hn_mech *m, int link) {
@@ -68,20 +69,15 @@ hn_vec3 hn_mech_slide(const hn_mech *m, int link) {
 
 hn_status hn_mech_arm_of(const hn_mech *m, int link, const hn_quantity *at, hn_vec3 *out) {
     const hn_link *l = &m->tree->links[link];
-    hn_vec3 v;
-    hn_status status = hn_system_vector(m->sys, at, &v);
-    if (status == HN_OK && l->joint >= 0) {
-        hn_vec3 own;
-        status = hn_system_vector(m->sys, hn_link_at_own(m->sys->scene, l), &own);
-        if (status == HN_OK) {
-            v = hn_vec3_sub(m->g, v, own);
-        }
+    hn_vec3 v, own;
+    HN_TRY(hn_system_vector(m->sys, at, &v));
+    if (l->joint >= 0) {
+        HN_TRY(hn_system_vector(m->sys, hn_link_at_own(m->sys->scene, l), &own));
+        v = hn_vec3_sub(m->g, v, own);
     }
-    if (status == HN_OK) {
-        hn_mat3 C = hn_mat3_num(m->tree->links[link].C);
-        *out = hn_mat3_apply(m->g, &C, v);
-    }
-    return status;
+    hn_mat3 C = hn_mat3_num(m->tree->links[link].C);
+    *out = hn_mat3_apply(m->g, &C, v);
+    return HN_OK;
 }
 
 hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm) {
@@ -177,9 +173,9 @@ static hn_mat3 transposed(const hn_mat3 *a) {
     return out;
 }
 
-/// Where a ball's frame stands in its parent's, and the axes of its speeds. A joint whose parent is
-/// the link itself turns back: its child's axes, in which the speeds are, are then those on the
-/// link's parent, and its child turns the other way.
+/// Where a ball's frame stands in its parent's, and the axes of its velocities. A joint whose
+/// parent is the link itself turns back: its child's axes, in which the velocities are, are then
+/// those on the link's parent, and its child turns the other way.
 static void trace_ball(hn_mech *m, int link) {
     const hn_link *l = &m->tree->links[link];
     hn_mat3 here = hn_mat3_num(m->tree->groups[l->group].X);
@@ -202,21 +198,29 @@ hn_status hn_mech_trace_geometry(hn_mech *m) {
     ground->c = hn_num(1);
     ground->s = hn_num(0);
     m->position[tree->ground] = hn_vec3_zero();
+
+    // frames of groups; those on the ground are final
     for (int k = 0; k < tree->n_groups; k++) {
         m->group_X[k] = hn_mat3_num(tree->groups[k].X);
         m->to_world[k] = hn_mat3_num(tree->groups[k].R); // right for groups of the ground
     }
+
+    // outward, link by link
     for (int k = 0; k < tree->n_order; k++) {
         int link = tree->order[k];
         hn_link_trace *at = &m->at[link];
         int angle = tree->links[link].angle;
         at->c = angle >= 0 ? hn_cos(m->g, hn_mech_q(m, angle)) : hn_num(1);
         at->s = angle >= 0 ? hn_sin(m->g, hn_mech_q(m, angle)) : hn_num(0);
+
         if (tree->links[link].type == HN_JOINT_SPHERICAL) {
             trace_ball(m, link);
         }
+
+        // where its joint point stands, and its own body
         HN_TRY(trace_arm(m, link));
         HN_TRY(trace_body(m, link));
+
         if (tree->groups[tree->links[link].group].moving) {
             trace_world_frame(m, link);
         }
@@ -279,12 +283,15 @@ static void add_child(hn_mech *m, int parent, int child) {
     hn_vec3 none = hn_vec3_zero();
     p->m = hn_add(m->g, p->m, c->m);
 
+    // the child's full composite in E of the parent, where the child's group moves
     hn_vec3 s_full = none;
     hn_sym3 I_full = no_inertia();
     int child_moves = m->tree->groups[l->group].moving;
     if (child_moves) {
         full_in_parent(m, child, &s_full, &I_full);
     }
+
+    // what turns with the parent
     if (l->carry == HN_CARRY_RIGID) {
         add_moved(m, &p->sK, &p->IK, c->m, c->sK, c->IK, c->arm, planar);
         add_moved(m, &p->sB, &p->IB, c->m, c->sB, c->IB, c->arm, planar);
@@ -303,6 +310,8 @@ static void add_child(hn_mech *m, int parent, int child) {
             p->eta = hn_vec3_add(m->g, p->eta, hn_vec3_cross(m->g, s_full, zr));
         }
     }
+
+    // the full composite of the parent
     if (!planar) {
         add_moved(m, &p->sF, &p->IF, c->m, s_full, I_full, c->arm, 0);
     }
@@ -341,13 +350,16 @@ static wrench ball_wrench(hn_mech *m, int link, hn_vec3 axis) {
     return w;
 }
 
-/// Of the link's speed number `part`.
+/// Of the link's velocity number `part`.
 static wrench unit_wrench(hn_mech *m, int link, int part) {
     const hn_link_trace *at = &m->at[link];
     int planar = hn_mech_is_planar(m, link);
+
     if (m->tree->links[link].type == HN_JOINT_SPHERICAL) {
         return ball_wrench(m, link, hn_mat3_column(&at->spin, part));
     }
+
+    // a unit slide pushes the whole composite along its axis
     hn_vec3 s = hn_mech_E_to_work(m, link, at->sK);
     wrench w;
     if (m->tree->links[link].type == HN_JOINT_PRISMATIC) {
@@ -357,6 +369,8 @@ static wrench unit_wrench(hn_mech *m, int link, int part) {
         w.nF = planar ? hn_vec3_zero() : hn_vec3_cross(m->g, at->sF, d);
         return w;
     }
+
+    // a unit turn about z
     w.f = hn_vec3_cross(m->g, hn_vec3_num((double[3]){0, 0, 1}), s);
     w.nK = hn_vec3_zero();
     w.nK.x[2] = at->IK.x[2];
@@ -399,15 +413,20 @@ static hn_ex project_wrench(hn_mech *m, int link, int part, const wrench *w) {
 
 void hn_mech_trace_mass(hn_mech *m) {
     const hn_tree *tree = m->tree;
+
+    // column j: the wrench of a unit velocity, handed down to the root
     for (int j = 0; j < tree->n_coordinates; j++) {
         const int own = tree->link_of[j];
         int link = own;
         wrench w = unit_wrench(m, link, j - tree->links[link].coordinate);
+
+        // projected on every joint on the way
         for (int i = link; i != tree->ground; i = tree->links[i].parent) {
             if (i != link) {
                 w = wrench_up(m, link, w);
                 link = i;
             }
+
             const int first = tree->links[i].coordinate;
             for (int part = 0; part < tree->links[i].n_speeds; part++) {
                 const int row = first + part;

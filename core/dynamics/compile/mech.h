@@ -1,6 +1,8 @@
 #ifndef HN_DYNAMICS_MECH_H
 #define HN_DYNAMICS_MECH_H
-// Tracing a tree of bodies: what is known of each link as expressions, and the passes that fill it.
+// Tracing a tree of bodies: the expressions that are known of each link, and the passes that make
+// them. The passes, in their order: geometry, composites, mass (here), bias forces and energy
+// (bias.h), loops (loops.h), constraints (constraints.h).
 //
 // Frames of a link i (see tree.h): F its group's frame; E = Rz(-theta) F, in which the body's own
 // arms are constants; and the WORK frame its vectors are kept in: F where the base of the group
@@ -17,7 +19,7 @@ typedef struct hn_link_trace {
     /// joint
     hn_vec3 arm;
     hn_vec3 slide; ///< prismatic: direction of a growing coordinate, in E(parent)
-    /// ball: column k is the axis of speed k, in E (a turning link also has z: hn_mech_axis)
+    /// ball: column k is the axis of velocity k, in E (a turning link also has z: hn_mech_axis)
     hn_mat3 spin;
     hn_vec3 r; ///< arm in the parent's work frame
 
@@ -59,7 +61,7 @@ typedef struct hn_mech {
     int *path;         ///< scratch, n_links
 } hn_mech;
 
-/// 1 when the link's work frame is F.
+/// Whether the link's work frame is F.
 int hn_mech_is_planar(const hn_mech *m, int link);
 hn_vec3 hn_mech_E_to_work(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_work_to_E(const hn_mech *m, int link, hn_vec3 v);
@@ -70,16 +72,16 @@ hn_vec3 hn_mech_down(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_moment(const hn_mech *m, int link, hn_vec3 r, hn_vec3 f);
 /// Prismatic: direction in the work frame (its own and its parent's).
 hn_vec3 hn_mech_slide(const hn_mech *m, int link);
-/// The position behind a speed that has one of its own.
+/// The position behind a velocity that has one of its own.
 hn_ex hn_mech_q(const hn_mech *m, int coordinate);
-/// A point given in a body's own axes: from the link's joint point, in E.
+/// The arm from the link's joint point to a point that is given in the body's own axes, in E.
 HN_MUST_CHECK hn_status hn_mech_arm_of(const hn_mech *m, int link, const hn_quantity *at,
                                        hn_vec3 *out);
-/// Its position in the world.
+/// The position in the world of a point at `arm`.
 hn_vec3 hn_mech_world(const hn_mech *m, int link, hn_vec3 arm);
 
 HN_MUST_CHECK hn_status hn_mech_trace_geometry(hn_mech *m); ///< arms, own bodies, world positions
-void hn_mech_trace_composites(hn_mech *m);
-void hn_mech_trace_mass(hn_mech *m); ///< sys->M
+void hn_mech_trace_composites(hn_mech *m); ///< inward: masses, moments and inertias of subtrees
+void hn_mech_trace_mass(hn_mech *m);       ///< sys->M
 
 #endif

@@ -3,7 +3,8 @@
 // Rotations of balls. A unit quaternion (w, x, y, z) = (cos a/2, sin a/2 n) stands for the turn R
 // by the angle a about the unit vector n; it takes vectors from the joint's axes on its child to
 // those on its parent. Angular velocities are in the child's axes:
-//     q' = 1/2 q o (0, omega),     moved by delta: q o exp(delta / 2)                                             (1)
+//     q' = 1/2 q o (0, omega),     moved by delta: q o exp(delta / 2)                          (1)
+//
 // Source: Hairer, Lubich & Wanner 2006, sec. VII.5; Shoemake 1985.
 
 /// Of a rotation vector (axis times angle [rad]).

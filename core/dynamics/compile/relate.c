@@ -83,6 +83,8 @@ static void begin(walk *w) {
     w->out->n = 0;
     w->base_w = w->base_al = w->al = w->out->w = none;
     w->W = hn_mat3_identity();
+
+    // the frame is fixed in the ancestor, or the ancestor's own angle takes part
     if (w->fixed) {
         w->out->U = hn_mat3_identity();
         if (w->group >= 0) {
@@ -97,6 +99,7 @@ static void begin(walk *w) {
             push(w, common->angle, common->group, 0, hn_vec3_num(Z));
         }
     }
+
     w->out->B = hn_mat3_accel(m->g, w->out->w, none);
 }
 

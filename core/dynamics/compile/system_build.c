@@ -61,6 +61,8 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->nv = nv;
     sys->n_loops = n_loops;
     sys->info.n_points = n_points;
+
+    // expressions, each the number zero so far
     sys->q = hn_system_get_zeros(sys, (size_t)nq);
     sys->v = hn_system_get_zeros(sys, n);
     sys->f = hn_system_get_zeros(sys, n);
@@ -74,6 +76,8 @@ hn_status hn_system_allocate(hn_system *sys, int nq, int nv, int max_rows, int n
     sys->user_gamma = hn_system_get_zeros(sys, nu);
     sys->load_values =
         hn_arena_get(sys->arena, ((size_t)sys->scene->n_loads + 1) * sizeof *sys->load_values);
+
+    // plain arrays
     sys->user_known = hn_arena_get(sys->arena, nu);
     sys->q_symbols = hn_arena_ints(sys->arena, (size_t)nq);
     sys->v_symbols = hn_arena_ints(sys->arena, n);
@@ -94,6 +98,8 @@ static hn_status refuse_row(hn_system *sys, const hn_new_row *row, double offset
 
 hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     sys->info.rows_before++;
+
+    // a row that no velocity moves: closed already, or never
     int moves = 0;
     for (int k = 0; k < row->n_J; k++) {
         moves |= !hn_is_zero(row->J[k].e);
@@ -111,11 +117,14 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
         sys->dropped[sys->info.rows_dropped++] = row->name;
         return HN_OK;
     }
+
+    // a row that counts
     int i = sys->nc++;
     sys->phi[i] = row->phi;
     sys->phi_t[i] = row->phi_t;
     sys->gamma[i] = row->gamma;
     sys->rows[i] = (hn_row){.name = row->name, .loop = row->loop, .is_length = row->is_length};
+
     if (row->wrench) {
         sys->rows[i].wrench = *row->wrench;
     }

@@ -26,8 +26,8 @@ typedef struct hn_new_row {
     const char *pointer;         ///< of the joint or formula
     const hn_row_wrench *wrench; ///< NULL: none
 } hn_new_row;
-/// Adds a closure row. A row that vanishes identically is dropped; one that is a constant other than
-/// zero is refused with HN_ERR_INPUT, since its loop can never close.
+/// Adds a closure row. A row that vanishes identically is dropped; one that is a constant other
+/// than zero is refused with HN_ERR_INPUT, since its loop can never close.
 HN_MUST_CHECK hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row);
 
 #endif

@@ -10,9 +10,9 @@
 #include "dynamics/compile/tree.h"
 #include "dynamics/compile/vec3.h"
 
-/// What the multiplier of a row does, per unit of it, in the frame of its closure (closure.h):
-/// `force` on end b at its point, the opposite on end a at its own; the moments on the two bodies
-/// beside that. `turn` takes the axes E of b's link to that frame.
+/// The forces of one unit of a row's multiplier, in the frame of its closure (closure.h): `force`
+/// acts on end b at its point and opposite on end a at its own; the moments act on the two bodies
+/// in addition. `turn` takes the axes E of b's link to that frame.
 typedef struct hn_row_wrench {
     hn_vec3 force, moment_a, moment_b;
     hn_mat3 turn;
@@ -28,23 +28,23 @@ typedef struct hn_row {
 typedef struct hn_loop {
     const char *name;
     int joint;       ///< scene joint, -1: a tear or formula
-    const char *why; ///< why this joint was cut, for telling; static text
+    const char *why; ///< why this joint was cut, for reports; static text
     int constraint;  ///< scene constraint beside the joints, -1: none
     int tear;        ///< its pair of points in the drawing, -1: none
 } hn_loop;
 
-/// What a load gives, for telling its wrenches: a force [N] or moment [N m] in world axes; a spring
-/// between points: force over length in x[0]; along a coordinate: force or torque in x[0].
+/// The value of a load, kept to report its wrenches: a force [N] or moment [N m] in world axes; of
+/// a spring between points, force over length in x[0]; along a coordinate, force or torque in x[0].
 typedef struct hn_load_value {
     hn_ex x[3];
 } hn_load_value;
 
-/// Four entries of q from `position` and three speeds from `speed`: see tree.h.
+/// A ball: four entries of q from `position` on, three of v from `speed` on (tree.h).
 typedef struct hn_ball {
     int position, speed;
 } hn_ball;
 
-/// What a formula may say about a scene coordinate.
+/// What of a scene coordinate has an expression: nothing, position and rate, the rate alone.
 enum { HN_KNOWN_NOTHING, HN_KNOWN_BOTH, HN_KNOWN_RATE };
 
 struct hn_system {

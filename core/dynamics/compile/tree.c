@@ -1,4 +1,5 @@
 #include "dynamics/compile/tree.h"
+
 #include "dynamics/compile/vec3.h"
 
 #include <math.h>
@@ -21,29 +22,27 @@ const hn_quantity *hn_link_at_parent(const hn_scene *scene, const hn_link *link)
     return !link->is_first ? ORIGIN : link->reversed ? joint->child_at : joint->parent_at;
 }
 
+// clang-format off
+static const struct {
+    int n;
+    hn_primitive list[HN_MAX_PRIMITIVES]; // type, axis, first coordinate
+} CHAINS[HN_JOINT_TYPE_COUNT] = {
+    [HN_JOINT_REVOLUTE]    = {1, {{HN_JOINT_REVOLUTE, 2, 0}}},
+    [HN_JOINT_PRISMATIC]   = {1, {{HN_JOINT_PRISMATIC, 2, 0}}},
+    [HN_JOINT_CYLINDRICAL] = {2, {{HN_JOINT_PRISMATIC, 2, 1}, {HN_JOINT_REVOLUTE, 2, 0}}},
+    [HN_JOINT_UNIVERSAL]   = {2, {{HN_JOINT_REVOLUTE, 2, 0}, {HN_JOINT_REVOLUTE, 0, 1}}},
+    [HN_JOINT_SPHERICAL]   = {1, {{HN_JOINT_SPHERICAL, 2, 0}}},
+    [HN_JOINT_PLANAR]      = {3, {{HN_JOINT_PRISMATIC, 0, 0}, {HN_JOINT_PRISMATIC, 1, 1},
+                                  {HN_JOINT_REVOLUTE, 2, 2}}},
+    [HN_JOINT_FIXED]       = {1, {{HN_JOINT_FIXED, 2, 0}}},
+    [HN_JOINT_FREE]        = {4, {{HN_JOINT_PRISMATIC, 0, 0}, {HN_JOINT_PRISMATIC, 1, 1},
+                                  {HN_JOINT_PRISMATIC, 2, 2}, {HN_JOINT_SPHERICAL, 2, 3}}},
+};
+// clang-format on
+
 int hn_joint_primitives(hn_joint_type type, const hn_primitive **out) {
-    static const struct {
-        int n;
-        hn_primitive list[HN_MAX_PRIMITIVES];
-    } chains[HN_JOINT_TYPE_COUNT] = {
-        [HN_JOINT_REVOLUTE] = {1, {{HN_JOINT_REVOLUTE, 2, 0}}},
-        [HN_JOINT_PRISMATIC] = {1, {{HN_JOINT_PRISMATIC, 2, 0}}},
-        [HN_JOINT_CYLINDRICAL] = {2, {{HN_JOINT_PRISMATIC, 2, 1}, {HN_JOINT_REVOLUTE, 2, 0}}},
-        [HN_JOINT_UNIVERSAL] = {2, {{HN_JOINT_REVOLUTE, 2, 0}, {HN_JOINT_REVOLUTE, 0, 1}}},
-        [HN_JOINT_SPHERICAL] = {1, {{HN_JOINT_SPHERICAL, 2, 0}}},
-        [HN_JOINT_PLANAR] = {3,
-                             {{HN_JOINT_PRISMATIC, 0, 0},
-                              {HN_JOINT_PRISMATIC, 1, 1},
-                              {HN_JOINT_REVOLUTE, 2, 2}}},
-        [HN_JOINT_FIXED] = {1, {{HN_JOINT_FIXED, 2, 0}}},
-        [HN_JOINT_FREE] = {4,
-                           {{HN_JOINT_PRISMATIC, 0, 0},
-                            {HN_JOINT_PRISMATIC, 1, 1},
-                            {HN_JOINT_PRISMATIC, 2, 2},
-                            {HN_JOINT_SPHERICAL, 2, 3}}},
-    };
-    *out = chains[type].list;
-    return chains[type].n;
+    *out = CHAINS[type].list;
+    return CHAINS[type].n;
 }
 
 int hn_tree_is_still(const hn_tree *tree, int link) {
@@ -116,12 +115,17 @@ static void hang(const hn_scene *scene, hn_tree *tree, int body, int parent, int
     const hn_joint *joint = &scene->joints[index];
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
+
+    // axes at both ends of the chain, the near one first
     double own[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, ends[2][3][3];
     joint_triad(joint->parent_axis, joint->parent_ref, ends[reversed]);
     joint_triad(joint->child_axis, joint->child_ref, ends[!reversed]);
+
+    // a virtual link for each primitive but the last, which is the body
     for (int k = 0; k < n; k++) {
         const hn_primitive *primitive = &chain[reversed ? n - 1 - k : k];
         const int last = k == n - 1, at = last ? body : tree->n_links++;
+
         hn_link *link = &tree->links[at];
         link->joint = index;
         link->body = body;
@@ -133,6 +137,8 @@ static void hang(const hn_scene *scene, hn_tree *tree, int body, int parent, int
         link->n_speeds = primitive->type == HN_JOINT_SPHERICAL ? 3
                          : primitive->type == HN_JOINT_FIXED   ? 0
                                                                : 1;
+
+        // the near and the far end have the joint's axes, virtual links their own
         primitive_triad(k == 0 ? ends[0] : own, primitive->along, link->here);
         primitive_triad(last ? ends[1] : own, primitive->along, link->there);
         hang_link(tree, at, parent);
@@ -148,11 +154,14 @@ static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena
     if (!*start || !*list) {
         return 0;
     }
+
+    // count the joints of each link, then list them
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < scene->n_joints; j++) {
             int ends[2] = {hn_tree_link(tree, scene->joints[j].parent),
                            hn_tree_link(tree, scene->joints[j].child)};
             for (int e = 0; e < 2; e++) {
+                // counts to first places
                 if (pass == 0) {
                     (*start)[ends[e] + 2]++;
                 } else {
@@ -175,6 +184,8 @@ static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_
     if (!queue || !collect_incident(scene, tree, arena, &start, &list)) {
         return HN_ERR_MEMORY;
     }
+
+    // breadth first from the ground
     int n_queue = 0;
     queue[n_queue++] = tree->ground;
     for (int at = 0; at < n_queue; at++) {
@@ -190,6 +201,8 @@ static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_
             queue[n_queue++] = there;
         }
     }
+
+    // every body must hang by some joint
     for (int b = 0; b < tree->ground; b++) {
         if (tree->links[b].joint < 0) {
             return hn_diags_add(
@@ -224,6 +237,8 @@ static void number_coordinates(const hn_scene *scene, hn_tree *tree) {
     for (int b = 0; b < tree->ground; b++) {
         body_of[tree->links[b].joint] = b;
     }
+
+    // velocities in the order of the scene's coordinates
     for (int i = 0; i < scene->n_coordinates; i++) {
         const hn_coordinate *c = &scene->coordinates[i];
         const int at = c->joint >= 0 ? link_of_part(tree, body_of, c->joint, c->part) : -1;
@@ -241,6 +256,8 @@ static void number_coordinates(const hn_scene *scene, hn_tree *tree) {
             tree->n_positions += link->n_speeds == 3 ? 4 : 1;
         }
     }
+
+    // joints that carry no body close loops
     for (int j = 0; j < scene->n_joints; j++) {
         int is_cut = body_of[j] < 0;
         tree->joint_cut[j] = is_cut ? tree->n_cut : -1;
@@ -274,10 +291,14 @@ static void frame_about(const double axis[3], const double *prefer, double R[3][
     for (int i = 1; i < 3; i++) {
         big = fabs(axis[i]) >= fabs(axis[big]) - ALIGNED ? i : big;
     }
+
+    // z along the axis
     double z[3], x[3] = {0, 0, 0}, y[3];
     for (int i = 0; i < 3; i++) {
         z[i] = axis[big] < 0 ? -axis[i] : axis[i];
     }
+
+    // the part of `prefer` across the axis
     double across[3];
     double length = 0;
     if (prefer) {
@@ -287,6 +308,8 @@ static void frame_about(const double axis[3], const double *prefer, double R[3][
         }
         length = sqrt(hn_num3_dot(across, across) / fmax(hn_num3_dot(prefer, prefer), 1e-300));
     }
+
+    // x by the rule above
     if (fabs(z[big] - 1) < ALIGNED || length < 1e-6) {
         x[(big + 1) % 3] = 1;
         double along = hn_num3_dot(x, z);
@@ -296,6 +319,8 @@ static void frame_about(const double axis[3], const double *prefer, double R[3][
     } else {
         hn_num3_cross(z, across, x); // -across = y, so x = y x z = z x across
     }
+
+    // y completes the frame
     unit(x);
     hn_num3_cross(z, x, y);
     for (int i = 0; i < 3; i++) {
@@ -321,15 +346,19 @@ static int find_group(const hn_scene *scene, hn_tree *tree, int base, const doub
             return k;
         }
     }
+
+    // a new group
     hn_group *group = &tree->groups[tree->n_groups];
     group->base = base;
     group->ball = -1;
     group->moving = base != tree->ground;
+
     double gravity[3], own[3];
     for (int i = 0; i < 3; i++) {
         gravity[i] = scene->gravity[i].value;
         own[i] = tree->links[base].C[2][i]; // the base's own axis in its body axes
     }
+
     frame_about(axis, group->moving ? own : gravity, group->R);
     if (tree->n_groups == 0) { // the ground's own vectors use the first ground group's frame
         hn_num3_transpose(group->R, tree->links[tree->ground].C);
@@ -344,6 +373,7 @@ static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
                     const hn_quantity *own, double arm[2]) {
     for (int j = -1; j < scene->n_joints; j++) {
         int k = j + 1 < scene->n_joints ? j + 1 : -1; // the joints, and the centre of mass last
+
         const hn_quantity *at = scene->bodies[body].com;
         if (k >= 0) {
             const hn_joint *other = &scene->joints[k];
@@ -352,6 +382,8 @@ static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
             }
             at = other->parent == body ? other->parent_at : other->child_at;
         }
+
+        // from the link's own joint, in the frame that D gives
         double r[3], v[3];
         for (int i = 0; i < 3; i++) {
             r[i] = at[i].value - own[i].value;
@@ -439,6 +471,8 @@ static void place_link(const hn_scene *scene, hn_tree *tree, int index, int alig
     hn_link *link = &tree->links[index], *parent = &tree->links[link->parent];
     double N[3][3], back[3][3];
     hn_num3_compose(parent->C, link->here, N);
+
+    // primitives that do not revolve
     if (link->type == HN_JOINT_PRISMATIC || link->type == HN_JOINT_FIXED) {
         place_rigid(tree, link, N);
         return;
@@ -447,8 +481,11 @@ static void place_link(const hn_scene *scene, hn_tree *tree, int index, int alig
         place_ball(tree, index, N);
         return;
     }
+
     double axis[3] = {N[0][2], N[1][2], N[2][2]};
     static const double Z[3] = {0, 0, 1};
+
+    // the parent's group if the axis is parallel, else one on the parent's base
     link->root = index;
     link->angle = link->coordinate;
     if (parent->angle >= 0 && parallel(axis, Z)) {
@@ -458,16 +495,21 @@ static void place_link(const hn_scene *scene, hn_tree *tree, int index, int alig
     } else {
         link->carry = HN_CARRY_NEW;
         link->angle_ref = -1;
+
+        // the axis as the base sees it
         double in_base[3], to_base[3][3];
         hn_num3_transpose(tree->links[parent->root].C, to_base);
         apply(to_base, axis, in_base);
         link->group = find_group(scene, tree, parent->root, in_base);
+
+        // the primitive's axes in the group's frame
         double turned[3][3];
         hn_num3_transpose(tree->groups[link->group].X, back);
         hn_num3_compose(parent->C, link->here, N); // the ground's C may just have been chosen
         hn_num3_compose(back, N, turned);
         memcpy(N, turned, sizeof turned);
     }
+
     tree->groups[link->group].n_links++;
     place_revolute(scene, link, link->body, N, link->there, align);
 }
@@ -508,6 +550,7 @@ static hn_status allocate(const hn_scene *scene, hn_arena *arena, hn_tree *tree)
     memset(tree, 0, sizeof *tree);
     tree->n_links = scene->n_bodies + 1;
     tree->ground = scene->n_bodies;
+
     tree->links = hn_arena_get(arena, nl * sizeof *tree->links);
     tree->groups = hn_arena_get(arena, (nl + 1) * sizeof *tree->groups);
     tree->order = hn_arena_ints(arena, nl);
@@ -519,6 +562,8 @@ static hn_status allocate(const hn_scene *scene, hn_arena *arena, hn_tree *tree)
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // links that hang nowhere yet
     for (size_t l = 0; l < nl; l++) {
         hn_link *link = &tree->links[l];
         link->body = link->position = -1;

@@ -1,17 +1,17 @@
 #ifndef HN_DYNAMICS_TREE_H
 #define HN_DYNAMICS_TREE_H
-// The spanning tree of a scene and the frames its equations are written in. Numbers only, no
-// expressions.
+// The spanning tree of a scene, and the frames that its equations are written in, as numbers.
 //
 // Links are the bodies 0 .. nb-1, the ground (index nb) and virtual links behind it. A link hangs
 // from its parent by one PRIMITIVE joint: revolute, prismatic, spherical (a ball) or fixed. A joint
-// of the scene with more freedoms is a chain of primitives through virtual links, which have no
-// mass and stand in the joint's own axes; the end of the chain is the body. The tree has the least
+// of the scene with more degrees of freedom is a chain of primitives through virtual links, which
+// have no mass and stand in the joint's own axes; the end of the chain is the body. The tree has
+// the least
 // depth in bodies (breadth first from the ground, ties by the order of the joints); the joints left
 // over close loops.
 //
 //     cylindrical  slide z, turn z        universal  turn z, turn x        spherical  ball
-//     planar       slide x, y, turn z     free       slide x, y, z, ball   fixed      turns as its parent does
+//     planar       slide x, y, turn z     free       slide x, y, z, ball   fixed      as its parent
 //
 // GROUPS. Along consecutive parallel revolute axes absolute angles make M sparse and the closure
 // rows short, so links are collected into groups: all revolute links whose axes are parallel and
@@ -22,12 +22,12 @@
 // use the first ground group's frame.
 //
 // BALLS. A ball has four entries of q, a unit quaternion (the joint's child against its parent, in
-// the joint's axes), and three speeds, the angular velocity of the joint's child against its parent
-// in the joint's axes on the child. It is a group of its own: the frame is fixed in the link itself
-// (theta = 0), and what takes it to the parent is an expression of the quaternion.
+// the joint's axes), and three velocities, the angular velocity of the joint's child against its
+// parent in the joint's axes on the child. It is a group of its own: the frame is fixed in the link
+// itself (theta = 0), and what takes it to the parent is an expression of the quaternion.
 //
 //        ground --revolute--> crank --revolute--> coupler --prismatic--> slider --revolute--> flap
-//        base                 first of group      same group             rigid with coupler   same group
+//        base               first of group      same group         rigid with it       same group
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -35,10 +35,12 @@
 
 /// How a link's rotation hangs on its parent's.
 typedef enum hn_carry {
-    HN_CARRY_GROUP, ///< revolute, same group as the parent: the parent's rotation does not carry it
-    /// revolute, first of a group whose base rotates with the parent: carried; a ball
+    /// revolute, in its parent's group: an absolute angle, so the parent's rotation does not carry
+    /// it
+    HN_CARRY_GROUP,
+    /// a ball, or the first revolute of a group: the rotation of the group's base carries it
     HN_CARRY_NEW,
-    HN_CARRY_RIGID ///< prismatic, fixed: turns exactly as the parent does
+    HN_CARRY_RIGID ///< prismatic or fixed: turns exactly as the parent does
 } hn_carry;
 
 typedef struct hn_link {
@@ -46,19 +48,20 @@ typedef struct hn_link {
     int joint;  ///< scene joint, -1 for the ground
     /// scene body; of a virtual link, the body at the end of its chain; -1 for the ground
     int body;
-    int is_virtual, is_first; ///< not the body yet; the first of its chain
-    hn_joint_type type;       ///< primitive: revolute, prismatic, spherical or fixed
+    int is_virtual;     ///< not the body yet: inside the chain of a joint
+    int is_first;       ///< the first link of its chain
+    hn_joint_type type; ///< primitive: revolute, prismatic, spherical or fixed
     hn_carry carry;
     int reversed; ///< the joint's own parent is this link
     int depth;
     int first_child, next_sibling, last_child; ///< links, -1 ends
-    int coordinate; ///< its (first) speed, -1 for the ground and fixed links
+    int coordinate; ///< its (first) velocity, -1 for the ground and fixed links
     int n_speeds;   ///< 0, 1, or 3 of a ball
     int part;       ///< which of the scene joint's coordinates is its first
     int position;   ///< its first entry of q, -1
     /// the primitive's axes (z: along or about) on the parent, and on the link itself
     double here[3][3], there[3][3];
-    int angle; ///< speed whose position is theta, -1: theta is 0
+    int angle; ///< velocity whose position is theta, -1: theta is 0
     /// revolute: coordinate of the angle that the joint's own angle is counted from, -1: none
     int angle_ref;
     double sign, offset; ///< user coordinate = sign * (q[coordinate] - q[angle_ref] - offset)
@@ -89,16 +92,20 @@ typedef struct hn_tree {
     int n_cut;
     int *cut;          ///< scene joints that close loops, in scene order
     int *joint_cut;    ///< per scene joint: index into cut, or -1
-    int n_coordinates; ///< speeds
+    int n_coordinates; ///< velocities
     int n_positions;   ///< entries of q
-    int *user;         ///< per speed: scene coordinate
-    int *link_of;      ///< per speed: link
-    int *position;     ///< per speed: entry of q, -1 for the speeds of a ball
+    int *user;         ///< per velocity: scene coordinate
+    int *link_of;      ///< per velocity: link
+    int *position;     ///< per velocity: entry of q, -1 for the velocities of a ball
 } hn_tree;
 
-/// `align`: turn angles' zero so that a body's arms lie along its axes (off for equations that
-/// people read: an absolute angle is then a plain sum of the scene's). Memory from `arena`. Fails:
-/// HN_ERR_INPUT when joints marked "cut" leave a body hanging, HN_ERR_MEMORY.
+/// Builds the tree of a scene, with memory from `arena`. The tree is of least depth in bodies
+/// (breadth first from the ground, ties by the order of the joints).
+///
+/// align  in  1: angles count from where a body's arms lie along its axes, which makes expressions
+///            short; 0: an absolute angle is a plain sum of the scene's, for equations to be read
+/// Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, or a free joint would close
+///        a loop; HN_ERR_MEMORY
 HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena,
                                       hn_tree *out, hn_diags *diags);
 
@@ -106,21 +113,20 @@ HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena
 int hn_tree_common(const hn_tree *tree, int a, int b);
 /// Link of a scene body (HN_GROUND: the ground).
 int hn_tree_link(const hn_tree *tree, int body);
-/// The link does not rotate against the ground.
+/// Whether the link never rotates against the ground.
 int hn_tree_is_still(const hn_tree *tree, int link);
-/// Bodies between a body and the ground along the tree, itself included.
+/// The number of bodies between a body and the ground along the tree, itself included.
 int hn_tree_depth(const hn_tree *tree, int body);
-/// The chain of primitives that a joint type stands for, from the joint's parent to its child;
-/// returns their number.
+/// One link of the chain that a joint type stands for.
 typedef struct hn_primitive {
     hn_joint_type type;
     int along; ///< 0, 1, 2: x (ref), y, z (axis) of the joint
     int part;  ///< which of the joint's coordinates is its first
 } hn_primitive;
 enum { HN_MAX_PRIMITIVES = 4 };
+/// The chain of primitives of a joint type, from the joint's parent to its child; returns how many.
 int hn_joint_primitives(hn_joint_type type, const hn_primitive **out);
-/// Where a tree joint sits on the link itself, and on its parent; `at` are 3 quantities in the
-/// body's own frame.
+/// Where a tree joint sits on the link itself, and on its parent: 3 quantities in the body's frame.
 const hn_quantity *hn_link_at_own(const hn_scene *scene, const hn_link *link);
 const hn_quantity *hn_link_at_parent(const hn_scene *scene, const hn_link *link);
 #endif

@@ -197,11 +197,14 @@ hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz) {
     for (int i = 0; i < 3; i++) {
         rt[i] = mul(g, r.x[i], t.x[i]);
     }
+
     hn_ex zero = hn_num(0);
     hn_sym3 out = {{zero, zero, add(g, rt[0], rt[1]), zero, zero, zero}};
     if (only_zz) {
         return out;
     }
+
+    // the other two diagonal entries, then the products
     out.x[0] = add(g, rt[1], rt[2]);
     out.x[1] = add(g, rt[2], rt[0]);
     static const int first[3] = {0, 0, 1}, second[3] = {1, 2, 2};

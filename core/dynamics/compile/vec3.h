@@ -1,7 +1,7 @@
 #ifndef HN_DYNAMICS_VEC3_H
 #define HN_DYNAMICS_VEC3_H
-// Vectors and 3 x 3 matrices of expressions. A component that is zero costs no node: what a planar
-// mechanism does not need is never built, not even to be thrown away.
+// Vectors and 3 x 3 matrices of expressions. A component that is zero costs no node, so that a
+// planar mechanism never builds what only a spatial one needs.
 
 #include "expr/graph.h"
 #include "linalg/small3.h"
@@ -48,11 +48,12 @@ hn_sym3 hn_sym3_rotate(hn_graph *g, const hn_mat3 *R, const hn_sym3 *m);
 /// The same for a rotation about z.
 hn_sym3 hn_sym3_turn_z(hn_graph *g, hn_ex c, hn_ex s, const hn_sym3 *m);
 /// What the inertia of a set with mass m and first moment s about its own point gains when it is
-/// referred to a point from which its own point lies at r: 2 (r.s) 1 - (r s' + s r') + m (r^2 1 - r
-/// r'). `only_zz`: the rest is left zero.
+/// referred to a point from which its own point lies at r:
+///     2 (r.s) 1 - (r s' + s r') + m (r^2 1 - r r')
+/// `only_zz`: the other entries are left zero.
 hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz);
 
-/// Of points fixed to a body with angular velocity w and angular acceleration al: [al x] + w w' -
-/// w^2 1, so that a point at r accelerates by B r relative to the body's origin.
+/// The matrix B = [al x] + w w' - w^2 1 of a body with angular velocity w and angular acceleration
+/// al: a point at r accelerates by B r relative to the body's origin.
 hn_mat3 hn_mat3_accel(hn_graph *g, hn_vec3 w, hn_vec3 al);
 #endif

@@ -352,7 +352,7 @@ static const char *name_of_speed(const hn_accel *s, int i) {
     return hn_system_scene(s->sys)->coordinates[hn_system_user_coordinate(s->sys, i)].name;
 }
 
-/// The first speed that moves no mass by itself, -1: each moves some.
+/// The first velocity that moves no mass by itself, -1: each moves some.
 static int find_massless(const hn_accel *s) {
     const double nothing = 1e-14; // of the largest mass, as in the dense solves
     const double *M = hn_eval_get(s->terms, HN_TERM_M);
@@ -404,7 +404,7 @@ static double dense_ops(const hn_accel *s) {
 }
 
 /// A row that is short at a pose says little there, also where the loops are closed to rounding:
-/// stretched, rounding is all it says. Of one below HN_ROW_LOST speeds and pose leave rounding and
+/// stretched, rounding is all it says. Of one below HN_ROW_LOST velocities and pose leave rounding and
 /// the error of the step.
 static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();

@@ -44,7 +44,7 @@ typedef struct hn_accel_info {
     int fallback;     ///< 1: the dense solve answered in place of the tape
     hn_solver solver; ///< who answered: the tape counts as ldl
     int refinements;  ///< corrections of the answer that were kept
-    int massless;     ///< the range space refused: the speed without mass; else -1
+    int massless;     ///< the range space refused: the velocity without mass; else -1
     int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
     /// smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
     double pivot_ratio;

@@ -1,4 +1,5 @@
 #include "dynamics/evaluate/eval.h"
+
 #include "dynamics/evaluate/inputs.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 #include "dynamics/evaluate/factor.h"
+
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/inputs.h"

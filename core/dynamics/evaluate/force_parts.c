@@ -50,7 +50,7 @@ static int place_of(const builder *b, int symbol) {
     return i;
 }
 
-/// q' = G v, and the gradients along each speed: T_q G to h with its sign, V_q G to g.
+/// q' = G v, and the gradients along each velocity: T_q G to h with its sign, V_q G to g.
 static void go_along_speeds(builder *b) {
     const hn_system *sys = b->sys;
     for (int j = 0; j < sys->nv; j++) {
@@ -67,7 +67,7 @@ static void go_along_speeds(builder *b) {
     }
 }
 
-/// The speeds of a ball are not rates of coordinates: its momentum turns with the axes it is
+/// The velocities of a ball are not rates of coordinates: its momentum turns with the axes it is
 /// measured in.
 static void turn_momenta(builder *b) {
     for (int k = 0; k < b->sys->n_balls; k++) {

@@ -9,7 +9,7 @@
 // tau is what remains: motors, dampers, forces. (2) and (3) come from the energies by
 // differentiation and owe nothing to the recursion that f comes from, so that f + h + g = 0 where
 // there are no loads is a check of both.
-// Source: Lagrange's equations, for the speeds of balls in Hamel's form (Bloch, Marsden & Zenkov
+// Source: Lagrange's equations, for the velocities of balls in Hamel's form (Bloch, Marsden & Zenkov
 // 2009, section 2).
 
 #include "dynamics/compile/system.h"

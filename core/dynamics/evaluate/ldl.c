@@ -1,4 +1,5 @@
 #include "dynamics/evaluate/ldl.h"
+
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/symmat.h"

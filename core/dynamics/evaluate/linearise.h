@@ -6,7 +6,7 @@
 //     R(t, q, v, a, lambda) = M(q) a - f(q, v, t) - J(q)' lambda                                                    (1)
 //     dR = K dq + C dv + M da - J' dlambda,     dphi = J dq,     d(J v + phi_t) = V dq + J dv                            (2)
 //
-// dq is a displacement along the speeds (nv entries, hn_system_move): K = R_q G, V = (J v +
+// dq is a displacement along the velocities (nv entries, hn_system_move): K = R_q G, V = (J v +
 // phi_t)_q G. One tape, everything in it shared with M, f and J.
 
 #include "base/arena.h"

@@ -2,7 +2,7 @@
 #define HN_DYNAMICS_PIVOT_NOISE_H
 // How finely rows of J may be told apart. Rows that depend on others on the closed set come apart
 // where the loops stand open: there J and gamma are off by about the gap over the length (and the
-// velocity gap over the speed), a bit more in a loop of short links. What is not larger tells
+// velocity gap over the velocity), a bit more in a loop of short links. What is not larger tells
 // nothing.
 
 #include "dynamics/compile/system.h"
@@ -19,7 +19,7 @@ typedef struct hn_pivot_noise_terms {
     const double *phi_t; ///< nc
 } hn_pivot_noise_terms;
 
-/// The relative gap of the loops at speeds v (nv); rate (nc) receives J v + phi_t, size (nc) is
+/// The relative gap of the loops at velocities v (nv); rate (nc) receives J v + phi_t, size (nc) is
 /// scratch.
 double hn_pivot_noise_gap(const hn_system *sys, const hn_pivot_noise_terms *at, const double *v,
                           double *rate, double *size);

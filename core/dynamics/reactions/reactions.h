@@ -12,8 +12,8 @@
 // Energies given as formulas beside the bodies say what they do along coordinates and nothing about
 // where. They are taken to act in the joints, between the two bodies of the joint whose coordinate
 // they name, as a motor there would, inertia included; what they do
-// is in the wrench along the joint's freedom, and is told beside it. A formula that stands for a
-// part somewhere else also loads joints across their freedoms: that is not in any formula, and not
+// is in the wrench along the joint's freedom, and is reported beside it. A formula that stands for a
+// part somewhere else also loads joints across their degrees of freedom: that is not in any formula, and not
 // in the wrenches. A scene of formulas alone has efforts only.
 
 #include "base/arena.h"
@@ -60,6 +60,6 @@ int hn_reactions_has_place(const hn_reactions *r, int constraint);
 /// After an eval: largest residual of m a = sum of forces and of the moments about the centre of
 /// mass over all bodies, relative to the largest force [-] and moment. The tree joints are found
 /// from it; what it tells is that bodies whose wrenches all came from elsewhere (closing joints,
-/// loads) and generalised forces along the freedoms agree.
+/// loads) and generalised forces along the degrees of freedom agree.
 double hn_reactions_defect(const hn_reactions *r);
 #endif

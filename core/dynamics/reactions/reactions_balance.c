@@ -224,7 +224,7 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
     hand_down(r);
 }
 
-/// The hn_reaction_wrench of each tree joint along its own freedoms against what is put in there.
+/// The hn_reaction_wrench of each tree joint along its own degrees of freedom against what is put in there.
 double hn_reaction_calc_defect(const hn_reactions *r) {
     double off[2] = {0, 0}, size[2] = {0, 0};
     for (int b = 0; b < r->n_bodies; b++) {
