@@ -160,12 +160,15 @@ static void recognise_blocks(builder *b, int n_blocks) {
             name_block(b, first, end, "%d unknowns hang together in their rows: %s%s");
             return;
         }
+
+        // a block of one or two rows and their unknowns
         hn_dyad_step *step = &d->steps[d->n];
         step->dyad.n = end - first;
         for (int i = first; i < end; i++) {
             step->dyad.row[i - first] = b->P[i];
             step->dyad.unknown[i - first] = d->dep[b->Q[i]];
         }
+
         if (!hn_dyad_recognise(b->sys, step, b->x, &seed)) {
             name_block(b, first, end,
                        "a block of %d is no dyad: its rows depend on %s%s otherwise than on links "
@@ -353,7 +356,7 @@ double hn_dyads_ops(const hn_dyads *d) {
 }
 
 hn_ex hn_dyads_expression(const hn_dyads *d, int k, int i) {
-    return d->steps[k].told[i];
+    return d->steps[k].shown[i];
 }
 
 int hn_dyads_n_parts(const hn_dyads *d, int k) {

@@ -49,47 +49,47 @@ typedef struct hn_dyad {
 const char *hn_dyad_kind_name(hn_dyad_kind kind);
 const char *hn_dyad_kind_about(hn_dyad_kind kind);
 
-/// The analysis for the dependent columns `dep` (n of them, ascending). Adds nodes to the graph:
-/// see system.h, as for evaluators. The tape is owned (hn_dyads_free), the rest from `arena`. Where
-/// there is no closed form, the object says why and solves nothing.
+/// Analyses the position problem for the dependent columns `dep` (n of them, ascending). Adds nodes
+/// to the graph, as an evaluator does. The tape is owned (hn_dyads_free), the rest from `arena`.
+/// Where there is no closed form, the object says why (hn_dyads_refusal) and solves nothing.
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_dyads_create(const hn_system *sys, const int *dep, int n,
                                         hn_arena *arena, hn_dyads **out);
 void hn_dyads_free(hn_dyads *d); ///< NULL is legal
-/// NULL where the closed form serves, else the reason, to be read behind "Newton, because".
+/// NULL where there is a closed form, else the reason, as a clause to follow "Newton, because".
 const char *hn_dyads_refusal(const hn_dyads *d);
 int hn_dyads_serve(const hn_dyads *d, const int *dep, int n); ///< 1: made for these columns
 int hn_dyads_count(const hn_dyads *d);                        ///< steps
 int hn_dyads_proper(const hn_dyads *d); ///< those of them with two unknowns: dyads
 hn_dyad hn_dyads_at(const hn_dyads *d, int k);
 hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve
-hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one look at the branches
+hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one check of the branches
 double hn_dyads_ops(const hn_dyads *d);               ///< arithmetic operations so far
 
-/// The way every dyad is assembled at q (nq) becomes the one to keep. 0 when one stands at its dead
-/// point, where the two ways meet; its sign is then 0.
+/// Takes the branch of every dyad at q (nq) as the one to keep. Returns 0 when a dyad is at its
+/// dead point, where the two branches meet; its sign is then 0.
 int hn_dyads_take_branch(hn_dyads *d, double t, const double *q);
-/// The first step that is assembled the other way at q (nq), -1: none. q is near a pose, e.g.
-/// predicted along a tangent.
+/// Returns the first step that is on the other branch at q (nq), -1 when none is. q is near a pose,
+/// e.g. predicted along a tangent.
 int hn_dyads_find_turned(hn_dyads *d, double t, const double *q);
-/// Sets the dependent entries of q (nq) from the others; an angle goes to the whole turn nearest to
-/// where it was. Returns -1, or the first step that cannot be closed (its circles do not meet); q
-/// is then as it was. Allocates nothing.
+/// Sets the dependent entries of q (nq) from the others; an angle takes the whole turn nearest to
+/// its old value. Returns -1, or the first step that cannot be closed (its circles do not meet); q
+/// is then unchanged. Allocates nothing.
 int hn_dyads_solve(hn_dyads *d, double t, double *q);
 
-/// Step k as an equation for people: unknown i of it in terms of what is known before it (for i = 1
-/// also unknown 0, or the other way round), with hn_dyads_sign_name() for the way it is assembled.
-/// Borrowed; in the graph of the system.
+/// Step k as an equation for people: its unknown i in terms of what is known before (for i = 1 also
+/// unknown 0, or the other way round); hn_dyads_sign_name() is the symbol of its branch. In the
+/// graph of the system.
 hn_ex hn_dyads_expression(const hn_dyads *d, int k, int i);
-/// Names that the expressions of step k use, in this order.
+/// Names for parts of the expressions of step k, in the order in which they are defined.
 enum { HN_DYAD_PARTS = 4 };
 typedef struct hn_dyad_part {
     hn_ex name, is;
 } hn_dyad_part;
 int hn_dyads_n_parts(const hn_dyads *d, int k);
 hn_dyad_part hn_dyads_part(const hn_dyads *d, int k, int i);
-/// NULL where there is one way only.
+/// The name of the symbol of the branch; NULL where there is one way only.
 const char *hn_dyads_sign_name(const hn_dyads *d, int k);
-/// +1 or -1 of the way kept; 0: the pose it was taken from is the dead point, where both ways meet.
+/// +1 or -1 for the branch kept; 0: it was taken at the dead point, where both branches meet.
 double hn_dyads_sign(const hn_dyads *d, int k);
 #endif

@@ -49,6 +49,8 @@ static void read_row(const reader *r, int i, int n_turn) {
     const int two = r->step->dyad.n == 2;
     hn_graph *g = r->g;
     const hn_ex phi = phi_of(r, i), phi_x = diff(r, phi, 0);
+
+    // the first unknown: an angle by its cosine and sine, or a slide by its slope
     hn_ex rest = at_zero(r, phi);
     if (n_turn > 0) {
         const hn_ex phi_xx = diff(r, phi_x, 0);
@@ -64,12 +66,15 @@ static void read_row(const reader *r, int i, int n_turn) {
         f->A.e[i] = at_zero(r, phi_x);
         f->W.e[i] = two ? at_zero(r, diff(r, phi, 1)) : hn_num(0);
     }
+
+    // the second unknown, where it is an angle too
     if (n_turn == 2) {
         const hn_ex phi_y = diff(r, phi, 1);
         f->C.e[i] = hn_neg(at_zero(r, diff(r, phi_y, 1)));
         f->D.e[i] = at_zero(r, phi_y);
         rest = hn_sub(g, rest, f->C.e[i]);
     }
+
     f->E.e[i] = rest;
 }
 
@@ -168,12 +173,16 @@ int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsig
     hn_dyad *d = &step->dyad;
     int n_turn = 0;
     memset(&step->form, 0, sizeof step->form);
+
+    // how many unknowns turn
     for (int i = 0; i < d->n; i++) {
         r.symbol[i] = exprs.q_symbols[hn_system_position_of(sys, d->unknown[i])];
     }
     for (int i = 0; i < d->n; i++) {
         n_turn += !slides(&r, i);
     }
+
+    // the one that turns comes first
     if (n_turn == 1 && d->n == 2 && slides(&r, 0)) { // what turns comes first
         const int unknown = d->unknown[0], symbol = r.symbol[0];
         d->unknown[0] = d->unknown[1];
@@ -181,9 +190,12 @@ int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsig
         r.symbol[0] = r.symbol[1];
         r.symbol[1] = symbol;
     }
+
+    // coefficients, then the kind, the same at every random pose
     for (int i = 0; i < d->n; i++) {
         read_row(&r, i, n_turn);
     }
+
     for (int trial = 0; trial < TRIALS; trial++) {
         values v;
         evaluate(&r, x, seed, &v);
@@ -257,7 +269,7 @@ static void solve_turn(hn_graph *g, hn_dyad_step *s, hn_ex x) {
 }
 
 /// xi cos x + eta sin x = kappa, and with the other link turned round what is left over.
-static void tell_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn_ex x, int number) {
+static void show_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn_ex x, int number) {
     const hn_dyad_form *f = &s->form;
     const hn_ex xi = name_part(s, step_symbol(g, "ξ", "\\xi", number), p);
     const hn_ex eta = name_part(s, step_symbol(g, "η", "\\eta", number), q);
@@ -266,15 +278,15 @@ static void tell_rrr(hn_graph *g, hn_dyad_step *s, hn_ex p, hn_ex q, hn_ex k, hn
         hn_sub(g, hn_add(g, hn_mul(g, xi, xi), hn_mul(g, eta, eta)), hn_mul(g, kappa, kappa));
     const hn_ex rho =
         name_part(s, step_symbol(g, "ρ", "\\rho", number), hn_mul(g, s->sign, hn_sqrt(g, room)));
-    s->told[0] = atan2_of(g, hn_add(g, hn_mul(g, kappa, eta), hn_mul(g, rho, xi)),
-                          hn_sub(g, hn_mul(g, kappa, xi), hn_mul(g, rho, eta)));
+    s->shown[0] = atan2_of(g, hn_add(g, hn_mul(g, kappa, eta), hn_mul(g, rho, xi)),
+                           hn_sub(g, hn_mul(g, kappa, xi), hn_mul(g, rho, eta)));
     hn_pair left;
     for (int i = 0; i < 2; i++) {
         left.e[i] = hn_neg(hn_add(
             g, f->E.e[i],
             hn_add(g, hn_mul(g, f->A.e[i], hn_cos(g, x)), hn_mul(g, f->B.e[i], hn_sin(g, x)))));
     }
-    s->told[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
+    s->shown[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
 }
 
 /// |E + A cos x + B sin x|^2 = |C|^2 is a line for (cos x, sin x); what is left over is the other
@@ -294,7 +306,7 @@ static void solve_rrr(hn_graph *g, hn_dyad_step *s, hn_ex x, int number) {
     }
     s->x[1] = atan2_of(g, times(g, &f->D, &left), times(g, &f->C, &left));
     s->is_angle[1] = 1;
-    tell_rrr(g, s, p, q, k, x, number);
+    show_rrr(g, s, p, q, k, x, number);
 }
 
 /// Across the line the slide does not count, along it nothing else is unknown.
@@ -309,7 +321,7 @@ static void solve_rrp(hn_graph *g, hn_dyad_step *s, hn_ex x) {
     s->x[1] = hn_neg(hn_div(g, along, hn_mul(g, w2, c.s2)));
     along = hn_add(g, times(g, &f->W, &f->E), hn_mul(g, times(g, &f->W, &f->A), hn_cos(g, x)));
     along = hn_add(g, along, hn_mul(g, times(g, &f->W, &f->B), hn_sin(g, x)));
-    s->told[1] = hn_neg(hn_div(g, along, w2));
+    s->shown[1] = hn_neg(hn_div(g, along, w2));
 }
 
 /// The angle that turns A + y U on -E.
@@ -331,7 +343,7 @@ static void solve_rpr(hn_graph *g, hn_dyad_step *s, hn_ex y) {
     s->branch = hn_add(g, hn_mul(g, u2, y), au);
     s->x[1] = hn_div(g, hn_sub(g, hn_mul(g, s->sign, hn_sqrt(g, s->room)), au), u2);
     s->x[0] = turned_by(g, f, s->x[1]);
-    s->told[0] = turned_by(g, f, y);
+    s->shown[0] = turned_by(g, f, y);
     s->is_angle[0] = 1;
 }
 
@@ -345,10 +357,13 @@ static void solve_prp(hn_graph *g, hn_dyad_step *s) {
 void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, int k) {
     hn_graph *g = hn_system_graph(sys);
     const hn_ex x = symbol_of(sys, s->dyad.unknown[0]);
+
+    // what a kind without a choice of branch leaves as it is
     s->sign = step_symbol(g, "σ", "\\sigma", k);
-    s->told[0] = s->told[1] = hn_num(0);
+    s->shown[0] = s->shown[1] = hn_num(0);
     s->n_parts = 0;
     s->room = s->branch = hn_num(1);
+
     switch (s->dyad.kind) {
     case HN_DYAD_SINGLE:
         s->x[0] = hn_neg(hn_div(g, s->form.E.e[0], s->form.A.e[0]));
@@ -371,7 +386,9 @@ void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *s, int k) {
     case HN_DYAD_KIND_COUNT:
         break;
     }
+
+    // what people read, where it is no shorter than what the tape computes
     for (int i = 0; i < s->dyad.n; i++) {
-        s->told[i] = hn_is_zero(s->told[i]) ? s->x[i] : s->told[i];
+        s->shown[i] = hn_is_zero(s->shown[i]) ? s->x[i] : s->shown[i];
     }
 }

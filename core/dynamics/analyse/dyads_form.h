@@ -1,6 +1,6 @@
 #ifndef HN_DYNAMICS_DYADS_FORM_H
 #define HN_DYNAMICS_DYADS_FORM_H
-// One step of a position analysis while it is recognised and solved; for dyads*.c only.
+// One step of a position analysis: its recognition from phi, and its solution in closed form.
 
 #include "dynamics/analyse/dyads.h"
 
@@ -19,23 +19,22 @@ typedef struct hn_dyad_step {
     hn_dyad dyad;
     hn_dyad_form form;
     int is_angle[2]; ///< an unknown that came from atan2
-    hn_ex sign;      ///< its symbol; the number 1 where there is one way only
-    /// what the square root is taken of: negative where it cannot be closed; the number 1 where
-    /// there is none
+    hn_ex sign;      ///< symbol of the branch; the number 1 where there is one way only
+    /// the radicand: negative where the step cannot be closed; the number 1 without a square root
     hn_ex room;
-    hn_ex branch; ///< has the sign of `sign`, at a pose that is closed
-    hn_ex x[2];
-    // the same for people: the second unknown from the first, and parts that would be written out
-    // many times by names of their own
-    hn_ex told[2];
+    hn_ex branch; ///< has the sign of the branch at a closed pose
+    hn_ex x[2];   ///< the solution
+    /// the solution for people: the second unknown from the first, with names for parts that occur
+    /// many times
+    hn_ex shown[2];
     int n_parts;
     hn_ex part[HN_DYAD_PARTS], part_is[HN_DYAD_PARTS];
 } hn_dyad_step;
 
-/// Recognises the block (row, unknown and n of step->dyad are set). Fills kind and form; 0 when it
-/// has no shape of the list. Values for every symbol at random poses are made from `seed`; `x` has
-/// room for all of the graph's symbols.
+/// Recognises the block whose row, unknown and n are set in step->dyad, and fills kind and form.
+/// Random poses are made from `seed`; `x` has room for all of the graph's symbols.
+/// Returns 0 when it has none of the forms in dyads.h.
 int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsigned *seed);
-/// Fills the expressions of the solution from the form of step number `k`.
+/// Fills the expressions of the solution from the form; `k` is the number of the step.
 void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *step, int k);
 #endif

@@ -65,11 +65,14 @@ static void put_loops(hn_strbuf *b, const hn_system *sys) {
     hn_json_array(b);
     for (int k = 0; k < sys->n_loops; k++) {
         const hn_loop *loop = &sys->loops[k];
+
         hn_json_object(b);
         hn_json_put_string(b, "name", loop->name);
         hn_json_put_string(b, "joint",
                            loop->joint >= 0 ? sys->scene->joints[loop->joint].name : NULL);
         hn_json_put_string(b, "why", loop->why);
+
+        // its rows, by name
         hn_json_key(b, "rows");
         hn_json_array(b);
         for (int row = 0; row < sys->nc; row++) {
@@ -91,6 +94,8 @@ static void put_groups(hn_strbuf *b, const hn_system *sys) {
         if (tree->groups[k].n_links == 0) {
             continue;
         }
+
+        // the base, and the bodies that turn in the group by themselves
         hn_json_object(b);
         hn_json_put_string(b, "base", link_name(sys, tree->groups[k].base));
         hn_json_put_bool(b, "base_rotates", tree->groups[k].moving);
@@ -130,6 +135,7 @@ static void put_coordinates(hn_strbuf *b, const hn_system *sys) {
     hn_json_key(b, "coordinates");
     hn_json_array(b);
     for (int i = 0; i < sys->nv; i++) {
+        // the scene's coordinate in terms of the system's
         int user = hn_system_user_coordinate(sys, i);
         hn_strbuf text;
         hn_strbuf_init(&text);
@@ -141,6 +147,8 @@ static void put_coordinates(hn_strbuf *b, const hn_system *sys) {
             hn_strbuf_add(&text, "entry of the rotation vector of the quaternion");
         }
         const int symbol = place >= 0 ? sys->q_symbols[place] : -1;
+
+        // the system's coordinate by the name of its symbol
         hn_json_object(b);
         hn_json_put_string(b, "name",
                            symbol >= 0 ? hn_graph_symbol_name(sys->g, symbol)
@@ -181,13 +189,14 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
     for (int i = 0; i < sys->scene->n_coordinates; i++) {
         n += sys->scene->coordinates[i].actuated != 0;
     }
-    const char *reading = "fully actuated: as many motors as freedoms";
+    const char *reading = "fully actuated: as many motors as degrees of freedom";
     if (n == 0) {
         reading = "passive: nothing is driven";
     } else if (n < freedoms) {
-        reading = "under-actuated: fewer motors than freedoms";
+        reading = "under-actuated: fewer motors than degrees of freedom";
     } else if (n > freedoms) {
-        reading = "over-actuated: more motors than freedoms, so they can work against each other";
+        reading = "over-actuated: more motors than degrees of freedom, so they can work against "
+                  "each other";
     }
     hn_json_key(b, "actuation");
     hn_json_object(b);
@@ -223,23 +232,19 @@ typedef struct counts {
 
 static hn_status count_terms(const hn_system *sys, unsigned terms, hn_arena *arena, int *ops) {
     hn_eval *eval;
-    hn_status status = hn_eval_create(sys, terms, arena, &eval);
-    if (status == HN_OK) {
-        *ops = hn_eval_info(eval).ops;
-        hn_eval_free(eval);
-    }
-    return status;
+    HN_TRY(hn_eval_create(sys, terms, arena, &eval));
+    *ops = hn_eval_info(eval).ops;
+    hn_eval_free(eval);
+    return HN_OK;
 }
 
 static hn_status count_solve(const hn_system *sys, hn_accel_opts opts, hn_arena *arena,
                              hn_tape_info *info) {
     hn_accel *accel;
-    hn_status status = hn_accel_create(sys, &opts, arena, &accel);
-    if (status == HN_OK) {
-        *info = hn_accel_tape_info(accel);
-        hn_accel_free(accel);
-    }
-    return status;
+    HN_TRY(hn_accel_create(sys, &opts, arena, &accel));
+    *info = hn_accel_tape_info(accel);
+    hn_accel_free(accel);
+    return HN_OK;
 }
 
 static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
@@ -254,36 +259,33 @@ static hn_status count_all(const hn_system *sys, hn_arena *arena, counts *c) {
         {HN_TERM_GAMMA, &c->gamma},
         {HN_TERM_M | HN_TERM_F | HN_TERM_PHI | HN_TERM_J | HN_TERM_GAMMA, &c->together},
     };
-    hn_status status = HN_OK;
-    for (size_t k = 0; k < sizeof list / sizeof *list && status == HN_OK; k++) {
-        status = count_terms(sys, list[k].terms, arena, list[k].ops);
+
+    // terms by themselves and together
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+        HN_TRY(count_terms(sys, list[k].terms, arena, list[k].ops));
     }
-    if (status == HN_OK) {
-        status = count_solve(sys, (hn_accel_opts){.want_lambda = 1}, arena, &c->solve);
-    }
-    if (status == HN_OK) {
-        status = count_solve(sys, (hn_accel_opts){.baumgarte = 1, .want_lambda = 1}, arena,
-                             &c->baumgarte);
-    }
-    if (status == HN_OK) {
-        status = count_solve(sys, (hn_accel_opts){0}, arena, &c->motion);
-    }
-    hn_factor *factor = NULL;
-    if (status == HN_OK) {
-        status = hn_factor_create(sys, HN_FACTOR_MASS, arena, &factor);
-    }
-    if (status == HN_OK) {
-        c->factor = hn_factor_get_info(factor);
-        hn_factor_free(factor);
-    }
+
+    // whole solves
+    const hn_accel_opts full = {.want_lambda = 1}, bare = {0};
+    const hn_accel_opts baumgarte = {.baumgarte = 1, .want_lambda = 1};
+    HN_TRY(count_solve(sys, full, arena, &c->solve));
+    HN_TRY(count_solve(sys, baumgarte, arena, &c->baumgarte));
+    HN_TRY(count_solve(sys, bare, arena, &c->motion));
+
+    // the sparse factor
+    hn_factor *factor;
+    HN_TRY(hn_factor_create(sys, HN_FACTOR_MASS, arena, &factor));
+    c->factor = hn_factor_get_info(factor);
+    hn_factor_free(factor);
+
     for (int k = 0; k < sys->M.n; k++) {
         c->M_entries += sys->M.at[k].row == sys->M.at[k].col ? 1 : 2;
     }
-    return status;
+    return HN_OK;
 }
 
-// who factors the matrices of Newton's method: [M -J'; J 0] and what implicit integrators add to it
-// in the same places
+/// The solver of the matrices of Newton's method: [M -J'; J 0], to which implicit integrators add
+/// terms in the same places.
 static void put_newton(hn_strbuf *b, const hn_system *sys, const counts *c) {
     const int n = sys->nv + sys->nc;
     const long long entries = c->M_entries + 2LL * sys->J.n;
@@ -307,8 +309,8 @@ static void put_solver(hn_strbuf *b, const hn_system *sys, const counts *c) {
         hn_json_put_string(
             b, "behind_it",
             "refinement where a pivot is below 1e-3 of its row, dense least-norm "
-            "where one is below 1e-8 or a row dies away: it finds the rank and serves "
-            "rows that depend on each other");
+            "where one is below 1e-8 or a row vanishes: it finds the rank and solves "
+            "with rows that depend on each other");
         hn_json_put_int(b, "pivots", c->factor.n_blocks);
     }
     put_newton(b, sys, c);
@@ -339,6 +341,8 @@ static void put_operations(hn_strbuf *b, const counts *c) {
     hn_json_put_int(b, "J", c->J);
     hn_json_put_int(b, "gamma", c->gamma);
     hn_json_put_int(b, "together", c->together);
+
+    // a whole solve on the tape
     if (c->factor.available) {
         hn_json_put_int(b, "solve", c->solve.ops);
         hn_json_put_int(b, "solve_baumgarte", c->baumgarte.ops);
@@ -349,6 +353,8 @@ static void put_operations(hn_strbuf *b, const counts *c) {
         hn_json_null(b);
     }
     hn_json_end_object(b);
+
+    // the tape itself
     hn_json_key(b, "tape");
     hn_json_object(b);
     hn_json_put_int(b, "instructions", c->solve.instructions);
@@ -393,6 +399,8 @@ static void put_left_out(hn_strbuf *b, const hn_system *sys, const counts *c) {
     long long J_zeros = (long long)sys->nv * sys->nc - sys->J.n;
     hn_json_key(b, "left_out");
     hn_json_array(b);
+
+    // terms that vanish identically
     if (sys->info.rows_dropped) {
         put_absence(b, "closure rows that vanish identically", sys->info.rows_dropped, -1);
     }
@@ -402,16 +410,20 @@ static void put_left_out(hn_strbuf *b, const hn_system *sys, const counts *c) {
     if (J_zeros) {
         put_absence(b, "entries of J that vanish identically", J_zeros, -1);
     }
+
+    // what the scene does not have
     if (!sys->scene->is_lagrangian && !has_gravity(sys->scene)) {
         put_absence(b, "gravity: there is none", -1, -1);
     }
     if (sys->nc && all_zero(sys->phi_t, sys->nc)) {
         put_absence(b, "phi_t: no closure depends on time", -1, -1);
     }
+
+    // what is computed for methods that ask for it, and for no other
     if (sys->nc && c->factor.available) {
-        put_absence(b, "the gap phi and its rate, where a method does not ask for them", -1,
+        put_absence(b, "phi and its rate, where a method does not need them", -1,
                     c->baumgarte.ops - c->solve.ops);
-        put_absence(b, "multipliers, where a method does not ask for them", -1,
+        put_absence(b, "multipliers, where a method does not need them", -1,
                     c->solve.ops - c->motion.ops);
     }
     hn_json_end_array(b);
@@ -427,6 +439,8 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     if (status != HN_OK) {
         return status;
     }
+
+    // what the scene is: bodies, loops, coordinates
     int lagrangian = sys->scene->is_lagrangian;
     hn_json_put_string(b, "kind",
                        lagrangian                 ? "Lagrangian"
@@ -442,6 +456,8 @@ hn_status hn_system_inspect_put(hn_strbuf *b, const hn_system *sys) {
     }
     put_coordinates(b, sys);
     put_limits(b, sys);
+
+    // what solving it takes
     put_solver(b, sys, &c);
     put_nonzeros(b, sys, &c);
     put_operations(b, &c);

@@ -16,8 +16,8 @@ static const double TAKES_PART = 1e-7;
 typedef struct basis {
     int n, nc;
     int n_kept;
-    int *kept;        ///< rows that say something new
-    double *row;      ///< n: the row being looked at, then what is left of it
+    int *kept;        ///< rows that follow from no others
+    double *row;      ///< n: the present row, then the part of it outside the span of e
     double *length;   ///< nc: of the rows
     double *e;        ///< n_kept x n orthonormal
     double *R;        ///< nc x nc: kept row k = sum R[k][j] e_j, j <= k
@@ -116,16 +116,15 @@ static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, con
     basis s;
     hn_eval *eval = NULL;
     double *d = hn_arena_doubles(arena, (size_t)sys->nv);
-    hn_status status = basis_init(&s, sys, arena);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_J, arena, &eval);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(basis_init(&s, sys, arena));
+    HN_TRY(hn_eval_create(sys, HN_TERM_M | HN_TERM_J, arena, &eval));
+
+    // rows measured by diag(M)^-1/2
     hn_eval_run(eval, t, q, NULL);
     const double *J = hn_eval_get(eval, HN_TERM_J);
     weigh(hn_eval_get(eval, HN_TERM_M), s.n, d);
+
+    // row by row: what is left of it beside the rows kept before
     double longest = 0;
     for (int i = 0; i < s.nc; i++) {
         for (int k = 0; k < s.n; k++) {
@@ -134,7 +133,10 @@ static hn_status put_followers(hn_strbuf *b, const hn_system *sys, double t, con
         s.length[i] = hn_norm2(s.n, s.row);
         longest = fmax(longest, s.length[i]);
         split(&s);
+
         const double left = hn_norm2(s.n, s.row);
+
+        // a row that is zero here follows from nothing
         if (s.length[i] <= FOLLOWS * longest) {
             s.length[i] = 0;
         }

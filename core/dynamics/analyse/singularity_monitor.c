@@ -60,6 +60,8 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         return HN_ERR_MEMORY;
     }
     *r = (hn_singularity){.sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc};
+
+    // memory
     const size_t nv = (size_t)info.nv, nc = (size_t)info.nc;
     double **of_nv[] = {&r->d, &r->x, &r->v, &r->no_speed},
            **of_nc[] = {&r->r, &r->w, &r->top, &r->y, &r->kept[0], &r->kept[1], &r->kept[2]};
@@ -73,6 +75,8 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     if (!hn_qr_init(&r->qr, arena, info.nv, info.nc) || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // evaluators and the factor
     hn_status status = hn_eval_create(sys, HN_TERM_J | HN_TERM_M, arena, &r->rows);
     if (status == HN_OK) {
         r->n_J = hn_eval_pattern(r->rows, HN_TERM_J, &r->J_row, &r->J_col);
@@ -81,6 +85,7 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     if (status == HN_OK) {
         status = hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor);
     }
+
     if (status != HN_OK) {
         hn_singularity_free(r);
         return status;
@@ -288,13 +293,18 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singu
     if (r->nc == 0) {
         return;
     }
+
+    // a dense check that costs much is done now and then only
     if (r->wait > 0) {
         r->wait--;
         *info = r->last;
         return;
     }
+
+    // singular values here, sparse if the factor allows
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
+
     const int sparse = hn_factor_update(r->factor, t, q, NULL) == HN_OK;
     if (sparse) {
         look_sparsely(r, r->first ? FIRST_SWEEPS : SWEEPS, info);
@@ -426,6 +436,8 @@ void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double
     if (r->nc == 0 || lost > 0.5 * r->last.sigma_max) {
         return;
     }
+
+    // rows that are lost together with the weakest direction
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
     fill_qr(r);
@@ -433,10 +445,13 @@ void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double
     while (r->qr.rank > 0 && diagonal(r, r->qr.rank - 1) <= lost) {
         r->qr.rank--;
     }
+
     pose->mobility = r->nv - r->qr.rank;
     if (r->qr.rank == r->nc) {
         return;
     }
+
+    // which rows, and the branches where a single freedom meets another
     vanishing_combination(r);
     find_lost_rows(r, pose);
     const int simple = pose->mobility == 2 && pose->mobility_before == 1 && r->start_rank == r->nc;

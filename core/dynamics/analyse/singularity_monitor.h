@@ -1,21 +1,22 @@
 #ifndef HN_DYNAMICS_SINGULARITY_MONITOR_H
 #define HN_DYNAMICS_SINGULARITY_MONITOR_H
-// How far a motion is from a pose where closure rows depend on each other, when it will be there,
-// and what waits there.
+// The singularity monitor: how far a motion is from a configuration where closure rows depend on
+// each other, when it will be there, and what kind of configuration that is.
 //
-//     sigma = singular values of R J D,   D = diag(M)^-1/2,   R: one over the largest length each row of J D has had      (1)
+//     sigma = singular values of R J D,   D = diag(M)^-1/2                                     (1)
+//     R = one over the largest length that each row of J D has had
 //
-// A row that dies away shows as well as two that become parallel; the ratio sigma_min / sigma_max
-// has no unit. sigma_min comes by inverse iteration with the sparse factor of [D^-2 J'; J 0],
-// started from the last answer, so a look costs what J and the factor hold. Where the factor has
-// lost a pivot, a dense rank-revealing QR answers.
+// A row that vanishes shows as well as two rows that become parallel; the ratio
+// sigma_min / sigma_max has no unit. sigma_min comes from inverse iteration with the sparse factor
+// of [D^-2 J'; J 0], started from the last answer: a check costs as much as J and the factor have
+// entries. Where the factor has lost a pivot, a dense rank-revealing QR answers.
 //
 // Prediction. Along a smooth motion sigma_min^2 is smooth, and a zero of it is a double one: a
 // parabola through three looks whose lowest value is zero against the present one says when; one
-// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the velocities
-// v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two degrees of freedom at the pose:
-// two real roots are two crossing branches, none means that the mechanism is locked, a double one
-// is a cusp.
+// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the
+// velocities v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two degrees of
+// freedom at the pose: two real roots are two crossing branches, none means that the mechanism is
+// locked, a double one is a cusp.
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
 
 #include "base/arena.h"

@@ -1,5 +1,3 @@
-// Assembly in outline: pose, velocities, accelerations, and the report. The search itself is in
-// assemble_position.c.
 
 #include "dynamics/assembly/assemble.h"
 
@@ -30,8 +28,8 @@ static const hn_coordinate *user_coordinate(const hn_assembler *s, int i) {
 
 // ---- setting up ----
 
-/// A pin or a guess on a joint that closes a loop has no coordinate to hold or to begin from: it is
-/// refused, not overlooked.
+/// A pin or a guess on a joint that closes a loop has no coordinate to hold or to begin from, so it
+/// is refused.
 static hn_status check_pins(const hn_assembler *s) {
     hn_status status = HN_OK;
     for (int i = 0; i < s->scene->n_coordinates; i++) {
@@ -52,8 +50,7 @@ static hn_status check_pins(const hn_assembler *s) {
     return status;
 }
 
-/// An orientation is pinned as a whole: one entry of its rotation vector alone says nothing that
-/// could be held.
+/// An orientation is pinned as a whole: one entry of its rotation vector alone cannot be held.
 static hn_status check_orientations(const hn_assembler *s) {
     for (int i = 0; i + 2 < s->n; i++) {
         const hn_coordinate *c = user_coordinate(s, i);
@@ -78,6 +75,8 @@ static hn_status read_map(hn_assembler *s) {
     if (!user || !rates || !s->map_start) {
         return HN_ERR_MEMORY;
     }
+
+    // count the entries, then store them
     for (int pass = 0; pass < 2; pass++) {
         if (pass == 1) {
             s->map_row = hn_arena_ints(s->arena, (size_t)count);
@@ -87,6 +86,8 @@ static hn_status read_map(hn_assembler *s) {
             }
             count = 0;
         }
+
+        // column k: the rates of a unit rate of user coordinate k
         for (int k = 0; k < n; k++) {
             user[k] = 1;
             hn_system_rates_from_user(s->sys, user, rates);
@@ -103,6 +104,7 @@ static hn_status read_map(hn_assembler *s) {
                 count++;
             }
         }
+
         s->map_start[n] = count;
     }
     return HN_OK;
@@ -122,6 +124,8 @@ static hn_status start(hn_assembler *s) {
     if (hn_arena_failed(s->arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // start values, and which coordinates may move
     for (int i = 0, at = 0; i < s->n; i++) {
         const hn_coordinate *c = user_coordinate(s, i);
         s->turn[i] = hn_system_position_of(s->sys, i) < 0 ? at++ % 3 : -1;
@@ -131,6 +135,8 @@ static hn_status start(hn_assembler *s) {
             s->free[s->n_free++] = i;
         }
     }
+
+    // what the stages need
     for (int i = 0; i < s->nc; i++) {
         s->row_scale[i] = 1 / hn_system_row_unit(s->sys, i);
     }
@@ -160,16 +166,21 @@ static hn_status find_pose(hn_assembler *s, hn_assembly *report) {
     int finite = hn_assemble_evaluate(s);
     report->gap_before = hn_assemble_gap(s, -1);
     hn_status status = finite ? hn_assemble_position(s) : HN_ERR_DIVERGED;
+
+    // the pose, then the assembly mode that the scene asks for
     const int closed = status == HN_OK;
     if (closed) {
         status = hn_assemble_mode(s);
     }
+
     report->gap = hn_assemble_gap(s, -1);
     report->iterations = s->iterations;
     report->route = s->route;
     for (int i = 0; i < s->n; i++) {
         report->moved = fmax(report->moved, hn_assemble_moved(s, i));
     }
+
+    // say why there is none
     if (status == HN_ERR_UNREACHABLE && !closed) {
         const int flipped = hn_assemble_flipped(s);
         report->worst_loop = flipped >= 0 ? flipped : find_worst_loop(s);
@@ -213,7 +224,7 @@ static double user_mass(const hn_assembler *s, int k, int l) {
     return sum;
 }
 
-/// What a change of the free rates is solved with: rates[k] (n_free), rows J (nc x n_free), weight
+/// The least change of the free rates that closes J v + phi_t: J (nc x n_free), weight
 /// (n_free x n_free).
 typedef struct rate_problem {
     int n_free, *free;
@@ -226,11 +237,14 @@ static hn_status rate_problem_init(rate_problem *p, hn_assembler *s) {
     if (!p->free) {
         return HN_ERR_MEMORY;
     }
+
+    // rates that may change
     for (int i = 0; i < s->n; i++) {
         if (!user_coordinate(s, i)->v0_pinned) {
             p->free[p->n_free++] = i;
         }
     }
+
     size_t n = (size_t)p->n_free, nc = (size_t)s->nc;
     p->J = hn_arena_doubles(s->arena, nc * n);
     p->weight = hn_arena_doubles(s->arena, n * n);
@@ -242,6 +256,8 @@ static hn_status rate_problem_init(rate_problem *p, hn_assembler *s) {
     if (!p->ws || !row || hn_arena_failed(s->arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // rows of J in these rates
     for (int i = 0; i < s->nc; i++) {
         hn_assemble_user_row(s, i, row);
         for (int k = 0; k < p->n_free; k++) {
@@ -289,7 +305,7 @@ static void list_pinned_rates(const hn_assembler *s, char *text, size_t size) {
     }
 }
 
-static hn_status tell_contradiction(hn_assembler *s, const double *gap) {
+static hn_status report_contradiction(hn_assembler *s, const double *gap) {
     char pinned[160];
     list_pinned_rates(s, pinned, sizeof pinned);
     const char *pointer = NULL;
@@ -309,7 +325,7 @@ static hn_status correct_rates(hn_assembler *s, double *user_v, double *v, rate_
     for (int round = 0; round < 2; round++) {
         hn_status status = hn_saddle_apply(p->force, p->gap, p->change, NULL, NULL, p->ws);
         if (status == HN_ERR_INCONSISTENT) {
-            return round == 0 ? tell_contradiction(s, p->gap) : HN_OK;
+            return round == 0 ? report_contradiction(s, p->gap) : HN_OK;
         }
         if (status != HN_OK) {
             return status;
@@ -331,6 +347,8 @@ static hn_status find_rates(hn_assembler *s, double *v, hn_assembly *report) {
     if (!user_v || !gap) {
         return HN_ERR_MEMORY;
     }
+
+    // the rates asked for, and how far they open the loops
     for (int i = 0; i < s->n; i++) {
         user_v[i] = user_coordinate(s, i)->v0;
     }
@@ -342,16 +360,13 @@ static hn_status find_rates(hn_assembler *s, double *v, hn_assembly *report) {
         return HN_OK;
     }
 
+    // the smallest change that closes them
     rate_problem p;
-    hn_status status = rate_problem_init(&p, s);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(rate_problem_init(&p, s));
     memcpy(p.gap, gap, (size_t)s->nc * sizeof *gap);
-    status = factor_rates(s, &p);
-    if (status == HN_OK) {
-        status = correct_rates(s, user_v, v, &p);
-    }
+    HN_TRY(factor_rates(s, &p));
+    const hn_status status = correct_rates(s, user_v, v, &p);
+
     (void)velocity_gap(s, v, gap);
     report->velocity_gap = hn_norm2(s->nc, gap);
     return status;
@@ -365,9 +380,12 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
     hn_status status = hn_accel_create(s->sys, &opts, s->arena, &accel);
     double *a_out = hn_arena_doubles(s->arena, (size_t)s->n),
            *l_out = hn_arena_doubles(s->arena, (size_t)s->nc);
+
     if (status == HN_OK && (!a_out || !l_out)) {
         status = HN_ERR_MEMORY;
     }
+
+    // solve, and say so where that fails
     if (status == HN_OK) {
         hn_accel_info info;
         status = hn_accel_eval(accel, s->t, s->q, v, 0, 0, a_out, l_out, &info);
@@ -377,6 +395,8 @@ static hn_status find_accelerations(hn_assembler *s, const double *v, double *a,
                          hn_status_text(status));
         }
     }
+
+    // outputs stay untouched on failure
     if (status == HN_OK && a) {
         memcpy(a, a_out, (size_t)s->n * sizeof *a);
     }
@@ -396,6 +416,8 @@ static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
     if (!hn_qr_init(&qr, s->arena, n, s->nc) || !d) {
         return HN_ERR_MEMORY;
     }
+
+    // J D with D = diag(M)^-1/2; massless velocities count as the heaviest
     const double *M = hn_eval_get(s->eval, HN_TERM_M), *J = hn_eval_get(s->eval, HN_TERM_J);
     double heaviest = 0;
     for (int k = 0; k < n; k++) {
@@ -410,6 +432,8 @@ static hn_status report_rank(hn_assembler *s, hn_assembly *report) {
             qr.a[(size_t)i * n + k] = J[(size_t)i * n + k] * d[k];
         }
     }
+
+    // rank and singular values
     hn_qr_factor(&qr, n, s->nc, RANK_TOL);
     hn_qr_sigma(&qr, &report->sigma_min, &report->sigma_max);
     report->rank = qr.rank;
@@ -425,6 +449,8 @@ static hn_status report_mode(hn_assembler *s, hn_assembly *report) {
     if (status != HN_OK) {
         return status;
     }
+
+    // the sign of every loop
     const int n = hn_mode_watch_count(watch);
     double *values = hn_arena_doubles(s->arena, (size_t)n + 1);
     if (values) {
@@ -435,10 +461,13 @@ static hn_status report_mode(hn_assembler *s, hn_assembly *report) {
         const int sign = hn_mode_sign(values[k]);
         report->modes[k] = sign > 0 ? '+' : (sign < 0 ? '-' : '0');
     }
+
     hn_mode_watch_free(watch);
     if (!values) {
         return HN_ERR_MEMORY;
     }
+
+    // a four-bar's modes have names
     status = hn_mode_is_four_bar(s->sys, s->arena, &four_bar);
     if (report->mode != 0) {
         const char *positive = four_bar ? "open" : "+", *negative = four_bar ? "crossed" : "-";
@@ -458,14 +487,13 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
                             hn_assembly *report) {
     memset(q, 0, (size_t)s->nq * sizeof *q);
     memset(v, 0, (size_t)s->n * sizeof *v);
-    hn_status status = check_pins(s);
-    if (status == HN_OK) {
-        status = start(s);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
-    status = find_pose(s, report);
+
+    // what holds before anything moves
+    HN_TRY(check_pins(s));
+    HN_TRY(start(s));
+
+    // pose, velocities, accelerations
+    hn_status status = find_pose(s, report);
     memcpy(q, s->q, (size_t)s->nq * sizeof *q);
     if (status == HN_OK) {
         status = find_rates(s, v, report);
@@ -473,9 +501,11 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
     if (status == HN_OK && (a || lambda)) {
         status = find_accelerations(s, v, a, lambda);
     }
+
+    // the report, also of what was reached on failure
     hn_eval_run(s->eval, s->t, s->q, v);
-    hn_status told = fill_report(s, report);
-    return status != HN_OK ? status : told;
+    const hn_status reported = fill_report(s, report);
+    return status != HN_OK ? status : reported;
 }
 
 hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
@@ -483,8 +513,11 @@ hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, doub
     hn_system_info info = hn_system_get_info(sys);
     HN_ASSERT(info.n_user == info.nv);
     hn_assembly local;
+
+    // what is reported when nothing was reached
     report = report ? report : &local;
     *report = (hn_assembly){.worst_loop = -1, .mode_name = "none", .route = "already closed"};
+
     hn_assembler s = {.sys = sys,
                       .scene = hn_system_scene(sys),
                       .arena = hn_arena_create(0),
@@ -495,6 +528,7 @@ hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, doub
                       .nc = info.nc,
                       .length = hn_system_length(sys),
                       .route = "already closed"};
+
     if (!s.arena) {
         return HN_ERR_MEMORY;
     }

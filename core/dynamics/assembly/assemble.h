@@ -14,9 +14,11 @@ typedef struct hn_assembly {
     double moved;           ///< largest change of a user coordinate from its guess
     double velocity_gap_before, velocity_gap; ///< ||J v + phi_t||
     int rank;                                 ///< rank of J at the assembled pose
-    int freedoms;                             ///< nv - rank
+    int freedoms;                             ///< degrees of freedom: nv - rank
     int redundant;                            ///< nc - rank
-    double sigma_min, sigma_max; ///< of J D, D = diag(M)^-1/2: smallest nonzero-by-rank, largest
+    /// singular values of J D, D = diag(M)^-1/2: the smallest of those that count for the rank, and
+    /// the largest
+    double sigma_min, sigma_max;
     int mode; ///< assembly mode of the first loop: +1 or -1, 0 unknown (see hn_mode_watch)
     const char *mode_name; ///< "open", "crossed" (four-bar), "+", "-", "none": static text
     char modes[64]; ///< of every loop, as scene.h spells it: "+", "-", 0 for unknown; the first 63
@@ -28,18 +30,23 @@ typedef struct hn_assembly {
     double energy;  ///< T + V [J]
 } hn_assembly;
 
-/// Fills q (nq), v (nv), a (nv), lambda (nc) in system coordinates from the scene's start values.
-/// Pins are user coordinates with q0_pinned / v0_pinned; free rates change as little as possible,
-/// weighted by mass. `a`, `lambda`, `report` and `diags` may be NULL. The assembly mode that the
-/// scene asks for is searched for when the guess leads to another: loops in the wrong mode are
-/// begun anew elsewhere, pins held. Fewer signs than loops: the rest may be either.
-/// Fails: HN_ERR_UNREACHABLE: the mode asked for was not found (diags say which were), or `report`
-/// is filled (gap, worst loop) and `diags` say which loop, the gap in metres, the pins that are
-/// active, and the missing length where the free part of the loop is a chain of parallel revolute
-/// joints. HN_ERR_INCONSISTENT: pinned rates contradict each other. HN_ERR_UNSUPPORTED: a pin on a
-/// joint that closes a loop. HN_ERR_SINGULAR and the like: accelerations are not determined.
-/// HN_ERR_DIVERGED: not finite at the start. HN_ERR_MEMORY. On failure q and v hold what was
-/// reached, 0 where nothing was; a and lambda are untouched.
+/// Computes a consistent state at time t from the scene's start values.
+///
+/// q (nq), v (nv), a (nv), lambda (nc) are in system coordinates. `a`, `lambda`, `report` and
+/// `diags` may be NULL. Pinned coordinates and rates (q0_pinned, v0_pinned) keep their values; free
+/// rates change as little as possible, weighted by mass. When the guess leads to another assembly
+/// mode than the scene asks for, loops in the wrong mode are closed again from other places, pins
+/// held; a mode with fewer signs than loops leaves the other loops free.
+///
+/// Fails, with q and v as far as they were reached (else 0), a and lambda untouched:
+///   HN_ERR_UNREACHABLE   a loop cannot be closed: `diags` name it, the gap, the pins, and the
+///                        missing length of a polygon of links; or the assembly mode was not found:
+///                        `diags` list those that were
+///   HN_ERR_INCONSISTENT  pinned rates contradict each other
+///   HN_ERR_UNSUPPORTED   a pin on a joint that closes a loop
+///   HN_ERR_SINGULAR      (and the other failures of hn_accel_eval) no accelerations
+///   HN_ERR_DIVERGED      the constraints are not finite at the start
+///   HN_ERR_MEMORY
 HN_MUST_CHECK hn_status hn_assemble(const hn_system *sys, double t, double *q, double *v, double *a,
                                     double *lambda, hn_assembly *report, hn_diags *diags);
 

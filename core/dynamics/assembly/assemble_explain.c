@@ -1,7 +1,3 @@
-// Why a loop stays open. Beside the gap and the pins: where the joints of the loop that may turn
-// are parallel revolutes, the loop is a polygon. Bodies between two turning joints form one side
-// (pinned joints make them rigid), and it closes if and only if no side is longer than all the
-// others together.
 
 #include "dynamics/assembly/assemble_explain.h"
 
@@ -41,6 +37,8 @@ static int depth_of(const hn_assembler *s, int body) {
 static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
     int a = s->scene->joints[cut].child, b = s->scene->joints[cut].parent, n = 0, n_back = 0;
     int depth_a = depth_of(s, a), depth_b = depth_of(s, b), in = cut, out = cut;
+
+    // up from both ends, the deeper one first
     ring_part *back = parts + s->scene->n_bodies + 1; // the parent's side, to be turned round
     while (a != b) {
         if (depth_a >= depth_b) {
@@ -57,6 +55,8 @@ static int find_ring(const hn_assembler *s, int cut, ring_part *parts) {
             depth_b--;
         }
     }
+
+    // the common ancestor, then down the parent's side
     parts[n++] = (ring_part){a, in, out};
     while (n_back > 0) {
         parts[n++] = back[--n_back];
@@ -95,6 +95,7 @@ static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
     double first[3] = {0};
     int have = 0;
     for (int k = 0; k < n; k++) {
+        // a joint that may move must be a revolute
         const hn_joint *joint = &s->scene->joints[parts[k].joint_in];
         if (is_pinned(s, parts[k].joint_in)) {
             continue;
@@ -102,6 +103,8 @@ static int is_polygon(const hn_assembler *s, const ring_part *parts, int n) {
         if (joint->type != HN_JOINT_REVOLUTE) {
             return 0;
         }
+
+        // and its axis parallel to the first one's
         double axis[3];
         hn_body_pose at = hn_assemble_body_pose(s, parts[k].body);
         hn_num3_apply(at.R, joint->child == parts[k].body ? joint->child_axis : joint->parent_axis,
@@ -139,9 +142,13 @@ static double side_length(const hn_assembler *s, const ring_part *first, const r
 /// Joins parts over pinned joints into sides; returns how many there are.
 static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side *sides) {
     int first = 0, count = 0;
+
+    // begin at a joint that may turn
     while (is_pinned(s, parts[first].joint_in)) {
         first++; // a polygon has a joint that may turn
     }
+
+    // bodies over pinned joints are one side
     for (int k = 0; k < n;) {
         side *now = &sides[count++];
         int begin = (first + k) % n, end = begin;
@@ -160,8 +167,8 @@ static int find_sides(const hn_assembler *s, const ring_part *parts, int n, side
     return count;
 }
 
-/// The smallest changes that mend it: one side longer or shorter by what is missing. A side of
-/// several bodies has no length to set.
+/// The smallest changes that would close the polygon: one side longer or shorter by the missing
+/// length. A side of several bodies has no length to set.
 static void list_remedies(const side *sides, int n, int longest, double missing, char *text,
                           size_t size) {
     size_t used = 0;
@@ -226,6 +233,8 @@ static void list_pins(hn_assembler *s, int loop, char *text, size_t size) {
     if (!row || !moves) {
         return;
     }
+
+    // coordinates that move this loop
     for (int i = 0; i < s->nc; i++) {
         if (hn_system_row_loop(s->sys, i) == loop) {
             hn_assemble_user_row(s, i, row);
@@ -234,6 +243,8 @@ static void list_pins(hn_assembler *s, int loop, char *text, size_t size) {
             }
         }
     }
+
+    // the pinned ones of them
     for (int k = 0; k < s->n && used + 1 < size; k++) {
         const hn_coordinate *c = &s->scene->coordinates[hn_system_user_coordinate(s->sys, k)];
         if (moves[k] && c->q0_pinned) {
@@ -264,13 +275,18 @@ static int loop_has_lengths(const hn_assembler *s, int loop) {
 }
 
 void hn_assemble_explain(hn_assembler *s, int loop) {
+    // what is pinned, and what lengths are missing
     char pins[128], reason[256] = "", hint[HN_DIAG_HINT] = "";
     list_pins(s, loop, pins, sizeof pins);
     explain_ring(s, loop, reason, sizeof reason, hint, sizeof hint);
+
+    // what to try
     size_t used = strlen(hint);
     const char *other =
         pins[0] ? "release a pin" : (used ? "" : "start from another guess, or change a length");
     (void)snprintf(hint + used, sizeof hint - used, "%s%s", used && other[0] ? ", or " : "", other);
+
+    // one sentence for each way of staying open
     const char *with = pins[0] ? " with " : "", *held = pins[0] ? " held" : "",
                *pointer = first_pin_pointer(s);
     double gap = hn_assemble_gap(s, loop);
@@ -281,6 +297,7 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
                      hn_system_loop_name(s->sys, loop), with, pins, held);
         return;
     }
+
     if (s->scene->is_lagrangian) {
         hn_diags_add(
             s->diags, HN_ERR_UNREACHABLE, pointer, hint,
@@ -288,6 +305,7 @@ void hn_assemble_explain(hn_assembler *s, int loop) {
             hn_system_loop_name(s->sys, loop), gap, hn_assemble_gap(s, -1), with, pins, held);
         return;
     }
+
     hn_diags_add(s->diags, HN_ERR_UNREACHABLE, pointer, hint,
                  "loop %s cannot be closed: a gap of %.6g%s is left%s%s%s%s",
                  hn_system_loop_name(s->sys, loop), gap, loop_has_lengths(s, loop) ? " m" : "",

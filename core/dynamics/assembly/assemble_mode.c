@@ -1,7 +1,3 @@
-// The assembly mode that a scene asks for. A pose in another mode is not a matter of a small
-// correction: loops in the wrong mode begin anew with their dependent coordinates anywhere, the
-// rest where it is, and close again. Loops are mended in their order, so that each has to be lucky
-// only once: of two modes a try finds either about as often.
 
 #include "dynamics/assembly/assemble_mode.h"
 
@@ -23,7 +19,7 @@ typedef struct mode_search {
     double *values;
     double *start, *best; ///< n of the assembler
     int n_found;
-    char found[MAX_FOUND][MODE_TEXT]; ///< modes met, for reports
+    char found[MAX_FOUND][MODE_TEXT]; ///< modes found, for the report
 } mode_search;
 
 static void read_modes(mode_search *m) {
@@ -96,14 +92,18 @@ static void unwind(const mode_search *m) {
     }
 }
 
-/// Mends loop `wrong` without spoiling those before it; 1 when it found a pose.
-static hn_status mend(mode_search *m, int wrong, int *mended) {
+/// Closes loop `wrong` in the mode asked for, without changing the mode of those before it.
+/// *corrected = 1 when it found such a pose.
+static hn_status correct_loop(mode_search *m, int wrong, int *corrected) {
     hn_assembler *s = m->s;
     int dependent[MAX_DEPENDENT], n = 0;
     uint64_t seed = 100 + (uint64_t)wrong;
-    *mended = 0;
+    *corrected = 0;
+
+    // the loop's dependent coordinates anywhere, all others as they are
     HN_TRY(hn_mode_dependent(s->sys, s->arena, wrong, dependent, &n));
     memcpy(m->start, s->x, (size_t)s->n * sizeof *s->x);
+
     for (int k = 0; k < TRIES_PER_LOOP; k++) {
         memcpy(s->x, m->start, (size_t)s->n * sizeof *s->x);
         scatter(m, dependent, n, &seed);
@@ -113,14 +113,14 @@ static hn_status mend(mode_search *m, int wrong, int *mended) {
         read_modes(m);
         remember(m);
         if (first_wrong(m) > wrong) {
-            *mended = 1;
+            *corrected = 1;
             break;
         }
     }
     return HN_OK;
 }
 
-static hn_status tell_missing(const mode_search *m) {
+static hn_status report_missing(const mode_search *m) {
     char list[MAX_FOUND * (MODE_TEXT + 4)] = "";
     size_t used = 0;
     for (int k = 0; k < m->n_found && used < sizeof list; k++) {
@@ -160,20 +160,25 @@ static hn_status search_modes(mode_search *m) {
     hn_status status = read_asked(m);
     read_modes(m);
     remember(m);
+
     int wrong = first_wrong(m);
     if (status != HN_OK || wrong == m->n) {
         return status;
     }
+
+    // loop by loop, in their order
     memcpy(m->best, s->x, (size_t)s->n * sizeof *s->x);
     status = hn_assemble_search_create(s, &m->search);
     while (status == HN_OK && wrong < m->n) {
-        int mended;
-        status = mend(m, wrong, &mended);
-        if (status == HN_OK && !mended) {
-            status = tell_missing(m);
+        int corrected;
+        status = correct_loop(m, wrong, &corrected);
+        if (status == HN_OK && !corrected) {
+            status = report_missing(m);
         }
-        wrong = mended ? first_wrong(m) : wrong;
+        wrong = corrected ? first_wrong(m) : wrong;
     }
+
+    // on failure back to the pose that was closed
     if (status == HN_OK) {
         unwind(m);
         s->route = "mode search";

@@ -32,6 +32,7 @@ static void place(const hn_quantity at[3], double out[3]) {
 static void primitive_motion(const hn_primitive *primitive, const double *x, double turn[3][3],
                              double way[3]) {
     const int i = (primitive->along + 1) % 3, j = (primitive->along + 2) % 3;
+
     if (primitive->type == HN_JOINT_REVOLUTE) {
         turn[i][i] = turn[j][j] = cos(x[0]);
         turn[j][i] = sin(x[0]);
@@ -61,6 +62,8 @@ static void joint_transform(const hn_joint *joint, const double *x, hn_body_pose
     const int n = hn_joint_primitives(joint->type, &chain);
     joint_frame(joint->parent_axis, joint->parent_ref, B);
     joint_frame(joint->child_axis, joint->child_ref, C);
+
+    // primitive by primitive, in the joint's axes
     for (int k = 0; k < n; k++) {
         double turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, way[3] = {0, 0, 0}, gone[3];
         primitive_motion(&chain[k], x + chain[k].part, turn, way);
@@ -68,10 +71,13 @@ static void joint_transform(const hn_joint *joint, const double *x, hn_body_pose
         hn_axpy(3, 1, gone, slid);
         hn_num3_mul(so_far, turn, so_far);
     }
+
+    // from the child's axes through the joint's to the parent's
     hn_num3_transpose(C, C);
     hn_num3_mul(B, so_far, so_far);
     hn_num3_mul(so_far, C, out->R);
 
+    // and the shift that puts the two places together
     double at_parent[3], at_child[3], arm[3], gone[3];
     place(joint->parent_at, at_parent);
     place(joint->child_at, at_child);
@@ -101,6 +107,7 @@ hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body) {
         double x[6] = {0};
         coordinate_values(s, joint, x);
         joint_transform(joint, x, &step);
+
         if (joint->child != body) { // the tree runs through this joint backwards
             hn_body_pose inverse;
             hn_num3_transpose(step.R, inverse.R);
@@ -110,6 +117,8 @@ hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body) {
             }
             step = inverse;
         }
+
+        // composed with what is known already
         hn_num3_mul(step.R, at.R, next.R);
         hn_num3_apply(step.R, at.p, next.p);
         for (int i = 0; i < 3; i++) {

@@ -14,9 +14,9 @@ typedef struct hn_body_pose {
 hn_body_pose hn_assemble_body_pose(const hn_assembler *s, int body);
 /// World position of a joint as seen from one of its two bodies.
 void hn_assemble_joint_position(const hn_assembler *s, int joint, int body, double out[3]);
-/// The first loop that is closed at s->x the wrong way round, or -1: its rows hold as well with the
-/// axis (or the reference direction) of one half opposed to the other's, which is another
-/// mechanism. Loops whose axes cannot tilt are taken as they are.
+/// Returns the first loop that is closed at s->x the wrong way round, or -1. Its rows also hold
+/// with the axis (or the reference direction) of one half opposed to the other's, which is another
+/// mechanism. Loops whose axes cannot tilt are never flipped.
 int hn_assemble_flipped(const hn_assembler *s);
 
 #endif

@@ -1,7 +1,3 @@
-// The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then
-// homotopy and random starts.
-// Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982;
-// Allgower & Georg 1990.
 
 #include "dynamics/assembly/assemble_position.h"
 
@@ -184,6 +180,8 @@ static double predicted_gain(const search *w) {
 /// before).
 static double damped_step(search *w, double size, double *mu) {
     fill_jacobian(w);
+
+    // a stationary point of |r| ends the descent
     double largest = fill_normal_equations(w);
     double steepness = hn_norm2(w->n, w->g) / (hn_norm2(w->nc * w->n, w->J) * size);
     if (!(steepness > STATIONARY) || largest == 0) {
@@ -192,12 +190,15 @@ static double damped_step(search *w, double size, double *mu) {
     if (*mu == 0) {
         *mu = 1e-3 * largest;
     }
+
+    // more damping until a step pays
     save_start(w);
     for (int attempt = 0; attempt < 40; attempt++) {
         for (int k = 0; k < w->n; k++) {
             w->A[(size_t)k * w->n + k] += *mu;
             w->step[k] = -w->g[k];
         }
+
         hn_status status = hn_cholesky(w->n, w->A, w->n, 0);
         if (status == HN_OK) {
             hn_cholesky_solve(w->n, w->A, w->n, w->step);
@@ -224,14 +225,18 @@ static double damped_step(search *w, double size, double *mu) {
 /// gains.
 static int descend(search *w, double tol, int max_iterations) {
     double size = evaluate(w), mu = 0, floor_size = ROUNDING * sqrt(w->nc);
+
     if (!isfinite(size)) {
         return 0;
     }
+
+    // Newton near the end, damped steps elsewhere, until neither gains
     for (int it = 0; it < max_iterations && size > floor_size; it++) {
         double next = -1;
         if (size < NEWTON_FROM) {
             next = newton_step(w, size);
         }
+
         if (next < 0 && size <= tol) {
             break;
         }
@@ -251,9 +256,12 @@ static int descend(search *w, double tol, int max_iterations) {
 static int follow_homotopy(search *w) {
     hn_assembler *s = w->s;
     double at = 0, stride = 0.1;
+
+    // from the guess, where the shifted problem is solved
     memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
     memset(w->goal, 0, (size_t)w->nc * sizeof *w->goal);
     (void)evaluate(w);
+
     double *from = hn_arena_doubles(s->arena, (size_t)w->nc),
            *last = hn_arena_doubles(s->arena, (size_t)s->n);
     if (!from || !last) {
@@ -261,6 +269,7 @@ static int follow_homotopy(search *w) {
     }
     memcpy(from, s->residual, (size_t)w->nc * sizeof *from);
 
+    // each stretch corrected by Newton; the stride follows its success
     for (int step = 0; step < MAX_HOMOTOPY_STEPS && at < 1 && stride > 1e-4; step++) {
         double to = fmin(1, at + stride);
         for (int i = 0; i < w->nc; i++) {
@@ -279,6 +288,8 @@ static int follow_homotopy(search *w) {
             stride /= 2;
         }
     }
+
+    // the true problem again
     memset(w->goal, 0, (size_t)w->nc * sizeof *w->goal);
     return at >= 1;
 }
@@ -300,11 +311,14 @@ static int try_random_starts(search *w) {
         // 2 rad, or two characteristic lengths, at most; half a turn where it closes, but the wrong
         // way round
         double spread = fmin(2.0 * k / RANDOM_STARTS, starts > RANDOM_STARTS ? M_PI : 2);
+
         memcpy(s->x, s->guess, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < w->n; i++) {
             w->delta[s->free[i]] = spread * s->reach[s->free[i]] * hn_assemble_random(&seed);
         }
         hn_assemble_move(s, s->x, w->delta);
+
+        // a pose that is closed the right way round ends it
         int closed = descend(w, CLOSED, MAX_ITERATIONS);
         keep_best(w);
         if (closed && hn_assemble_flipped(s) < 0) {
@@ -327,12 +341,15 @@ int hn_assemble_descend(hn_assemble_search *w) {
 hn_status hn_assemble_position(hn_assembler *s) {
     s->route = "already closed";
     s->iterations = 0;
+
     if (!hn_assemble_evaluate(s)) {
         return HN_ERR_DIVERGED;
     }
     if (s->size <= ROUNDING * sqrt(s->nc) && hn_assemble_flipped(s) < 0) {
         return HN_OK;
     }
+
+    // from the guess, downhill
     search w;
     if (search_init(&w, s) != HN_OK) {
         return HN_ERR_MEMORY;
@@ -344,10 +361,12 @@ hn_status hn_assemble_position(hn_assembler *s) {
     }
     keep_best(&w);
 
+    // then along a homotopy, then from random places
     s->route = "homotopy";
     int closed =
         follow_homotopy(&w) && descend(&w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(s) < 0;
     keep_best(&w);
+
     if (!closed) {
         s->route = "multi-start";
         closed = try_random_starts(&w);
@@ -355,6 +374,8 @@ hn_status hn_assemble_position(hn_assembler *s) {
     if (closed) {
         return HN_OK;
     }
+
+    // the best pose found, for the report
     memcpy(s->x, w.best_x, (size_t)s->n * sizeof *s->x);
     (void)hn_assemble_evaluate(s);
     return HN_ERR_UNREACHABLE;

@@ -2,16 +2,18 @@
 #define HN_DYNAMICS_ASSEMBLE_POSITION_H
 // The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then
 // homotopy and random starts.
+// Source: Nocedal & Wright 2006, ch. 10 (Levenberg-Marquardt, gain ratio); Wehage & Haug 1982;
+// Allgower & Georg 1990.
 
 #include "dynamics/assembly/assemble_state.h"
 
 #include <stdint.h>
 
 /// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual,
-/// s->size. HN_OK: closed; HN_ERR_UNREACHABLE; HN_ERR_DIVERGED: phi is not finite at the guess;
-/// HN_ERR_MEMORY.
+/// s->size. Returns HN_OK when it is closed.
+/// Fails: HN_ERR_UNREACHABLE; HN_ERR_DIVERGED (phi is not finite at the guess); HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
-/// One descent from s->x, as often as wanted; 1 when it closed.
+/// Descents from s->x, as many as wanted: each returns 1 when it closed the loops.
 typedef struct hn_assemble_search hn_assemble_search;
 HN_MUST_CHECK hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out);
 int hn_assemble_descend(hn_assemble_search *w);

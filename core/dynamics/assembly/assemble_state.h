@@ -5,9 +5,9 @@
 #include "base/diag.h"
 #include "dynamics/evaluate/eval.h"
 
-/// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates,
-/// made comparable: z = x / reach (1 rad, or the characteristic length), residual r = phi / L in
-/// length rows, phi elsewhere.
+/// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates.
+/// They are scaled to be comparable: z = x / reach (1 rad, or the characteristic length), residual
+/// r = phi / L in length rows, phi elsewhere.
 typedef struct hn_assembler {
     const hn_system *sys;
     const hn_scene *scene;
@@ -37,8 +37,8 @@ typedef struct hn_assembler {
 
 /// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
 int hn_assemble_evaluate(hn_assembler *s);
-/// x moved by `delta` (n, user rates times time): a sum, and for orientations the turn by that much
-/// in the child's axes.
+/// Moves x by `delta` (n, user rates times time): a sum, and for orientations a turn about the
+/// child's axes.
 void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);
 /// How far user coordinate i is from its guess; of an orientation, the angle of the turn between
 /// them.

@@ -69,6 +69,8 @@ static int willingness(const hn_coordinate *c) {
 static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts *parts) {
     const hn_scene *scene = hn_system_scene(sys);
     int n = parts->n_coordinates;
+
+    // independent: the most willing ones
     for (int spare = n - parts->n_rows; spare > 0; spare--) {
         int best = -1, most = -1;
         for (int i = 0; i < n; i++) {
@@ -82,9 +84,12 @@ static void choose_dependent(const hn_system *sys, int *coordinates, loop_parts 
                 best = i;
             }
         }
+
         parts->independent = coordinates[best];
         coordinates[best] = -1;
     }
+
+    // dependent: the rest
     for (int i = 0; i < n; i++) {
         if (coordinates[i] >= 0) {
             parts->dependent[parts->n_dependent++] = coordinates[i];
@@ -102,6 +107,8 @@ static int place_in_ring(const hn_system *sys, int loop, int user) {
     if (cut < 0) {
         return user;
     }
+
+    // out along the parent's side, then along the child's
     const int ends[2] = {scene->joints[cut].parent, scene->joints[cut].child};
     for (int side = 0; side < 2; side++) {
         int above = -1; // bodies between the cut joint and the one that this coordinate moves
@@ -142,11 +149,15 @@ static hn_status finder_init(finder *f, const hn_system *sys, hn_arena *arena) {
     if (!user_rates || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // what a unit rate of each user coordinate stands for
     for (int k = 0; k < f->n_user; k++) {
         user_rates[k] = 1;
         hn_system_rates_from_user(sys, user_rates, f->units + (size_t)k * n);
         user_rates[k] = 0;
     }
+
+    // where each row of J starts
     for (int k = 0; k < sys->J.n; k++) {
         f->start[sys->J.at[k].row + 1] = k + 1;
     }
@@ -177,10 +188,14 @@ static int find_rows(finder *f, int loop, loop_parts *parts) {
     while (left < f->sys->nc && f->taken[left]) {
         left++;
     }
+
+    // what moves the first row that is left (formulas only)
     for (int k = 0; k < f->n_user; k++) {
         f->moves[k] =
             f->sys->scene->is_lagrangian && left < f->sys->nc && row_moves_with(f, left, k);
     }
+
+    // the rows of the loop
     for (int i = 0; i < f->sys->nc; i++) {
         if (!is_in_loop(f, i, loop)) {
             continue;
@@ -191,6 +206,8 @@ static int find_rows(finder *f, int loop, loop_parts *parts) {
         }
         parts->rows[parts->n_rows++] = i;
     }
+
+    // and all that moves them
     for (int r = 0; r < parts->n_rows; r++) {
         for (int k = 0; k < f->n_user; k++) {
             f->moves[k] |= row_moves_with(f, parts->rows[r], k);
@@ -227,6 +244,8 @@ static hn_status compile_loops(const finder *f, hn_arena *arena, const loop_part
     if (!out->size || !symbols || !entries) {
         return HN_ERR_MEMORY;
     }
+
+    // the entries of every J_d, one behind the other
     out->n = n;
     for (int k = 0; k < n; k++) {
         const int size = out->size[k] = parts[k].n_dependent;
@@ -236,9 +255,12 @@ static hn_status compile_loops(const finder *f, hn_arena *arena, const loop_part
             }
         }
     }
+
     if (total == 0) {
         return HN_OK;
     }
+
+    // a tape of (q, t)
     memcpy(symbols, sys->q_symbols, (size_t)sys->nq * sizeof *symbols);
     symbols[sys->nq] = sys->t_symbol;
     HN_TRY(hn_tape_compile(sys->g, entries, (int)total, symbols, sys->nq + 1, &out->tape));
@@ -259,6 +281,8 @@ static hn_status build_watch(const hn_system *sys, hn_arena *arena, hn_mode_watc
     if (status != HN_OK || !parts || !w->in) {
         return HN_ERR_MEMORY;
     }
+
+    // the parts of every loop
     w->nq = sys->nq;
     for (int loop = 0; loop < sys->n_loops; loop++) {
         find_parts(&f, loop, &parts[loop]);
@@ -267,6 +291,8 @@ static hn_status build_watch(const hn_system *sys, hn_arena *arena, hn_mode_watc
         }
         w->n_loops++;
     }
+
+    // the first loop has a tape of its own: it is checked after every step
     if (w->n_loops > 0) {
         status = compile_loops(&f, arena, parts, 1, &w->first);
     }
@@ -313,6 +339,8 @@ static double determinant(int n, double *a) {
         if (a[best * n + k] == 0) {
             return 0;
         }
+
+        // the largest pivot of the column, rows swapped
         if (best != k) {
             for (int j = 0; j < n; j++) {
                 double keep = a[k * n + j];
@@ -321,6 +349,8 @@ static double determinant(int n, double *a) {
             }
             det = -det;
         }
+
+        // eliminate below it
         det *= a[k * n + k];
         for (int i = k + 1; i < n; i++) {
             hn_axpy(n - k, -a[i * n + k] / a[k * n + k], a + k * n + k, a + i * n + k);
@@ -393,15 +423,16 @@ hn_status hn_mode_dependent(const hn_system *sys, hn_arena *arena, int loop, int
                             int *n) {
     finder f;
     loop_parts parts = {0};
-    const hn_status status = finder_init(&f, sys, arena);
-    for (int k = 0; status == HN_OK && k <= loop; k++) { // formulas: each takes its rows away
+    *n = 0;
+    HN_TRY(finder_init(&f, sys, arena));
+    for (int k = 0; k <= loop; k++) { // formulas: each takes its rows away
         if (k == loop || sys->scene->is_lagrangian) {
             find_parts(&f, k, &parts);
         }
     }
     *n = parts.n_dependent;
     memcpy(dependent, parts.dependent, (size_t)*n * sizeof *dependent);
-    return status;
+    return HN_OK;
 }
 
 hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out) {
@@ -409,13 +440,17 @@ hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out) {
     finder f;
     loop_parts parts = {0};
     *out = 0;
-    hn_status status = finder_init(&f, sys, arena);
-    if (status == HN_OK && sys->n_loops > 0) {
+    HN_TRY(finder_init(&f, sys, arena));
+    if (sys->n_loops > 0) {
         find_parts(&f, 0, &parts);
     }
+
+    // two rows and three coordinates
     if (parts.n_rows != 2 || parts.n_coordinates != 3) {
-        return status;
+        return HN_OK;
     }
+
+    // all angles, about axes of the same sense
     const int users[3] = {parts.independent, parts.dependent[0], parts.dependent[1]};
     const hn_joint *first = NULL;
     for (int c = 0; c < 3; c++) {
@@ -429,6 +464,7 @@ hn_status hn_mode_is_four_bar(const hn_system *sys, hn_arena *arena, int *out) {
         }
         first = joint ? joint : first;
     }
+
     *out = 1;
     return HN_OK;
 }

@@ -13,9 +13,9 @@
 #include <string.h>
 
 enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
-// Position: a frozen factor that contracts less than this is made again. Not for speed (0.1 would
-// do) but because the frozen J shifts the landing point along the constraints by about this
-// fraction of the move, a bias that a run adds up.
+// Position: a frozen factor that contracts less than this is made again. The reason is not time
+// (0.1 would do): a frozen J shifts the landing point along the constraints by about this fraction
+// of the move, and a run accumulates that bias.
 static const double FROZEN_CONTRACTION = 1e-4;
 static const double CONTRACTION = 0.1; // velocity: the problem is linear, only convergence counts
 // a factor made this close (in any coordinate) is worth trying for the velocities
@@ -24,8 +24,8 @@ static const double NEAR = 1e-2;
 // extent of the mechanism
 static const double STEP_ROUNDING = 1e-12;
 static const double LOST_RANK_GAP = 1e-6; // lengths: what may stay open where J has lost rank
-// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far velocities are closed, and what will do
-// where they close no further
+// of max unit_i |v_i| sqrt(nc), see find_speed_units: how far velocities are closed, and what will
+// do where they close no further
 static const double VELOCITY_TOL = 2e-16;
 static const double VELOCITY_ROUNDING = 4e-15;
 // A direction in which J is weaker than this cannot be trusted to close anything: phi is quadratic
@@ -73,10 +73,13 @@ static hn_status compile_tapes(hn_projector *p, hn_arena *arena) {
     if (!symbols || !rows || !terms) {
         return HN_ERR_MEMORY;
     }
+
+    // inputs: q, v, t
     memcpy(symbols, ex.q_symbols, (size_t)p->nq * sizeof *symbols);
     memcpy(symbols + p->nq, ex.v_symbols, (size_t)p->nv * sizeof *symbols);
     symbols[n_in - 1] = ex.t_symbol;
 
+    // rows of J v + phi_t
     for (int i = 0; i < p->nc; i++) {
         int n = 0;
         terms[n++] = ex.phi_t[i];
@@ -112,9 +115,10 @@ static hn_status create_solvers(hn_projector *p, hn_arena *arena) {
     return HN_OK;
 }
 
-// Where all rows are lengths an angular velocity counts by the length and nothing depends on the size
-// of the mechanism. Rows of a scene of formulas have no unit; the length of such a scene is the arm
-// by which angles move them, so it is the same there.
+/// How much a velocity of 1 can change a row, at most. Where all rows are lengths, an angular
+/// velocity counts by the length, so that nothing depends on the size of the mechanism. Rows of a
+/// scene of formulas have no unit; the length of such a scene is the arm by which angles move them,
+/// so the same holds there.
 static void find_speed_units(hn_projector *p) {
     const hn_scene *scene = hn_system_scene(p->sys);
     int only_lengths = 1;
@@ -143,6 +147,8 @@ static double size_of_speeds(const hn_projector *p, const double *v) {
 static hn_status create_parts(hn_projector *p, hn_arena *arena) {
     HN_TRY(compile_tapes(p, arena));
     HN_TRY(create_solvers(p, arena));
+
+    // room for a state, and for what a projection goes through
     size_t nv = (size_t)p->nv, nc = (size_t)p->nc, nq = (size_t)p->nq;
     p->in = hn_arena_doubles(arena, nq + nv + 1);
     p->phi_work = hn_arena_doubles(arena, hn_tape_work_size(p->phi_tape));
@@ -159,6 +165,7 @@ static hn_status create_parts(hn_projector *p, hn_arena *arena) {
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
     find_speed_units(p);
     hn_tape_prepare(p->phi_tape, p->phi_work);
     hn_tape_prepare(p->gap_tape, p->gap_work);
@@ -236,6 +243,8 @@ static hn_status make_factor(hn_projector *p, double t, const double *q, int for
     p->evals++;
     p->factorisations++;
     p->have_factor = 0;
+
+    // the sparse factor, unless a row has all but vanished
     hn_status status = HN_ERR_SINGULAR;
     if (!force_dense) {
         status = hn_factor_update(p->factor, t, q, NULL);
@@ -246,9 +255,12 @@ static hn_status make_factor(hn_projector *p, double t, const double *q, int for
         p->dense = 0;
         p->rank = p->nc;
     }
+
+    // else the dense one, which finds the rank
     if (status == HN_ERR_SINGULAR) {
         status = factor_dense(p, t, q);
     }
+
     if (status == HN_OK) {
         p->have_factor = 1;
         p->factor_t = t;
@@ -301,16 +313,21 @@ static hn_status close_gap(hn_projector *p, double t, double *q, double tol, dou
     double gap = eval_phi(p, t, q);
     *info = (hn_project_info){.iterations = 1, .gap_before = gap, .gap = gap, .rank = p->nc};
     p->have_factor = 0;
+
+    // a frozen factor serves while it contracts well
     while (gap > tol && isfinite(gap)) {
         if (info->iterations >= MAX_ITERATIONS) {
             return gap <= rounding ? HN_OK : HN_ERR_NO_CONVERGENCE;
         }
+
         int fresh = !p->have_factor;
         HN_TRY(step_position(p, t, q));
         double before = gap;
         gap = eval_phi(p, t, q);
         info->iterations++;
         info->rank = p->rank;
+
+        // rounding: the better of the two last poses
         int nothing_moves =
             hn_norm_max(p->nv, p->step) <= STEP_ROUNDING * (1 + hn_norm_max(p->nq, q));
         if ((before <= rounding || nothing_moves) && gap > 0.5 * before) {
@@ -323,11 +340,16 @@ static hn_status close_gap(hn_projector *p, double t, double *q, double tol, dou
             info->gap = fmin(gap, before);
             return HN_OK;
         }
+
         info->gap = gap;
+
+        // what is left belongs to a direction that J has lost
         if (fresh && p->dense && p->rank < p->nc && gap > fmax(rounding, 0.5 * before)) {
             int small = gap <= LOST_RANK_GAP * p->length && gap <= info->gap_before;
             return small ? HN_OK : HN_ERR_NO_CONVERGENCE;
         }
+
+        // a factor that contracts too little is made again
         if (gap > rounding && gap > FROZEN_CONTRACTION * before) {
             p->have_factor = 0;
         }
@@ -396,12 +418,15 @@ static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, 
     double gap = info->gap;
     int made_here = !factor_is_near(p, t, q);
     hn_status status = made_here ? make_factor(p, t, q, 0) : HN_OK;
+
+    // correct until the gap is rounding
     while (status == HN_OK && gap > VELOCITY_TOL * scale &&
            info->iterations < MAX_VELOCITY_ITERATIONS) {
         status = correct_velocity(p, v);
         if (status != HN_OK) {
             break;
         }
+
         double before = gap;
         gap = eval_velocity_gap(p, t, q, v);
         info->iterations++;
@@ -409,12 +434,15 @@ static hn_status close_velocity_gap(hn_projector *p, double t, const double *q, 
         if (gap <= CONTRACTION * before) {
             continue;
         }
+
+        // a factor that does not contract: made here, then dense
         if (gap <= VELOCITY_ROUNDING * scale || (p->dense && made_here)) {
             break; // rounding, or as good as it can be: what is left is outside the range of J
         }
         status = make_factor(p, t, q, made_here);
         made_here = 1;
     }
+
     if (status != HN_OK) {
         return status;
     }
@@ -426,18 +454,24 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
     hn_project_info local;
     info = info ? info : &local;
     *info = (hn_project_info){.rank = p->nc};
+
+    // nothing to close, or nothing that could be
     if (!hn_all_finite(p->nq, q) || !hn_all_finite(p->nv, v)) {
         return HN_ERR_DIVERGED;
     }
     if (p->nc == 0) {
         return HN_OK;
     }
+
+    // the gap as it is
     double scale = size_of_speeds(p, v);
     info->iterations = 1;
     info->gap_before = info->gap = eval_velocity_gap(p, t, q, v);
     if (!isfinite(info->gap)) {
         return HN_ERR_DIVERGED;
     }
+
+    // close it
     memcpy(p->closed, p->gap, (size_t)p->nc * sizeof *p->closed);
     memset(p->impulse, 0, (size_t)p->nc * sizeof *p->impulse);
     memcpy(p->best, v, (size_t)p->nv * sizeof *v);
@@ -445,6 +479,8 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
     if (info->gap > VELOCITY_TOL * scale) {
         status = close_velocity_gap(p, t, q, v, scale, info);
     }
+
+    // no better than before is rounding if the gap was small already
     if (status != HN_OK || info->gap > info->gap_before) {
         // no better than before: rounding if the gap was small already
         int rounding = status == HN_OK && info->gap_before <= VELOCITY_ROUNDING * scale;
@@ -452,6 +488,8 @@ hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double
         memcpy(v, p->best, (size_t)p->nv * sizeof *v);
         return rounding ? HN_OK : (status != HN_OK ? status : HN_ERR_NO_CONVERGENCE);
     }
+
+    // the energy of the correction: 1/2 dv' M dv = 1/2 (J dv)' y
     info->rank = p->have_factor ? p->rank : p->nc;
     if (p->weight == HN_WEIGHT_MASS) {
         hn_axpy(p->nc, -1, p->gap, p->closed);

@@ -4,11 +4,13 @@
 // Rank-deficient J is handled (minimum-norm), never NaN. Source: Eich 1993; Ascher, Chin & Reich
 // 1994; Blajer 2002.
 //
-// Positions move along the velocities (hn_system_move), so that quaternions stay unit. Position: q <- q
-// - W^-1 J' S^-1 phi(q), S = J W^-1 J', with W and J frozen where the factor was made; it is made
-// again when the gap shrinks by less than 1e4 per step. Velocity: the same for J v + phi_t, with
-// the factor at hand while it contracts. The sparse factor of dynamics/evaluate/factor.h serves;
-// where its pivots fail, the dense rank-revealing solve does.
+//     position   q <- q - W^-1 J' S^-1 phi(q),   S = J W^-1 J'                                (1)
+//     velocity   v <- v - W^-1 J' S^-1 (J v + phi_t)                                          (2)
+//
+// Positions move along velocities (hn_system_move), so that quaternions stay unit. W and J of (1)
+// are frozen where the factor was made; it is made again when the gap shrinks by less than 1e4 per
+// step. (2) uses the factor at hand while it contracts. The factor is the sparse one of
+// dynamics/evaluate/factor.h; where its pivots fail, the dense rank-revealing solve answers.
 
 #include "base/arena.h"
 #include "base/status.h"
@@ -31,22 +33,22 @@ HN_MUST_CHECK hn_status hn_projector_create(const hn_system *sys, hn_weight weig
                                             hn_projector **out);
 void hn_projector_free(hn_projector *p); ///< NULL is legal
 
-/// q in place until ||phi|| <= tol * hn_system_length(): 1e-13 is a good tol, 1e-15 asks for all
-/// that rounding allows. A gap that stops shrinking is accepted below the rounding of q, 4 eps (1 +
-/// max |q_i|) lengths, and where the step that should close it is itself rounding (a long chain far
-/// from its origin). Where J has lost rank and nothing can shorten what is left, that is accepted
-/// below 1e-6 lengths: HN_OK with rank < nc. info->gap says how much is left; `info` may be NULL.
-/// Allocates nothing.
+/// Corrects q in place until ||phi|| <= tol * hn_system_length(). 1e-13 is a good tol; 1e-15 asks
+/// for all that rounding allows. A gap that stops shrinking is accepted
+///   - below the rounding of q, 4 eps (1 + max |q_i|) lengths,
+///   - where the correction is itself rounding (a long chain far from its origin),
+///   - below 1e-6 lengths where J has lost rank: HN_OK with rank < nc.
+/// info->gap says how much is left; `info` may be NULL. Allocates nothing.
 /// Fails: HN_ERR_NO_CONVERGENCE after 8 evaluations, HN_ERR_DIVERGED. Then q is untouched.
 HN_MUST_CHECK hn_status hn_project_position(hn_projector *p, double t, double *q, double tol,
                                             hn_project_info *info);
-/// v in place so that J v + phi_t = 0 at q, to rounding. `info` may be NULL. Allocates nothing.
-/// Fails likewise; v is then untouched.
+/// Corrects v in place so that J v + phi_t = 0 at q, to rounding. `info` may be NULL. Allocates
+/// nothing. Fails likewise; v is then untouched.
 HN_MUST_CHECK hn_status hn_project_velocity(hn_projector *p, double t, const double *q, double *v,
                                             hn_project_info *info);
-/// evaluations of phi, of J v + phi_t, and factorisations so far
+/// Evaluations of phi, of J v + phi_t, and factorisations so far.
 long long hn_projector_evals(const hn_projector *p);
-/// arithmetic operations so far (tape + linear algebra, counted)
+/// Arithmetic operations so far (tape and linear algebra, counted).
 double hn_projector_ops(const hn_projector *p);
 /// Factorisations so far, of which by the dense solve, and solves.
 long long hn_projector_factorisations(const hn_projector *p);

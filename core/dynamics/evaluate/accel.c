@@ -20,7 +20,7 @@ const char *const hn_solver_names[HN_SOLVER_COUNT] = {
 #undef HN_SOLVER_NAME
 };
 
-static const double ROW_RESIDUAL = 1e-2; // what rows that have all but vanished may disagree
+static const double ROW_RESIDUAL = 1e-2; // by which rows that have all but vanished may disagree
 
 struct hn_accel {
     int nv, nc;
@@ -30,14 +30,14 @@ struct hn_accel {
     hn_inputs in;  ///< outputs: a, lambda if wanted, then pivot and reference of each guard
     int n_out, n_guards, n_rows; ///< then the squared length of each row
     hn_row_groups rows;
-    // behind it
+    // the dense solve
     hn_eval *terms;
     int n_M, n_J;
     const int *M_row, *M_col, *J_row, *J_col;
     hn_kkt *kkt;
     double *gamma, *dense_a, *dense_lambda;
     double *row_unit; ///< nc: the characteristic length for rows in metres, else 1
-    // refinement of what the tape's order gives
+    // refinement of the tape's answer
     hn_factor *factor;
     double *rest, *step; ///< nv + nc each
     hn_sum2 *sum;        ///< nv + nc
@@ -64,6 +64,8 @@ static void closure_rhs(const hn_system *sys, int baumgarte, hn_ex *rhs) {
         const hn_entry *J = &sys->J.at[k];
         rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
     }
+
+    // with Baumgarte's terms
     hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
     for (int i = 0; i < sys->nc; i++) {
         hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
@@ -99,6 +101,8 @@ static hn_status compile_tape(hn_accel *s, const hn_system *sys, hn_arena *arena
         return HN_ERR_MEMORY;
     }
     const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
+
+    // the order of elimination; without one there is no tape
     hn_ldl ldl;
     hn_ex *x = NULL, *outputs = NULL;
     hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
@@ -107,6 +111,8 @@ static hn_status compile_tape(hn_accel *s, const hn_system *sys, hn_arena *arena
         x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
         status = x ? HN_OK : HN_ERR_MEMORY;
     }
+
+    // the solution for these right-hand sides
     if (status == HN_OK && s->available) {
         memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
         closure_rhs(sys, s->opts.baumgarte, x + sys->nv);
@@ -114,6 +120,7 @@ static hn_status compile_tape(hn_accel *s, const hn_system *sys, hn_arena *arena
         outputs = status == HN_OK ? list_outputs(s, sys, &ldl, x) : NULL;
         status = outputs ? hn_inputs_compile(sys, outputs, s->n_out, arena, &s->in) : HN_ERR_MEMORY;
     }
+
     free(outputs);
     hn_arena_free(scratch);
     return status;
@@ -133,12 +140,16 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     if (!s->kkt || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // the terms by themselves, and their patterns
     for (int i = 0; i < s->nc; i++) {
         s->row_unit[i] = hn_system_row_unit(sys, i);
     }
     HN_TRY(hn_eval_create(sys, terms, arena, &s->terms));
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
     s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
+
+    // what only the tape's answer needs: guards of rows, refinement
     if (!s->available) {
         return HN_OK;
     }
@@ -147,12 +158,13 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
 }
 
 static hn_status build(hn_accel *s, const hn_system *sys, hn_arena *arena) {
-    const int by_tape = s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL;
-    hn_status status = by_tape ? compile_tape(s, sys, arena) : HN_OK;
-    if (status == HN_OK && !s->available) {
-        status = hn_inputs_create(sys, arena, &s->in);
+    if (s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL) {
+        HN_TRY(compile_tape(s, sys, arena));
     }
-    return status == HN_OK ? prepare_dense(s, sys, arena) : status;
+    if (!s->available) {
+        HN_TRY(hn_inputs_create(sys, arena, &s->in));
+    }
+    return prepare_dense(s, sys, arena);
 }
 
 hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts, hn_arena *arena,
@@ -231,7 +243,7 @@ static int all_finite(const double *x, int n) {
     return zero == 0;
 }
 
-/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (pivot_noise.h).
+/// Adds Baumgarte's terms to gamma; returns the relative gap of the loops (hn_pivot_noise_gap).
 static double stabilise(hn_accel *s, const double *v, double alpha, double beta) {
     const hn_pivot_noise_terms at = {.n_J = s->n_J,
                                      .row = s->J_row,
@@ -267,9 +279,13 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
     const double *M = hn_eval_get(s->terms, HN_TERM_M), *J = hn_eval_get(s->terms, HN_TERM_J);
     const double *f = hn_eval_get(s->terms, HN_TERM_F);
     const size_t nv = (size_t)s->nv;
+
+    // the right-hand sides
     for (int i = 0; i < s->nv + s->nc; i++) {
         s->sum[i] = (hn_sum2){i < s->nv ? f[i] : -s->gamma[i - s->nv], 0};
     }
+
+    // less M a
     for (int k = 0; k < s->n_M; k++) {
         const int i = s->M_row[k], j = s->M_col[k];
         const double m = M[(size_t)i * nv + (size_t)j];
@@ -278,37 +294,46 @@ static void find_rest(hn_accel *s, const double *a, const double *lambda) {
             subtract(s, j, m, a[i]);
         }
     }
+
+    // plus J' lambda, less J a
     for (int k = 0; k < s->n_J; k++) {
         const int i = s->J_row[k], j = s->J_col[k];
         const double e = J[(size_t)i * nv + (size_t)j];
         subtract(s, j, -e, lambda[i]);
         subtract(s, s->nv + i, e, a[j]);
     }
+
     for (int i = 0; i < s->nv + s->nc; i++) {
         s->rest[i] = hn_sum2_value(&s->sum[i]);
     }
 }
 
-/// The sparse factor's own solution, corrected while the corrections halve. Fails where the factor
-/// does.
+/// Solves with the sparse factor and corrects the answer while the corrections halve. Fails where
+/// the factor does.
 static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a, double *lambda,
                                hn_accel_info *info) {
     enum { MAX_CORRECTIONS = 4 };
     double *step_a = s->step, *step_l = s->step + s->nv, last = HUGE_VAL;
+
+    // the sparse factor here
     const hn_status status = hn_factor_update(s->factor, t, q, NULL);
     s->ops += hn_factor_get_info(s->factor).update_ops;
     HN_TRY(status);
+
+    // from zero, corrected while the corrections halve
     memset(s->dense_a, 0, (size_t)s->nv * sizeof *s->dense_a);
     memset(s->dense_lambda, 0, (size_t)s->nc * sizeof *s->dense_lambda);
     for (int turn = 0; turn <= MAX_CORRECTIONS; turn++) {
         find_rest(s, s->dense_a, s->dense_lambda);
         hn_factor_solve(s->factor, s->rest, s->rest + s->nv, step_a, step_l);
         s->ops += hn_factor_get_info(s->factor).solve_ops + 34.0 * (s->n_M + s->n_J);
+
         const double size = hn_norm_max(s->nv, s->dense_a);
         const double moved = hn_norm_max(s->nv, step_a);
         if (!isfinite(moved) || !(moved < 0.5 * last)) {
             break;
         }
+
         hn_axpy(s->nv, 1, step_a, s->dense_a);
         hn_axpy(s->nc, 1, step_l, s->dense_lambda);
         info->refinements = turn;
@@ -317,6 +342,8 @@ static hn_status solve_refined(hn_accel *s, double t, const double *q, double *a
             break;
         }
     }
+
+    // taken only if finite
     if (!hn_all_finite(s->nv, s->dense_a) || !hn_all_finite(s->nc, s->dense_lambda)) {
         return HN_ERR_SINGULAR;
     }
@@ -377,7 +404,7 @@ static void refuse_massless(hn_accel *s) {
              massless >= 0 ? name_of_speed(s, massless) : "");
 }
 
-/// Says why; HN_ERR_MASS where it is a mass that is missing, else `status`.
+/// Notes why the solve failed. Returns HN_ERR_MASS where a mass is missing, else `status`.
 static hn_status refuse(hn_accel *s, hn_solver solver, hn_status status, int massless) {
     const char *name = hn_solver_names[solver];
     if (massless >= 0) {
@@ -403,9 +430,9 @@ static double dense_ops(const hn_accel *s) {
     return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
 }
 
-/// A row that is short at a pose says little there, also where the loops are closed to rounding:
-/// stretched, rounding is all it says. Of one below HN_ROW_LOST velocities and pose leave rounding and
-/// the error of the step.
+/// Tolerances of the dense solve. A row that is short at a pose is not stretched to unit length:
+/// that would amplify its rounding. A row below HN_ROW_LOST holds nothing but rounding and the
+/// error of the step, so it is compared with rows as long as they are.
 static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, int want_cond) {
     hn_kkt_opts opts = hn_kkt_opts_default();
     opts.row_floor = HN_PIVOT_NOISE_ROW_FLOOR;
@@ -429,11 +456,14 @@ static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *
         hn_kkt_solve(s->kkt, way_of(solver), s->nv, s->nc, hn_eval_get(s->terms, HN_TERM_M),
                      hn_eval_get(s->terms, HN_TERM_J), hn_eval_get(s->terms, HN_TERM_F), s->gamma,
                      s->dense_a, s->dense_lambda, &dense, &opts);
+
     s->ops += dense_ops(s);
     info->massless = dense.massless;
     if (status != HN_OK) {
         return refuse(s, solver, status, dense.massless);
     }
+
+    // what the solve found
     info->solver = solver;
     info->rank = dense.rank;
     info->residual = dense.residual;
@@ -450,8 +480,8 @@ static double find_row_ratio(hn_accel *s) {
     return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
 }
 
-/// The tape's answer. HN_ERR_SINGULAR: a pivot is lost, or is so small that the answer needs
-/// correcting (*doubtful).
+/// Takes the tape's answer. HN_ERR_SINGULAR: a pivot is lost, or so small that the answer needs
+/// correction (*doubtful).
 static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
                                int *doubtful) {
     if (!s->available) {
@@ -476,6 +506,8 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     hn_accel_info own;
     const hn_solver solver = s->opts.solver;
     int doubtful = 0;
+
+    // the tape first
     info = info ? info : &own;
     s->count++;
     s->refusal[0] = '\0';
@@ -485,14 +517,20 @@ hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
     if (status == HN_OK) {
         return HN_OK;
     }
+
+    // a state that is not finite has no accelerations
     if (!all_finite(s->in.x, s->in.n)) {
         s->fallbacks++;
         return HN_ERR_DIVERGED;
     }
+
+    // pivots in doubt: the tape's factor, refined
     const double gap = eval_terms(s, t, q, v, alpha, beta);
     if (doubtful && solve_refined(s, t, q, a, lambda, info) == HN_OK) {
         return HN_OK;
     }
+
+    // else the dense solve
     if (solver == HN_SOLVER_LDL) {
         return refuse(s, solver, HN_ERR_SINGULAR, -1);
     }

@@ -12,10 +12,10 @@
 #include "dynamics/compile/system.h"
 #include "expr/tape.h"
 
-/// Who solves K. Automatic: the tape; corrected by iterative refinement with the sparse factor
-/// where its pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve
-/// where a pivot is lost altogether, or a row of J has all but vanished. The others serve alone and
-/// refuse what they cannot serve; linalg/kkt.h says what that is.
+/// The solvers of K. "auto" is the tape, corrected by iterative refinement with the sparse factor
+/// where pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where
+/// a pivot is lost altogether, or a row of J has all but vanished. The others solve alone and
+/// refuse what they cannot solve (linalg/kkt.h).
 #define HN_SOLVER_LIST(X)                   \
     X(HN_SOLVER_AUTO, "auto")               \
     X(HN_SOLVER_LDL, "ldl")                 \
@@ -35,17 +35,17 @@ extern const char *const hn_solver_names[HN_SOLVER_COUNT];
 typedef struct hn_accel hn_accel;
 
 typedef struct hn_accel_opts {
-    int baumgarte;    ///< phi and J v enter, alpha and beta become inputs
-    int want_lambda;  ///< leave out what only multipliers need otherwise
+    int baumgarte;    ///< phi and J v enter, alpha and beta are inputs
+    int want_lambda;  ///< 0: everything that only multipliers need is left out
     hn_solver solver; ///< 0: automatic
 } hn_accel_opts;
 
 typedef struct hn_accel_info {
     int fallback;     ///< 1: the dense solve answered in place of the tape
-    hn_solver solver; ///< who answered: the tape counts as ldl
+    hn_solver solver; ///< the solver that answered; the tape counts as ldl
     int refinements;  ///< corrections of the answer that were kept
-    int massless;     ///< the range space refused: the velocity without mass; else -1
-    int rank; ///< rank of J as far as known: nc from the tape, numerical rank from the dense solve
+    int massless;     ///< the velocity without mass where the range space refused; else -1
+    int rank; ///< rank of J: nc where the tape answered, the numerical rank from the dense solve
     /// smallest pivot relative to its guard [-]; below HN_PIVOT_GUARD the dense solve answers
     double pivot_ratio;
     /// shortest row of J against the longest of its loop, squared; 1 where the tape does not serve
@@ -53,26 +53,31 @@ typedef struct hn_accel_info {
     double residual; ///< dense solve only: max |J a + gamma|
 } hn_accel_info;
 #define HN_PIVOT_GUARD 1e-8
-/// Smaller pivots are refined: an answer then has 1e-13 or better without it, and a correction
-/// costs more than the tape.
+/// Answers with smaller pivots are refined. Above it, an answer is good to 1e-13 as it is, and a
+/// correction costs more than the tape.
 #define HN_PIVOT_DOUBT 1e-3
 
 HN_MUST_CHECK hn_status hn_accel_create(const hn_system *sys, const hn_accel_opts *opts,
                                         hn_arena *arena, hn_accel **out);
 void hn_accel_free(hn_accel *s);
-/// a (nv), lambda (nc, may be NULL if not wanted). alpha [1/s], beta [1/s] ignored without
-/// baumgarte. Fails: HN_ERR_SINGULAR, HN_ERR_INCONSISTENT, HN_ERR_DIVERGED (input not finite);
-/// outputs then untouched. Allocates nothing.
+/// Solves for the accelerations a (nv) and multipliers lambda (nc, may be NULL) at one state.
+/// alpha and beta [1/s] count only with opts.baumgarte; `info` may be NULL. Allocates nothing.
+/// Fails, outputs then untouched:
+///   HN_ERR_MASS          a motion that the constraints leave free has no mass
+///   HN_ERR_SINGULAR      the chosen solver cannot solve here (hn_accel_refusal)
+///   HN_ERR_INCONSISTENT  dependent rows ask for different accelerations
+///   HN_ERR_DIVERGED      the state is not finite
 HN_MUST_CHECK hn_status hn_accel_eval(hn_accel *s, double t, const double *q, const double *v,
                                       double alpha, double beta, double *a, double *lambda,
                                       hn_accel_info *info);
-/// 1-norm condition estimate of the equilibrated K (rows that depend on others left out) at a
-/// state; digits left are about 15.6 - log10 of it. Fails as the least-norm solve does. Allocates
+/// Estimates the 1-norm condition of the equilibrated K (rows that depend on others left out) at a
+/// state; about 15.6 - log10 of it digits are left. Fails as the least-norm solve does. Allocates
 /// nothing.
 HN_MUST_CHECK hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const double *v,
                                            double *condition);
 #define HN_CONDITION_LOST 1e13 ///< of the equilibrated K: no digit of the multipliers is left
-/// What the multipliers of a state are worth.
+
+/// Whether the multipliers of a state are unique, and how far they can be believed.
 typedef enum hn_multiplier_mark {
     HN_MULTIPLIERS_DETERMINED,
     HN_MULTIPLIERS_ONE_OF_MANY, ///< rows depend on each other: the least-norm choice of many
@@ -82,9 +87,9 @@ typedef enum hn_multiplier_mark {
 } hn_multiplier_mark;
 /// "determined", "one of many", ...
 extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
-/// The mark of multipliers that hn_accel_eval() found at this state with `info`. Where the tape
-/// answered, no pivot in doubt and no row dying away, K is far from singular; else its condition is
-/// estimated, at the cost of a dense solve. Allocates nothing.
+/// The mark of the multipliers that hn_accel_eval() found at this state with `info`. Where the tape
+/// answered without a pivot in doubt or a vanishing row, K is far from singular; else its condition
+/// is estimated, at the cost of a dense solve. Allocates nothing.
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
@@ -93,8 +98,7 @@ long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of
 long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor
 /// Arithmetic operations so far, tape and linear algebra.
 double hn_accel_ops(const hn_accel *s);
-/// What the chosen solver cannot serve, in words, after it failed; NULL when there is nothing to
-/// say beyond the status.
+/// Why the last solve failed, in words; NULL when there is nothing to say beyond the status.
 const char *hn_accel_refusal(const hn_accel *s);
 
 #endif

@@ -7,7 +7,7 @@
 /// One term: its dense values and where they come from.
 typedef struct term_values {
     double *values;
-    int n_entries; ///< not identically zero, as told by hn_eval_pattern
+    int n_entries; ///< not identically zero: hn_eval_pattern()
     int *rows, *cols;
 } term_values;
 
@@ -66,24 +66,19 @@ typedef struct term_source {
 static term_source source_of(const hn_system *sys, int term, hn_ex energy[2]) {
     energy[0] = sys->kinetic;
     energy[1] = sys->potential;
+
+    // clang-format off
     switch ((hn_term)(1 << term)) {
-    case HN_TERM_M:
-        return (term_source){&sys->M, NULL, sys->nv, sys->nv, 1};
-    case HN_TERM_F:
-        return (term_source){NULL, sys->f, sys->nv, 1, 0};
-    case HN_TERM_PHI:
-        return (term_source){NULL, sys->phi, sys->nc, 1, 0};
-    case HN_TERM_PHI_T:
-        return (term_source){NULL, sys->phi_t, sys->nc, 1, 0};
-    case HN_TERM_J:
-        return (term_source){&sys->J, NULL, sys->nc, sys->nv, 0};
-    case HN_TERM_GAMMA:
-        return (term_source){NULL, sys->gamma, sys->nc, 1, 0};
-    case HN_TERM_ENERGY:
-        return (term_source){NULL, energy, 2, 1, 0};
-    case HN_TERM_POINTS:
-        return (term_source){NULL, sys->points, 3 * sys->info.n_points, 1, 0};
+    case HN_TERM_M:      return (term_source){&sys->M, NULL, sys->nv, sys->nv, 1};
+    case HN_TERM_F:      return (term_source){NULL, sys->f, sys->nv, 1, 0};
+    case HN_TERM_PHI:    return (term_source){NULL, sys->phi, sys->nc, 1, 0};
+    case HN_TERM_PHI_T:  return (term_source){NULL, sys->phi_t, sys->nc, 1, 0};
+    case HN_TERM_J:      return (term_source){&sys->J, NULL, sys->nc, sys->nv, 0};
+    case HN_TERM_GAMMA:  return (term_source){NULL, sys->gamma, sys->nc, 1, 0};
+    case HN_TERM_ENERGY: return (term_source){NULL, energy, 2, 1, 0};
+    case HN_TERM_POINTS: return (term_source){NULL, sys->points, 3 * sys->info.n_points, 1, 0};
     }
+    // clang-format on
     return (term_source){NULL, NULL, 0, 0, 0};
 }
 
@@ -95,6 +90,7 @@ static hn_status add_term(builder *b, const hn_system *sys, int k, hn_arena *are
     hn_ex energy[2];
     term_source s = source_of(sys, k, energy);
     term_values *term = &b->e->terms[k];
+
     size_t n = (size_t)count_entries(&s);
     term->values = hn_arena_doubles(arena, (size_t)s.rows * (size_t)s.cols);
     term->rows = hn_arena_ints(arena, n);
@@ -102,6 +98,8 @@ static hn_status add_term(builder *b, const hn_system *sys, int k, hn_arena *are
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // entries of a sparse matrix, or a plain list
     for (int i = 0; i < (int)n; i++) {
         if (s.entries) {
             const hn_entry *e = &s.entries->at[i];

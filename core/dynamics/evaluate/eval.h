@@ -1,6 +1,6 @@
 #ifndef HN_DYNAMICS_EVAL_H
 #define HN_DYNAMICS_EVAL_H
-// Evaluators: one tape for exactly the terms asked for, and the saddle-point solve behind it.
+// Evaluators: one tape for exactly the terms asked for.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -20,19 +20,19 @@ enum { HN_TERM_COUNT = 8 };
 
 typedef struct hn_eval hn_eval;
 
-/// An evaluator of the terms in the mask. Memory from `arena`, the tape owned by the eval
-/// (hn_eval_free).
+/// Creates an evaluator of the terms in the mask. Memory from `arena`, the tape owned by the
+/// evaluator (hn_eval_free). Adds nodes to the system's graph. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_eval_create(const hn_system *sys, unsigned terms, hn_arena *arena,
                                        hn_eval **out);
 void hn_eval_free(hn_eval *e); ///< frees the tape; NULL is legal
 /// Evaluates all its terms; allocates nothing. v may be NULL: zero.
 void hn_eval_run(hn_eval *e, double t, const double *q, const double *v);
-/// Where the values of one term stand (borrowed, same place for life). M and J: entries that are
-/// identically zero are set once; only the others are written by a run.
+/// The values of one term as last evaluated (borrowed, the same place for life). Of M and J,
+/// entries that are identically zero are set once; a run writes the others.
 const double *hn_eval_get(const hn_eval *e, hn_term term);
-/// Entries of a term that are not identically zero: returns their number, and their rows and
-/// columns (borrowed). M: the lower triangle; vectors: column 0. For large scenes, where going
-/// through dense arrays would cost more than the evaluation.
+/// The entries of a term that are not identically zero: returns their number, and their rows and
+/// columns (borrowed). Of M the lower triangle; of vectors, column 0. For large scenes, where a
+/// walk through dense arrays would cost more than the evaluation.
 int hn_eval_pattern(const hn_eval *e, hn_term term, const int **rows, const int **cols);
 hn_tape_info hn_eval_info(const hn_eval *e);
 long long hn_eval_count(const hn_eval *e); ///< runs so far

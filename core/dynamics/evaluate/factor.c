@@ -33,6 +33,8 @@ static void put(hn_factor *f, hn_ex *outputs, double *place, hn_ex e) {
 
 static void list_values(hn_factor *f, hn_ex *outputs) {
     const hn_ldl *ldl = &f->ldl;
+
+    // values: the inverse pivots and the columns of L
     for (int b = 0; b < ldl->n_blocks; b++) {
         int two = ldl->block[b + 1] - ldl->block[b] == 2;
         for (int k = 0; k < (two ? 3 : 1); k++) {
@@ -46,6 +48,8 @@ static void list_values(hn_factor *f, hn_ex *outputs) {
         // forward and back: a product and a sum per entry of L; the pivot block
         f->info.solve_ops += 4 * (1 + two) * (ldl->column[b + 1] - ldl->column[b]) + (two ? 6 : 1);
     }
+
+    // then the pivots and references of the guards, and the rows' lengths
     f->n_out = f->n_values;
     for (int k = 0; k < ldl->n_guards; k++) {
         outputs[f->n_out++] = ldl->guard[k][0];
@@ -86,6 +90,8 @@ static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weig
     if (status != HN_OK || !f->ldl.available) {
         return status;
     }
+
+    // room for the values
     const hn_ldl *ldl = &f->ldl;
     size_t n_cap = 2 * (size_t)ldl->nnz + 3 * (size_t)ldl->n_blocks;
     f->info.n_blocks = ldl->n_blocks;
@@ -94,6 +100,8 @@ static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weig
     f->Dinv = hn_arena_get(arena, (size_t)ldl->n_blocks * sizeof *f->Dinv);
     f->target = hn_arena_get(arena, n_cap * sizeof *f->target);
     f->x = hn_arena_doubles(arena, (size_t)ldl->n);
+
+    // the tape that computes them
     hn_ex *outputs =
         malloc((n_cap + 2 * (size_t)ldl->n_guards + (size_t)ldl->nc + 1) * sizeof *outputs);
     if (!outputs || hn_arena_failed(arena)) {
@@ -103,6 +111,7 @@ static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weig
     list_values(f, outputs);
     status = hn_inputs_compile(sys, outputs, f->n_out + ldl->nc, arena, &f->in);
     free(outputs);
+
     if (status == HN_OK) {
         status = hn_row_groups_init(sys, arena, &f->rows);
     }
@@ -143,18 +152,24 @@ hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivo
     double worst = 1;
     f->ready = 0;
     f->row_ratio = 1;
+
+    // no static order exists
     if (!f->info.available) {
         if (pivot_ratio) {
             *pivot_ratio = 0;
         }
         return HN_ERR_SINGULAR;
     }
+
+    // values at this pose
     hn_inputs_set(&f->in, t, q, NULL, 0, 0);
     for (int i = 0; i < f->in.n; i++) {
         if (!isfinite(f->in.x[i])) {
             return HN_ERR_DIVERGED;
         }
     }
+
+    // the worst pivot against its reference, 0 where a value is not finite
     const double *x = f->in.x;
     const uint16_t *slots = f->in.slots;
     hn_tape_run(f->in.tape, f->in.x);
@@ -162,10 +177,13 @@ hn_status hn_factor_update(hn_factor *f, double t, const double *q, double *pivo
         double ratio = fabs(x[slots[k]]) / fabs(x[slots[k + 1]]);
         worst = ratio >= worst ? worst : ratio >= 0 ? ratio : 0;
     }
+
+    // scatter
     for (int k = 0; k < f->n_values; k++) {
         *f->target[k] = x[slots[k]];
         worst = isfinite(x[slots[k]]) ? worst : 0;
     }
+
     if (pivot_ratio) {
         *pivot_ratio = worst;
     }

@@ -2,7 +2,7 @@
 #define HN_DYNAMICS_FACTOR_H
 // The factor of the saddle-point matrix as numbers, for methods that solve with it more than once:
 //
-//     K = [W J'; J 0] = L D L',   W = M(q), its diagonal, or the identity                                             (1)
+//     K = [W J'; J 0] = L D L',   W = M(q), its diagonal, or the identity                     (1)
 //
 // A tape gives the entries of L and D^-1; the order and the pattern were fixed when the system was
 // compiled, so the cost grows with the entries of L (linearly for a chain of loops). No pivoting:
@@ -44,15 +44,15 @@ hn_factor_info hn_factor_get_info(const hn_factor *f);
 HN_MUST_CHECK hn_status hn_factor_update(hn_factor *f, double t, const double *q,
                                          double *pivot_ratio);
 
-/// Where the last update was: the shortest row of J against the longest of its loop, squared
-/// lengths (dynamics/evaluate/row_groups.h).
+/// Of the last update: the shortest row of J against the longest of its loop, squared lengths
+/// (row_groups.h); 1 where there is no static order.
 double hn_factor_row_ratio(const hn_factor *f);
 
 /// Solves K [x; -y] = [r1; r2] with the last successful factor: x (nv), y (nc); y may be NULL. The
 /// right-hand side and the solution may be the same arrays. r1 or r2 may be NULL, which means zero.
 /// Allocates nothing.
-///   acceleration: r1 = f, r2 = -gamma gives a, lambda. Projection: r1 = NULL, r2 = -phi gives dq = x with J dq = -phi
-///   and least W-norm.
+///   acceleration: r1 = f, r2 = -gamma gives a, lambda
+///   projection:   r1 = NULL, r2 = -phi gives dq = x with J dq = -phi and least W-norm
 void hn_factor_solve(hn_factor *f, const double *r1, const double *r2, double *x, double *y);
 
 #endif

@@ -110,6 +110,7 @@ hn_status hn_force_parts_create(const hn_system *sys, hn_arena *arena, hn_force_
     if (!p) {
         return HN_ERR_MEMORY;
     }
+
     p->nv = sys->nv;
     p->h = hn_arena_doubles(arena, (size_t)sys->nv);
     p->g = hn_arena_doubles(arena, (size_t)sys->nv);

@@ -42,12 +42,15 @@ hn_status hn_inputs_compile(const hn_system *sys, const hn_ex *outputs, int n_ou
     if (!symbols) {
         return HN_ERR_MEMORY;
     }
+
     list_symbols(sys, symbols);
     hn_status status = hn_tape_compile(sys->g, outputs, n_out, symbols, in->n, &in->tape);
     free(symbols);
     if (status != HN_OK) {
         return status;
     }
+
+    // its workspace starts with the inputs
     double *work = hn_arena_doubles(arena, hn_tape_work_size(in->tape));
     if (!work) {
         hn_inputs_free(in);

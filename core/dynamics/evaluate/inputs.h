@@ -1,6 +1,6 @@
 #ifndef HN_DYNAMICS_INPUTS_H
 #define HN_DYNAMICS_INPUTS_H
-// The inputs every tape of a system takes: q, v, t, alpha, beta, and the parameters where they
+// The inputs that every tape of a system takes: q, v, t, alpha, beta, and the parameters where they
 // stayed symbols. They are written straight into the tape's workspace.
 
 #include "dynamics/compile/system_impl.h"

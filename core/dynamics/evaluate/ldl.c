@@ -95,9 +95,13 @@ static void pair_rows(work *w, const hn_ldl_input *in) {
 static int list_live(work *w, int i, int *blocked) {
     int n = 0, pair[2] = {i, w->partner[i]};
     *blocked = 0;
+
+    // neighbours of either, each once
     for (int p = 0; p < 2 && pair[p] >= 0; p++) {
         const int *list;
         int n_list = hn_symmat_neighbours(w->K, pair[p], &list);
+
+        // the marks are for the next call
         for (int k = 0; k < n_list; k++) {
             int j = list[k];
             if (w->gone[j] || w->marked[j] || j == pair[0] || j == pair[1] ||
@@ -171,6 +175,8 @@ static hn_ex reciprocal(work *w, hn_ex e) {
 /// Inverse of the pivot block. Returns 0 if it is singular by structure.
 static int invert(work *w, const int pair[2], hn_ex inverse[3]) {
     hn_graph *g = w->g;
+
+    // 1 x 1
     hn_ex a = hn_symmat_get(w->K, pair[0], pair[0]);
     inverse[1] = inverse[2] = hn_num(0);
     if (pair[1] < 0) {
@@ -180,11 +186,14 @@ static int invert(work *w, const int pair[2], hn_ex inverse[3]) {
         inverse[0] = reciprocal(w, a);
         return 1;
     }
+
+    // 2 x 2
     hn_ex b = hn_symmat_get(w->K, pair[0], pair[1]), c = hn_symmat_get(w->K, pair[1], pair[1]);
     hn_ex det = hn_sub(g, hn_mul(g, a, c), hn_mul(g, b, b));
     if (hn_is_zero(det) || !guard(w, det, hn_mul(g, w->ref[pair[0]], w->ref[pair[1]]))) {
         return 0;
     }
+
     hn_ex t = reciprocal(w, det);
     inverse[0] = hn_mul(g, c, t);
     inverse[1] = hn_neg(hn_mul(g, b, t));
@@ -253,28 +262,10 @@ static void add_shared(work *w, int i, int n) {
     }
 }
 
-static hn_status eliminate(work *w, int i) {
+/// Takes the unknowns of a pivot block out of what is left.
+static void remove_unknowns(work *w, const int pair[2]) {
     hn_ldl *out = w->out;
-    int pair[2] = {i, w->partner[i]}, blocked;
-    int n = list_live(w, i, &blocked);
-    hn_ex *inverse = out->Dinv[out->n_blocks];
-    if (!reserve_rows(w, n)) {
-        return HN_ERR_MEMORY;
-    }
-    add_shared(w, pair[0], n);
-    if (pair[1] >= 0) {
-        add_shared(w, pair[1], n);
-    }
-    if (!invert(w, pair, inverse)) {
-        out->available = 0;
-        return HN_OK;
-    }
-    w->updates += (long long)n * (n + 1) / 2;
-    if (w->updates > MAX_UPDATES) {
-        out->available = 0;
-        return HN_OK;
-    }
-    int first_row = out->nnz, at = out->block[out->n_blocks];
+    int at = out->block[out->n_blocks];
     for (int p = 0; p < 2 && pair[p] >= 0; p++) {
         out->unknown[at++] = pair[p];
         w->gone[pair[p]] = 1;
@@ -282,6 +273,13 @@ static hn_status eliminate(work *w, int i) {
             out->row_ref[pair[p] - out->nv] = w->ref[pair[p]];
         }
     }
+    out->block[out->n_blocks + 1] = at;
+}
+
+/// The column of L of a pivot block: against its n live neighbours, in w->live.
+static void fill_column(work *w, const int pair[2], int n) {
+    hn_ldl *out = w->out;
+    const hn_ex *inverse = out->Dinv[out->n_blocks];
     for (int k = 0; k < n; k++) {
         int row = w->live[k];
         hn_ex k1 = hn_symmat_get(w->K, row, pair[0]);
@@ -292,9 +290,41 @@ static hn_status eliminate(work *w, int i) {
             pair[1] >= 0 ? two_products(w->g, k1, inverse[1], k2, inverse[2]) : hn_num(0);
         out->nnz++;
     }
+}
+
+static hn_status eliminate(work *w, int i) {
+    hn_ldl *out = w->out;
+    int pair[2] = {i, w->partner[i]}, blocked;
+    int n = list_live(w, i, &blocked);
+    hn_ex *inverse = out->Dinv[out->n_blocks];
+    if (!reserve_rows(w, n)) {
+        return HN_ERR_MEMORY;
+    }
+
+    // the pivot block, guarded
+    add_shared(w, pair[0], n);
+    if (pair[1] >= 0) {
+        add_shared(w, pair[1], n);
+    }
+    if (!invert(w, pair, inverse)) {
+        out->available = 0;
+        return HN_OK;
+    }
+
+    // a matrix that is dense rather than sparse is left to the dense solve
+    w->updates += (long long)n * (n + 1) / 2;
+    if (w->updates > MAX_UPDATES) {
+        out->available = 0;
+        return HN_OK;
+    }
+
+    const int first_row = out->nnz;
+    remove_unknowns(w, pair);
+    fill_column(w, pair, n);
+
+    // what is left of the matrix, and the degrees of the neighbours
     reduce(w, pair, first_row, n, i < out->nv && w->massive[i]);
     out->n_blocks++;
-    out->block[out->n_blocks] = at;
     out->column[out->n_blocks] = out->nnz;
     for (int k = 0; k < n; k++) {
         update_degree(w, out->row[first_row + k]);
@@ -308,12 +338,16 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     out->n = nv + nc;
     out->nv = nv;
     out->nc = nc;
+
+    // the result
     out->unknown = hn_arena_ints(w->arena, n);
     out->block = hn_arena_ints(w->arena, n + 1);
     out->column = hn_arena_ints(w->arena, n + 1);
     out->Dinv = hn_arena_get(w->arena, n * sizeof *out->Dinv);
     out->guard = hn_arena_get(w->arena, n * sizeof *out->guard);
     out->row_ref = hn_arena_get(w->arena, ((size_t)nc + 1) * sizeof *out->row_ref);
+
+    // scratch
     w->gone = hn_arena_get(w->arena, n);
     w->massive = hn_arena_get(w->arena, n);
     w->shared = hn_arena_get(w->arena, n);
@@ -322,6 +356,8 @@ static hn_status allocate(work *w, hn_ldl *out, int nv, int nc) {
     w->degree = hn_arena_ints(w->arena, n);
     w->live = hn_arena_ints(w->arena, n);
     w->ref = hn_arena_get(w->arena, n * sizeof *w->ref);
+
+    // no unknown has a partner yet
     if (hn_arena_failed(w->arena)) {
         return HN_ERR_MEMORY;
     }
@@ -337,6 +373,8 @@ hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_
     if (status != HN_OK) {
         return status;
     }
+
+    // the matrix, and the degree of every unknown
     w.K = hn_symmat_create(out->n);
     if (!w.K) {
         return HN_ERR_MEMORY;
@@ -348,6 +386,8 @@ hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_
     for (int i = 0; i < out->n; i++) {
         update_degree(&w, i);
     }
+
+    // the next of least degree until all are gone, or none is eligible
     out->available = 1;
     while (status == HN_OK && out->available && out->block[out->n_blocks] < out->n) {
         int next = choose(&w);
@@ -357,11 +397,13 @@ hn_status hn_ldl_build(hn_graph *g, const hn_ldl_input *in, hn_arena *arena, hn_
             status = eliminate(&w, next);
         }
     }
+
     hn_symmat_free(w.K);
     return status;
 }
 
 hn_status hn_ldl_solve(hn_graph *g, const hn_ldl *ldl, const hn_ex *rhs, hn_ex *x) {
+    // forward
     memmove(x, rhs, (size_t)ldl->n * sizeof *x);
     for (int b = 0; b < ldl->n_blocks; b++) {
         const int *at = &ldl->unknown[ldl->block[b]];
@@ -372,11 +414,14 @@ hn_status hn_ldl_solve(hn_graph *g, const hn_ldl *ldl, const hn_ex *rhs, hn_ex *
             x[ldl->row[k]] = hn_sub(g, x[ldl->row[k]], part);
         }
     }
+
+    // back
     for (int b = ldl->n_blocks - 1; b >= 0; b--) {
         const int *at = &ldl->unknown[ldl->block[b]];
         const hn_ex *D = ldl->Dinv[b];
         int two = ldl->block[b + 1] - ldl->block[b] == 2;
         hn_ex y1 = x[at[0]], y2 = two ? x[at[1]] : hn_num(0);
+
         hn_ex z[2] = {two_products(g, D[0], y1, D[1], y2), two_products(g, D[1], y1, D[2], y2)};
         for (int k = ldl->column[b]; k < ldl->column[b + 1]; k++) {
             hn_ex known = x[ldl->row[k]];

@@ -1,8 +1,8 @@
 #ifndef HN_DYNAMICS_LDL_H
 #define HN_DYNAMICS_LDL_H
-// Sparse symbolic K = L D L' of the saddle-point matrix [W J'; J 0], emitted as expressions, its
-// order chosen while it is built. Unknowns: 0 .. nv-1 accelerations, nv .. nv+nc-1 multipliers
-// (negative).
+// Sparse symbolic factorisation K = L D L' of the saddle-point matrix [W J'; J 0], written as
+// expressions; the order of elimination is chosen on the way. Unknowns: 0 .. nv-1 accelerations,
+// nv .. nv+nc-1 multipliers (negative).
 //
 // Order: minimum degree under the rule that a multiplier is never eliminated before every massive
 // coordinate it touches (its pivot, zero at first, is then minus a sum of squares), except those

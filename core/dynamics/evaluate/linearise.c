@@ -1,6 +1,6 @@
 // Every derivative is a directional one, forward over the expressions of R, f, J v + phi_t and
-// gamma, a sweep per velocity: what does not depend on a coordinate is never visited. a and lambda are
-// symbols of the tape's own; their names hold a blank, which no formula can spell.
+// gamma, a sweep per velocity: what does not depend on a coordinate is never visited. a and lambda
+// are symbols of the tape's own; their names hold a blank, which no formula can spell.
 #include "dynamics/evaluate/linearise.h"
 
 #include "dynamics/compile/direction.h"
@@ -69,10 +69,12 @@ static hn_status make_symbols(builder *b) {
     return HN_OK;
 }
 
-// R of (1) and J v + phi_t: sums are gathered row by row
+/// R of (1) and J v + phi_t: sums are gathered row by row.
 static hn_status make_sums(builder *b) {
     const hn_system *sys = b->sys;
     hn_graph *g = b->g;
+
+    // M a - f
     for (int i = 0; i < sys->nv; i++) {
         b->residual[i] = hn_neg(sys->f[i]);
     }
@@ -83,6 +85,8 @@ static hn_status make_sums(builder *b) {
             b->residual[e->col] = hn_add(g, b->residual[e->col], hn_mul(g, e->e, b->a[e->row]));
         }
     }
+
+    // phi_t, then J v and -J' lambda along the entries of J
     for (int i = 0; i < sys->nc; i++) {
         b->speed_gap[i] = sys->phi_t[i];
     }
@@ -177,21 +181,28 @@ static hn_status make_terms(builder *b, unsigned terms) {
                    {HN_LINEAR_SPEED_GAP, b->speed_gap, sys->nc},
                    {HN_LINEAR_F, sys->f, sys->nv},
                    {HN_LINEAR_GAMMA, sys->gamma, sys->nc}};
+
+    // vectors
     for (size_t k = 0; k < sizeof vectors / sizeof vectors[0]; k++) {
         if (terms & vectors[k].term) {
             put_list(b, vectors[k].term, vectors[k].list, vectors[k].n);
         }
     }
+
+    // matrices that the system has anyway
     if (terms & HN_LINEAR_M) {
         put_mass(b);
     }
     if (terms & HN_LINEAR_J) {
         put_jacobian(b);
     }
+
+    // derivatives, a column for each velocity
     for (int j = 0; j < sys->nv; j++) {
         differentiate_by_position(b, terms, j);
         differentiate_by_speed(b, terms, j);
     }
+
     int failed = hn_graph_failed(b->g);
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
         failed |= b->terms[k].failed;
@@ -259,7 +270,7 @@ static hn_status allocate(builder *b, unsigned terms, int *n_entries) {
     return hn_arena_failed(b->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-// each entry has its place; numbers are written once, the others are outputs of the tape
+/// Each entry has its place; numbers are written once, the others are outputs of the tape.
 static int scatter(builder *b, hn_ex *outputs) {
     hn_linear *l = b->l;
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
@@ -289,6 +300,8 @@ static hn_status compile(builder *b, unsigned terms) {
     if (status != HN_OK) {
         return status;
     }
+
+    // a tape of q, v, t, a, lambda
     hn_ex *outputs = malloc(((size_t)n_entries + 1) * sizeof *outputs);
     int *symbols = malloc((size_t)count_inputs(l, b->sys) * sizeof *symbols);
     status = HN_ERR_MEMORY;
@@ -297,11 +310,14 @@ static hn_status compile(builder *b, unsigned terms) {
         list_symbols(b, symbols);
         status = hn_tape_compile(b->g, outputs, n, symbols, count_inputs(l, b->sys), &l->tape);
     }
+
     free(outputs);
     free(symbols);
     if (status != HN_OK) {
         return status;
     }
+
+    // its workspace starts with the inputs
     l->x = hn_arena_doubles(b->arena, hn_tape_work_size(l->tape));
     if (!l->x) {
         return HN_ERR_MEMORY;
@@ -325,6 +341,7 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     }
     *l = (hn_linear){.nq = sys->info.nq, .nv = sys->nv, .nc = sys->nc};
     // the graph may gain nodes; system.h says that this is the one thing that changes a system
+    // the derivatives, and their tape
     builder b = {.l = l, .sys = sys, .g = sys->g, .arena = arena};
     hn_status status = make_symbols(&b);
     if (status == HN_OK) {
@@ -336,6 +353,8 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     if (status == HN_OK) {
         status = compile(&b, terms);
     }
+
+    // scratch
     free(b.a);
     free(b.lambda);
     free(b.residual);
@@ -344,6 +363,7 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     for (int k = 0; k < HN_LINEAR_COUNT; k++) {
         hn_entries_reset(&b.terms[k]);
     }
+
     if (status != HN_OK) {
         hn_linear_free(l);
         return status;
@@ -399,7 +419,7 @@ int hn_linear_entries(const hn_linear *l, hn_linear_term term) {
     return hn_linear_pattern(l, term, &rows, &cols);
 }
 
-// out += X x, or X' x
+/// out += X x, or X' x.
 static void add_product(const hn_linear *l, hn_linear_term term, int transposed, const double *x,
                         double *out) {
     const term_values *of = &l->terms[index_of(term)];

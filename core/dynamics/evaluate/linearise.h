@@ -3,8 +3,8 @@
 // Exact derivatives of the equations of motion, for Newton's method in implicit integrators and for
 // spectra.
 //
-//     R(t, q, v, a, lambda) = M(q) a - f(q, v, t) - J(q)' lambda                                                    (1)
-//     dR = K dq + C dv + M da - J' dlambda,     dphi = J dq,     d(J v + phi_t) = V dq + J dv                            (2)
+//     R(t, q, v, a, lambda) = M(q) a - f(q, v, t) - J(q)' lambda                               (1)
+//     dR = K dq + C dv + M da - J' dlambda,   dphi = J dq,   d(J v + phi_t) = V dq + J dv      (2)
 //
 // dq is a displacement along the velocities (nv entries, hn_system_move): K = R_q G, V = (J v +
 // phi_t)_q G. One tape, everything in it shared with M, f and J.

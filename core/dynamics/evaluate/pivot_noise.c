@@ -2,16 +2,17 @@
 
 #include <math.h>
 
-static const double BLUR = 30;
-// a gap of a third of a per mille and more: pivots that size are real
-static const double BLUR_MAX = 1e-2;
+// noise per unit of the relative gap: measured over open loops of short and long links
+static const double NOISE = 30;
+// reached at a gap of a third of a per mille: larger pivots are real whatever the gap
+static const double NOISE_MAX = 1e-2;
 
 double hn_pivot_noise_of(double gap) {
-    return fmin(BLUR * gap, BLUR_MAX);
+    return fmin(NOISE * gap, NOISE_MAX);
 }
 
 double hn_pivot_noise_of_sides(double gap) {
-    return fmin(BLUR * gap, 1);
+    return fmin(NOISE * gap, 1);
 }
 
 double hn_pivot_noise_gap(const hn_system *sys, const hn_pivot_noise_terms *at, const double *v,

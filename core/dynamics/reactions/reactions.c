@@ -64,14 +64,19 @@ static hn_status relate_bodies(hn_reactions *r, hn_arena *arena, hn_relative *re
     if (r->n_bodies == 0) {
         return HN_OK;
     }
+
     hn_mech own = *r->sys->mech, *m = &own;
     for (int b = 0; b < r->n_bodies; b++) {
         hn_reaction_body *body = &r->bodies[b];
+
+        // the centre of mass as seen from the ground
         const int link = hn_tree_link(m->tree, b);
         hn_vec3 arm;
         HN_TRY(hn_mech_arm_of(m, link, r->scene->bodies[b].com, &arm));
         HN_TRY(hn_mech_relate(m, m->tree->ground, link, arm, m->tree->ground, hn_vec3_zero(),
                               &rel[b]));
+
+        // the coordinates that move it
         body->n = rel[b].a.n;
         body->coordinate = hn_arena_ints(arena, (size_t)body->n + 1);
         if (!body->coordinate) {
@@ -80,6 +85,7 @@ static hn_status relate_bodies(hn_reactions *r, hn_arena *arena, hn_relative *re
         for (int k = 0; k < body->n; k++) {
             body->coordinate[k] = rel[b].a.levers[k].coordinate;
         }
+
         memcpy(body->to_world, rel[b].to_world, sizeof body->to_world);
     }
     return HN_OK;
@@ -112,20 +118,28 @@ static void put_all(hn_reactions *r, const terms *t, output_list *list) {
         r->bodies[b].first = list->n;
         put_body(list, sys->g, &t->bodies[b].a);
     }
+
+    // values of loads
     r->first_load = list->n;
     for (int k = 0; k < r->scene->n_loads; k++) {
         put3(list, (hn_vec3){{sys->load_values[k].x[0], sys->load_values[k].x[1],
                               sys->load_values[k].x[2]}});
     }
+
+    // wrenches of rows
     r->first_row = list->n;
     for (int i = 0; i < r->nc; i++) {
         put_row(list, sys->g, &sys->rows[i].wrench);
     }
+
+    // efforts of rows, energies
     r->first_effort = list->n;
     for (int k = 0; k < sys->efforts.n; k++) {
         list->at[list->n++] = sys->efforts.at[k].e;
     }
     put_energies(r, t, list);
+
+    // J, for what is not determined
     r->first_jacobian = list->n;
     for (int k = 0; k < sys->J.n; k++) {
         list->at[list->n++] = sys->J.at[k].e;
@@ -170,6 +184,8 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
     *out = NULL;
     hn_reactions *r = hn_arena_get(arena, sizeof *r);
     hn_status status = HN_ERR_MEMORY;
+
+    // memory
     if (r) {
         *r = (hn_reactions){.sys = sys, .scene = sys->scene, .n_bodies = sys->scene->n_bodies};
         r->nc = sys->nc;
@@ -182,6 +198,8 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
         r->lambda = hn_arena_doubles(arena, (size_t)r->nc + 1);
         r->constraints =
             hn_arena_get(arena, ((size_t)sys->scene->n_constraints + 1) * sizeof *r->constraints);
+
+        // the tape, and the list of efforts
         const int made = hn_qr_init(&r->qr, arena, r->nv, r->nc ? r->nc : 1);
         if (made && !hn_arena_failed(arena)) {
             list_order(r);
@@ -191,6 +209,7 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
             status = hn_reaction_list_efforts(r, arena);
         }
     }
+
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
     }
@@ -245,23 +264,30 @@ static void read_body(hn_reactions *r, int body, const double *a) {
     hn_reaction_body *b = &r->bodies[body];
     const double mass = r->scene->bodies[body].mass.value;
     double acc[3] = {0, 0, 0}, w[3] = {0, 0, 0}, al[3] = {0, 0, 0}, spin[3], turned[3];
+
+    // pose and motion at zero accelerations
     read_axes(r, b, hn_tree_link(&r->sys->tree, body));
     memset(b->x, 0, sizeof b->x);
     add_turned(r, b, b->first + 9, 1, b->x);
     add_turned(r, b, b->first + 12, 1, acc);
     add_turned(r, b, b->first + 15, 1, w);
     add_turned(r, b, b->first + 18, 1, al);
+
+    // what the accelerations add
     for (int k = 0; k < b->n; k++) {
         const int lever = b->first + HN_REACTION_POSE + HN_REACTION_LEVER * k;
         add_turned(r, b, lever, a[b->coordinate[k]], acc);
         add_turned(r, b, lever + 3, a[b->coordinate[k]], al);
     }
+
+    // F = m a - m g, N = I al + w x I w
     apply_inertia(r, body, w, spin);
     apply_inertia(r, body, al, turned);
     b->inertial = (hn_reaction_wrench){0};
     b->force = b->moment = 0;
     hn_reaction_add_scaled(b->inertial.n, 1, turned);
     hn_reaction_add_cross(b->inertial.n, 1, w, spin);
+
     for (int i = 0; i < 3; i++) {
         b->inertial.f[i] = mass * (acc[i] - r->scene->gravity[i].value);
         b->force = fmax(b->force, mass * (fabs(acc[i]) + fabs(r->scene->gravity[i].value)));
@@ -306,13 +332,17 @@ static int touches(const hn_reaction_wrench *w, double scale) {
 
 static void find_undetermined(hn_reactions *r, hn_wrench *joints, hn_wrench *constraints) {
     hn_reaction_wrench *scratch = r->constraints;
+
     factor_rows(r);
     for (int k = r->qr.rank; k < r->nc; k++) {
+        // multipliers that give no generalised force: one free combination for each lost row
         double scale = 0;
         free_combination(r, k);
         for (int i = 0; i < r->nc; i++) {
             scale = fmax(scale, fabs(r->lambda[i]));
         }
+
+        // joints, constraints and efforts that it touches are not determined
         memset(scratch, 0, (size_t)r->scene->n_constraints * sizeof *scratch);
         hn_reaction_balance(r, r->lambda, 1, scratch);
         for (int j = 0; j < r->scene->n_joints; j++) {
@@ -405,6 +435,8 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
                             const double *a, const double *lambda, hn_wrench *joints,
                             hn_wrench *constraints) {
     const hn_scene *scene = r->scene;
+
+    // poses, motion, efforts at this state
     hn_inputs_set(&r->in, t, q, v, 0, 0);
     hn_tape_run(r->in.tape, r->in.x);
     hn_reaction_read_energies(r, a);
@@ -415,8 +447,12 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
     for (int j = 0; j < scene->n_joints; j++) {
         hn_reaction_place_of(r, scene->joints[j].child, scene->joints[j].child_at, r->places[j]);
     }
+
+    // the balance
     memset(r->constraints, 0, (size_t)scene->n_constraints * sizeof *r->constraints);
     hn_reaction_balance(r, lambda, 0, r->constraints);
+
+    // in world axes and in the joint's own
     for (int j = 0; j < scene->n_joints; j++) {
         double axes[3][3];
         axes_of(r, &scene->joints[j], axes);
@@ -425,6 +461,7 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
     for (int k = 0; k < scene->n_constraints && constraints; k++) {
         hand_out_constraint(r, k, lambda, &constraints[k]);
     }
+
     r->defect = hn_reaction_calc_defect(r);
     if (!is_finite_state(r, joints)) {
         return HN_ERR_DIVERGED;

@@ -12,9 +12,9 @@
 // Energies given as formulas beside the bodies say what they do along coordinates and nothing about
 // where. They are taken to act in the joints, between the two bodies of the joint whose coordinate
 // they name, as a motor there would, inertia included; what they do
-// is in the wrench along the joint's freedom, and is reported beside it. A formula that stands for a
-// part somewhere else also loads joints across their degrees of freedom: that is not in any formula, and not
-// in the wrenches. A scene of formulas alone has efforts only.
+// is in the wrench along the joint's freedom, and is reported beside it. A formula that stands for
+// a part somewhere else also loads joints across their degrees of freedom: that is not in any
+// formula, and not in the wrenches. A scene of formulas alone has efforts only.
 
 #include "base/arena.h"
 #include "base/diag.h"

@@ -32,6 +32,8 @@ static void act(hn_reactions *r, int body, double k, const double force[3], cons
 int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
+
+    // axes of the joint on its parent and on its child
     const double *sides[2][3] = {{joint->parent_ref, NULL, joint->parent_axis},
                                  {joint->child_ref, NULL, joint->child_axis}};
     double y[2][3];
@@ -39,6 +41,8 @@ int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, 
     hn_num3_cross(joint->child_axis, joint->child_ref, y[1]);
     sides[0][1] = y[0];
     sides[1][1] = y[1];
+
+    // the primitive that has this coordinate
     for (int k = 0; k < n; k++) {
         const int ball = chain[k].type == HN_JOINT_SPHERICAL;
         const int along = ball ? part - chain[k].part : chain[k].along;
@@ -82,21 +86,29 @@ static void act_loads(hn_reactions *r) {
     for (int k = 0; k < scene->n_loads; k++) {
         const hn_load *load = &scene->loads[k];
         double v[3], p[3], q[3], pull[3];
+
+        // a moment on a body
         hn_reaction_values3(r, r->first_load + HN_REACTION_LOAD * k, v);
         if (load->kind == HN_LOAD_MOMENT) {
             act(r, scene->points[load->p].body, 1, NULL, NULL, v);
             continue;
         }
+
+        // along a coordinate
         if (load->kind != HN_LOAD_FORCE && load->kind != HN_LOAD_SPRING) {
             r->tau[load->coordinate] += v[0];
             continue;
         }
+
+        // a force at a point
         const hn_point *at = &scene->points[load->p];
         hn_reaction_place_of(r, at->body, at->at, p);
         if (load->kind == HN_LOAD_FORCE) {
             act(r, at->body, 1, v, p, NULL);
             continue;
         }
+
+        // a spring: a force along the line, and its opposite
         const hn_point *to = &scene->points[load->q];
         hn_reaction_place_of(r, to->body, to->at, q);
         for (int i = 0; i < 3; i++) {
@@ -155,14 +167,20 @@ static void act_row(hn_reactions *r, int row, double lambda, hn_reaction_wrench 
     if (!find_ends(r, row, &ends)) {
         return;
     }
+
+    // force and moments in the world, and where they act
     read_row(r, ends.body[1], k, force);
     for (int e = 0; e < 2; e++) {
         read_row(r, ends.body[1], k + 3 + 3 * e, moment[e]);
         hn_reaction_place_of(r, ends.body[e], ends.at[e], place[e]);
     }
+
+    // on the two bodies
     act(r, ends.body[0], -lambda, force, place[0], NULL);
     act(r, ends.body[0], lambda, NULL, NULL, moment[0]);
     act(r, ends.body[1], lambda, force, place[1], moment[1]);
+
+    // on the child of the joint, or on the body of the constraint's first point
     if (loop->joint >= 0) {
         hn_reaction_add_scaled(r->joints[loop->joint].f, lambda, force);
         hn_reaction_add_scaled(r->joints[loop->joint].n, lambda, moment[1]);
@@ -224,13 +242,18 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
     hand_down(r);
 }
 
-/// The hn_reaction_wrench of each tree joint along its own degrees of freedom against what is put in there.
+/// The hn_reaction_wrench of each tree joint along its own degrees of freedom against what is put
+/// in there.
 double hn_reaction_calc_defect(const hn_reactions *r) {
     double off[2] = {0, 0}, size[2] = {0, 0};
+
+    // sizes of forces and moments
     for (int b = 0; b < r->n_bodies; b++) {
         size[1] = fmax(size[1], r->bodies[b].force);
         size[0] = fmax(size[0], r->bodies[b].moment);
     }
+
+    // work along each joint's own coordinates against what is put in
     for (int j = 0; j < r->scene->n_joints; j++) {
         const hn_joint *joint = &r->scene->joints[j];
         for (int i = 0; i < 3; i++) {
@@ -246,6 +269,7 @@ double hn_reaction_calc_defect(const hn_reactions *r) {
             size[is_force] = fmax(size[is_force], fabs(tau));
         }
     }
+
     const double arm =
         hn_system_length(r->sys); // a moment is small beside the forces times the arms
     const double force = size[1] > 0 ? off[1] / size[1] : off[1];

@@ -1,7 +1,10 @@
 // Energies given as formulas beside bodies, as what they do along the scene's coordinates x; and
 // the list of efforts.
-//     Q_i = dT/dx_i - dV/dx_i - d/dt dT/dx_i' = c_i - sum_k m_ik a_k                                              (1)
-//     c_i = dT/dx_i - dV/dx_i - sum_j (d2T/dx_i'dx_j x_j' + d2T/dx_i'dx_j' g_j),   m_ik = sum_j d2T/dx_i'dx_j' dx_j'/du_k
+//
+//     Q_i  = dT/dx_i - dV/dx_i - d/dt dT/dx_i' = c_i - sum_k m_ik a_k                          (1)
+//     c_i  = dT/dx_i - dV/dx_i - sum_j (d2T/dx_i'dx_j x_j' + d2T/dx_i'dx_j' g_j)
+//     m_ik = sum_j d2T/dx_i'dx_j' dx_j'/du_k
+//
 // a: accelerations of the system, g_j: x_j'' at a = 0. Lagrange's derivative is the same covector
 // in any coordinates, so (1) does the work along the scene's coordinates that the equations of
 // motion, traced in the system's own, say it does.
@@ -38,6 +41,8 @@ static hn_status begin(hn_reactions *r, hn_arena *arena, derivation *d) {
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // one block of memory, in parts
     d->rates = d->x + n;
     d->along = d->x + 2 * n;
     d->T_x = d->x + 4 * n;
@@ -45,10 +50,13 @@ static hn_status begin(hn_reactions *r, hn_arena *arena, derivation *d) {
     d->p = d->x + 6 * n;
     d->p_rate = d->x + 7 * n;
     d->row = d->x + 8 * n;
+
+    // symbols in place of the coordinates, and how they move at a = 0
     hn_system_stand_ins(sys, "coordinate", d->x, d->symbols);
     hn_system_stand_ins(sys, "rate", d->rates, d->symbols + n);
     memcpy(d->along, sys->user_v, n * sizeof *d->along);
     memcpy(d->along + n, sys->user_gamma, n * sizeof *d->along);
+
     HN_TRY(hn_system_quantity_of(sys, &l->kinetic, d->x, d->rates, &d->kinetic));
     return hn_system_quantity_of(sys, &l->potential, d->x, d->rates, &d->potential);
 }
@@ -65,8 +73,10 @@ static hn_ex put_back(const derivation *d, hn_ex e) {
 static void add_inertia(derivation *d, int i, int at, hn_entries *inertia) {
     hn_ex *by_rate = d->T_x; // read already
     hn_diff_reverse(d->g, d->p[i], d->symbols + d->n, d->n, by_rate);
+
     const int first = inertia->n;
     for (int j = 0; j < d->n; j++) {
+        // the mass along coordinate j, then x_j' by the system's velocities
         const hn_ex m = put_back(d, by_rate[j]);
         if (hn_is_zero(m)) {
             continue;
@@ -74,6 +84,8 @@ static void add_inertia(derivation *d, int i, int at, hn_entries *inertia) {
         hn_diff_reverse(d->g, d->sys->user_v[j], d->sys->v_symbols, d->sys->nv, d->row);
         for (int k = 0; k < d->sys->nv; k++) {
             const hn_ex e = hn_mul(d->g, m, d->row[k]);
+
+            // one entry for each acceleration
             int at_entry = first;
             while (at_entry < inertia->n && inertia->at[at_entry].col != k) {
                 at_entry++;
@@ -91,16 +103,21 @@ hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena, hn_ex **
                                       hn_entries *inertia) {
     derivation d;
     HN_TRY(begin(r, arena, &d));
+
+    // derivatives of (1)
     hn_diff_reverse(d.g, d.kinetic, d.symbols, d.n, d.T_x);
     hn_diff_reverse(d.g, d.potential, d.symbols, d.n, d.V_x);
     hn_diff_reverse(d.g, d.kinetic, d.symbols + d.n, d.n, d.p);
     hn_diff_forward(d.g, d.p, d.n, d.symbols, d.along, 2 * d.n, d.p_rate);
+
     r->energy_coordinate = hn_arena_ints(arena, (size_t)d.n + 1);
     r->energy = hn_arena_doubles(arena, (size_t)d.n + 1);
     *at_zero = hn_arena_get(arena, ((size_t)d.n + 1) * sizeof **at_zero);
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // what they do at zero accelerations, where they do anything
     for (int i = 0; i < d.n; i++) {
         const hn_ex terms[3] = {d.T_x[i], hn_neg(d.V_x[i]), hn_neg(d.p_rate[i])};
         const hn_ex e = put_back(&d, hn_sum(d.g, terms, 3));
@@ -109,6 +126,8 @@ hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena, hn_ex **
             r->energy_coordinate[r->n_energies++] = i;
         }
     }
+
+    // and per acceleration
     for (int i = 0; i < r->n_energies; i++) {
         add_inertia(&d, r->energy_coordinate[i], i, inertia);
     }

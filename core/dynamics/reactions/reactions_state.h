@@ -1,13 +1,13 @@
 #ifndef HN_DYNAMICS_REACTIONS_STATE_H
 #define HN_DYNAMICS_REACTIONS_STATE_H
-// Inside the reactions, shared by reactions.c (what the tape gives, what is handed out) and
-// reactions_balance.c.
+// The state of the reactions, shared by their parts, with the small vectors and places that they
+// are written with.
 //
 // Each body is seen from the ground (relate.c), in a frame that does not move:
-//     x, R, w of its centre of mass and axes;  a = a0 + sum c_i a_i,  al = al0 + sum z_i a_i  (a_i: accelerations of the system)
-// Then F = m a - m g, N = I al + w x I w is what acts on it; loads and the rows' wrenches are taken
-// off, and from the leaves to the root what is left is the wrench of its tree joint, which the
-// joint hands on to the body below.
+//     x, R, w of its centre of mass and axes;   a = a0 + sum c_i a_i,   al = al0 + sum z_i a_i
+// with the accelerations a_i of the system. Then F = m a - m g, N = I al + w x I w is what acts on
+// it; loads and the rows' wrenches are taken off, and from the leaves to the root what is left is
+// the wrench of its tree joint, which the joint hands on to the body below.
 
 #include "dynamics/evaluate/inputs.h"
 #include "dynamics/compile/mech.h"
