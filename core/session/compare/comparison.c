@@ -14,10 +14,12 @@ enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length wou
 /// One method of the comparison.
 typedef struct entry {
     hn_run *run;
-    double h; ///< fixed step [s], 0 for an adaptive method
-    int slot; ///< colour and dash, see render/look.h
+    double h;                      ///< fixed step [s], 0 for an adaptive method
+    int slot;                      ///< colour and dash, see render/look.h
     char warning[HN_DIAG_MESSAGE]; ///< what its spelling deserves to be told, "" if nothing
     int over_budget;               ///< stopped by the comparison because one frame cost too much
+    double slowness;               ///< computing time per simulated time in that frame [-]
+    double frame_cpu, frame_t;     ///< computing time and own time when the frame was begun [s]
 } entry;
 
 struct hn_comparison {
@@ -26,6 +28,7 @@ struct hn_comparison {
     entry entries[HN_COMPARISON_MAX_METHODS];
     double frame_dt, duration, cpu_budget;
     long long frame;
+    int in_frame; ///< the frame after the present one was begun, and interrupted
 };
 
 hn_comparison_opts hn_comparison_opts_default(void) {
@@ -182,33 +185,65 @@ int hn_comparison_finished(const hn_comparison *c) {
     return 1;
 }
 
-/// Steps one method to the last point of its own grid at or before t (fixed step), or past t (adaptive).
-static void advance_entry(hn_comparison *c, entry *e, double t) {
+/// Stops a method whose frame has cost too much; 1 when it did.
+static int check_budget(const hn_comparison *c, entry *e) {
+    const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
+    if (cpu <= c->cpu_budget) {
+        return 0;
+    }
+    e->over_budget = 1;
+    e->slowness = cpu / fmax(hn_run_time(e->run) - e->frame_t, 1e-300);
+    return 1;
+}
+
+/// Steps one method to the last point of its own grid at or before t (fixed step), or past t
+/// (adaptive). Returns 0 when `stop` asked for it.
+static int advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void *user),
+                         void *user) {
     double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
-    double cpu = hn_run_get_summary(e->run).cpu_seconds;
     hn_pace pace = hn_pace_begin();
     while (hn_run_time(e->run) < target * (1 - 1e-14)) {
         if (hn_run_step_towards(e->run, target) != HN_OK) {
-            return;
+            return 1;
         }
-        if (hn_pace_is_due(&pace) && hn_run_get_summary(e->run).cpu_seconds - cpu > c->cpu_budget) {
-            e->over_budget = 1;
-            return;
+        if (hn_pace_is_due(&pace)) {
+            if (check_budget(c, e)) {
+                return 1;
+            }
+            if (stop && stop(user)) {
+                return 0;
+            }
         }
     }
+    return 1;
+}
+
+int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
+    for (int i = 0; i < c->n && !c->in_frame; i++) {
+        c->entries[i].frame_cpu = hn_run_get_summary(c->entries[i].run).cpu_seconds;
+        c->entries[i].frame_t = hn_run_time(c->entries[i].run);
+    }
+
+    // methods that are there already have nothing left to do
+    c->in_frame = 1;
+    const double t = (double)(c->frame + 1) * c->frame_dt;
+    for (int i = 0; i < c->n; i++) {
+        if (is_live(&c->entries[i]) && !advance_entry(c, &c->entries[i], t, stop, user)) {
+            return 0;
+        }
+    }
+    c->in_frame = 0;
+    c->frame++;
+    return 1;
 }
 
 void hn_comparison_next(hn_comparison *c) {
-    c->frame++;
-    for (int i = 0; i < c->n; i++) {
-        if (is_live(&c->entries[i])) {
-            advance_entry(c, &c->entries[i], (double)c->frame * c->frame_dt);
-        }
-    }
+    hn_comparison_work(c, NULL, NULL);
 }
 
 void hn_comparison_reset(hn_comparison *c) {
     c->frame = 0;
+    c->in_frame = 0;
     for (int i = 0; i < c->n; i++) {
         c->entries[i].over_budget = 0;
         hn_run_reset(
@@ -272,11 +307,11 @@ static const char *state_name(const hn_comparison *c, const entry *e) {
 static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
                        const hn_run_summary *s) {
     if (e->over_budget) {
-        char text[160];
-        snprintf(
-            text, sizeof text,
-            "one frame took more than %g s of computing; take a larger step or a shorter frame",
-            c->cpu_budget);
+        char text[200];
+        snprintf(text, sizeof text,
+                 "one frame of %.3g s took more than %g s of computing: %.3g times slower than the "
+                 "clock; take a larger step",
+                 c->frame_dt, c->cpu_budget, e->slowness);
         hn_json_put_string(b, "status", hn_status_name(HN_ERR_BUDGET));
         hn_json_put_string(b, "reason", text);
     } else {

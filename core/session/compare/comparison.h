@@ -36,6 +36,10 @@ int hn_comparison_finished(
     const hn_comparison *c); ///< the clock reached the duration, or every method failed
 /// Advances every method to the next frame. Failures of single methods are not an error of the comparison.
 void hn_comparison_next(hn_comparison *c);
+/// The same in pieces: returns 1 when the next frame is complete, 0 when `stop` (asked every few
+/// milliseconds; may be NULL) returned 1. The next call goes on; until then the present frame has no
+/// samples. A reset forgets what was begun.
+int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
 void hn_comparison_reset(hn_comparison *c);
 /// Changes "alpha" ... of one method (-1: all that have the key) while running.
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
@@ -63,6 +67,7 @@ typedef struct hn_run_request {
     int n_at;
     double every;          ///< 0: 200 samples
     long long max_samples; ///< bound
+    long long max_numbers; ///< in the tables of the answer; 0: 2^25
     long long max_steps;
     int raw_lambda; ///< 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
     int reactions; ///< 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names: "efforts") too

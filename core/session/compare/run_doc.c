@@ -17,6 +17,7 @@ typedef struct table {
     hn_arena *arena;
     int n_user, nc;
     long long n, cap;
+    hn_pace pace; ///< of looks at the limits between samples
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
     double *mark;                  ///< hn_multiplier_mark of a sample
     double *raw_lambda;            ///< NULL: not asked for, or the method has none
@@ -27,16 +28,21 @@ typedef struct table {
     const hn_system *sys;
 } table;
 
-static hn_status table_create(table *tab, const hn_system *sys, long long cap, int raw_lambda,
-                              hn_diags *diags) {
+/// The most numbers that the tables may hold.
+static double most_numbers(const hn_run_request *r) {
+    return r->max_numbers > 0 ? (double)r->max_numbers : LARGEST_TABLE;
+}
+
+static hn_status table_create(table *tab, const hn_system *sys, long long cap,
+                              const hn_run_request *request, int raw_lambda, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
     double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
-    if (width * (double)cap > LARGEST_TABLE) {
+    if (width * (double)cap > most_numbers(request)) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
-            "%lld samples of %g numbers are more than one answer may hold (%d numbers)", cap, width,
-            LARGEST_TABLE);
+            "%lld samples of %g numbers are more than one answer may hold (%.0f numbers)", cap,
+            width, most_numbers(request));
     }
     tab->arena = hn_arena_create(0);
     if (!tab->arena) {
@@ -55,7 +61,8 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap, i
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-static hn_status table_want_reactions(table *tab, const hn_model *model, hn_diags *diags) {
+static hn_status table_want_reactions(table *tab, const hn_model *model,
+                                      const hn_run_request *request, hn_diags *diags) {
     const hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_status status = hn_reaction_writer_create(model, tab->arena, &tab->reactions, diags);
     if (status != HN_OK) {
@@ -63,7 +70,7 @@ static hn_status table_want_reactions(table *tab, const hn_model *model, hn_diag
     }
     const int carriers = hn_reaction_writer_count(tab->reactions),
               efforts = hn_reaction_writer_efforts(tab->reactions);
-    if ((double)tab->cap * (6.0 * carriers + efforts) > LARGEST_TABLE) {
+    if ((double)tab->cap * (6.0 * carriers + efforts) > most_numbers(request)) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/reactions", "ask for fewer output times",
                             "%lld samples of %d reactions are more than one answer may hold",
                             tab->cap, carriers + efforts);
@@ -202,6 +209,11 @@ static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
 /// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
 static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
                              const hn_run_request *r, table *tab) {
+    // a sample may cost more than the steps before it
+    if (r->progress && hn_pace_is_due(&tab->pace) &&
+        !r->progress(r->user, hn_run_time(run) / r->time)) {
+        return HN_ERR_BUDGET;
+    }
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r);
     hn_sample sample;
     if (status == HN_OK) {
@@ -221,6 +233,7 @@ static double fixed_step(const hn_method_spec *spec) {
 static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double h = fixed_step(hn_run_spec(run));
     hn_pace pace = hn_pace_begin();
+    tab->pace = hn_pace_begin();
     hn_status status = HN_OK;
     for (long long k = 0; k < s->n && status == HN_OK; k++) {
         status = take_sample(run, h, schedule_time(s, k), &pace, s->request, tab);
@@ -366,10 +379,10 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK) {
         const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
-        status = table_create(&tab, hn_model_system(model), times.n + 1, raw, diags);
+        status = table_create(&tab, hn_model_system(model), times.n + 1, request, raw, diags);
     }
     if (status == HN_OK && request->reactions) {
-        status = table_want_reactions(&tab, model, diags);
+        status = table_want_reactions(&tab, model, request, diags);
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);

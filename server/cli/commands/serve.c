@@ -9,6 +9,8 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 /// Puts the value given on the command line, or leaves the default.
@@ -33,6 +35,7 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     choose_int(&opts->max_events, args->history);
     choose_int(&opts->max_comparisons, args->max_comparisons);
     choose_int(&opts->max_streams, args->max_streams);
+    choose_int(&opts->max_connections, args->max_connections);
     choose_seconds(&opts->max_run_cpu, args->run_cpu);
     choose_seconds(&opts->idle_pause, args->idle_pause);
     choose_seconds(&opts->expiry, args->expiry);
@@ -45,7 +48,8 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     } bounds[] = {{"--port", opts->port, 0, 65535},
                   {"--history", opts->max_events, 1, 1e6},
                   {"--max-comparisons", opts->max_comparisons, 1, 1000},
-                  {"--max-streams", opts->max_streams, 1, 200},
+                  {"--max-streams", opts->max_streams, 1, 4000},
+                  {"--max-connections", opts->max_connections, 1, 8000},
                   {"--run-cpu", opts->max_run_cpu, 0.01, 3600},
                   {"--idle-pause", opts->idle_pause, 0.1, 1e6},
                   {"--expiry", opts->expiry, 0.1, 1e6},
@@ -98,6 +102,32 @@ static void open_browser(const char *address) {
     }
 }
 
+/// Ends the program if the server has not ended by then.
+static void *end_anyway(void *unused) {
+    nanosleep(&(struct timespec){.tv_sec = 2, .tv_nsec = 700000000}, NULL);
+    fprintf(stderr, "holonom: the server was ended while some work did not stop\n");
+    _exit(HN_EXIT_DONE);
+    return unused;
+}
+
+static void end_in_time(void) {
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, end_anyway, NULL) == 0) {
+        pthread_detach(thread);
+    }
+}
+
+/// Room for a descriptor per connection, as far as the system lets us.
+static void raise_descriptors(const hn_http_opts *opts) {
+    struct rlimit limit;
+    const rlim_t wanted = (rlim_t)opts->max_connections + 256;
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < wanted) {
+        limit.rlim_cur =
+            limit.rlim_max == RLIM_INFINITY || limit.rlim_max > wanted ? wanted : limit.rlim_max;
+        setrlimit(RLIMIT_NOFILE, &limit);
+    }
+}
+
 hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     hn_http_opts opts;
     hn_server *server = NULL;
@@ -106,6 +136,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     if (read_opts(args, &opts, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
+
     // blocked before any thread starts, so that only the wait below takes them
     sigemptyset(&stop);
     sigaddset(&stop, SIGINT);
@@ -115,6 +146,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     if (args->open) {
         signal(SIGCHLD, SIG_IGN);
     }
+    raise_descriptors(&opts);
     if (hn_server_start(lib, &opts, &server, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
@@ -126,6 +158,7 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     sigwait(&stop, &which);
     // asked a second time, it ends at once
     pthread_sigmask(SIG_UNBLOCK, &stop, NULL);
+    end_in_time();
     hn_server_stop(server);
     return HN_EXIT_DONE;
 }

@@ -95,6 +95,7 @@ static const option OPTIONS[] = {
     {"--history", "N", OPTION_COUNT, AT(history), "events kept per comparison"},
     {"--max-comparisons", "N", OPTION_COUNT, AT(max_comparisons), "comparisons at once"},
     {"--max-streams", "N", OPTION_COUNT, AT(max_streams), "open event streams at once"},
+    {"--max-connections", "N", OPTION_COUNT, AT(max_connections), "connections at once"},
     {"--run-cpu", "S", OPTION_NUMBER, AT(run_cpu), "computing time of one long request [s]"},
     {"--idle-pause", "S", OPTION_NUMBER, AT(idle_pause),
      "a comparison without a reader pauses after this long [s]"},

@@ -31,7 +31,8 @@ typedef struct hn_args {
         *grid, *plots, *size;
     double time, every, t, port, width, height, seed, frame_dt, frames;
     double budget, levels, samples;
-    double history, max_comparisons, max_streams, run_cpu, idle_pause, expiry, keep_alive;
+    double history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause, expiry,
+        keep_alive;
     int again, hold;
     int json, csv, open, help, raw_lambda, reactions, run_long;
     int once, ascii, blocks;

@@ -2,10 +2,11 @@
 #include "http/ground/body.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_FIELDS = 24 };
+enum { MAX_FIELDS = 24, MAX_MEMBERS = 5000 };
 
 static int n_fields(const hn_field *fields) {
     int n = 0;
@@ -152,6 +153,11 @@ static hn_status check_member(const cJSON *value, const hn_field *f, const char 
     if (cJSON_IsNumber(value) || cJSON_IsArray(value)) {
         return check_range(value, f, pointer, diags);
     }
+    if (f->type == HN_FIELD_BY_NAME && cJSON_GetArraySize(value) > MAX_MEMBERS) {
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                            "'%s' has %d members; at most %d are read", f->name,
+                            cJSON_GetArraySize(value), MAX_MEMBERS);
+    }
     if (f->type == HN_FIELD_CHOICE) {
         return check_choice(value->valuestring, f, pointer, diags);
     }
@@ -176,26 +182,41 @@ static hn_status tell_unknown(const char *name, const hn_field *fields, const ch
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "there is no field '%.60s' here", name);
 }
 
+/// One member of the object; `seen` has a bit for each field that came before.
+static hn_status check_one(const cJSON *item, const hn_field *fields, const char *parent,
+                           uint32_t *seen, hn_diags *diags) {
+    char pointer[HN_DIAG_POINTER];
+    const hn_field *f = find_field(fields, item->string);
+    member_pointer(pointer, parent, item->string);
+    if (!f) {
+        return tell_unknown(item->string, fields, pointer, diags);
+    }
+    const uint32_t bit = UINT32_C(1) << (f - fields);
+    if (*seen & bit) {
+        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
+    }
+    *seen |= bit;
+    return check_member(item, f, pointer, diags);
+}
+
 hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char *parent,
                         hn_diags *diags) {
-    hn_status status = HN_OK, one;
-    char pointer[HN_DIAG_POINTER];
+    HN_ASSERT(n_fields(fields) <= MAX_FIELDS);
+    uint32_t seen = 0;
+    hn_status status = HN_OK;
     const cJSON *item;
     cJSON_ArrayForEach(item, object) {
-        const hn_field *f = find_field(fields, item->string);
-        member_pointer(pointer, parent, item->string);
-        if (!f) {
-            one = tell_unknown(item->string, fields, pointer, diags);
-        } else if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item) {
-            one =
-                hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
-        } else {
-            one = check_member(item, f, pointer, diags);
-        }
+        const hn_status one = check_one(item, fields, parent, &seen, diags);
         status = one != HN_OK ? one : status;
+        // whoever sends more faults than are listed gets no more work out of this
+        if (diags->found >= HN_DIAG_MAX) {
+            return status;
+        }
     }
+
     for (const hn_field *f = fields; f->name; f++) {
-        if (f->required && !cJSON_GetObjectItemCaseSensitive(object, f->name)) {
+        if (f->required && !(seen & UINT32_C(1) << (f - fields))) {
+            char pointer[HN_DIAG_POINTER];
             member_pointer(pointer, parent, f->name);
             status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is missing: %s",
                                   f->name, f->about);

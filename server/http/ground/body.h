@@ -32,9 +32,12 @@ typedef struct hn_field {
     const char *about;
 } hn_field;
 
-/// Tells every field that is unknown (near miss), written twice, missing, of a wrong type or out of
-/// range. `fields` ends with a row without a name; `parent` is the pointer of `object` ("" at the
-/// top). HN_ERR_INPUT when anything is at fault.
+/// Checks the members of an object against its fields, in one pass.
+///
+/// Reports what is unknown (with a near miss), written twice, missing, of a wrong type or out of
+/// range; stops at the first HN_DIAG_MAX faults. `fields` ends with a row without a name; `parent`
+/// is the pointer of `object` ("" at the top). Fails: HN_ERR_INPUT.
+/// Cost: members times fields, whatever they are called.
 HN_MUST_CHECK hn_status hn_body_check(const cJSON *object, const hn_field *fields,
                                       const char *parent, hn_diags *diags);
 // reading a body that was checked

@@ -5,21 +5,33 @@ hn_http_opts hn_http_opts_default(void) {
     return (hn_http_opts){.host = "127.0.0.1",
                           .port = 8080,
                           .next_ports = 20,
-                          .max_connections = 256,
-                          .max_comparisons = 32,
+                          .max_connections = 1024,
+                          .max_comparisons = 96,
                           .max_studies = 2,
-                          .max_streams = 64,
+                          .max_streams = 512,
+                          .client_share = 0.5,
+                          .pool = 3,
+                          .queue = 32,
+                          .quick_pool = 2,
                           .max_events = 20000,
                           .max_body = 1 << 20,
                           .max_event_bytes = 32 << 20,
-                          .max_duration = 3600,
+                          .max_unread = 256 << 20,
                           .max_samples = 100000,
+                          .max_numbers = 4000000,
+                          .max_duration = 3600,
                           .max_run_cpu = 20,
                           .frame_cpu = 2,
-                          .pool = 3,
-                          .queue = 32,
                           .idle_pause = 60,
                           .expiry = 900,
+                          .orphan_expiry = 60,
                           .keep_alive = 10,
-                          .connection_timeout = 30};
+                          .connection_timeout = 30,
+                          .head_deadline = 10,
+                          .request_deadline = 60};
+}
+
+int hn_http_opts_share(const hn_http_opts *opts, int places) {
+    const int share = (int)(opts->client_share * places);
+    return share < 1 ? 1 : share;
 }

@@ -2,27 +2,47 @@
 #ifndef HN_HTTP_HTTP_OPTS_H
 #define HN_HTTP_HTTP_OPTS_H
 // Options and limits of the HTTP server. The index of the API lists the limits.
+//
+// Places (connections, streams, comparisons, long requests) are limited in all, and for each client
+// to its share of them. A client is an address. 127.0.0.1 and ::1 are this machine itself, or the
+// proxy that speaks for everybody: for them only the limits in all hold.
 
 enum { HN_MAX_HOSTS = 16 };
 
-/// Every bound of the server. The index lists them.
 typedef struct hn_http_opts {
     const char *host; ///< address or name to listen on; NULL: 127.0.0.1
     int port;         ///< 0: any free one
     int next_ports;   ///< how many following ports are tried when the port is taken
     const char *const *allow_hosts;
     int n_allow_hosts;
+
+    // places
     int max_connections, max_comparisons, max_streams, max_events;
-    int max_studies;                     ///< at once
-    long long max_body, max_event_bytes; ///< bytes; event bytes per comparison
-    double max_duration;                 ///< of a comparison, simulated [s]
+    int max_studies;     ///< at once
+    double client_share; ///< of the places, for one client [-]
+    int pool, queue;     ///< threads for long requests; how many may wait
+    int quick_pool;      ///< threads for requests that read a shipped scene or open a comparison
+
+    // sizes
+    long long max_body, max_event_bytes; ///< [byte]; event bytes per comparison
+    long long max_unread;                ///< of all answers that wait for their readers [byte]
     long long max_samples;               ///< of one run
-    double max_run_cpu;                  ///< of one stateless run, and of one study [s]
-    double frame_cpu;                    ///< of one method in one frame [s]
-    int pool, queue;                     ///< threads for long requests; how many may wait
-    double idle_pause, expiry,
-        keep_alive;         ///< without a reader; untouched; between comment lines [s]
-    int connection_timeout; ///< without any progress [s]
+    long long max_numbers;               ///< in the tables of one answer
+
+    // times
+    double max_duration;     ///< of a comparison, simulated [s]
+    double max_run_cpu;      ///< of one stateless run, and of one study [s]
+    double frame_cpu;        ///< of one method in one frame [s]
+    double idle_pause;       ///< a comparison without a reader pauses after this [s]
+    double expiry;           ///< a comparison that nobody touched is deleted [s]
+    double orphan_expiry;    ///< one whose readers have all left [s]
+    double keep_alive;       ///< between comment lines of a quiet stream [s]
+    int connection_timeout;  ///< without any progress [s]
+    double head_deadline;    ///< for the first head of a connection, in all [s]
+    double request_deadline; ///< for a later head, and for a body, in all [s]
 } hn_http_opts;
 hn_http_opts hn_http_opts_default(void);
+
+/// Returns the part of `places` that one client may take, at least 1.
+int hn_http_opts_share(const hn_http_opts *opts, int places);
 #endif

@@ -12,6 +12,8 @@
 #include <time.h>
 
 enum { MAX_LINGERING = 8 };
+/// A comparison that nobody has read or asked for so long makes room for another [s].
+static const double FORSAKEN = 5;
 
 struct hn_comparisons {
     pthread_mutex_t lock;
@@ -21,7 +23,7 @@ struct hn_comparisons {
     hn_session **sessions; ///< one reference each
     int n, n_reserved;     ///< there, and being made
     int n_threads, stopping;
-    _Atomic int n_streams;
+    hn_shares *places;
     pthread_t keeper;
     int has_keeper;
 };
@@ -35,15 +37,39 @@ static hn_session *take_out(hn_comparisons *all, int i) {
     return session;
 }
 
+/// Ends a comparison that was taken out of the table. With the lock held.
+static void let_go(hn_comparisons *all, hn_session *session, int deleted) {
+    hn_shares_give(all->places, hn_session_client(session));
+    hn_session_end(session, deleted);
+    hn_session_release(session);
+}
+
 /// Ends what nobody touched for long; wakes streams for their comment lines.
 static void tick(hn_comparisons *all) {
     for (int i = all->n - 1; i >= 0; i--) {
         if (hn_session_tick(all->sessions[i])) {
             hn_session *session = take_out(all, i);
-            hn_session_end(session, 1);
-            hn_session_release(session);
+            let_go(all, session, 1);
         }
     }
+}
+
+/// Makes room by ending the comparison that was left alone for longest, if any was. With the lock
+/// held. Returns 1 when there is room.
+static int end_forsaken(hn_comparisons *all) {
+    double longest = FORSAKEN;
+    int oldest = -1;
+    for (int i = 0; i < all->n; i++) {
+        const double seconds = hn_session_untouched(all->sessions[i]);
+        if (seconds > longest) {
+            longest = seconds;
+            oldest = i;
+        }
+    }
+    if (oldest >= 0) {
+        let_go(all, take_out(all, oldest), 1);
+    }
+    return oldest >= 0;
 }
 
 static void *keep(void *arg) {
@@ -78,7 +104,10 @@ hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library
     all->opts = opts;
     all->lib = lib;
     all->sessions = calloc((size_t)opts->max_comparisons, sizeof(hn_session *));
-    all->has_keeper = all->sessions && pthread_create(&all->keeper, NULL, keep, all) == 0;
+    all->places =
+        hn_shares_create(opts->max_comparisons, hn_http_opts_share(opts, opts->max_comparisons));
+    all->has_keeper =
+        all->sessions && all->places && pthread_create(&all->keeper, NULL, keep, all) == 0;
     if (!all->has_keeper) {
         hn_comparisons_free(all);
         return NULL;
@@ -93,9 +122,7 @@ void hn_comparisons_stop(hn_comparisons *all) {
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
     while (all->n > 0) {
-        hn_session *session = take_out(all, all->n - 1);
-        hn_session_end(session, 0);
-        hn_session_release(session);
+        let_go(all, take_out(all, all->n - 1), 0);
     }
     pthread_cond_broadcast(&all->changed);
     while (all->n_threads > 0) {
@@ -113,6 +140,7 @@ void hn_comparisons_free(hn_comparisons *all) {
         hn_comparisons_stop(all);
         pthread_cond_destroy(&all->changed);
         pthread_mutex_destroy(&all->lock);
+        hn_shares_free(all->places);
         free(all->sessions);
         free(all);
     }
@@ -145,39 +173,46 @@ static hn_session *find_session(hn_request *r) {
 }
 
 /// A place for one more; 0 with a problem as reply. One that was deleted may still be busy with its
-/// last frame: only so many may linger.
+/// last step: only so many may linger.
 static int reserve(hn_comparisons *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
     int stopping = all->stopping;
-    int full = all->n + all->n_reserved >= all->opts->max_comparisons ||
-               all->n_threads >= all->opts->max_comparisons + MAX_LINGERING;
-    if (!stopping && !full) {
+    int lingering = all->n_threads - all->n - all->n_reserved;
+    int placed = !stopping && lingering < MAX_LINGERING &&
+                 (hn_shares_take(all->places, r->client) ||
+                  (end_forsaken(all) && hn_shares_take(all->places, r->client)));
+    if (placed) {
         all->n_reserved++;
         all->n_threads++; // the thread it will have
     }
     pthread_mutex_unlock(&all->lock);
+
     if (stopping) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
-    } else if (full) {
+    } else if (!placed) {
         hn_reply_problem(r, HN_PROBLEM_BUSY, "DELETE one that is no longer needed",
-                         "there are %d comparisons already", all->opts->max_comparisons);
-        hn_reply_header_add(r, "Retry-After", "5");
+                         "there are %d comparisons already, or yours have their share of %d",
+                         hn_shares_taken(all->places), all->opts->max_comparisons);
+        hn_reply_header_add(r, "Retry-After", "%d", (int)FORSAKEN);
     }
-    return !stopping && !full;
+    return placed;
 }
 
 /// Fills the reserved place, or gives it back when `session` is NULL. A server that stops in between
 /// keeps nothing.
-static void settle(hn_comparisons *all, hn_session *session) {
+static void settle(hn_comparisons *all, hn_client client, hn_session *session) {
     pthread_mutex_lock(&all->lock);
     all->n_reserved--;
+    if (session && !all->stopping) {
+        all->sessions[all->n++] = hn_session_retain(session);
+    } else {
+        hn_shares_give(all->places, client);
+    }
     if (!session) {
         all->n_threads--;
         pthread_cond_broadcast(&all->changed);
     } else if (all->stopping) {
         hn_session_end(session, 0);
-    } else {
-        all->sessions[all->n++] = hn_session_retain(session);
     }
     pthread_mutex_unlock(&all->lock);
 }
@@ -211,8 +246,9 @@ static int read_methods(const cJSON *body, const char **methods) {
     return n;
 }
 
-static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **session,
+static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **session,
                         hn_diags *diags) {
+    const cJSON *body = r->json;
     const char *methods[HN_COMPARISON_MAX_METHODS];
     hn_scene_request scene = {0};
     hn_session_request order = {
@@ -222,6 +258,7 @@ static hn_status create(hn_comparisons *all, const cJSON *body, hn_session **ses
         .frame_dt = hn_body_number(body, "frame_dt", 0),
         .duration = hn_body_number(body, "duration", 0),
         .speed = hn_body_number(body, "speed", 1),
+        .client = r->client,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
     hn_status status = hn_scene_request_read(&scene, body, diags);
@@ -239,8 +276,8 @@ void hn_handle_comparisons_create(hn_request *r) {
     if (!reserve(all, r)) {
         return;
     }
-    hn_status status = create(all, r->json, &session, &diags);
-    settle(all, session);
+    hn_status status = create(all, r, &session, &diags);
+    settle(all, r->client, session);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
         return;
@@ -283,11 +320,10 @@ void hn_handle_comparison_delete(hn_request *r) {
     pthread_mutex_lock(&all->lock);
     for (int i = 0; i < all->n; i++) {
         if (all->sessions[i] == session) {
-            hn_session_release(take_out(all, i));
+            let_go(all, take_out(all, i), 1);
         }
     }
     pthread_mutex_unlock(&all->lock);
-    hn_session_end(session, 1);
     hn_session_release(session);
     hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
 }
@@ -295,7 +331,7 @@ void hn_handle_comparison_delete(hn_request *r) {
 void hn_handle_comparison_events(hn_request *r) {
     hn_session *session = find_session(r);
     if (session) {
-        hn_stream_open(session, r, &r->context->comparisons->n_streams);
+        hn_stream_open(session, r);
         hn_session_release(session);
     }
 }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What PATCH can change. Everything that can fail is tried before anything is changed, so that a
 // request at fault leaves the comparison as it was.
+#include "base/clock.h"
 #include "http/ground/body.h"
 #include "http/live/session_internal.h"
 
 #include <string.h>
+
+/// Steps on request are not interrupted by other requests for so long [s].
+static const double UNDISTURBED = 0.2;
 
 /// The body, read.
 typedef struct change {
@@ -170,20 +174,31 @@ static hn_status carry_out(hn_session *session, const change *c, hn_subject *fre
                                                                    : HN_SESSION_PAUSED,
                              NULL);
     }
+
+    // steps that take long make way for a later request, as the end does at once
+    session->undisturbed = c->step > 0 ? hn_clock_wall() + UNDISTURBED : 0;
     for (int k = 0; k < c->step && session->state != HN_SESSION_FINISHED; k++) {
-        hn_session_advance(session);
+        if (!hn_session_advance(session)) {
+            break;
+        }
     }
+    session->undisturbed = 0;
     return status;
 }
 
 void hn_session_apply(hn_session *session, hn_request *r) {
+    if (!hn_request_read_body(r)) {
+        return;
+    }
     change c = read_change(r->json);
-    hn_subject fresh = {0};
-    hn_diags diags = {0};
-    hn_status status = HN_OK;
     if (!fits_state(session, &c, r)) {
         return;
     }
+
+    // everything that can fail, then the change
+    hn_subject fresh = {0};
+    hn_diags diags = {0};
+    hn_status status = HN_OK;
     if (c.methods || c.settings) {
         status = build(session, &c, &fresh, &diags);
     }

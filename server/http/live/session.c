@@ -3,7 +3,9 @@
 #include "http/live/session_internal.h"
 #include "http/live/stream.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
 #include <time.h>
@@ -197,9 +199,26 @@ void hn_session_publish_frame(hn_session *session) {
     hn_strbuf_reset(&latest);
 }
 
-void hn_session_advance(hn_session *session) {
-    hn_comparison_next(session->bench.comparison);
+static int must_yield(void *user) {
+    hn_session *session = user;
+    const int interrupt = atomic_load(&session->interrupt);
+    return interrupt == HN_INTERRUPT_END ||
+           (interrupt == HN_INTERRUPT_REQUEST && hn_clock_wall() > session->undisturbed);
+}
+
+/// What waits. With the lock held.
+static void set_interrupt(hn_session *session) {
+    atomic_store(&session->interrupt, session->ending    ? HN_INTERRUPT_END
+                                      : session->patches ? HN_INTERRUPT_REQUEST
+                                                         : HN_INTERRUPT_NONE);
+}
+
+int hn_session_advance(hn_session *session) {
+    if (!hn_comparison_work(session->bench.comparison, must_yield, session)) {
+        return 0;
+    }
     hn_session_publish_frame(session);
+    return 1;
 }
 
 void hn_session_set_anchor(hn_session *session) {
@@ -244,6 +263,7 @@ static hn_request *take_patch(hn_session *session) {
     if (!session->patches) {
         session->patches_end = &session->patches;
     }
+    set_interrupt(session);
     return r;
 }
 
@@ -375,6 +395,7 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     session->asked_duration = order->duration;
     session->speed = order->speed;
     session->state = order->running ? HN_SESSION_RUNNING : HN_SESSION_PAUSED;
+    session->client = order->client;
     session->touched = hn_clock_wall();
     session->patches_end = &session->patches;
     return session;
@@ -448,6 +469,7 @@ void hn_session_patch(hn_session *session, hn_request *r) {
         r->next = NULL;
         *session->patches_end = r;
         session->patches_end = &r->next;
+        set_interrupt(session);
         pthread_cond_signal(&session->wake);
     }
     pthread_mutex_unlock(&session->lock);
@@ -456,17 +478,32 @@ void hn_session_patch(hn_session *session, hn_request *r) {
 void hn_session_end(hn_session *session, int deleted) {
     pthread_mutex_lock(&session->lock);
     session->ending = 1;
+    set_interrupt(session);
     session->deleted |= deleted;
     pthread_cond_signal(&session->wake);
     hn_session_wake_streams(session);
     pthread_mutex_unlock(&session->lock);
 }
 
+hn_client hn_session_client(const hn_session *session) {
+    return session->client;
+}
+
+double hn_session_untouched(hn_session *session) {
+    pthread_mutex_lock(&session->lock);
+    const int watched = session->n_streams > 0 || session->patches;
+    const double seconds = watched ? 0 : hn_clock_wall() - session->touched;
+    pthread_mutex_unlock(&session->lock);
+    return seconds;
+}
+
 int hn_session_tick(hn_session *session) {
     double now = hn_clock_wall();
     pthread_mutex_lock(&session->lock);
-    int expired = session->n_streams == 0 && !session->patches &&
-                  now - session->touched > session->opts->expiry;
+    const double patience = session->had_streams
+                                ? fmin(session->opts->orphan_expiry, session->opts->expiry)
+                                : session->opts->expiry;
+    int expired = session->n_streams == 0 && !session->patches && now - session->touched > patience;
     for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
         hn_stream_tick(s, now);
     }

@@ -6,6 +6,7 @@
 // the lock. Whoever holds a pointer holds a reference.
 
 #include "http/ground/http_opts.h"
+#include "http/ground/shares.h"
 #include "http/live/history.h"
 #include "http/request/scene_request.h"
 #include "session/compare/comparison.h"
@@ -30,6 +31,7 @@ typedef struct hn_session_request {
     double frame_dt, duration; ///< 0: chosen, the scene's
     double speed;
     int running;
+    hn_client client; ///< who asks
 } hn_session_request;
 
 /// Loads, compiles, and starts the thread. `gone(user)` is called when the thread ends. Returns one
@@ -39,6 +41,9 @@ HN_MUST_CHECK hn_status hn_session_create(const hn_http_opts *opts, const hn_lib
                                           void *user, hn_session **out, hn_diags *diags);
 hn_session *hn_session_retain(hn_session *session);
 void hn_session_release(hn_session *session);
+hn_client hn_session_client(const hn_session *session); ///< who made it
+/// Returns the seconds since anybody read it or asked for it; 0 while a stream is open.
+double hn_session_untouched(hn_session *session);
 const char *hn_session_id(const hn_session *session);
 /// The description; counts as a reader's look.
 void hn_session_json(hn_strbuf *b, hn_session *session);

@@ -7,6 +7,7 @@
 #include "http/request/request.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 /// What is being compared; replaced as a whole.
 typedef struct hn_subject {
@@ -16,6 +17,9 @@ typedef struct hn_subject {
     /// Per method, the revision of the newest incident that was published.
     unsigned published[HN_COMPARISON_MAX_METHODS];
 } hn_subject;
+
+/// Why the thread should leave the frame that it computes.
+enum { HN_INTERRUPT_NONE, HN_INTERRUPT_REQUEST, HN_INTERRUPT_END };
 
 struct hn_session {
     pthread_mutex_t lock;
@@ -30,6 +34,7 @@ struct hn_session {
     // the thread's own
     hn_subject bench;
     double asked_frame_dt, asked_duration;
+    double undisturbed; ///< until then no request interrupts [s, wall clock]
 
     // published: written by the thread under the lock, read by all under the lock
     hn_session_state state;
@@ -45,8 +50,10 @@ struct hn_session {
     // under the lock, by anybody
     hn_request *patches, **patches_end; ///< queue
     struct hn_stream *streams;          ///< list
-    int n_streams;
-    double touched; ///< last look by anybody [s, monotonic]
+    int n_streams, had_streams;
+    hn_client client;     ///< who made it
+    atomic_int interrupt; ///< what the frame that is being computed is left for
+    double touched;       ///< last look by anybody [s, monotonic]
     int ending, deleted, thread_ended;
 };
 
@@ -61,8 +68,8 @@ void hn_subject_reset(hn_subject *bench);
 HN_MUST_CHECK hn_status hn_session_publish_setup(hn_session *session);
 /// The present frame as an event, then its incidents, then the end if it is reached.
 void hn_session_publish_frame(hn_session *session);
-/// One frame further.
-void hn_session_advance(hn_session *session);
+/// One frame further; 0 when a request, or the end, came before the frame was complete.
+int hn_session_advance(hn_session *session);
 void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason);
 /// Carries out the body of a PATCH and fills in the reply.
 void hn_session_apply(hn_session *session, hn_request *r);

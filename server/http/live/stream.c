@@ -4,8 +4,8 @@
 #include "base/clock.h"
 #include "build.h"
 #include "http/live/session_internal.h"
+#include "http/request/context.h"
 
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +14,8 @@ enum { CHUNK = 1 << 16, SCHEMA = 1 };
 struct hn_stream {
     hn_session *session;
     struct MHD_Connection *connection;
-    _Atomic int *n_open;
+    hn_shares *places; ///< its own is given back at the end
+    hn_client client;
     hn_stream *next;
     uint64_t cursor; ///< id of the event that comes next
     int skips;       ///< mode=live: frames may be left out
@@ -159,7 +160,7 @@ static void close_stream(void *cls) {
     session->n_streams--;
     session->touched = hn_clock_wall();
     pthread_mutex_unlock(&session->lock);
-    atomic_fetch_sub(s->n_open, 1);
+    hn_shares_give(s->places, s->client);
     hn_strbuf_reset(&s->text);
     free(s);
     hn_session_release(session);
@@ -223,6 +224,7 @@ static int attach(hn_stream *s, hn_request *r) {
     if (open) {
         session->refs++;
         session->n_streams++;
+        session->had_streams = 1;
         s->next = session->streams;
         session->streams = s;
     }
@@ -230,7 +232,32 @@ static int attach(hn_stream *s, hn_request *r) {
     return open;
 }
 
-void hn_stream_open(hn_session *session, hn_request *r, _Atomic int *n_open) {
+/// Takes a place and makes the stream; NULL with a problem as reply.
+static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
+    hn_shares *places = r->context->streams;
+    if (!hn_shares_take(places, r->client)) {
+        hn_reply_problem(r, HN_PROBLEM_BUSY, "close a stream",
+                         "%d streams are open already, or yours have their share of %d",
+                         hn_shares_taken(places), session->opts->max_streams);
+        hn_reply_header_add(r, "Retry-After", "5");
+        return NULL;
+    }
+    hn_stream *s = calloc(1, sizeof *s);
+    if (!s) {
+        hn_shares_give(places, r->client);
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return NULL;
+    }
+    *s = (hn_stream){.session = session,
+                     .connection = r->connection,
+                     .places = places,
+                     .client = r->client,
+                     .skips = skips,
+                     .last_sent = hn_clock_wall()};
+    return s;
+}
+
+void hn_stream_open(hn_session *session, hn_request *r) {
     const char *mode = hn_request_query(r, "mode");
     if (mode && strcmp(mode, "live") != 0 && strcmp(mode, "complete") != 0) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "mode=complete or mode=live",
@@ -242,24 +269,12 @@ void hn_stream_open(hn_session *session, hn_request *r, _Atomic int *n_open) {
         hn_reply_header_add(r, "Content-Type", "text/event-stream");
         return;
     }
-    int open = atomic_fetch_add(n_open, 1);
-    hn_stream *s = open < session->opts->max_streams ? calloc(1, sizeof *s) : NULL;
-    if (!s) {
-        atomic_fetch_sub(n_open, 1);
-        hn_reply_problem(r, HN_PROBLEM_BUSY, "close a stream", "%d streams are open already",
-                         session->opts->max_streams);
-        hn_reply_header_add(r, "Retry-After", "5");
-        return;
-    }
-    *s = (hn_stream){.session = session,
-                     .connection = r->connection,
-                     .n_open = n_open,
-                     .skips = mode && strcmp(mode, "live") == 0,
-                     .last_sent = hn_clock_wall()};
-    if (attach(s, r)) {
+
+    hn_stream *s = create_stream(session, r, mode && strcmp(mode, "live") == 0);
+    if (s && attach(s, r)) {
         reply_stream(s, r);
-    } else {
-        atomic_fetch_sub(n_open, 1);
+    } else if (s) {
+        hn_shares_give(s->places, s->client);
         free(s);
     }
 }

@@ -8,9 +8,9 @@
 
 typedef struct hn_stream hn_stream;
 
-/// Answers GET .../events. Takes nothing; the stream holds its own reference of `live`. `n_open` is
-/// the server's count of streams.
-void hn_stream_open(hn_session *session, struct hn_request *r, _Atomic int *n_open);
+/// Answers GET .../events. The stream holds its own reference of the session, and a place of the
+/// server's until it is closed.
+void hn_stream_open(hn_session *session, struct hn_request *r);
 
 // for the comparison, with its lock held
 hn_stream *hn_stream_next(const hn_stream *s);

@@ -8,6 +8,34 @@
 #include <string.h>
 #include <strings.h>
 
+/// Length of an authority without a port that its scheme implies.
+static size_t trim_port(const char *authority) {
+    const size_t n = strlen(authority);
+    return n > 3 && strcmp(authority + n - 3, ":80") == 0    ? n - 3
+           : n > 4 && strcmp(authority + n - 4, ":443") == 0 ? n - 4
+                                                             : n;
+}
+
+int hn_is_same_origin(const char *origin, const char *host) {
+    const size_t scheme = strncmp(origin, "http://", 7) == 0    ? 7
+                          : strncmp(origin, "https://", 8) == 0 ? 8
+                                                                : 0;
+    const char *authority = origin + scheme;
+    const size_t n = trim_port(authority);
+    return scheme > 0 && n == trim_port(host) && strncasecmp(authority, host, n) == 0;
+}
+
+/// A page may call the server that it came from: same name, same port.
+static int check_origin(hn_request *r, const char *host) {
+    const char *origin = hn_request_header(r, "Origin");
+    if (!origin || hn_is_same_origin(origin, host)) {
+        return 1;
+    }
+    hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
+                     "the origin '%.100s' is not that of this server, '%.100s'", origin, host);
+    return 0;
+}
+
 int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
     const char *host = hn_request_header(r, "Host");
     if (!host || !*host) {
@@ -19,17 +47,18 @@ int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
                          "'%.100s' is not a name of this server", host);
         return 0;
     }
-    const char *origin = hn_request_header(r, "Origin");
-    if (!origin) {
+    return check_origin(r, host);
+}
+
+int hn_guard_site(hn_request *r) {
+    const char *site = hn_request_header(r, "Sec-Fetch-Site");
+    if (!site || r->route->work == HN_WORK_LIGHT || strcmp(site, "same-origin") == 0 ||
+        strcmp(site, "none") == 0) {
         return 1;
     }
-    const char *scheme_end = strstr(origin, "://");
-    if (!scheme_end || !hn_host_is_ours(hosts, scheme_end + 3)) {
-        hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
-                         "the origin '%.100s' is not served here", origin);
-        return 0;
-    }
-    return 1;
+    hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
+                     "a page of another site asks for computing (Sec-Fetch-Site: %.40s)", site);
+    return 0;
 }
 
 /// 1 when the range (n bytes, "application/*") covers the type.

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/request.h"
 
+#include "base/json_text.h"
+#include "http/ground/body.h"
+
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { MAX_JSON_DEPTH = 64 };
 
 const char *hn_request_query(const hn_request *r, const char *name) {
     return MHD_lookup_connection_value(r->connection, MHD_GET_ARGUMENT_KIND, name);
@@ -112,6 +118,38 @@ void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags) {
     hn_http_problem kind = ours ? HN_PROBLEM_INTERNAL : HN_PROBLEM_INPUT;
     const char *detail = diags->n > 0 ? diags->item[0].message : hn_status_text(status);
     reply_document(r, kind, detail, diags->n > 0 ? diags->item[0].hint : NULL, -1, diags);
+}
+
+int hn_request_read_body(hn_request *r) {
+    if (!r->route->fields) {
+        return 1;
+    }
+    hn_diag fault = {0};
+    size_t offset = 0;
+    if (hn_json_text_locate(r->body, r->n_body, MAX_JSON_DEPTH, &offset, &fault) != HN_OK) {
+        hn_reply_bad_json(r, offset, fault.message, fault.hint);
+        return 0;
+    }
+
+    // a text that is JSON, so that only memory can fail
+    r->json = cJSON_ParseWithLength(r->body, r->n_body);
+    if (!r->json) {
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return 0;
+    }
+
+    // then its members
+    hn_diags diags = {0};
+    hn_status status = HN_OK;
+    if (!cJSON_IsObject(r->json)) {
+        status = hn_diags_add(&diags, HN_ERR_INPUT, "", NULL, "the body must be a JSON object");
+    } else {
+        status = hn_body_check(r->json, r->route->fields, "", &diags);
+    }
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+    }
+    return status == HN_OK;
 }
 
 void hn_request_suspend(hn_request *r) {

@@ -7,6 +7,7 @@
 #include "base/diag.h"
 #include "base/strbuf.h"
 #include "http/ground/problem_document.h"
+#include "http/ground/shares.h"
 #include "http/request/route.h"
 
 #include <cjson/cJSON.h>
@@ -31,17 +32,19 @@ typedef struct hn_request {
     struct hn_context *context;
     struct MHD_Connection *connection;
     hn_request_stage stage;
+    hn_client client;                  ///< who asks
+    struct hn_connection_watch *watch; ///< deadlines of the connection; may be NULL
     const hn_route *route;
     int is_head;
     char path[HN_HEADER_TEXT];                ///< as asked, cut when longer (for messages)
     char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
-    char origin_host[HN_HEADER_TEXT];         ///< the Host header
     char *body;
     size_t n_body, body_cap, body_dropped;
     cJSON *json;             ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue
 
     // the reply
+    long long n_unread; ///< bytes handed to the HTTP library, until the request is completed
     unsigned status;
     const char *media_type; ///< static text
     hn_strbuf text;
@@ -73,6 +76,9 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
+/// Parses the body and checks it against the fields of the route. Returns 0 with a problem as reply.
+/// Cost: the length of the body; not for the connection's thread.
+int hn_request_read_body(hn_request *r);
 /// Suspends the connection: from here on another thread owns the request, until
 /// hn_request_finish().
 void hn_request_suspend(hn_request *r);

@@ -47,8 +47,15 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"studies_kept", HN_STUDIES_KEPT},
                 {"long_requests_at_once", o->pool},
                 {"long_requests_waiting", o->queue},
+                {"quick_requests_at_once", o->quick_pool},
+                {"share_of_one_client", o->client_share},
+                {"unread_bytes", (double)o->max_unread},
+                {"answer_numbers", (double)o->max_numbers},
                 {"pause_without_reader_s", o->idle_pause},
                 {"expiry_untouched_s", o->expiry},
+                {"expiry_readers_left_s", o->orphan_expiry},
+                {"head_deadline_s", o->head_deadline},
+                {"request_deadline_s", o->request_deadline},
                 {"connection_timeout_s", o->connection_timeout},
                 {"json_depth", 64}};
     hn_json_key(b, "limits");

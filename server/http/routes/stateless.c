@@ -142,6 +142,7 @@ void hn_handle_run(hn_request *r) {
         .at = at ? times : NULL,
         .every = hn_body_number(r->json, "every", 0),
         .max_samples = r->context->opts.max_samples,
+        .max_numbers = r->context->opts.max_numbers,
         .reactions = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions")),
         .raw_lambda = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "raw_lambda")),
         .progress = may_go_on,

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_CONNECTIONS_H
+#define HN_HTTP_CONNECTIONS_H
+// Deadlines of connections. The HTTP library counts the seconds since the last byte, so that a client
+// which sends a byte now and then keeps its place for ever; here a head and a body have a time in all.
+
+#include "http/ground/http_opts.h"
+
+typedef struct hn_connections hn_connections;
+typedef struct hn_connection_watch hn_connection_watch;
+
+/// Starts the thread that looks at deadlines. NULL when memory or threads are out.
+hn_connections *hn_connections_create(const hn_http_opts *opts);
+void hn_connections_free(hn_connections *all); ///< NULL is legal; no connection may be left
+
+/// A connection has been accepted. NULL when memory is out: it then has no deadline of its own.
+hn_connection_watch *hn_connections_add(hn_connections *all, int fd);
+/// The connection is about to be closed; from here on its descriptor is not touched. NULL is legal.
+void hn_connections_remove(hn_connections *all, hn_connection_watch *w);
+
+// what the connection is doing; NULL is legal
+void hn_connection_reads_body(hn_connections *all, hn_connection_watch *w);
+void hn_connection_is_served(hn_connections *all, hn_connection_watch *w); ///< no deadline
+void hn_connection_is_idle(hn_connections *all, hn_connection_watch *w);
+#endif

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/routes/dispatch.h"
+
+#include "base/hash.h"
+#include "http/request/guard.h"
+#include "http/request/request.h"
+#include "http/routes/static_files.h"
+
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Beyond this much of an unwanted body the connection is closed rather than drained.
+enum { MAX_DRAINED = 8 << 20 };
+
+// ---- the head ----
+
+/// Where an address lies off the API: a redirect to its front door, a file of the page, or nothing.
+static void reply_off_routes(hn_request *r, const char *method, const hn_route_match *match) {
+    static const char *const front_doors[] = {"/api", "/api/", "/api/v1"};
+    for (size_t i = 0; i < sizeof front_doors / sizeof *front_doors; i++) {
+        if (strcmp(r->path, front_doors[i]) == 0) {
+            hn_reply_empty(r, MHD_HTTP_PERMANENT_REDIRECT);
+            hn_reply_header_add(r, "Location", "/api/v1/");
+            return;
+        }
+    }
+
+    // an address of the API by a verb that it does not take
+    if (match->allow[0]) {
+        const int options = strcmp(method, "OPTIONS") == 0;
+        if (options) {
+            hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
+        } else {
+            hn_reply_problem(r, HN_PROBLEM_METHOD, NULL, "%.20s is not among: %s", method,
+                             match->allow);
+        }
+        hn_reply_header_add(r, "Allow", "%s", match->allow);
+        return;
+    }
+    if ((strcmp(method, "GET") == 0 || r->is_head) &&
+        hn_static_files_reply(r->context->files, r, r->path)) {
+        return;
+    }
+
+    // nothing here; perhaps a slip
+    const char *near = hn_route_nearest(&r->context->routes, r->path);
+    if (!near) {
+        near = hn_static_files_nearest(r->context->files, r->path);
+    }
+    char hint[HN_DIAG_HINT] = "GET /api/v1/ lists the addresses";
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, hint, "there is nothing at '%.200s'", r->path);
+}
+
+/// The checks that need no body; a reply that is there afterwards ends the matter.
+static void check_head(hn_request *r, const char *method) {
+    long long length = 0;
+    const char *text = hn_request_header(r, "Content-Length");
+    if (!hn_guard_host(r, &r->context->hosts)) {
+        return;
+    }
+
+    // an address that can be served, by a request that may ask for it
+    hn_route_match match = hn_route_find(&r->context->routes, method, r->path, r->parts);
+    r->route = match.route;
+    if (!r->route) {
+        reply_off_routes(r, method, &match);
+    } else if (atomic_load(&r->context->stopping)) {
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+    } else if (hn_guard_site(r) && hn_guard_accept(r) && hn_guard_body_type(r) && text &&
+               sscanf(text, "%lld", &length) == 1 && length > r->context->opts.max_body) {
+        hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL,
+                         "the body has %lld bytes; at most %lld are read", length,
+                         r->context->opts.max_body);
+    }
+}
+
+/// 1 when the rest of the body is not worth reading, or the client waits to be told before it sends
+/// it.
+static int must_answer_early(const hn_request *r) {
+    long long length = 0;
+    const char *text = hn_request_header(r, "Content-Length");
+    return hn_request_header(r, "Expect") ||
+           (text && sscanf(text, "%lld", &length) == 1 && length > MAX_DRAINED);
+}
+
+// ---- the body ----
+
+/// Keeps a piece of the body; what is beyond the bound, or not wanted, is dropped.
+static void take_body(hn_request *r, const char *data, size_t n) {
+    if (r->stage == HN_STAGE_ANSWERED || !r->route->fields) {
+        r->body_dropped += n;
+        return;
+    }
+    if (r->n_body + n > (size_t)r->context->opts.max_body) {
+        hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL, "the body is longer than %lld bytes",
+                         r->context->opts.max_body);
+        r->body_dropped += n;
+        return;
+    }
+
+    // grown by doubling
+    if (r->n_body + n > r->body_cap) {
+        size_t cap = r->n_body + n > 2 * r->body_cap ? r->n_body + n : 2 * r->body_cap;
+        char *larger = realloc(r->body, cap);
+        if (!larger) {
+            hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+            return;
+        }
+        r->body = larger;
+        r->body_cap = cap;
+    }
+    memcpy(r->body + r->n_body, data, n);
+    r->n_body += n;
+}
+
+// ---- the work ----
+
+void hn_dispatch_job(void *job) {
+    hn_request *r = job;
+    if (atomic_load(&r->context->stopping)) {
+        hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
+    } else if (hn_request_read_body(r)) {
+        r->route->handle(r);
+    }
+    hn_request_finish(r);
+}
+
+/// Gives the request to a pool, or refuses it with the time after which there will be a place.
+static void push(hn_request *r, hn_jobs *jobs) {
+    hn_request_suspend(r);
+    const long long unread = atomic_load(&r->context->unread);
+    if (unread > r->context->opts.max_unread) {
+        hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
+                         "%lld bytes of answers wait for their readers; at most %lld may", unread,
+                         r->context->opts.max_unread);
+        hn_reply_header_add(r, "Retry-After", "5");
+        hn_request_finish(r);
+    } else if (!hn_jobs_push(jobs, r, r->client)) {
+        hn_reply_problem(r, HN_PROBLEM_BUSY, NULL,
+                         "%d requests of this kind are waiting already, or yours have their share",
+                         r->context->opts.queue);
+        hn_reply_header_add(r, "Retry-After", "%d", hn_jobs_wait(jobs));
+        hn_request_finish(r);
+    }
+}
+
+/// A GET computes nothing, unless it says so.
+static int is_quick(const hn_request *r) {
+    const char *compute = hn_request_query(r, "compute");
+    return r->route->work == HN_WORK_QUICK ||
+           (strcmp(r->route->method, "GET") == 0 && (!compute || strcmp(compute, "true") != 0));
+}
+
+/// Arranges the reply. Returns 1 when it is there, 0 when another thread owns the request.
+static int start_work(hn_dispatch *d, hn_request *r) {
+    hn_connection_is_served(d->connections, r->watch);
+    switch (r->route->work) {
+    case HN_WORK_LIGHT:
+        r->route->handle(r);
+        return 1;
+    case HN_WORK_OWN:
+        hn_request_suspend(r);
+        r->route->handle(r);
+        return 0;
+    case HN_WORK_QUICK:
+    case HN_WORK_HEAVY:
+        push(r, is_quick(r) ? d->quick : d->heavy);
+        return 0;
+    }
+    return 1;
+}
+
+// ---- the reply ----
+
+static void add_header(struct MHD_Response *response, const char *name, const char *value) {
+    MHD_add_response_header(response, name, value);
+}
+
+static void add_headers(hn_request *r, struct MHD_Response *response) {
+    if (r->media_type) {
+        add_header(response, "Content-Type", r->media_type);
+    }
+    for (int i = 0; i < r->n_headers; i++) {
+        add_header(response, r->headers[i].name, r->headers[i].value);
+    }
+    add_header(response, "Content-Security-Policy", hn_static_files_policy(r->context->files));
+    add_header(response, "X-Content-Type-Options", "nosniff");
+    add_header(response, "Referrer-Policy", "no-referrer");
+    add_header(response, "Cross-Origin-Resource-Policy", "same-origin");
+    if (!MHD_get_response_header(response, "Cache-Control")) {
+        add_header(response, "Cache-Control", "no-store");
+    }
+}
+
+static enum MHD_Result send_reply(hn_request *r) {
+    struct MHD_Response *response = r->response;
+    r->response = NULL;
+    if (!response) {
+        size_t n = r->text.n;
+        r->n_unread = (long long)n;
+        atomic_fetch_add(&r->context->unread, r->n_unread);
+        char *text = n ? hn_strbuf_take(&r->text) : NULL;
+        response = MHD_create_response_from_buffer(
+            n, text ? text : "", text ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
+        if (!response) {
+            free(text);
+            return MHD_NO;
+        }
+    }
+
+    // counted until the reader has all of it
+    add_headers(r, response);
+    enum MHD_Result queued = MHD_queue_response(r->connection, r->status, response);
+    MHD_destroy_response(response);
+    return queued;
+}
+
+// ---- callbacks of the HTTP library ----
+
+/// A hash of the address; 0 for this machine.
+static hn_client find_client(struct MHD_Connection *connection) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+    const struct sockaddr *address = info ? info->client_addr : NULL;
+    if (!address) {
+        return 0;
+    }
+    if (address->sa_family == AF_INET6) {
+        const struct in6_addr *a = &((const struct sockaddr_in6 *)address)->sin6_addr;
+        return IN6_IS_ADDR_LOOPBACK(a) ? 0
+                                       : hn_hash_mix(hn_hash_bytes(HN_HASH_START, a, sizeof *a));
+    }
+    const struct in_addr *a = &((const struct sockaddr_in *)address)->sin_addr;
+    return ntohl(a->s_addr) == INADDR_LOOPBACK
+               ? 0
+               : hn_hash_mix(hn_hash_bytes(HN_HASH_START, a, sizeof *a));
+}
+
+static hn_request *begin_request(hn_dispatch *d, struct MHD_Connection *connection, const char *url,
+                                 const char *method) {
+    hn_request *r = calloc(1, sizeof *r);
+    if (r) {
+        const union MHD_ConnectionInfo *info =
+            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+        r->context = d->context;
+        r->connection = connection;
+        r->client = find_client(connection);
+        r->watch = info ? info->socket_context : NULL;
+        r->is_head = strcmp(method, "HEAD") == 0;
+        snprintf(r->path, sizeof r->path, "%.*s", HN_HEADER_TEXT - 1, url);
+        hn_connection_reads_body(d->connections, r->watch);
+        check_head(r, method);
+    }
+    return r;
+}
+
+enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection, const char *url,
+                                    const char *method, const char *version, const char *data,
+                                    size_t *n_data, void **req_cls) {
+    hn_request *r = *req_cls;
+    (void)version;
+    if (!r) {
+        *req_cls = r = begin_request(cls, connection, url, method);
+        if (!r) {
+            return MHD_NO;
+        }
+        return r->stage == HN_STAGE_ANSWERED && must_answer_early(r) ? send_reply(r) : MHD_YES;
+    }
+
+    // a piece of the body
+    if (*n_data > 0) {
+        take_body(r, data, *n_data);
+        *n_data = 0;
+        return r->body_dropped > MAX_DRAINED ? MHD_NO : MHD_YES;
+    }
+
+    // its end, or the reply of another thread
+    if (r->stage == HN_STAGE_BODY && !start_work(cls, r)) {
+        return MHD_YES;
+    }
+    return send_reply(r);
+}
+
+void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **req_cls,
+                           enum MHD_RequestTerminationCode how) {
+    hn_dispatch *d = cls;
+    hn_request *r = *req_cls;
+    (void)connection;
+    (void)how;
+    if (r) {
+        hn_connection_is_idle(d->connections, r->watch);
+        atomic_fetch_sub(&d->context->unread, r->n_unread);
+    }
+    hn_request_free(r);
+    *req_cls = NULL;
+}
+
+void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,
+                            enum MHD_ConnectionNotificationCode what) {
+    hn_dispatch *d = cls;
+    if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+        const union MHD_ConnectionInfo *info =
+            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+        *socket_context = info ? hn_connections_add(d->connections, info->connect_fd) : NULL;
+    } else {
+        hn_connections_remove(d->connections, *socket_context);
+        *socket_context = NULL;
+    }
+}

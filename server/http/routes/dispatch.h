@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_DISPATCH_H
+#define HN_HTTP_DISPATCH_H
+// The life of a request: head, body, work, reply. The callbacks of the HTTP library; `cls` is the
+// hn_dispatch of the server.
+
+#include "http/ground/connections.h"
+#include "http/ground/jobs.h"
+#include "http/request/context.h"
+
+#include <microhttpd.h>
+
+/// Borrowed from the server.
+typedef struct hn_dispatch {
+    hn_context *context;
+    hn_jobs *quick, *heavy;
+    hn_connections *connections;
+} hn_dispatch;
+
+enum MHD_Result hn_dispatch_request(void *cls, struct MHD_Connection *connection, const char *url,
+                                    const char *method, const char *version, const char *data,
+                                    size_t *n_data, void **req_cls);
+void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **req_cls,
+                           enum MHD_RequestTerminationCode how);
+void hn_dispatch_connection(void *cls, struct MHD_Connection *connection, void **socket_context,
+                            enum MHD_ConnectionNotificationCode what);
+/// Serves one request on a thread of a pool.
+void hn_dispatch_job(void *job);
+#endif
