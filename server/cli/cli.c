@@ -2,6 +2,8 @@
 #include "cli/cli.h"
 
 #include "build.h"
+#include "cli/completion.h"
+#include "cli/manual.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
@@ -68,6 +70,9 @@ static const hn_command COMMANDS[] = {
     {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",
      "--format --out -o --seed", 2, HN_CLI_MAX_WORDS, hn_command_grade},
+    {"manual", "", "the manual page in roff, for 'man -l -'", "", 0, 0, hn_command_manual},
+    {"completion", "bash|zsh|fish", "what a shell needs to complete commands of this program", "",
+     1, 1, hn_command_completion},
     {"help", "[COMMAND]", "this text, or a command's options", "", 0, 1, print_help},
     {"version", "", "what this program is", "", 0, 0, print_version},
 };
@@ -212,6 +217,23 @@ static const char *command_word(const char *word) {
                                                                   : word;
 }
 
+/// `holonom complete -- WORD...`: what shells ask; the last word may be unfinished. No command of its own in the help.
+static hn_exit complete(int n, char **words) {
+    hn_library *lib = NULL;
+    hn_diag diag = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (hn_library_open(NULL, &lib, &diag) != HN_OK) {
+        return HN_EXIT_PROGRAM;
+    }
+    const int skip = n > 0 && strcmp(words[0], "--") == 0;
+    hn_completion_candidates(&b, lib, (const char *const *)words + skip, n - skip);
+    hn_library_free(lib);
+    fputs(hn_strbuf_text(&b), stdout);
+    hn_strbuf_reset(&b);
+    return HN_EXIT_DONE;
+}
+
 int hn_cli_main(int argc, char **argv) {
     hn_args args = {0};
     hn_diag diag = {0};
@@ -222,6 +244,9 @@ int hn_cli_main(int argc, char **argv) {
         fputs(hn_strbuf_text(&b), stderr);
         hn_strbuf_reset(&b);
         return HN_EXIT_INPUT;
+    }
+    if (strcmp(argv[1], "complete") == 0) {
+        return complete(argc - 2, argv + 2);
     }
     const char *name = command_word(argv[1]);
     const hn_command *command = find_command(name);

@@ -153,7 +153,7 @@ static void run_study(hn_workbench *w, const char *kind, const char *option, con
         arguments[n++] = settings[i];
     }
     char title[HN_TUI_LINE];
-    snprintf(title, sizeof title, "%s of %s: Esc stops and goes back", kind, w->scene);
+    snprintf(title, sizeof title, "%s of %.180s: Esc stops and goes back", kind, w->scene);
     begin_text(w, title);
     hn_strbuf_printf(&w->text, "holonom study %s %s\n\n", w->scene, kind);
     if (!hn_child_start(&w->child, arguments)) {

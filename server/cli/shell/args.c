@@ -321,13 +321,22 @@ void hn_args_reset(hn_args *args) {
     args->at = (hn_numbers){0};
 }
 
-void hn_args_describe(hn_strbuf *b, const hn_command *command) {
-    for (int i = 0; i < N_OPTIONS; i++) {
-        const option *o = &OPTIONS[i];
-        if (is_offered(command, o)) {
-            char head[64];
-            snprintf(head, sizeof head, "%s %s", o->name, o->argument ? o->argument : "");
-            hn_strbuf_printf(b, "  %-26s %s\n", head, o->about);
+bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
+    for (int k = 0; k < N_OPTIONS; k++) {
+        const option *o = &OPTIONS[k];
+        if (is_offered(command, o) && i-- == 0) {
+            *out = (hn_option_row){o->name, o->argument, o->about};
+            return true;
         }
+    }
+    return false;
+}
+
+void hn_args_describe(hn_strbuf *b, const hn_command *command) {
+    hn_option_row o;
+    for (int i = 0; hn_args_option(command, i, &o); i++) {
+        char head[64];
+        snprintf(head, sizeof head, "%s %s", o.name, o.argument ? o.argument : "");
+        hn_strbuf_printf(b, "  %-26s %s\n", head, o.about);
     }
 }

@@ -7,6 +7,8 @@
 #include "base/strbuf.h"
 #include "cli/shell/command.h"
 
+#include <stdbool.h>
+
 enum { HN_CLI_MAX_WORDS = 256 };
 
 /// A list of words as typed.
@@ -45,6 +47,12 @@ HN_MUST_CHECK hn_status hn_args_parse(hn_args *args, const hn_command *command, 
 void hn_args_reset(hn_args *args);
 /// "--set NAME=VALUE   a parameter that differs ...", a line an option of the command.
 void hn_args_describe(hn_strbuf *b, const hn_command *command);
+/// One option as help, manual and completion show it; argument NULL: a flag.
+typedef struct hn_option_row {
+    const char *name, *argument, *about;
+} hn_option_row;
+/// The i-th option that a command reads; false: there are no more.
+bool hn_args_option(const hn_command *command, int i, hn_option_row *out);
 /// HN_ERR_INPUT when an option was given that is not one of `options` (separated by spaces):
 /// `whose` does not read it.
 HN_MUST_CHECK hn_status hn_args_allow_only(const hn_args *args, const char *options,

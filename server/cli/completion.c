@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/completion.h"
+
+#include "cli/cli.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/print.h"
+#include "integrators/method/method_spec.h"
+#include "session/model/model.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <string.h>
+
+/// What is being completed: candidates are written behind `head`, where they begin with `typed`.
+typedef struct completing {
+    hn_strbuf *b;
+    const char *head, *typed;
+    int n_head; ///< bytes of head
+} completing;
+
+static void offer(const completing *c, const char *candidate, const char *ending,
+                  const char *about) {
+    if (strncmp(candidate, c->typed, strlen(c->typed)) == 0) {
+        hn_strbuf_printf(c->b, "%.*s%s%s%s%s\n", c->n_head, c->head, candidate, ending,
+                         about ? "\t" : "", about ? about : "");
+    }
+}
+
+static const hn_command *command_of(const char *name) {
+    for (int i = 0; i < hn_command_count(); i++) {
+        if (strcmp(hn_command_at(i)->name, name) == 0) {
+            return hn_command_at(i);
+        }
+    }
+    return NULL;
+}
+
+// ---- methods ----
+
+static const cJSON *row_named(const cJSON *rows, const char *key, const char *name, size_t n) {
+    const cJSON *row;
+    cJSON_ArrayForEach(row, rows) {
+        const char *text = cJSON_GetStringValue(cJSON_GetObjectItem(row, key));
+        if (text && strlen(text) == n && strncmp(text, name, n) == 0) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+/// The keys of one formulation or integrator, behind the last ':' or ','.
+static void offer_keys(completing c, const cJSON *rows, const char *part) {
+    const char *last = strrchr(part, ',') ? strrchr(part, ',') : strchr(part, ':');
+    const cJSON *row = row_named(rows, "name", part, strcspn(part, ":"));
+    const cJSON *key;
+    c.n_head = (int)(last + 1 - c.head);
+    c.typed = last + 1;
+    cJSON_ArrayForEach(key, cJSON_GetObjectItem(row, "settings")) {
+        offer(&c, cJSON_GetStringValue(cJSON_GetObjectItem(key, "key")), "=",
+              cJSON_GetStringValue(cJSON_GetObjectItem(key, "about")));
+    }
+}
+
+static void offer_methods(completing c) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_methods_json(&text);
+    cJSON *document = cJSON_Parse(hn_strbuf_text(&text));
+    const char *at = strchr(c.head, '@');
+    const cJSON *rows = cJSON_GetObjectItem(document, at ? "integrators" : "formulations"), *row;
+    const char *part = at ? at + 1 : c.head;
+    if (strchr(part, ':')) {
+        offer_keys(c, rows, part);
+    } else {
+        c.n_head = (int)(part - c.head);
+        c.typed = part;
+        cJSON_ArrayForEach(row, rows) {
+            offer(&c, cJSON_GetStringValue(cJSON_GetObjectItem(row, "name")), at ? "" : "@",
+                  cJSON_GetStringValue(cJSON_GetObjectItem(row, "title")));
+        }
+    }
+    cJSON_Delete(document);
+    hn_strbuf_reset(&text);
+}
+
+// ---- scenes and their parameters ----
+
+static void offer_scenes(const completing *c, const hn_library *lib) {
+    for (int i = 0; i < hn_library_n_scenes(lib); i++) {
+        offer(c, hn_library_scene_id(lib, i), "", NULL);
+    }
+}
+
+static void offer_parameters(const completing *c, const hn_library *lib, const char *scene) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    const hn_model_source source = {.name = scene, .allow_open = 1};
+    if (!hn_library_scene_path(lib, scene) ||
+        hn_model_load(lib, &source, &model, &diags) != HN_OK) {
+        return;
+    }
+    const hn_scene *s = hn_model_scene(model);
+    for (int i = 0; i < s->n_params; i++) {
+        char about[256];
+        snprintf(about, sizeof about, "%g to %g %s, now %g: %s", s->params[i].min, s->params[i].max,
+                 s->params[i].unit ? s->params[i].unit : "", s->params[i].value,
+                 s->params[i].about ? s->params[i].about : "");
+        offer(c, s->params[i].name, "=", about);
+    }
+    hn_model_free(model);
+}
+
+// ---- words and options ----
+
+/// The words that a usage line lists: "scenes|methods|lessons".
+static void offer_listed(const completing *c, const char *words) {
+    while (*words) {
+        char word[64];
+        const size_t n = strcspn(words, "| []");
+        snprintf(word, sizeof word, "%.*s", (int)n, words);
+        if (n > 0 && word[0] >= 'a' && word[0] <= 'z') {
+            offer(c, word, "", NULL);
+        }
+        words += n + (words[n] != '\0');
+    }
+}
+
+/// A word that is no option's value; `first`: the one behind the command.
+static void offer_word(const completing *c, const hn_library *lib, const hn_command *command,
+                       bool first) {
+    if (first && strstr(command->words, "SCENE")) {
+        offer_scenes(c, lib);
+    }
+    if (strcmp(command->name, "help") == 0) {
+        for (int i = 0; i < hn_command_count(); i++) {
+            offer(c, hn_command_at(i)->name, "", hn_command_at(i)->about);
+        }
+    }
+    for (int i = 0; first && strstr(command->words, "ID") && i < hn_library_n_problems(lib); i++) {
+        offer(c, hn_library_problem_id(lib, i), "", NULL);
+    }
+    if (!first || !strstr(command->words, "SCENE")) {
+        offer_listed(c, command->words);
+    }
+}
+
+static void offer_options(const completing *c, const hn_command *command) {
+    hn_option_row o;
+    for (int i = 0; hn_args_option(command, i, &o); i++) {
+        offer(c, o.name, "", o.about);
+    }
+}
+
+/// The option whose value the last word is; "" where it is a word of the command.
+static const char *option_before(const hn_command *command, const char *const *words, int n) {
+    hn_option_row o;
+    for (int i = n - 2; i >= 1; i--) {
+        const bool many = strcmp(words[i], "--methods") == 0 || strcmp(words[i], "--q") == 0 ||
+                          strcmp(words[i], "--v") == 0;
+        for (int k = 0; words[i][0] == '-' && hn_args_option(command, k, &o); k++) {
+            if (strcmp(o.name, words[i]) == 0) {
+                return o.argument && (many || i == n - 2) ? words[i] : "";
+            }
+        }
+    }
+    return "";
+}
+
+void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *const *words,
+                              int n) {
+    const char *last = n > 0 ? words[n - 1] : "";
+    const completing c = {b, last, last, 0};
+    if (n <= 1) {
+        for (int i = 0; i < hn_command_count(); i++) {
+            offer(&c, hn_command_at(i)->name, "", hn_command_at(i)->about);
+        }
+        return;
+    }
+    const hn_command *command = command_of(words[0]);
+    if (!command) {
+        return;
+    }
+    const char *option = option_before(command, words, n);
+    if (last[0] == '-') {
+        offer_options(&c, command);
+    } else if (strcmp(option, "--method") == 0 || strcmp(option, "--methods") == 0) {
+        offer_methods(c);
+    } else if (strcmp(option, "--set") == 0) {
+        offer_parameters(&c, lib, words[1]);
+    } else if (option[0] == '\0') {
+        offer_word(&c, lib, command, n == 2);
+    }
+}
+
+// ---- what a shell needs ----
+
+static const char BASH[] =
+    "_holonom() {\n"
+    "    local IFS=$'\\n' cur words cword\n"
+    "    _get_comp_words_by_ref -n :=@ cur words cword 2>/dev/null ||\n"
+    "        { cur=${COMP_WORDS[COMP_CWORD]}; words=(\"${COMP_WORDS[@]}\"); cword=$COMP_CWORD; }\n"
+    "    COMPREPLY=($(holonom complete -- \"${words[@]:1:cword}\" 2>/dev/null | cut -f1))\n"
+    "    [[ ${COMPREPLY[0]} == *[=@] ]] && compopt -o nospace\n"
+    "    declare -F __ltrim_colon_completions >/dev/null && __ltrim_colon_completions \"$cur\"\n"
+    "}\ncomplete -o default -F _holonom holonom\n";
+static const char ZSH[] =
+    "#compdef holonom\n_holonom() {\n"
+    "    local -a found\n"
+    "    found=(${(f)\"$(holonom complete -- ${words[2,CURRENT]} 2>/dev/null | cut -f1)\"})\n"
+    "    if (( $#found )); then compadd -S '' -Q -- $found; else _files; fi\n"
+    "}\n_holonom \"$@\"\n";
+static const char FISH[] =
+    "complete -c holonom -f -a '(holonom complete -- (commandline -opc)[2..-1] (commandline -ct) "
+    "2>/dev/null)'\n"
+    "complete -c holonom -n 'test (count (holonom complete -- (commandline -opc)[2..-1] "
+    "(commandline -ct) 2>/dev/null)) -eq 0' -F\n";
+
+hn_exit hn_command_completion(const hn_library *lib, const hn_args *args) {
+    static const struct {
+        const char *shell, *text;
+    } texts[] = {{"bash", BASH}, {"zsh", ZSH}, {"fish", FISH}};
+    (void)lib;
+    hn_diag diag;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        if (strcmp(texts[i].shell, args->words.word[0]) == 0) {
+            hn_strbuf_add(&b, texts[i].text);
+            return hn_cli_print(&b);
+        }
+    }
+    hn_diag_set(&diag, HN_ERR_INPUT, NULL, "there are bash, zsh and fish",
+                "no completion for the shell '%.40s'", args->words.word[0]);
+    return hn_report_diag(args, &diag);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/manual.h"
+
+#include "build.h"
+#include "cli/cli.h"
+#include "cli/shell/print.h"
+
+/// Text of a table in roff: backslashes, hyphens and a leading dot or quote are no commands.
+static void put_text(hn_strbuf *b, const char *text) {
+    if (*text == '.' || *text == '\'') {
+        hn_strbuf_add(b, "\\&");
+    }
+    for (; *text; text++) {
+        if (*text == '\\') {
+            hn_strbuf_add(b, "\\e");
+        } else if (*text == '-') {
+            hn_strbuf_add(b, "\\-");
+        } else {
+            hn_strbuf_add_n(b, text, 1);
+        }
+    }
+}
+
+static void put_command(hn_strbuf *b, const hn_command *command) {
+    hn_strbuf_add(b, ".SS \"holonom ");
+    put_text(b, command->name);
+    hn_strbuf_add(b, command->words[0] ? " " : "");
+    put_text(b, command->words);
+    hn_strbuf_add(b, "\"\n");
+    put_text(b, command->about);
+    hn_strbuf_add(b, "\n");
+    hn_option_row o;
+    for (int i = 0; hn_args_option(command, i, &o); i++) {
+        hn_strbuf_add(b, ".TP\n.B ");
+        put_text(b, o.name);
+        if (o.argument) {
+            hn_strbuf_add(b, " \\fI");
+            put_text(b, o.argument);
+            hn_strbuf_add(b, "\\fR");
+        }
+        hn_strbuf_add(b, "\n");
+        put_text(b, o.about);
+        hn_strbuf_add(b, "\n");
+    }
+}
+
+static void put_sections(hn_strbuf *b) {
+    hn_strbuf_add(
+        b,
+        ".SH WORDS\n.TP\n.B SCENE\nthe name of a shipped scene, a file, or \\- for standard input\n"
+        ".TP\n.B METHOD\nFORMULATION[:key=value,...]@INTEGRATOR[:key=value,...], as "
+        "projection@rk4:h=1e\\-3\n"
+        ".SH EXIT STATUS\n.TP\n.B 0\ndone; a wrong answer that was graded low is done\n"
+        ".TP\n.B 2\nthe input is at fault\n.TP\n.B 3\nthe program is at fault\n"
+        ".TP\n.B 4\na run ended early and said why\n"
+        ".SH EXAMPLES\n.nf\nholonom serve\nholonom tui four\\-bar\n"
+        "holonom compare four\\-bar \\-\\-methods index1@rk4:h=1e\\-2 projection@rk4:h=1e\\-2\n"
+        "holonom run four\\-bar \\-\\-method reduced@dop853:rtol=1e\\-10 \\-\\-time 2 \\-\\-json\n"
+        "holonom grade p3 answer.json\n.fi\n"
+        ".SH ENVIRONMENT\n.TP\n.B HOLONOM_HOME\nfolder with lessons/ and web/\n"
+        ".TP\n.B HOLONOM_CACHE\nfolder for computed references and unfinished studies\n"
+        ".TP\n.B NO_COLOR\nno colours, whatever the terminal can show\n");
+}
+
+hn_exit hn_command_manual(const hn_library *lib, const hn_args *args) {
+    (void)lib;
+    (void)args;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_strbuf_add(&b, ".TH HOLONOM 1 \"\" \"holonom " HN_VERSION "\"\n"
+                      ".SH NAME\nholonom \\- simulates mechanisms with closed loops by many "
+                      "methods side by side\n"
+                      ".SH SYNOPSIS\n.B holonom\n\\fICOMMAND\\fR [\\fIWORD\\fR...] "
+                      "[\\fIOPTION\\fR...]\n.SH COMMANDS\n");
+    for (int i = 0; i < hn_command_count(); i++) {
+        put_command(&b, hn_command_at(i));
+    }
+    put_sections(&b);
+    return hn_cli_print(&b);
+}

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Comfort in a shell: completion asks the program, the manual is made from the tables of the help."""
+
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+
+def call(*words):
+    return subprocess.run([driver.PROGRAM, *words], capture_output=True, text=True, timeout=60)
+
+
+def candidates(*words):
+    return [line.split("\t")[0] for line in call("complete", "--", *words).stdout.splitlines()]
+
+
+class Completion(unittest.TestCase):
+    def test_commands_options_scenes_and_words_are_offered(self):
+        self.assertEqual(candidates("sna"), ["snapshot"])
+        self.assertIn("--methods", candidates("compare", "four-bar", "--m"))
+        self.assertEqual(candidates("run", "slider"), ["slider-crank"])
+        self.assertEqual(candidates("study", "four-bar", "stab"), ["stability"])
+        self.assertEqual(candidates("grade", "p"), ["p3"])
+
+    def test_methods_and_their_options_are_offered_in_pieces(self):
+        self.assertEqual(candidates("run", "four-bar", "--method", "baum"), ["baumgarte@"])
+        self.assertIn("index1@rk4", candidates("run", "four-bar", "--method", "index1@rk"))
+        self.assertEqual(candidates("run", "four-bar", "--method", "baumgarte:alpha=5,be"), ["baumgarte:alpha=5,beta="])
+        self.assertIn("index1@rk4:h=", candidates("compare", "four-bar", "--methods", "projection@rk4", "index1@rk4:"))
+
+    def test_parameters_come_with_their_range(self):
+        text = call("complete", "--", "run", "four-bar", "--set", "l1").stdout
+        self.assertRegex(text, r"^l1=\t0\.1 to 3 m, now 0\.5: length of the crank\n$")
+
+    def test_nothing_is_offered_where_nothing_is_known(self):
+        for words in (["nonsense", "x"], ["run", "no-such-scene", "--set", "l"], ["import", "fi"], []):
+            self.assertLess(len(candidates(*words)), 40)
+        self.assertEqual(candidates("nonsense", "x"), [])
+
+    def test_bash_completes_with_what_the_program_says(self):
+        script = ('source <("$0" completion bash); holonom() { "$PROGRAM" "$@"; }; '
+                  'COMP_WORDS=(holonom run four-b); COMP_CWORD=2; _holonom; echo "${COMPREPLY[@]}"')
+        done = subprocess.run(["bash", "-c", script, driver.PROGRAM], capture_output=True, text=True, timeout=60,
+                              env={**os.environ, "PROGRAM": driver.PROGRAM})
+        self.assertEqual(done.stdout.strip(), "four-bar")
+
+    def test_an_unknown_shell_is_refused(self):
+        done = call("completion", "tcsh")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("bash, zsh and fish", done.stderr)
+
+
+class Manual(unittest.TestCase):
+    def test_it_names_every_command_and_option(self):
+        text = call("manual").stdout.replace("\\-", "-")
+        for command in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M):
+            self.assertIn(f'.SS "holonom {command}', text)
+            for option in re.findall(r"^  (--?[\w-]+)", call("help", command).stdout, re.M):
+                self.assertIn(f".B {option}", text)
+
+    def test_no_line_is_a_request_that_roff_does_not_know(self):
+        requests = set(re.findall(r"^\.(\w+)", call("manual").stdout, re.M))
+        self.assertLessEqual(requests, {"TH", "SH", "SS", "TP", "B", "nf", "fi"})
+
+
+if __name__ == "__main__":
+    driver.main()
