@@ -360,7 +360,7 @@ run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-house check-layers check-width check-names check-circles check-licence check-headers check-format check-web format
+.PHONY: check check-house test-map check-layers check-width check-names check-circles check-licence check-headers check-format check-web format
 check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
@@ -392,6 +392,10 @@ check-names:
 check-circles: $(CORE_OBJECTS) $(call objects,$(SERVER_SOURCES))
 	@python3 tests/tools/check-circles.py --layers '$(LAYER_TABLE)' --rooms '$(ROOM_TABLE)' \
 	    --natural tests/tools/circles.txt --out $(OUT) $^
+
+# which unit tests call which source: SOURCE=core/linalg shows a part
+test-map: $(CORE_OBJECTS) $(call objects,$(SERVER_SOURCES) $(UNIT_SOURCES))
+	@python3 tests/tools/test-map.py --out $(OUT) --source '$(SOURCE)' $^
 
 check-licence:
 	@awk -f tests/tools/check-licence.awk $$(find core server web lessons tests \

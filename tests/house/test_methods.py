@@ -1,4 +1,4 @@
-"""The README's tables of methods are those that the program lists. `test_methods.py --write` puts them there. Speaks TAP."""
+"""The tables of methods in two README files are those that the program lists. `test_methods.py --write` puts them there. Speaks TAP."""
 
 import json
 import os
@@ -6,8 +6,7 @@ import subprocess
 import sys
 
 PROGRAM = os.environ.get("HOLONOM", "build/holonom")
-README = "README.md"
-BEGIN, END = "<!-- methods: tests/house/test_methods.py --write -->\n", "<!-- end of methods -->\n"
+PAGES = {"formulations": "core/formulations/README.md", "integrators": "core/integrators/README.md"}
 # of the cards: what every one has to say
 FORMULATION = ("title", "rule", "drift", "when", "when_not", "source", "needs")
 INTEGRATOR = ("title", "about", "source")
@@ -22,34 +21,46 @@ def row(*cells):
     return "| " + " | ".join(str(c).replace("|", "\\|") for c in cells) + " |\n"
 
 
-def tables(methods):
+def formulations(listed_methods):
     text = row("formulation", "what it is", "index", "needs", "the gap") + row(*["---"] * 5)
-    for f in methods["formulations"]:
+    for f in listed_methods:
         text += row(f"`{f['name']}`", f["title"], f["index"], f["needs"], f["drift"])
-    text += "\n" + row("integrator", "what it is", "order", "step", "serves") + row(*["---"] * 5)
-    for i in methods["integrators"]:
-        step = "adaptive" if i["adaptive"] else "fixed"
-        forms = ", ".join(i["forms"])
-        text += row(f"`{i['name']}`", i["title"], i["order"], step, forms)
     return text
+
+
+def integrators(listed_methods):
+    text = row("integrator", "what it is", "order", "step", "serves") + row(*["---"] * 5)
+    for i in listed_methods:
+        step = "adaptive" if i["adaptive"] else "fixed"
+        text += row(f"`{i['name']}`", i["title"], i["order"], step, ", ".join(i["forms"]))
+    return text
+
+
+def replace_table(kind, table):
+    """Puts the table into its page where it differs; True where it was there already."""
+    begin, end = f"<!-- {kind}: tests/house/test_methods.py --write -->\n", f"<!-- end of {kind} -->\n"
+    with open(PAGES[kind], encoding="utf-8") as f:
+        page = f.read()
+    before, rest = page.split(begin)
+    found, after = rest.split(end)
+    if found != table and "--write" in sys.argv:
+        with open(PAGES[kind], "w", encoding="utf-8") as f:
+            f.write(before + begin + table + end + after)
+    return found == table
 
 
 def main():
     methods = listed()
-    with open(README, encoding="utf-8") as f:
-        readme = f.read()
-    before, rest = readme.split(BEGIN)
-    found, after = rest.split(END)
+    same = {kind: replace_table(kind, make(methods[kind])) for kind, make in
+            (("formulations", formulations), ("integrators", integrators))}
     if "--write" in sys.argv:
-        with open(README, "w", encoding="utf-8") as f:
-            f.write(before + BEGIN + tables(methods) + END + after)
         return 0
     dumb = [f"{c['name']}: {key}" for kind, keys in (("formulations", FORMULATION), ("integrators", INTEGRATOR))
             for c in methods[kind] for key in keys if not c.get(key)]
     text = subprocess.run([PROGRAM, "list", "methods"], capture_output=True, text=True, check=True).stdout
     unsaid = [f["name"] for f in methods["formulations"] if f["when_not"] not in text or f["source"] not in text]
     results = [
-        ("the README's tables of methods are those of the program", found == tables(methods), "run tests/house/test_methods.py --write"),
+        *((f"{PAGES[kind]} has the table of the program", good, "run tests/house/test_methods.py --write") for kind, good in same.items()),
         ("every card says what it has to", not dumb, ", ".join(dumb)),
         ("a person's list shows every card", not unsaid, ", ".join(unsaid)),
     ]
