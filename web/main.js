@@ -9,23 +9,30 @@ import { findKey } from "./state/keys.js";
 import { createControls } from "./views/controls.js";
 import { createDrawing } from "./views/drawing/drawing.js";
 import { createEquations } from "./views/equations.js";
+import { createExportDialog } from "./views/export-dialog.js";
+import { createGuide } from "./views/guide.js";
 import { createHappening } from "./views/happening.js";
 import { createHeader } from "./views/header.js";
 import { createKeysDialog } from "./views/keys-dialog.js";
 import { createLook } from "./views/look.js";
 import { createMethodDialog } from "./views/method-dialog.js";
 import { createMethods } from "./views/methods.js";
+import { createParameters } from "./views/parameters.js";
 import { createPlots } from "./views/plots.js";
 import { createReactions } from "./views/reactions.js";
 import { createStatus } from "./views/status.js";
 import { createStudies } from "./views/studies.js";
 import { createTear } from "./views/tear.js";
 import { createTransport } from "./views/transport.js";
+import { createVerdictBar } from "./views/verdict-bar.js";
+import { createWhyCard } from "./views/why-card.js";
 import { createTheme } from "./widgets/theme.js";
+import { createTips } from "./widgets/tips.js";
 
 const store = createStore();
 const session = createSession(store);
 const theme = createTheme(store);
+createTips(document.body);
 store.data.view.stepped = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 /** @param {string} id */
@@ -36,19 +43,35 @@ const keys = createKeysDialog(document.body, store, session);
 const studies = createStudies(document.body, store, session);
 /** Keys that open something; all others are actions of the session. */
 const OPENERS = { help: keys.open, study: studies.open };
+const exports = createExportDialog(document.body, store, session);
+const guide = createGuide(store, session, { openStudy: studies.open });
 const views = [
-  createHeader(at("top"), store, session, { toggleTheme: theme.toggle, openKeys: keys.open }),
+  createHeader(at("top"), store, session, {
+    toggleTheme: theme.toggle,
+    openKeys: keys.open,
+    openStudy: studies.open,
+    openExport: exports.open,
+    openGuide: guide.open,
+  }),
   createDrawing(at("mechanism"), store, session),
-  createTear(at("mechanism"), store),
+  createTear(/** @type {HTMLElement} */ (document.querySelector(".stage")), store),
   createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),
-  createMethods(at("methods"), store, session, dialog.open, studies.open),
+  createMethods(at("method-list"), store, session, dialog.open),
+  createWhyCard(at("methods"), store, session),
   createControls(at("controls"), store, session),
+  createParameters(
+    /** @type {HTMLElement} */ (document.querySelector(".stage")),
+    /** @type {HTMLElement} */ (document.querySelector(".mechanism .choices")),
+    store,
+    session,
+  ),
+  createVerdictBar(at("verdict"), store),
   createHappening(at("happening"), store, session),
   createPlots(at("plots"), store, session),
   createReactions(at("reactions"), store, session),
   createEquations(at("equations"), store, session),
-  createStatus(at("status"), store),
+  createStatus(at("status"), document.body, store),
 ];
 
 let drawing = 0;
@@ -94,6 +117,7 @@ addEventListener("pagehide", (event) => {
 try {
   await session.start(location.hash.slice(1));
   at("main").setAttribute("aria-busy", "false");
+  guide.begin(/** @type {HTMLElement} */ (document.querySelector(".mechanism")));
   at("play").focus({ preventScroll: true });
 } catch (error) {
   at("main").setAttribute("aria-busy", "false");

@@ -86,15 +86,17 @@ test("a finished run stops the clock; another step runs it again, Backspace sets
   await until(page, (data) => data.speed === 10);
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "finished", LONG);
-  assert.match(await page.textContent("#play"), /Again/);
+  assert.match(await page.textContent("#play"), /Replay/);
   const generation = await read(page, (data) => data.generation);
   await type(page, "#set-h", "0.002");
   await until(page, `(data) => data.generation > ${generation} && data.latest?.t > 0.2`); // runs on by itself
   await page.focus("#play");
   await page.keyboard.press("Backspace");
-  await until(page, (data) => data.state === "paused" && data.latest?.frame === 0);
+  await until(page, (data) => data.state !== "running" && data.view.shown === 0);
+  const frames = await read(page, (data) => data.history.count);
   await page.keyboard.press("Space");
-  await until(page, (data) => data.latest?.t > 0.3);
+  await until(page, (data) => data.view.replaying && data.view.shown > 3);
+  assert.ok((await read(page, (data) => data.history.count)) >= frames, "nothing is lost");
 });
 
 test("a change made at a run's end, before the page heard of the end, runs on; what comes late of the old run is past", async (t) => {

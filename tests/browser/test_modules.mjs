@@ -27,7 +27,9 @@ import {
   withSetting,
 } from "../../web/state/spelling.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
-import { predictionAt, sentences, trendOf, tryOfRemedy } from "../../web/state/words.js";
+import { groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
+import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
+import { predictionAt } from "../../web/state/words.js";
 import { INCIDENTS } from "../../web/state/incidents.js";
 import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
 import { createNamePlaces } from "../../web/widgets/name-places.js";
@@ -261,18 +263,98 @@ test("growth with time and with its square is growth, an oscillation is not", ()
   );
 });
 
-test("the sentence names the method, its gap and its trend", () => {
+/** Data of one method whose gap, error and energy are given over 10 s. */
+function judged({ gap, off = () => 0, energy = () => 0, loops = 2, known = true }) {
   const history = createHistory(1, 1);
   for (let k = 0; k <= 600; k++) {
-    history.push(frame(k, 3.2e-5 * (k / 60) ** 2));
+    const one = frame(k, gap(k / 60));
+    one.methods[0].points = [off(k / 60), 0, 0];
+    one.methods[0].energy_change = energy(k / 60);
+    history.push(one);
   }
-  const data = {
+  const samples = Array.from({ length: 601 });
+  const reference = {
+    state: "ready",
+    digits: 12.4,
+    own: 1e-12,
+    energyScale: 10,
+    stride: 1,
+    points: samples.map(() => Float64Array.from([0, 0, 0])),
+    energy: samples.map(() => 14),
+  };
+  return {
     history,
     methods: [{ label: "raw" }],
-    scene: { m: 2 },
+    scene: { m: loops, length: 1 },
+    reference: known ? reference : { state: "none" },
     view: { hidden: new Set() },
   };
-  assert.deepEqual(sentences(data, 600), ["raw: gap 3.2 mm and growing"]);
+}
+
+const verdictOf = (what) => verdictAt(judged(what), 0, 600).words;
+const rounding = () => 4e-16;
+
+test("the verdict takes the worst of gap, error and energy", () => {
+  assert.equal(verdictOf({ gap: (t) => 3.2e-3 * t * t }), "open by 320 mm and growing");
+  assert.equal(
+    verdictOf({ gap: rounding, off: () => 0.99 }),
+    "closed, but 990 mm from the true motion",
+  );
+  assert.equal(
+    verdictOf({ gap: () => 2e-3, off: (t) => 0.034 * t }),
+    "closed to 2.0 mm, but 340 mm from the true motion",
+  );
+  assert.equal(
+    verdictOf({ gap: rounding, energy: (t) => 0.71 * t }),
+    "closed, but 7.1 J off in energy",
+  );
+  assert.equal(verdictOf({ gap: rounding, off: () => 3e-6 }), "right to 5 digits");
+  assert.equal(verdictOf({ gap: rounding, off: () => 0 }), "right to 12 digits");
+  assert.equal(verdictOf({ gap: () => 3e-3 }), "open by 3.0 mm");
+  assert.equal(
+    verdictOf({ gap: (t) => 4.3e-8 * t * t, off: () => 3e-6 }),
+    "right to 5 digits, gap 4.3 µm and growing",
+  );
+});
+
+test("a closed loop is no praise: without a reference the error is unknown", () => {
+  assert.equal(verdictOf({ gap: rounding, known: false }), "closed, error unknown");
+  assert.equal(verdictOf({ gap: () => 2e-6, known: false }), "closed to 2.0 µm, error unknown");
+  assert.equal(verdictOf({ gap: rounding, known: false, loops: 0 }), "error unknown");
+});
+
+test("sentences leave out no method, and methods of one verdict share a sentence", () => {
+  const data = judged({ gap: rounding, off: () => 3e-6 });
+  const history = createHistory(3, 1);
+  for (let k = 0; k <= 600; k++) {
+    const one = (gap, x) => ({ ...frame(k, gap).methods[0], points: [x, 0, 0] });
+    history.push({
+      ...frame(k, 0),
+      methods: [one(4e-16, 3e-6), one(3.2e-3 * (k / 60) ** 2, 3e-6), one(4e-16, 3e-6)],
+    });
+  }
+  const methods = ["projection", "raw", "reduced"].map((label) => ({ label }));
+  assert.deepEqual(
+    sentences({ ...data, history, methods }, 600).map(({ text }) => text),
+    ["raw: open by 320 mm and growing", "projection and reduced: right to 5 digits"],
+  );
+});
+
+test("incidents of one cause are one line with a count", () => {
+  const one = (method, code, t) => ({ method, code, t, remedies: [], message: code });
+  const groups = groupIncidents([
+    one(0, "energy-jump", 1),
+    one(1, "gap-open", 2),
+    one(0, "energy-drift", 3),
+    one(0, "energy-jump", 4),
+  ]);
+  assert.deepEqual(
+    groups.map(({ count, first, last, newest }) => [newest.method, count, first, last]),
+    [
+      [0, 3, 1, 4],
+      [1, 1, 2, 2],
+    ],
+  );
 });
 
 test("a remedy becomes a button only when it can be carried out", () => {
@@ -479,14 +561,14 @@ test("what is seen coming is counted down until it is there, for the methods it 
     view: { hidden: new Set() },
   };
   assert.equal(predictionAt(data, 6), "");
-  assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s (raw)");
+  assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank (raw)");
   assert.equal(predictionAt(data, 54), "");
   data.incidents.push({ code: "near-singular", method: 0, t: 0.76, value: 1e-5 });
-  assert.equal(predictionAt(data, 54), "a singular pose was passed at 0.76 s");
+  assert.equal(predictionAt(data, 54), "the mechanism passed a singular configuration at 0.76 s");
   data.incidents.push({ code: "rank-ahead", method: 1, t: 0.3, value: 0.4 });
-  assert.equal(predictionAt(data, 30), "J loses rank in 0.20 s");
+  assert.equal(predictionAt(data, 30), "singular configuration in 0.20 s: J loses rank");
   data.view.hidden.add(1);
-  assert.equal(predictionAt(data, 30), "J loses rank in 0.25 s");
+  assert.equal(predictionAt(data, 30), "singular configuration in 0.25 s: J loses rank");
 });
 
 test("the state goes to the server under the names of coordinates and rates", () => {

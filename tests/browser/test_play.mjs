@@ -24,11 +24,11 @@ test("opens paused on five methods of the four-bar, with Play focused", async (t
   assert.deepEqual(await read(page, (data) => data.methods.map((m) => m.formulation)), METHODS);
   assert.equal(await read(page, (data) => data.state), "paused");
   assert.equal(await read(page, (data) => data.latest.t), 0);
-  assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 freedom/);
+  assert.match(await page.textContent(".mechanism .caption"), /crank-rocker, 1 /);
   assert.equal(await page.locator(".ghost").count(), METHODS.length);
   assert.match(
     await page.textContent("#status"),
-    /paused · 5 methods.*1 freedom \(3 − 2\).*stream live/s,
+    /paused · 5 methods.*1 degree of freedom \(3 − 2\).*stream live/s,
   );
 });
 
@@ -46,16 +46,16 @@ test("Space plays and pauses; the unstabilised gap grows and the others stay clo
   const worst = await read(page, (data) =>
     data.methods.map((_, m) => data.history.worst(m, "gap", 0, data.history.count - 1)),
   );
-  assert.ok(worst[0] > 1e-9 && worst[0] < 1e-5, `index 1: ${worst[0]} m`);
+  assert.ok(worst[0] > 1e-3 && worst[0] < 0.1, `index 1: ${worst[0]} m`);
   assert.ok(worst[1] < worst[0], `Baumgarte: ${worst[1]} m`);
   for (const gap of worst.slice(2)) {
     assert.ok(gap < ROUNDING, `${gap} m`);
   }
   await page.waitForFunction(() =>
-    /gap .* and growing/.test(document.querySelector(".live").textContent),
+    /index-1: open by .* and growing/.test(document.querySelector(".live").textContent),
   );
-  assert.match(await page.textContent("tr:nth-child(1) .trend"), /growing/);
-  assert.match(await page.textContent("tr:nth-child(3) .trend"), /closed/);
+  assert.match(await page.textContent("tr:nth-child(1) .words"), /open by .* and growing/);
+  assert.match(await page.textContent("tr:nth-child(3) .words"), /^closed, but .* true motion$/);
 });
 
 test("the arrows step by one frame, back as well, and Backspace returns to the start", async (t) => {
@@ -68,7 +68,7 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
   assert.ok(Math.abs((await time(page)) - 3 * dt) < 1e-12);
   await page.keyboard.press("ArrowLeft");
   await page.waitForFunction(
-    (t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s`,
+    (t) => document.querySelector(".time").textContent === `t ${t.toFixed(2)} s / 10 s`,
     2 * dt,
   );
   assert.equal(await read(page, (data) => data.latest.frame), 3);
@@ -76,8 +76,10 @@ test("the arrows step by one frame, back as well, and Backspace returns to the s
   await page.keyboard.press("ArrowRight");
   await until(page, (data) => data.latest.frame === 4);
   await page.keyboard.press("Backspace");
-  await until(page, (data) => data.latest?.frame === 0 && data.history.count === 1);
-  await page.waitForFunction(() => document.querySelector(".time").textContent === "t 0.00 s");
+  await page.waitForFunction(
+    () => document.querySelector(".time").textContent === "t 0.00 s / 10 s",
+  );
+  assert.equal(await read(page, (data) => data.history.count), 5, "the recording is kept");
 });
 
 test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 s, projection stays closed", async (t) => {
@@ -112,6 +114,8 @@ test("at a step of 0.02 s the raw gap passes 1 cm near 1.4 s and 10 cm near 3.7 
 
 test("the same step is reached by the slider and by 2e-2 s", async (t) => {
   const page = await open(t);
+  await type(page, "#set-h", "1e-3");
+  await until(page, (data) => data.methods.every((m) => /h=0\.001$/.test(m.spelling)));
   await page.focus("#set-h-slider");
   for (let k = 0; k < 9; k++) {
     await page.keyboard.press("ArrowUp");
@@ -138,7 +142,7 @@ test("a step of 0 is refused at the field and the old run goes on", async (t) =>
   await until(page, `(data) => data.latest?.t > ${before.t} + 0.3`);
   assert.equal(await read(page, (data) => data.generation), before.generation);
   await page.press("#set-h", "Escape");
-  assert.equal(await page.inputValue("#set-h"), "0.001");
+  assert.equal(await page.inputValue("#set-h"), "0.02");
 });
 
 test("a spelling that the server refuses is told in the dialog and changes nothing", async (t) => {
@@ -160,7 +164,7 @@ test("a spelling that the server refuses is told in the dialog and changes nothi
 
 test("a length that cannot close the loop is refused at its field with the reason, and the old one goes on", async (t) => {
   const page = await open(t);
-  await page.click(".scene-parameters summary");
+  await page.click(".open-parameters");
   const before = await read(page, (data) => data.generation);
   await type(page, "#parameter-l2", "3");
   await page.waitForFunction(
@@ -192,7 +196,10 @@ test("Why? gives what happened, the rule and things to try; trying Baumgarte 20/
   await until(page, (data) => data.latest?.t > 5);
   await page.getByRole("button", { name: "Why? index-1" }).click();
   const card = await page.textContent(".card");
-  assert.match(card, /After [\d.]+ s the loop gap is .*m \(growing\)/);
+  assert.match(
+    card,
+    /After [\d.]+ s the loop gap is .*m \(growing\), the error of position is .*m/,
+  );
   assert.ok((await page.textContent(".card .rule")).length > 40);
   const old = await read(page, (data) => data.history.worst(1, "gap", 0, data.history.indexAt(5)));
   await page.getByRole("button", { name: "Baumgarte with α = β = 20" }).click();
@@ -240,10 +247,11 @@ test("a method that fails keeps its last pose, under a banner with its name, the
   await fastest(page);
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.methods[1].state === "failed", LONG);
-  await page.waitForSelector(".banner:not([hidden])");
-  assert.match(await page.textContent(".banner"), /Baumgarte stopped at [\d.]+ s: .{10}/);
   await page.waitForFunction(() =>
-    /stopped at/.test(document.querySelector("tr:nth-child(2) .trend").textContent),
+    /Baumgarte stopped at [\d.]+ s: .{10}/.test(document.querySelector(".banner").textContent),
+  );
+  await page.waitForFunction(() =>
+    /stopped at/.test(document.querySelector("tbody tr:nth-child(2) .words").textContent),
   );
   assert.doesNotMatch(await page.getAttribute(".ghost.selected .outline", "d"), /NaN/);
   assert.doesNotMatch(await page.textContent("main"), /NaN|Infinity|undefined/);
@@ -310,7 +318,7 @@ test("a method that cannot serve the scene stands in the table with its reason, 
   });
   await page.selectOption("#scene", "delta-robot");
   await until(page, (data) => data.scene.id === "delta-robot" && data.refused.length === 1);
-  assert.match(await page.textContent(".refused"), /does not serve this scene: .*speed/);
+  assert.match(await page.textContent(".refused"), /cannot run on this scene: .*(speed|velocit)/);
   await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.2);
@@ -375,7 +383,7 @@ test("a link opens the same comparison at the same frame with the same numbers",
   const page = await open(t);
   await until(page, (data) => data.reference?.state === "ready");
   await page.getByRole("button", { name: "reference", exact: true }).click();
-  await page.click(".scene-parameters summary");
+  await page.click(".open-parameters");
   await type(page, "#parameter-l2", "1.3");
   await until(page, (data) => data.settings.l2 === 1.3);
   await page.click("#reactions summary");
@@ -421,7 +429,9 @@ test("a singular pose is counted down, and then told with what became of each me
     await until(page, `(data) => data.latest?.frame === ${k}`);
   }
   await page.waitForFunction(() =>
-    /J loses rank in 0\.\d\d s/.test(document.querySelector(".ahead").textContent),
+    /singular configuration in 0\.\d\d s: J loses rank/.test(
+      document.querySelector(".ahead").textContent,
+    ),
   );
   await playTo(page, 0.5);
   const met = await read(page, (data) =>

@@ -66,7 +66,6 @@ export function createExchange(store, notice) {
         data.stream.id = lastId;
         if (receiver.take(name, detail, Number(lastId))) {
           stream?.rest();
-          receiver.finish();
         }
       },
       (state, id) => {

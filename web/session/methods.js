@@ -3,7 +3,13 @@
 // Actions on the methods, their options and the scene's parameters.
 import { sentenceOf } from "../api/client.js";
 import { limits } from "../state/catalogue.js";
-import { parseSpelling, withSetting } from "../state/spelling.js";
+import { cardOf, parseSpelling, withSetting } from "../state/spelling.js";
+
+const FALLS_APART = ["index1", "baumgarte:alpha=5,beta=5", "projection", "nullspace", "reduced"];
+const HOLDS_TOGETHER = ["baumgarte:alpha=20,beta=20", "projection", "nullspace", "reduced"];
+
+/** A step at which differences between methods can be seen: twice the scene's own. */
+const telling = (scene) => Number((2 * (scene?.step || 0.01)).toPrecision(3));
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -44,7 +50,7 @@ export function createMethodActions(store, exchange, notice) {
     resetParameters: () => exchange.restart({ settings: {} }),
     /**
      * Carries out a suggestion of a card: an option, or a method in place of its kind.
-     * @param {import("../state/words.js").Try} item
+     * @param {import("../state/cards.js").Try} item
      */
     async attempt(item) {
       if (item.key) {
@@ -61,6 +67,25 @@ export function createMethodActions(store, exchange, notice) {
         list[place] = item.method;
         await actions.setMethods(list).catch((error) => notice(sentenceOf(error)));
         actions.select(place);
+      }
+    },
+    /** Runs the methods without stabilisation, at a step where the loop visibly opens. */
+    fallApart: () => actions.demonstrate(FALLS_APART),
+    /** Runs methods that hold the loop closed, at the same step. */
+    holdTogether: () => actions.demonstrate(HOLDS_TOGETHER),
+    /** @param {string[]} formulations with their options */
+    async demonstrate(formulations) {
+      const known = formulations.filter((text) =>
+        cardOf(data.catalogue, "formulation", parseSpelling(text).formulation.name),
+      );
+      const integrator = `rk4:h=${telling(data.scene)}`;
+      try {
+        await exchange.change({
+          methods: known.map((text) => `${text}@${integrator}`),
+          state: data.view.stepped ? "paused" : "running",
+        });
+      } catch (error) {
+        notice(sentenceOf(error));
       }
     },
     /** @param {number} m */

@@ -144,7 +144,14 @@ export function createReceiver(store, notice) {
     },
     gap: ({ from, to }) =>
       notice(`the server no longer has events ${from} to ${to}; the curves have a hole there`),
-    end: ({ generation, deleted }) => Boolean(deleted) || generation === data.generation,
+    end: ({ generation, deleted }) => {
+      if (!deleted && generation !== data.generation) {
+        return false;
+      }
+      // a comparison that the server has closed is not finished: Play makes it again
+      applyState({ state: deleted ? "paused" : "finished", speed: data.speed });
+      return true;
+    },
   };
 
   return {
@@ -163,6 +170,5 @@ export function createReceiver(store, notice) {
      * @returns {boolean} true: this was the last event of the comparison
      */
     take: (name, detail, id) => onEvent[name](detail, id) === true,
-    finish: () => applyState({ state: "finished", speed: data.speed }),
   };
 }

@@ -12,11 +12,11 @@ const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows",
 
 const FIRST_SCENE = "four-bar";
 const FIRST_METHODS = [
-  "index1@rk4:h=1e-3",
-  "baumgarte:alpha=5,beta=5@rk4:h=1e-3",
-  "projection@rk4:h=1e-3",
-  "nullspace@rk4:h=1e-3",
-  "reduced@rk4:h=1e-3",
+  "index1@rk4:h=0.02",
+  "baumgarte:alpha=5,beta=5@rk4:h=0.02",
+  "projection@rk4:h=0.02",
+  "nullspace@rk4:h=0.02",
+  "reduced@rk4:h=0.02",
 ];
 
 /**

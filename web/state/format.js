@@ -58,12 +58,12 @@ export function bound(value, unit) {
     : `${factor}${powerOfTen(power)} ${unit}`;
 }
 
-/** Two digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value */
-export function scientific(value) {
+/** Digits and a power of ten: 4.4×10⁻¹⁶. @param {number} value @param {number} [digits] */
+export function scientific(value, digits = 2) {
   if (value === 0) {
     return "0";
   }
-  const [mantissa, exponent] = value.toExponential(1).split("e");
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return `${mantissa.replace("-", "−")}×${powerOfTen(Number(exponent))}`;
 }
 
@@ -85,7 +85,7 @@ export function quantity(value, unit, digits = 2) {
   }
   const rounded = Number(size.toPrecision(digits));
   if (size < SMALLEST_PREFIXED || rounded >= 1e12) {
-    return `${scientific(value)}${space}${unit}`;
+    return `${scientific(value, Math.min(2, digits))}${space}${unit}`;
   }
   const exponent = Math.floor(Math.log10(rounded) / 3 + 1e-9) * 3;
   const [power, prefix] = SHOWN.find(([e]) => e === exponent) ?? SHOWN[5];

@@ -17,6 +17,7 @@ export const COLUMNS = /** @type {const} */ ([
   "evals",
   "cpu",
   "steps",
+  "pivot_ratio",
 ]);
 
 /** @typedef {ReturnType<typeof createHistory>} History */

@@ -10,11 +10,13 @@ const MOST_NUMBERS = 300000; // the server's bound is a little above
 const PAUSE = 150; // [ms] after the last change, before it is asked for
 
 /**
- * `own`: what the reference itself may be off [m]; `points[k]` belong to frame k * stride of the
- * clock.
- * @typedef {{state: "asked" | "none" | "failed" | "ready", key: string, reason: string, time:
- *   number, digits: number, own: number,
- *   means: string[], stride: number, points: Float64Array[], energy: number[]}} Reference
+ * `own`: error of the reference itself [m]; `energyScale`: swing of the energies [J]; `points[k]`
+ * and `energy[k]` belong to frame k * stride of the clock.
+ * @typedef {{
+ *   state: "asked" | "none" | "failed" | "ready", key: string, reason: string, time: number,
+ *   digits: number, own: number, energyScale: number, means: string[], stride: number,
+ *   points: Float64Array[], energy: number[],
+ * }} Reference
  */
 
 /**
@@ -30,6 +32,7 @@ const without = (key, state, reason) => ({
   time: 0,
   digits: 0,
   own: 0,
+  energyScale: 0,
   means: [],
   stride: 1,
   points: [],
@@ -79,6 +82,7 @@ export function createReferenceFeed(store) {
     time,
     digits,
     own: motion.between * scales.length,
+    energyScale: scales.energy,
     means,
     stride,
     points: motion.points.map((row) => Float64Array.from(row)),

@@ -52,6 +52,8 @@ function initialView() {
     /** axes of the stability map; "": the ones that fit the methods */ map: "",
     letters: true,
     stepped: false,
+    /** the recording plays */ replaying: false,
+    /** the recording plays again and again */ loop: false,
     /** the method whose card is open, or -1 */ why: -1,
   };
 }

@@ -1,86 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// What is happening, in words: the state of a method, sentences, and the card that says why.
-import { ROUNDING, quantity, seconds, withPowers } from "./format.js";
-import { cardOf, parseSpelling, settingOf } from "./spelling.js";
+// Sentences about the moment that is shown: a singular configuration ahead, before and after a
+// change, the drawing.
+import { ROUNDING, quantity, seconds } from "./format.js";
+import { listed, verdictAt } from "./verdict.js";
 
-/**
- * A gap that more than doubles from the first half of the motion to the second grows: t to t^2 do,
- * an oscillation does not.
- */
-const GROWTH = 1.5;
-const EARLIEST = 6; // [frames] before it there is nothing to tell
-
-/**
- * @typedef {{word: string, arrow: string, tone: "calm" | "warn" | "bad"}} Trend
- * @param {import("./history.js").History} history
- * @param {number} m
- * @param {number} shown index of the frame shown
- * @returns {Trend}
- */
-export function trendOf(history, m, shown) {
-  const t = history.t[shown];
-  if (history.ended[m] <= t) {
-    return { word: `stopped at ${seconds(history.ended[m])}`, arrow: "■", tone: "bad" };
-  }
-  const half = history.indexAt(t / 2);
-  const late = history.worst(m, "gap", half, shown);
-  if (!(late > ROUNDING)) {
-    return { word: "closed", arrow: "→", tone: "calm" };
-  }
-  if (shown < EARLIEST) {
-    return { word: "just started", arrow: "→", tone: "calm" };
-  }
-  const early = history.worst(m, "gap", 0, half);
-  if (late > GROWTH * early) {
-    return { word: "growing", arrow: "↗", tone: "warn" };
-  }
-  return late < early / GROWTH
-    ? { word: "shrinking", arrow: "↘", tone: "calm" }
-    : { word: "held", arrow: "→", tone: "calm" };
-}
-
-/**
- * At most three sentences about the frame shown, the most telling first.
- * @param {import("./store.js").Store["data"]} data
- * @param {number} shown
- */
-export function sentences(data, shown) {
-  const { history, methods, view } = data;
-  if (!history || shown < 0) {
-    return [];
-  }
-  const loops = (data.scene?.m ?? 0) > 0;
-  const rows = methods
-    .map((method, m) => ({
-      method,
-      m,
-      trend: trendOf(history, m, shown),
-      gap: history.columns[m].gap[shown],
-    }))
-    .filter(({ m }) => !view.hidden.has(m));
-  const out = rows
-    .filter(({ trend }) => trend.tone === "bad")
-    .map(({ method, trend }) => `${method.label}: ${trend.word}`);
-  if (!loops) {
-    return out.concat("this mechanism has no loop to close; watch the energy").slice(0, 3);
-  }
-  rows
-    .filter(({ trend }) => trend.tone !== "bad" && trend.word !== "closed")
-    .sort((a, b) => b.gap - a.gap)
-    .forEach(({ method, trend, gap }) =>
-      out.push(`${method.label}: gap ${quantity(gap, "m")} and ${trend.word}`),
-    );
-  const closed = rows
-    .filter(({ trend }) => trend.word === "closed")
-    .map(({ method }) => method.label);
-  if (closed.length) {
-    out.splice(2, Infinity, `closed to rounding: ${closed.join(", ")}`);
-  }
-  return out.slice(0, 3);
-}
-
-const SAID_AFTER = 0.5; // [s] that a pose which was passed is still told: some come quickly
+const SAID_AFTER = 0.5; // [s] that a passed configuration is still reported: some come quickly
 const PASSED = ["near-singular", "rank-loss"];
 
 /** @param {import("./store.js").Store["data"]} data @param {number} now [s] */
@@ -91,12 +16,14 @@ function passedAt({ incidents, view, duration }, now) {
         PASSED.includes(code) && t > 0 && t <= now && !view.hidden.has(method),
     )
     .reduce((latest, { t }) => Math.max(latest, t), -Infinity);
-  return now - last < SAID_AFTER ? `a singular pose was passed at ${seconds(last, duration)}` : "";
+  return now - last < SAID_AFTER
+    ? `the mechanism passed a singular configuration at ${seconds(last, duration)}`
+    : "";
 }
 
 /**
- * What the engine sees coming at the time shown: "J loses rank in 0.31 s (index-1, projection)", ""
- * when nothing is.
+ * What the engine predicts at the time shown: "singular configuration in 0.31 s: J loses rank
+ * (index-1 and projection)", or "".
  * @param {import("./store.js").Store["data"]} data
  * @param {number} shown
  */
@@ -106,7 +33,7 @@ export function predictionAt(data, shown) {
     return "";
   }
   const now = history.t[shown];
-  /** @type {Map<number, number>} time of the pose by method, as told last */
+  /** @type {Map<number, number>} time of the configuration by method, as reported last */
   const ahead = new Map();
   for (const { code, method, t, value } of incidents) {
     if (code === "rank-ahead" && t <= now && !(history.ended[method] <= now)) {
@@ -120,9 +47,9 @@ export function predictionAt(data, shown) {
     return passedAt(data, now);
   }
   const drawn = methods.filter((_, m) => !view.hidden.has(m)).length;
-  const names = coming.map(([m]) => methods[m].label).join(", ");
+  const names = listed(coming.map(([m]) => methods[m].label));
   const whose = coming.length < drawn ? ` (${names})` : "";
-  return `J loses rank in ${(coming[0][1] - now).toFixed(2)} s${whose}`;
+  return `singular configuration in ${(coming[0][1] - now).toFixed(2)} s: J loses rank${whose}`;
 }
 
 /**
@@ -159,95 +86,6 @@ export function beforeAndAfter(data, shown) {
   });
 }
 
-/**
- * Things to try per formulation. `set` names a control and its value as a share of the present one
- * (`times`) or outright (`to`);
- * `method` is a spelling in which {integrator} stands for the present one.
- */
-const TRIES = {
-  index1: [
-    { say: "Baumgarte with α = β = 20", method: "baumgarte:alpha=20,beta=20@{integrator}" },
-    { say: "projection after every step", method: "projection@{integrator}" },
-    { say: "a step of one half", key: "h", times: 0.5 },
-  ],
-  baumgarte: [
-    { say: "α = β = 20", key: "alpha", and: "beta", to: 20 },
-    { say: "projection after every step", method: "projection@{integrator}" },
-    { say: "a step of one half", key: "h", times: 0.5 },
-  ],
-  "nullspace-as-printed": [
-    { say: "the null-space form with its missing term", method: "nullspace@{integrator}" },
-    { say: "a step of one half: the error stays", key: "h", times: 0.5 },
-  ],
-};
-const TRIES_OTHERWISE = [
-  { say: "a step of one half", key: "h", times: 0.5 },
-  { say: "the reduced coordinates beside it", method: "reduced@{integrator}" },
-];
-
-/** @typedef {{label: string, key?: string, and?: string, value?: number, method?: string}} Try */
-
-/** @param {import("./store.js").Store["data"]} data @param {number} m @returns {Try[]} */
-function triesOf(data, m) {
-  const { spelling, formulation } = data.methods[m];
-  const integrator = spelling.slice(spelling.indexOf("@") + 1);
-  return (TRIES[formulation] ?? TRIES_OTHERWISE).flatMap((item) => {
-    if (item.method) {
-      const wanted = item.method.replace("{integrator}", integrator);
-      const known = cardOf(data.catalogue, "formulation", parseSpelling(wanted).formulation.name);
-      return known && !data.methods.some((method) => method.spelling === wanted)
-        ? [{ label: item.say, method: wanted }]
-        : [];
-    }
-    const now = settingOf(data.catalogue, spelling, item.key);
-    const value = item.to ?? (now && Number((now.value * item.times).toPrecision(6)));
-    return now && value !== now.value
-      ? [{ label: item.say, key: item.key, and: item.and, value }]
-      : [];
-  });
-}
-
-/**
- * A remedy as the engine words it: a spelling and "key=value" can be clicked, anything else is
- * read.
- * @returns {Try}
- */
-export function tryOfRemedy(text) {
-  const setting = /^(\w+)\s*=\s*([-+.\deE]+)$/.exec(text.trim());
-  if (setting) {
-    return { label: `${setting[1]} = ${setting[2]}`, key: setting[1], value: Number(setting[2]) };
-  }
-  return /^[\w-]+(:[^@\s]*)?@\S+$/.test(text.trim())
-    ? { label: text.trim(), method: text.trim() }
-    : { label: text.trim() };
-}
-
-/**
- * The card of a method: what happened on this run, the rule behind it, what to try.
- * @param {import("./store.js").Store["data"]} data
- * @param {number} m
- * @param {number} shown
- */
-export function cardOfMethod(data, m, shown) {
-  const method = data.methods[m];
-  const history = data.history;
-  const value = (name) => history.columns[m][name][shown];
-  const trend = trendOf(history, m, shown);
-  const reason = data.latest?.methods[m]?.reason;
-  const happened =
-    trend.tone === "bad"
-      ? `It ${trend.word}${reason ? `: ${reason}` : ""}.`
-      : `After ${seconds(history.t[shown], data.duration)} the loop gap is ${quantity(value("gap"), "m")} (${trend.word}), the energy has changed by ` +
-        `${quantity(value("energy_change"), "J")}.`;
-  return {
-    title: `${method.title}`,
-    happened,
-    rule: withPowers(method.rule),
-    drift: withPowers(method.drift ?? ""),
-    tries: triesOf(data, m),
-  };
-}
-
 /** One sentence that stands for the drawing. */
 export function describeDrawing(data, shown) {
   const { scene, methods, view, history } = data;
@@ -267,10 +105,17 @@ export function describeDrawing(data, shown) {
     .filter(Boolean)
     .slice(0, 8);
   const gap = scene.drawing.tears.length
-    ? `, loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}`
+    ? `; loop gap ${quantity(history.columns[view.selected].gap[shown], "m")}`
     : "";
+  const verdict = verdictAt(data, view.selected, shown).words;
   return (
     `${scene.title} at ${seconds(history.t[shown], data.duration)}, drawn by ${drawn.join(", ") || "no method"}; ` +
-    `${method.label}${places.length ? `: ${places.join(", ")}` : ""}${gap}.`
+    `${method.label} (${verdict})${places.length ? `: ${places.join(", ")}` : ""}${gap}.`
   );
+}
+
+/** A text as a sentence: with a capital letter and a full stop. @param {string} text */
+export function sentenceCase(text) {
+  const upper = text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?]$/.test(upper) ? upper : `${upper}.`;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The name, the scene menu, the switch of the theme, and the keys.
+// The name, the scene menu, and the buttons for studies, links, exports, theme and help.
 import { sentenceOf } from "../api/client.js";
 import { listen } from "../state/store.js";
 import { h } from "../widgets/dom.js";
@@ -9,7 +9,8 @@ import { h } from "../widgets/dom.js";
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
- * @param {{toggleTheme: () => void, openKeys: () => void}} open
+ * @param {{toggleTheme: () => void, openKeys: () => void, openStudy: (kind: string) => void,
+ *   openExport: () => void, openGuide: () => void}} open
  */
 export function createHeader(el, store, actions, open) {
   const data = store.data;
@@ -18,23 +19,27 @@ export function createHeader(el, store, actions, open) {
     { id: "scene", onchange: load, disabled: true },
     h("option", {}, "four-bar"),
   );
-  const theme = h("button", { type: "button", class: "quiet", onclick: open.toggleTheme }, "dark");
-  const keys = h("button", { type: "button", class: "quiet", onclick: open.openKeys }, "keys");
-  const link = h(
-    "button",
-    {
-      type: "button",
-      class: "quiet",
-      title: "copy a link to what is shown (L)",
-      onclick: () => actions.share(),
-    },
-    "link",
-  );
+  const button = (word, tip, onclick) =>
+    h("button", { type: "button", class: "quiet", "data-tip": tip, onclick }, word);
+  const theme = button("dark", "", open.toggleTheme);
   const about = h("p", { class: "about scene-about" });
   el.append(
     h("div", { class: "scene-pick" }, h("label", { for: "scene" }, "Scene"), menu),
     about,
-    h("div", { class: "choices" }, link, theme, keys),
+    h(
+      "div",
+      { class: "choices" },
+      button(
+        "studies",
+        "what accuracy costs (W), where steps are stable (B), where the error comes from (E)",
+        () => open.openStudy("work-precision"),
+      ),
+      button("link", "copy a link to what is shown (L)", () => actions.share()),
+      button("export", "save the recording as data or the drawing as a picture", open.openExport),
+      button("guide", "the first minute, step by step", open.openGuide),
+      theme,
+      button("keys", "all keys of the page (F1)", open.openKeys),
+    ),
   );
 
   async function load() {
@@ -76,9 +81,7 @@ export function createHeader(el, store, actions, open) {
     scene: () => {
       menu.value = data.scene?.id ?? "";
       menu.title = data.scene?.title ?? "";
-      const text = data.scene?.about ?? "";
-      about.textContent = text.split(/(?<=\.)\s/)[0];
-      about.title = text;
+      about.textContent = (data.scene?.about ?? "").split(/(?<=\.)\s/)[0];
     },
     theme: showTheme,
   });

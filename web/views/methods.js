@@ -1,26 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The methods side by side: what is drawn how, its gap, its energy change, its cost, and its state
-// in words.
-import { bound, quantity, withPowers } from "../state/format.js";
-import { offReference } from "../state/reference.js";
+// The methods side by side: how each is drawn, the verdict on it, its gap, error, energy and cost.
+import { ROUNDING, bound, quantity, withPowers } from "../state/format.js";
+import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
-import { listen } from "../state/store.js";
-import { trendOf } from "../state/words.js";
+import { listen, shownIndex } from "../state/store.js";
+import { verdictAt } from "../state/verdict.js";
 import { h, icon, s, say, set } from "../widgets/dom.js";
+import { term } from "../widgets/term.js";
 
 const GREEK = { alpha: "α", beta: "β" };
 const REDRAW = 120; // [ms] numbers that change faster cannot be read
+
+/** Index of the last value that is a number, at `now` or before. @param {Float64Array} column */
+function lastKnown(column, now) {
+  let i = now;
+  while (i > 0 && Number.isNaN(column[i])) {
+    i--;
+  }
+  return i;
+}
+
+/** A gap of rounding has one digit: more of them mean nothing. @param {number} gap [m] */
+const gapWords = (gap) => quantity(gap, "m", gap < ROUNDING ? 1 : 2);
+
+/** "α = 5, β = 5, rk4, h = 0.02 s", for people. @param {string} spelling */
+function optionWords(spelling) {
+  const { formulation, integrator } = parseSpelling(spelling);
+  const words = (list) =>
+    list.map(([key, value]) => `${GREEK[key] ?? key} = ${key === "h" ? `${value} s` : value}`);
+  return [...words(formulation.settings), integrator.name, ...words(integrator.settings)].join(
+    ", ",
+  );
+}
 
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
  * @param {import("../session/session.js").Session} actions
  * @param {(m: number) => void} openDialog edits method m, or adds one (m = -1)
- * @param {(kind: string) => void} openStudy
  */
-export function createMethods(el, store, actions, openDialog, openStudy) {
+export function createMethods(el, store, actions, openDialog) {
   const data = store.data;
   const body = h("tbody", { role: "rowgroup" });
   const add = h(
@@ -29,47 +50,18 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     icon("plus"),
     "add a method",
   );
-  const studies = h(
-    "button",
-    {
-      type: "button",
-      class: "quiet",
-      title: "what accuracy costs (W), where steps are stable (B), where the error comes from (E)",
-      onclick: () => openStudy("work-precision"),
-    },
-    "studies",
-  );
-  const head = (text, title) => h("th", { scope: "col", role: "columnheader", title }, text);
-  const table = h(
-    "table",
-    { role: "table", class: "method-table" },
-    h(
-      "thead",
-      { role: "rowgroup" },
-      h(
-        "tr",
-        { role: "row" },
-        h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "Shown")),
-        head("Method", "formulation, integrator and step; click to draw it opaque"),
-        head("Loop gap", "‖φ‖: how far the cut joint has come apart"),
-        head(
-          "Energy change",
-          "since the start; in this motion energy should stay unless a load or damper works",
-        ),
-        head("Cost per step", "processor time and arithmetic operations"),
-        h("th", { scope: "col", role: "columnheader" }, h("span", { class: "hidden" }, "More")),
-      ),
-    ),
-    body,
-  );
   el.replaceChildren(
     h(
       "div",
       { class: "title" },
       h("h2", { id: "methods-title" }, "Methods"),
-      h("div", { class: "choices" }, studies, add),
+      h("div", { class: "choices" }, add),
     ),
-    table,
+    h(
+      "div",
+      { class: "method-scroll", tabindex: "0", role: "region", "aria-labelledby": "methods-title" },
+      h("table", { role: "table", class: "method-table" }, makeHead(), body),
+    ),
   );
 
   /** @type {{row: HTMLElement, parts: Record<string, HTMLElement>}[]} */
@@ -77,6 +69,28 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
   let refusals = data.refused;
   let timer = 0;
   let painted = 0;
+
+  function makeHead() {
+    const head = (name, ...content) =>
+      h("th", { scope: "col", role: "columnheader", class: name }, ...content);
+    const unseen = (text) => h("span", { class: "hidden" }, text);
+    return h(
+      "thead",
+      { role: "rowgroup" },
+      h(
+        "tr",
+        { role: "row" },
+        head("check", unseen("Drawn")),
+        head("who", unseen("Method")),
+        head("more", unseen("Why, and change")),
+        head("verdict", term("verdict")),
+        head("gap", term("gap", "gap")),
+        head("off", term("error")),
+        head("energy", term("energy", "energy")),
+        head("cost", term("ops", "operations")),
+      ),
+    );
+  }
 
   function swatch(method) {
     const look = data.look.slots[method.slot];
@@ -87,18 +101,11 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     );
   }
 
-  /** "α = 5, β = 5, rk4, h = 1 ms": no line breaks within a setting. */
-  function settingWords(method) {
-    const { formulation, integrator } = parseSpelling(method.spelling);
-    const words = (list) =>
-      list.map(([key, value]) => `${GREEK[key] ?? key} = ${key === "h" ? `${value} s` : value}`);
-    return [...words(formulation.settings), integrator.name, ...words(integrator.settings)]
-      .map((word) => word.replaceAll(" ", "\u00a0"))
-      .join(", ");
-  }
-
-  function makeRow(method, m) {
-    const parts = {
+  /** @param {import("../state/store.js").Method} method @param {number} m */
+  function makeParts(method, m) {
+    const number = () => h("span", { class: "number" });
+    const about = `${method.title} (${optionWords(method.spelling)}). ${method.rule}`;
+    return {
       check: h("input", {
         type: "checkbox",
         "aria-label": `draw ${method.label}`,
@@ -110,27 +117,24 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
           type: "button",
           class: "select",
           onclick: () => actions.select(m),
-          title: withPowers(`${method.title}: ${method.rule}`),
+          "data-tip": withPowers(about),
         },
         swatch(method),
         h("span", { class: "name" }, method.label),
       ),
-      gap: h("span", { class: "number" }),
-      trend: h("span", { class: "trend" }),
-      energy: h("span", { class: "number" }),
-      off: h("span", {
-        class: "sub number",
-        title: "distance of the drawn point that is farthest from the reference solution",
-      }),
-      cost: h("span", { class: "number" }),
-      ops: h("span", { class: "sub number" }),
+      verdict: h("span", { class: "words" }),
+      gap: number(),
+      off: number(),
+      energy: number(),
+      cost: number(),
       why: h(
         "button",
         {
           type: "button",
           class: "quiet why",
-          onclick: () => actions.setView({ why: m }),
+          onclick: () => actions.setView({ why: data.view.why === m ? -1 : m }),
           "aria-label": `Why? ${method.label}`,
+          "aria-expanded": "false",
         },
         "Why?",
       ),
@@ -141,29 +145,30 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
           class: "tool small",
           onclick: () => openDialog(m),
           "aria-label": `Change or remove ${method.label}`,
-          title: "change or remove",
+          "data-tip": "change or remove this method",
         },
         icon("edit"),
       ),
     };
-    const name = h(
-      "td",
-      { role: "cell", class: "who" },
-      parts.select,
-      h("span", { class: "sub" }, settingWords(method)),
-    );
-    if (method.model_error) {
-      name.append(h("span", { class: "badge" }, "model error: halving h does not help"));
-    }
+  }
+
+  function makeRow(method, m) {
+    const parts = makeParts(method, m);
+    const cell = (name, ...content) => h("td", { role: "cell", class: name }, ...content);
+    const badge = method.model_error
+      ? [h("span", { class: "badge" }, "model error: halving h does not help")]
+      : [];
     const row = h(
       "tr",
-      { role: "row" },
-      h("td", { role: "cell", class: "check" }, parts.check),
-      name,
-      h("td", { role: "cell", "data-label": "gap" }, parts.gap, parts.trend),
-      h("td", { role: "cell", "data-label": "energy change" }, parts.energy, parts.off),
-      h("td", { role: "cell", "data-label": "cost per step" }, parts.cost, parts.ops),
-      h("td", { role: "cell", class: "more" }, parts.why, parts.edit),
+      { role: "row", class: `slot-${method.slot}` },
+      cell("check", parts.check),
+      cell("who", parts.select),
+      cell("more", parts.why, parts.edit),
+      cell("verdict", parts.verdict, ...badge),
+      cell("gap", parts.gap),
+      cell("off", parts.off),
+      cell("energy", parts.energy),
+      cell("cost", parts.cost),
     );
     return { row, parts };
   }
@@ -172,32 +177,30 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
   function refusedRow({ spelling, reason }) {
     const { formulation } = parseSpelling(spelling);
     const card = cardOf(data.catalogue, "formulation", formulation.name);
-    const text = `does not serve this scene: ${reason}`;
+    const forget = () =>
+      actions.setRefused(data.refused.filter((other) => other.spelling !== spelling));
     return h(
       "tr",
       { role: "row", class: "refused" },
       h("td", { role: "cell", class: "check" }),
       h(
         "td",
-        { role: "cell", class: "who", colspan: 4 },
+        { role: "cell", class: "who" },
         h("span", { class: "name" }, card?.short_name ?? formulation.name),
-        h("span", { class: "sub" }, spelling),
-        h("span", { class: "refusal" }, text),
       ),
       h(
         "td",
         { role: "cell", class: "more" },
         h(
           "button",
-          {
-            type: "button",
-            class: "quiet",
-            "aria-label": `Forget ${spelling}`,
-            onclick: () =>
-              actions.setRefused(data.refused.filter((other) => other.spelling !== spelling)),
-          },
+          { type: "button", class: "quiet", "aria-label": `Forget ${spelling}`, onclick: forget },
           "forget",
         ),
+      ),
+      h(
+        "td",
+        { role: "cell", class: "verdict" },
+        h("span", { class: "words" }, `cannot run on this scene: ${reason}`),
       ),
     );
   }
@@ -206,8 +209,9 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
     rows = data.methods.map(makeRow);
     refusals = data.refused;
     body.replaceChildren(...rows.map(({ row }) => row), ...refusals.map(refusedRow));
-    add.disabled = data.methods.length >= limits().methods;
-    add.title = add.disabled ? `${limits().methods} methods at most` : "";
+    const most = limits().methods;
+    add.disabled = data.methods.length >= most;
+    set(add, { "data-tip": add.disabled ? `${most} methods at most` : null });
     showView();
   }
 
@@ -221,58 +225,43 @@ export function createMethods(el, store, actions, openDialog, openStudy) {
       row.classList.toggle("selected", selected);
       row.classList.toggle("off", data.view.hidden.has(m));
       set(parts.select, { "aria-pressed": String(selected) });
+      set(parts.why, { "aria-expanded": String(m === data.view.why) });
       /** @type {HTMLInputElement} */ (parts.check).checked = !data.view.hidden.has(m);
     });
     paint();
   }
 
-  /**
-   * A failed method keeps the numbers of its last good frame.
-   * @param {Float64Array} column
-   * @param {number} now
-   */
-  function lastGood(column, now) {
-    let i = now;
-    while (i > 0 && Number.isNaN(column[i])) {
-      i--;
+  /** Error of position, as a bound where the reference itself says no more. */
+  function errorWords(m, now) {
+    const { reference } = data;
+    const { off } = errorsOf(data)[m];
+    const value = off[lastKnown(off, now)];
+    if (Number.isNaN(value) || !reference) {
+      return "–";
     }
-    return i;
+    return value <= reference.own ? `< ${bound(value, "m")}` : quantity(value, "m", 2);
   }
 
-  /**
-   * Between samples, and past the reference's end, there is nothing to say.
-   * @param {number} m
-   * @param {number} i
-   */
-  function offWords(m, i) {
-    const { history, reference } = data;
-    const off = offReference(reference, history.frameAt(i), history.pointsAt(m, i));
-    return Number.isNaN(off) || !reference
-      ? ""
-      : `off ${off <= reference.own ? `< ${bound(off, "m")}` : quantity(off, "m", 2)}`;
+  function paintRow({ row, parts }, m, now) {
+    const column = data.history.columns[m];
+    const last = lastKnown(column.steps, now);
+    const steps = column.steps[last];
+    const verdict = verdictAt(data, m, now);
+    say(parts.verdict, verdict.words);
+    row.dataset.tone = verdict.tone;
+    say(parts.gap, data.scene?.m > 0 ? gapWords(column.gap[last]) : "no loop");
+    say(parts.off, errorWords(m, last));
+    say(parts.energy, quantity(column.energy_change[last], "J"));
+    say(parts.cost, steps > 0 ? `${Math.round(column.ops[last] / steps)}/step` : "–");
   }
 
   function paint() {
     const history = data.history;
-    const now = data.view.shown < 0 ? (history?.count ?? 0) - 1 : data.view.shown;
+    const now = shownIndex(data);
     painted = performance.now();
-    if (!history || now < 0 || rows.length !== history.nMethods) {
-      return;
+    if (history && now >= 0 && rows.length === history.nMethods) {
+      rows.forEach((row, m) => paintRow(row, m, now));
     }
-    const loops = (data.scene?.m ?? 0) > 0;
-    rows.forEach(({ row, parts }, m) => {
-      const column = history.columns[m];
-      const last = lastGood(column.steps, now);
-      const trend = trendOf(history, m, now);
-      const steps = column.steps[last];
-      say(parts.gap, loops ? quantity(column.gap[last], "m") : "no loop");
-      say(parts.trend, loops || trend.tone === "bad" ? `${trend.arrow} ${trend.word}` : "");
-      row.dataset.tone = trend.tone;
-      say(parts.energy, quantity(column.energy_change[last], "J"));
-      say(parts.off, offWords(m, last));
-      say(parts.cost, steps > 0 ? `${quantity(column.cpu[last] / steps, "s")}` : "–");
-      say(parts.ops, steps > 0 ? `${Math.round(column.ops[last] / steps)} ops` : "");
-    });
   }
 
   function update() {

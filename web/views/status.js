@@ -1,27 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The last line: what runs, how the scene counts, how the stream fares.
+// What the page has to say of itself: notices in a note over the transport, the state of the stream
+// beside it when it is not live, the rest in the last line of the page.
 import { listen } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
 
 const STREAM = {
   connecting: "stream: connecting",
   live: "stream live",
-  reconnecting: "stream: reconnecting",
+  reconnecting: "connection to the server lost: reconnecting",
   hidden: "stream: paused while hidden",
   ended: "stream: run complete",
 };
+const SHOWN_FOR = 9000; // [ms]
 
-/** @param {HTMLElement} el @param {import("../state/store.js").Store} store */
-export function createStatus(el, store) {
+/** @param {HTMLElement} el @param {HTMLElement} body @param {import("../state/store.js").Store} store */
+export function createStatus(el, body, store) {
   const data = store.data;
   const run = h("span", { class: "run" });
   const scene = h("span", {});
   const stream = h("span", { class: "stream", role: "status" });
-  const id = h("span", { class: "event-id number" }); // apart from the status, or it would be read out
-  const notice = h("span", { class: "notice", role: "status" });
+  const id = h("span", { class: "event-id number" }); // outside the status, or it is read out
   const build = h("span", { class: "build" });
-  el.replaceChildren(run, scene, h("span", {}, stream, id), notice, build);
+  el.replaceChildren(run, scene, h("span", {}, stream, id), build);
+
+  const notice = h("span", { class: "notice", role: "status" });
+  const close = h(
+    "button",
+    { type: "button", class: "tool small", "aria-label": "Dismiss", onclick: hide },
+    "×",
+  );
+  const note = h("div", { class: "note", hidden: true }, notice, close);
+  const lost = h("div", { class: "lost", hidden: true }, STREAM.reconnecting);
+  body.append(h("div", { class: "notes" }, lost, note));
+  let timer = 0;
+
+  function hide() {
+    clearTimeout(timer);
+    note.hidden = true;
+  }
+
+  function showNotice() {
+    say(notice, data.notice);
+    note.hidden = data.notice === "";
+    clearTimeout(timer);
+    timer = window.setTimeout(hide, SHOWN_FOR);
+  }
 
   function showRun() {
     const n = data.methods.length;
@@ -31,7 +55,7 @@ export function createStatus(el, store) {
   function showScene() {
     const { scene: s } = data;
     if (s) {
-      const freedoms = `${s.freedoms} freedom${s.freedoms === 1 ? "" : "s"}`;
+      const freedoms = `${s.freedoms} degree${s.freedoms === 1 ? "" : "s"} of freedom`;
       say(scene, s.m > 0 ? `${freedoms} (${s.n} − ${s.rank})` : freedoms);
     }
   }
@@ -41,6 +65,7 @@ export function createStatus(el, store) {
     say(stream, STREAM[state]);
     say(id, last && data.state !== "running" ? `at event ${last}` : "");
     stream.dataset.state = state;
+    lost.hidden = state !== "reconnecting";
   }
 
   const stop = listen(store, {
@@ -52,12 +77,13 @@ export function createStatus(el, store) {
     methods: showRun,
     scene: showScene,
     stream: showStream,
-    notice: () => say(notice, data.notice),
+    notice: showNotice,
   });
   return {
     update() {},
     dispose() {
       stop();
+      hide();
       el.replaceChildren();
     },
   };

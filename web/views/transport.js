@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Play, pause, step, back to the start, speed, and the time with its scrubber.
+// Play, pause, step, back to the start, speed, loop, and the time with its scrubber.
 import { plain, seconds } from "../state/format.js";
-import { stepSeconds } from "../session/speeds.js";
-import { listen } from "../state/store.js";
+import { SPEEDS, stepSeconds } from "../session/speeds.js";
+import { listen, shownIndex } from "../state/store.js";
 import { h, icon, say, set } from "../widgets/dom.js";
+
+/** Frames per key on the scrubber: a range whose step is "any" has no useful step of its own. */
+const STEPS = {
+  ArrowRight: 1,
+  ArrowUp: 1,
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  PageUp: 30,
+  PageDown: -30,
+};
 
 /**
  * @param {HTMLElement} el
@@ -13,10 +23,10 @@ import { h, icon, say, set } from "../widgets/dom.js";
  */
 export function createTransport(el, store, actions) {
   const data = store.data;
-  const button = (name, label, action, kind = "tool") =>
+  const button = (name, label, action) =>
     h(
       "button",
-      { type: "button", class: kind, "aria-label": label, title: label, onclick: action },
+      { type: "button", class: "tool", "aria-label": label, "data-tip": label, onclick: action },
       icon(name),
     );
   const start = button("start", "Back to the start (Backspace)", () => actions.reset());
@@ -28,27 +38,31 @@ export function createTransport(el, store, actions) {
     onclick: () => actions.toggle(),
   });
   const forward = button("forward", "One frame on (right arrow)", () => actions.step(1));
-  const slower = h(
+  const loop = h(
     "button",
     {
       type: "button",
-      class: "tool",
-      "aria-label": "Slower (minus)",
-      onclick: () => actions.slower(),
+      class: "quiet loop",
+      "aria-pressed": "false",
+      "data-tip": "play the recording again and again",
+      onclick: () => actions.toggleLoop(),
     },
-    "−",
+    "loop",
   );
-  const faster = h(
-    "button",
+  const sign = (text, label, action) =>
+    h("button", { type: "button", class: "tool", "aria-label": label, onclick: action }, text);
+  const slower = sign("−", "Slower (minus)", () => actions.slower());
+  const faster = sign("+", "Faster (equals sign)", () => actions.faster());
+  const speed = h(
+    "select",
     {
-      type: "button",
-      class: "tool",
-      "aria-label": "Faster (equals sign)",
-      onclick: () => actions.faster(),
+      class: "number speed",
+      id: "speed",
+      "aria-label": "Speed",
+      onchange: () => actions.setSpeed(Number(speed.value)),
     },
-    "+",
+    ...SPEEDS.map((value) => h("option", { value }, `${plain(value)}×`)),
   );
-  const speed = h("output", { class: "number speed", "aria-label": "Speed" });
   const time = h("output", { class: "number time", "aria-label": "Time" });
   const scrub = h("input", {
     type: "range",
@@ -59,7 +73,6 @@ export function createTransport(el, store, actions) {
     value: 0,
     "aria-label": "Time shown",
     oninput: () => actions.showTime(Number(scrub.value)),
-    // a range whose step is "any" has no useful arrow step of its own
     onkeydown: onScrubKey,
   });
   const motion = h(
@@ -70,25 +83,15 @@ export function createTransport(el, store, actions) {
   el.replaceChildren(
     h("div", { class: "group" }, start, back, play, forward, motion),
     h("div", { class: "group scrubber" }, scrub, time),
-    h("div", { class: "group" }, h("span", { class: "word" }, "speed"), slower, speed, faster),
+    h("div", { class: "group pace" }, slower, speed, faster, loop),
   );
-
-  const STEPS = {
-    ArrowRight: 1,
-    ArrowUp: 1,
-    ArrowLeft: -1,
-    ArrowDown: -1,
-    PageUp: 30,
-    PageDown: -30,
-  };
 
   /** @param {KeyboardEvent} event */
   function onScrubKey(event) {
     const frames = STEPS[event.key];
     if (frames) {
       event.preventDefault();
-      const last = (data.history?.count ?? 1) - 1;
-      actions.show((data.view.shown < 0 ? last : data.view.shown) + frames);
+      actions.show(shownIndex(data) + frames);
     }
   }
 
@@ -98,21 +101,27 @@ export function createTransport(el, store, actions) {
     play.focus();
   }
 
+  /** What a press of Play does now. */
+  function playWord() {
+    if (data.state === "running" || data.view.replaying) {
+      return "Pause";
+    }
+    if (data.view.stepped) {
+      return `Step ${plain(stepSeconds(data.duration))} s`;
+    }
+    const atEnd = data.state === "finished" && data.view.shown < 0;
+    return atEnd ? "Replay" : "Play";
+  }
+
   function showState() {
-    const running = data.state === "running";
-    const word = running
-      ? "Pause"
-      : data.state === "finished"
-        ? "Again"
-        : data.view.stepped
-          ? `Step ${plain(stepSeconds(data.duration))} s`
-          : "Play";
+    const word = playWord();
     if (play.dataset.word !== word) {
       play.dataset.word = word;
-      play.replaceChildren(icon(running ? "pause" : "play"), h("span", {}, word));
+      play.replaceChildren(icon(word === "Pause" ? "pause" : "play"), h("span", {}, word));
     }
     motion.hidden = !data.view.stepped;
-    say(speed, `${plain(data.speed)}×`);
+    speed.value = String(data.speed);
+    set(loop, { "aria-pressed": String(data.view.loop) });
     document.body.dataset.state = data.state;
   }
 
@@ -121,23 +130,18 @@ export function createTransport(el, store, actions) {
     if (!history || history.count === 0) {
       return;
     }
-    const last = history.count - 1;
-    const shown = data.view.shown < 0 ? last : Math.min(data.view.shown, last);
+    showState();
+    const t = history.t[shownIndex(data)];
+    // the whole run is on the slider, so that the knob moves evenly
     set(scrub, {
-      max: Math.max(history.t[last], 1e-9),
-      "aria-valuetext": seconds(history.t[shown], data.duration),
+      max: Math.max(history.t[history.count - 1], data.duration, 1e-9),
+      "aria-valuetext": seconds(t, data.duration),
     });
-    if (
-      document.activeElement !== scrub ||
-      data.state === "running" ||
-      Number(scrub.value) !== history.t[shown]
-    ) {
-      scrub.value = String(history.t[shown]);
+    if (Number(scrub.value) !== t) {
+      scrub.value = String(t);
     }
-    say(
-      time,
-      `t ${seconds(data.view.shown < 0 && data.latest ? data.latest.t : history.t[shown], data.duration)}`,
-    );
+    const live = data.view.shown < 0 && data.latest ? data.latest.t : t;
+    say(time, `t ${seconds(live, data.duration)} / ${plain(data.duration)} s`);
   }
 
   const stop = listen(store, { state: showState, view: showState, scene: update });

@@ -8,7 +8,8 @@ import { FRONT } from "../state/look.js";
 /** @typedef {import("../state/look.js").Look} Look */
 
 /** [px] room for hatching, labels and the scale bar */
-const MARGIN = { left: 36, right: 36, top: 40, bottom: 56 };
+const MARGIN = { left: 36, right: 36, top: 32, bottom: 56 };
+const MOST_MARGIN = 0.28; // of the height or width
 const SCALE_BAR = 150; // [px] at most
 
 const dot = (a, x, y, z) => a[0] * x + a[1] * y + a[2] * z;
@@ -32,14 +33,18 @@ export function seenBox(points, look) {
 
 /**
  * @param {number[]} box [left, bottom, right, top] in metres, as seen
- * @param {number} width [px] @param {number} height [px] @param {Look} look
+ * @param {number} width [px]
+ * @param {number} height [px]
+ * @param {Look} look
+ * @param {number} foot [px] room below for what lies over the drawing
  */
-export function createCamera(box, width, height, look = FRONT) {
+export function createCamera(box, width, height, look = FRONT, foot = MARGIN.bottom) {
   const w = Math.max(box[2] - box[0], 1e-9);
   const h = Math.max(box[3] - box[1], 1e-9);
+  const below = Math.min(foot, MOST_MARGIN * height);
   const room = {
     w: Math.max(40, width - MARGIN.left - MARGIN.right),
-    h: Math.max(40, height - MARGIN.top - MARGIN.bottom),
+    h: Math.max(40, height - MARGIN.top - below),
   };
   const scale = Math.min(room.w / w, room.h / h);
   const cx = MARGIN.left + room.w / 2;

@@ -1,122 +1,107 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// One plot: uPlot for curves and axes, drawn over it the time cursor, the names at the curves' ends
-// and where a run ended.
+// One plot over time: uPlot for curves and axes, drawn over it the time cursor, the names at the
+// curves' ends and the places where runs ended. Pointing shows values, dragging zooms.
 import uPlot from "uplot";
 import { niceAbove, powerOfTen, quantity } from "../state/format.js";
+import { h } from "./dom.js";
+import { LABEL_ROOM, createEndLabels, plotFont } from "./plot-labels.js";
+import { FLOOR, decadeTicks, decades, linearTicks } from "./plot-scale.js";
 
-const FLOOR = 1e-17; // [unit] nothing smaller is drawn; an exact zero has no place on a log axis
-const SWATCH = 12; // [px] of a curve before its name
-const LABEL_ROOM = 13; // [px] between two names
-const DECADES_LEAST = 4;
+const NARROW = 380; // [px] below it names stand over the curves
+const LEAST_DRAG = 6; // [px] a shorter one is a click
 
-/** @param {number} min @param {number} max @returns {[number, number]} whole decades */
-function decades(min, max) {
-  const low = Math.floor(Math.log10(Math.max(min, FLOOR)) + 1e-9);
-  const high = Math.max(Math.ceil(Math.log10(Math.max(max, FLOOR)) - 1e-9), low + DECADES_LEAST);
-  return [10 ** low, 10 ** high];
-}
-
-/** Powers of ten between two, at most about six. @param {number} min @param {number} max */
-function decadeTicks(min, max) {
-  const low = Math.round(Math.log10(min));
-  const high = Math.round(Math.log10(max));
-  const step = Math.max(1, Math.ceil((high - low) / 6));
-  const out = [];
-  for (let e = Math.ceil(low / step) * step; e <= high; e += step) {
-    out.push(10 ** e);
-  }
-  return out;
-}
-
-/** @param {number} max @returns {number[]} round values from 0, at most six */
-function linearTicks(max) {
-  const step = niceAbove(max / 5);
-  const out = [];
-  for (let i = 0; i * step <= max * (1 + 1e-9); i++) {
-    out.push(i * step);
-  }
-  return out;
-}
+/**
+ * @typedef {{
+ *   label: string, colour: string, dash: number[], width: number, ended: number, present: boolean,
+ * }} Series
+ * @typedef {{text: string, muted: string, hairline: string, paper: string}} Inks
+ * @typedef {[number, number] | null} Zoom part of the time shown [s], or all of it
+ */
 
 /**
  * @param {HTMLElement} el
- * @param {{log: boolean, unit: string, onPick: (t: number) => void}} options
+ * @param {{
+ *   log: boolean, unit: string, onPick: (t: number) => void, onHover: (t: number | null) => void,
+ *   onZoom: (zoom: Zoom) => void,
+ * }} options `log` and `unit` may change; the next `setSeries` follows them
  */
 export function createPlot(el, options) {
   /** @type {uPlot | null} */
   let plot = null;
-  /**
-   * @type {{label: string, colour: string, dash: number[], width: number, ended: number, present:
-   *   boolean}[]}
-   */
+  /** @type {Series[]} */
   let series = [];
+  /** @type {Inks} */
   let ink = { text: "#000", muted: "#888", hairline: "#ddd", paper: "#fff" };
   let now = 0;
-  let span = { x: 1, low: 1e-16, high: 1e-3 };
+  let span = { x: 1, low: 1e-16, high: 1e-3, least: 0 };
+  /** @type {Zoom} */
+  let zoom = null;
+  const readout = h("div", { class: "readout", hidden: true, "aria-hidden": "true" });
+  const line = h("div", { class: "hover-line", hidden: true });
+  const labels = createEndLabels();
 
-  const font = () => `11.5px ${getComputedStyle(document.body).fontFamily}`;
-
-  /** Beside the axes there is room for the longest name, so that no name lies on a curve. */
-  function labelRoom() {
-    const context = document.createElement("canvas").getContext("2d");
-    if (!context) {
-      return 80;
-    }
-    context.font = font();
-    return Math.min(
-      120,
-      Math.max(14, ...series.map((one) => context.measureText(one.label).width + SWATCH + 14)),
+  const timeRange = () => /** @type {[number, number]} */ (zoom ?? [0, span.x]);
+  const valueRange = () =>
+    /** @type {[number, number]} */ (
+      options.log ? [span.low, span.high] : [span.least, span.high || 1]
     );
+  const valueTicks = () => (options.log ? decadeTicks : linearTicks)(...valueRange());
+  const valueWords = (v) =>
+    options.log ? powerOfTen(Math.round(Math.log10(v))) : quantity(v, options.unit);
+
+  /** The whole run again. */
+  function zoomOut() {
+    options.onZoom(null);
+    return null;
   }
 
   function makeOptions() {
     /** @type {uPlot.Axis} */
     const shared = {
       stroke: () => ink.muted,
-      font: font(),
+      font: plotFont(),
       grid: { stroke: () => ink.hairline, width: 1 },
       ticks: { show: false },
     };
+    const time = {
+      ...shared,
+      size: 22,
+      gap: 2,
+      label: "time, s",
+      labelSize: 16,
+      labelGap: 0,
+      labelFont: plotFont(),
+      space: 44,
+      splits: () => linearTicks(...timeRange()),
+      values: (_, ticks) => ticks.map((v) => String(Number(v.toPrecision(4)))),
+    };
+    const value = {
+      ...shared,
+      size: el.clientWidth < NARROW ? 46 : 56,
+      gap: 4,
+      space: 10,
+      splits: valueTicks,
+      values: (_, ticks) => ticks.map(valueWords),
+      filter: (_, ticks) => ticks,
+    };
     return /** @type {uPlot.Options} */ ({
       width: Math.max(120, el.clientWidth),
-      height: Math.max(100, el.clientHeight),
-      padding: [8, labelRoom(), 0, 0],
+      height: Math.max(80, el.clientHeight),
+      padding: [8, el.clientWidth < NARROW ? 12 : LABEL_ROOM, 0, 0],
       legend: { show: false },
-      cursor: { show: false },
-      scales: {
-        x: { time: false, range: () => [0, span.x] },
-        y: options.log
-          ? { distr: 3, log: 10, range: () => [span.low, span.high] }
-          : { range: () => [0, span.high || 1] },
+      cursor: {
+        x: false,
+        y: false,
+        points: { show: false },
+        drag: { x: true, y: false, setScale: false, dist: LEAST_DRAG },
+        bind: { dblclick: () => zoomOut },
       },
-      axes: [
-        {
-          ...shared,
-          size: 22,
-          gap: 2,
-          label: "time, s",
-          labelSize: 16,
-          labelGap: 0,
-          labelFont: font(),
-          space: 44,
-          splits: () => linearTicks(span.x),
-          values: (_, ticks) => ticks.map((v) => String(Number(v.toPrecision(4)))),
-        },
-        {
-          ...shared,
-          size: options.log ? 44 : 62,
-          gap: 4,
-          space: 10,
-          splits: () =>
-            options.log ? decadeTicks(span.low, span.high) : linearTicks(span.high || 1),
-          values: (_, ticks) =>
-            ticks.map((v) =>
-              options.log ? powerOfTen(Math.round(Math.log10(v))) : quantity(v, options.unit),
-            ),
-          filter: (_, ticks) => ticks,
-        },
-      ],
+      scales: {
+        x: { time: false, range: timeRange },
+        y: options.log ? { distr: 3, log: 10, range: valueRange } : { range: valueRange },
+      },
+      axes: [time, value],
       series: [
         {},
         ...series.map((one) => ({
@@ -127,167 +112,127 @@ export function createPlot(el, options) {
           spanGaps: true,
         })),
       ],
-      hooks: { draw: [drawOver] },
+      hooks: { draw: [drawOver], setSelect: [takeSelection] },
     });
   }
 
-  /**
-   * Names beside the last point of each curve, pushed apart where they would touch.
-   * @param {uPlot} u
-   */
-  function endLabels(u) {
-    const ratio = devicePixelRatio;
-    const list = series.flatMap((one, k) => {
-      const ys = u.data[k + 1];
-      for (let i = ys.length - 1; i >= 0; i--) {
-        const y = ys[i];
-        if (y !== null && y !== undefined) {
-          return [
-            {
-              one,
-              x: u.valToPos(u.data[0][i], "x", true),
-              at: u.valToPos(y, "y", true),
-              y: u.valToPos(y, "y", true),
-            },
-          ];
-        }
-      }
-      const zero = options.log && one.present && ys.length > 1 ? u.bbox.top + u.bbox.height : NaN;
-      return Number.isNaN(zero)
-        ? []
-        : [
-            {
-              one: { ...one, label: `${one.label}: 0` },
-              x: u.valToPos(now, "x", true),
-              at: zero,
-              y: zero,
-            },
-          ];
-    });
-    list.sort((a, b) => a.y - b.y);
-    const low = u.bbox.top + 7 * ratio;
-    const high = u.bbox.top + u.bbox.height - 7 * ratio;
-    list.forEach((item, i) => {
-      item.y = Math.max(item.y, i > 0 ? list[i - 1].y + LABEL_ROOM * ratio : low);
-    });
-    for (let i = list.length - 1; i >= 0; i--) {
-      const most = i === list.length - 1 ? high : list[i + 1].y - LABEL_ROOM * ratio;
-      list[i].y = Math.min(list[i].y, most);
+  /** @param {uPlot} u */
+  function takeSelection(u) {
+    const { left, width } = u.select;
+    if (width >= LEAST_DRAG) {
+      options.onZoom([u.posToVal(left, "x"), u.posToVal(left + width, "x")]);
+      u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
     }
-    return list;
   }
 
   /** @param {uPlot} u */
   function drawOver(u) {
     const { ctx } = u;
-    const ratio = devicePixelRatio;
-    const right = u.bbox.left + u.bbox.width;
-    ctx.save();
     const x = u.valToPos(now, "x", true);
-    ctx.setLineDash([]);
-    ctx.strokeStyle = ink.text;
-    ctx.globalAlpha = 0.55;
-    ctx.lineWidth = ratio;
-    ctx.beginPath();
-    ctx.moveTo(x, u.bbox.top);
-    ctx.lineTo(x, u.bbox.top + u.bbox.height);
-    ctx.stroke();
-    ctx.globalAlpha = 1;
-    ctx.font = `${11.5 * ratio}px ${getComputedStyle(document.body).fontFamily}`;
-    ctx.textBaseline = "middle";
-    ctx.textAlign = "left";
-    for (const { one, x: end, y, at } of endLabels(u)) {
-      const text = Number.isNaN(one.ended) ? one.label : `${one.label} ×`;
-      const width = ctx.measureText(text).width;
-      const left = Math.min(end, right) + 6 * ratio;
-      const name = left + (SWATCH + 3) * ratio;
-      ctx.fillStyle = ink.paper;
-      ctx.globalAlpha = 0.82;
-      ctx.fillRect(
-        left - 2 * ratio,
-        y - 6.5 * ratio,
-        name - left + width + 4 * ratio,
-        LABEL_ROOM * ratio,
-      );
-      ctx.globalAlpha = 1;
-      sample(ctx, left, y, one);
-      ctx.fillStyle = ink.text;
-      ctx.fillText(text, name, y);
-      if (!Number.isNaN(one.ended)) {
-        cross(ctx, end, at, 4 * ratio, one.colour);
-      }
+    ctx.save();
+    if (x >= u.bbox.left && x <= u.bbox.left + u.bbox.width) {
+      ctx.setLineDash([]);
+      ctx.strokeStyle = ink.text;
+      ctx.globalAlpha = 0.55;
+      ctx.lineWidth = devicePixelRatio;
+      ctx.beginPath();
+      ctx.moveTo(x, u.bbox.top);
+      ctx.lineTo(x, u.bbox.top + u.bbox.height);
+      ctx.stroke();
     }
+    ctx.globalAlpha = 1;
+    labels.draw(u, series, { ink, now, log: options.log, range: timeRange() });
     ctx.restore();
   }
 
-  /** A piece of the curve, so that the name itself can be in ink. */
-  function sample(ctx, x, y, one) {
-    const ratio = devicePixelRatio;
-    ctx.setLineDash(one.dash.map((length) => (length * ratio) / 2));
-    ctx.strokeStyle = one.colour;
-    ctx.lineWidth = 2.5 * ratio;
-    ctx.beginPath();
-    ctx.moveTo(x, y);
-    ctx.lineTo(x + SWATCH * ratio, y);
-    ctx.stroke();
-    ctx.setLineDash([]);
-  }
-
-  function cross(ctx, x, y, r, colour) {
-    ctx.setLineDash([]);
-    ctx.strokeStyle = colour;
-    ctx.lineWidth = 2 * devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(x - r, y - r);
-    ctx.lineTo(x + r, y + r);
-    ctx.moveTo(x - r, y + r);
-    ctx.lineTo(x + r, y - r);
-    ctx.stroke();
+  /** A click shows a time; the end of a drag does not. @param {HTMLElement} over */
+  function listenTo(over) {
+    let downAt = 0;
+    over.addEventListener("pointerdown", (event) => {
+      downAt = event.clientX;
+    });
+    over.addEventListener("click", (event) => {
+      if (plot && Math.abs(event.clientX - downAt) < LEAST_DRAG) {
+        options.onPick(plot.posToVal(event.offsetX, "x"));
+      }
+    });
+    over.addEventListener("pointermove", (event) => {
+      if (plot) {
+        options.onHover(plot.posToVal(event.offsetX, "x"));
+      }
+    });
+    over.addEventListener("pointerleave", () => options.onHover(null));
   }
 
   function build() {
     plot?.destroy();
     plot = new uPlot(makeOptions(), /** @type {any} */ ([[], ...series.map(() => [])]), el);
-    plot.over.addEventListener("click", (event) => {
-      if (plot) {
-        options.onPick(plot.posToVal(event.offsetX, "x"));
-      }
-    });
+    listenTo(plot.over);
+    plot.over.append(line, readout);
   }
 
-  /**
-   * Ranges only grow while a run lasts, so that a curve does not breathe.
-   * @param {(number | null)[][]} columns
-   * @param {number} last
-   */
+  /** Ranges only grow while a run lasts, so that a curve does not breathe. */
   function stretch(columns, last) {
     let low = Infinity;
+    let least = 0;
     let high = 0;
     for (const column of columns.slice(1)) {
       for (const value of column) {
         if (value !== null) {
           low = Math.min(low, value);
+          least = Math.min(least, value);
           high = Math.max(high, value);
         }
       }
     }
-    span.x = Math.max(span.x, niceAbove(Math.max(last, 1e-6)));
+    span.x = Math.max(span.x, last);
     if (options.log) {
       const [a, b] = decades(Math.min(low, span.low), Math.max(high, span.high));
       span.low = a;
       span.high = b;
     } else {
       span.high = high > 0 ? Math.max(span.high, niceAbove(high)) : span.high;
+      span.least = least < 0 ? Math.min(span.least, -niceAbove(-least)) : span.least;
     }
   }
 
+  /** The value of a curve nearest to a time. @param {ArrayLike<number | null | undefined>} ys */
+  function valueNear(ys, at) {
+    for (let d = 0; d < 3; d++) {
+      const value = ys[at + d] ?? ys[at - d];
+      if (value !== null && value !== undefined) {
+        return value;
+      }
+    }
+    return null;
+  }
+
+  /** @param {uPlot} u @param {number} t */
+  function fillReadout(u, t) {
+    const at = u.valToIdx(t);
+    const rows = series.flatMap((one, k) => {
+      const value = valueNear(u.data[k + 1], at);
+      return value === null || (!one.present && !one.label)
+        ? []
+        : [{ one, value: /** @type {number} */ (value) }];
+    });
+    rows.sort((a, b) => b.value - a.value);
+    readout.replaceChildren(
+      h("b", {}, `${t.toFixed(2)} s`),
+      ...rows.map(({ one, value }) => {
+        const key = h("i", {});
+        key.style.borderTopColor = one.colour;
+        return h("span", {}, key, `${one.label} `, h("b", {}, quantity(value, options.unit)));
+      }),
+    );
+  }
+
   const observer = new ResizeObserver(() => {
-    if (
-      plot &&
-      el.clientWidth > 0 &&
-      (plot.width !== el.clientWidth || plot.height !== el.clientHeight)
-    ) {
-      plot.setSize({ width: el.clientWidth, height: el.clientHeight });
+    const { clientWidth: width, clientHeight: height } = el;
+    if (plot && width > 0 && height > 0 && (plot.width !== width || plot.height !== height)) {
+      const data = plot.data;
+      build(); // the room beside the axes depends on the width
+      plot.setData(data);
     }
   });
   observer.observe(el);
@@ -296,24 +241,21 @@ export function createPlot(el, options) {
     /** The smallest value that is plotted. */
     floor: FLOOR,
     /**
-     * New curves: a new comparison, another selection, another theme.
-     * @param {typeof series} wanted
-     * @param {typeof ink} inks
-     * @param {boolean} anew
-     * @param {number} first [s] that the axis of time has at least
+     * New curves: a new comparison, another selection, another theme, another quantity.
+     * @param {Series[]} wanted
+     * @param {Inks} inks
+     * @param {boolean} anew forget the ranges
+     * @param {number} end [s] of the run: the axis of time reaches there
      */
-    setSeries(wanted, inks, anew, first) {
+    setSeries(wanted, inks, anew, end) {
       series = wanted;
       ink = inks;
       if (anew) {
-        span = { x: first, low: 1e-10, high: options.log ? 1e-6 : 0 };
+        span = { x: end, low: 1e-10, high: options.log ? 1e-6 : 0, least: 0 };
       }
       build();
     },
-    /**
-     * @param {number[]} ended per method, NaN while it runs
-     * @param {boolean[]} present has a curve here
-     */
+    /** @param {number[]} ended per method, NaN while it runs @param {boolean[]} present */
     setEnded(ended, present) {
       series.forEach((one, k) => {
         one.ended = ended[k];
@@ -329,6 +271,24 @@ export function createPlot(el, options) {
       now = t;
       stretch(columns, last);
       plot?.setData(/** @type {any} */ (columns));
+    },
+    /** @param {Zoom} wanted */
+    setZoom(wanted) {
+      zoom = wanted;
+      plot?.setData(plot.data);
+    },
+    /** Shows the values at a time, or hides them. @param {number | null} t */
+    setHover(t) {
+      readout.hidden = line.hidden = t === null || !plot || plot.data[0].length === 0;
+      if (t === null || !plot || readout.hidden) {
+        return;
+      }
+      const x = plot.valToPos(t, "x");
+      line.style.left = `${x}px`;
+      fillReadout(plot, t);
+      const right = x < plot.over.clientWidth / 2;
+      readout.style.left = right ? `${x + 10}px` : "auto";
+      readout.style.right = right ? "auto" : `${plot.over.clientWidth - x + 10}px`;
     },
     dispose() {
       observer.disconnect();

@@ -43,10 +43,13 @@ function linearScale(min, max, step) {
 }
 
 /**
- * @param {{id: string, label: string, unit: string, hint: string, scale?: "log" | "linear", min:
- *   number, max: number, step?: number,
- *   read: (text: string) => number, check: (value: number) => {error?: string, warning?: string},
- *   commit: (value: number) => Promise<void>}} options `read` gives NaN for what is no number
+ * `read` gives NaN for a text that is no number; `tip` defines the label.
+ * @param {{
+ *   id: string, label: string, unit: string, hint: string, tip?: string, scale?: "log" | "linear",
+ *   min: number, max: number, step?: number, read: (text: string) => number,
+ *   check: (value: number) => {error?: string, warning?: string},
+ *   commit: (value: number) => Promise<void>,
+ * }} options
  */
 export function createSliderField(options) {
   const scale =
@@ -59,6 +62,7 @@ export function createSliderField(options) {
     id: `${options.id}-slider`,
     "aria-label": options.label,
     "aria-describedby": hintId,
+    "data-tip": options.tip,
     ...scale.attributes,
   });
   const field = h("input", {
@@ -73,7 +77,7 @@ export function createSliderField(options) {
   const el = h(
     "div",
     { class: "setting" },
-    h("label", { for: options.id }, options.label),
+    h("label", { for: options.id, "data-tip": options.tip }, options.label),
     range,
     h(
       "span",
@@ -85,10 +89,7 @@ export function createSliderField(options) {
   );
   let value = NaN;
   let timer = 0;
-  /**
-   * while the server has not answered, the widget shows what was asked, and only the latest wish is
-   * kept
-   */
+  /** while the server has not answered, what was asked is shown and only the latest wish kept */
   let pending = false;
   let next = NaN;
 

@@ -54,12 +54,27 @@ export function createDrawing(el, store, actions) {
     "describe",
   );
   const caption = h("p", { class: "caption" });
-  const frame = h("div", { class: "stage" }, svg, notices.ahead, notices.banner);
+  const frame = h("div", { class: "stage" }, svg, notices.ahead);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
+  const demonstrations = h(
+    "div",
+    { class: "demonstrations" },
+    h(
+      "button",
+      { type: "button", class: "plain", onclick: () => actions.fallApart() },
+      "let it fall apart",
+    ),
+    h(
+      "button",
+      { type: "button", class: "plain", onclick: () => actions.holdTogether() },
+      "hold it together",
+    ),
+  );
   el.replaceChildren(
+    h("div", { class: "over" }, caption, demonstrations),
     frame,
     notices.title,
-    h("div", { class: "under" }, caption, choices),
+    h("div", { class: "under" }, choices),
     notices.spoken,
   );
 
@@ -87,7 +102,7 @@ export function createDrawing(el, store, actions) {
 
   function makeGhosts() {
     say(caption, data.scene?.caption ?? "");
-    caption.title = data.scene?.caption ?? "";
+    demonstrations.hidden = !(data.scene?.m > 0);
     if (data.scene) {
       ghosts.make();
       update();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// Sentences over the drawing: methods that have stopped, and a singular configuration ahead.
+// Sentences over the drawing: its description, and a singular configuration ahead.
 import { shownIndex } from "../../state/store.js";
 import { describeDrawing, predictionAt } from "../../state/words.js";
 import { h, say } from "../../widgets/dom.js";
@@ -9,24 +9,7 @@ import { h, say } from "../../widgets/dom.js";
 export function createNotices(data) {
   const title = h("p", { id: "drawing-title", class: "hidden" });
   const spoken = h("p", { class: "spoken", role: "status" });
-  const banner = h("div", { class: "banner", role: "alert", hidden: true });
   const ahead = h("p", { class: "ahead", hidden: true });
-
-  /** @param {number} now index of the frame shown */
-  function showFailures(now) {
-    const lines = data.methods.flatMap((method, m) => {
-      const end = data.history.ended[m];
-      const reason = data.latest?.methods[m]?.reason;
-      return end <= data.history.t[now]
-        ? [`${method.label} stopped at ${end.toFixed(3)} s${reason ? `: ${reason}` : ""}`]
-        : [];
-    });
-    banner.hidden = lines.length === 0;
-    if (lines.join("\n") !== banner.dataset.text) {
-      banner.dataset.text = lines.join("\n");
-      banner.replaceChildren(...lines.map((line) => h("p", {}, line)));
-    }
-  }
 
   /** @param {number} now index of the frame shown */
   function showAhead(now) {
@@ -38,12 +21,10 @@ export function createNotices(data) {
   return {
     title,
     spoken,
-    banner,
     ahead,
     /** @param {number} now index of the frame shown */
     update(now) {
       showAhead(now);
-      showFailures(now);
     },
     /** Another scene: what was described is gone. */
     clear() {

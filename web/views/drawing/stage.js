@@ -8,6 +8,8 @@ import { s, set } from "../../widgets/dom.js";
 import { createNamePlaces } from "../../widgets/name-places.js";
 import { baseOf, createPen } from "../../widgets/pieces.js";
 
+const GLASS_ROOM = 104; // [px] for the magnified cut joint, below the mechanism
+
 /**
  * @param {SVGSVGElement} svg
  * @param {{fixed: SVGElement, scale: SVGElement}} layers
@@ -55,10 +57,11 @@ export function createStage(svg, layers, data) {
     }
 
     const from = lookOf(data);
+    const foot = data.scene.drawing.tears.length > 0 ? GLASS_ROOM : undefined;
     const box = data.scene.extremes
       ? seenBox(data.scene.extremes, from)
       : boxAround(data.scene.envelope, data.scene.points);
-    stage.camera = createCamera(box, size.width, size.height, from);
+    stage.camera = createCamera(box, size.width, size.height, from, foot);
     stage.pen = createPen(data.scene, stage.camera, size);
     stage.places = createNamePlaces(size);
 

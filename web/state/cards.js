@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The card that says why a method behaves as it does, and incidents grouped by their cause.
+import { niceBelow, quantity, seconds, withPowers } from "./format.js";
+import { cardOf, parseSpelling, settingOf } from "./spelling.js";
+import { errorsOf } from "./errors.js";
+import { listed, trendOf, verdictAt } from "./verdict.js";
+
+/** Codes that report one cause: the energy is wrong, by a jump or little by little. */
+const FAMILY = { "energy-jump": "energy", "energy-drift": "energy" };
+
+/**
+ * Incidents of one method and one cause: how many, when, and the newest of them.
+ * @typedef {import("./store.js").Incident} Incident
+ * @typedef {{key: string, count: number, first: number, last: number, newest: Incident}} Group
+ * @param {Incident[]} incidents in the order of time
+ * @returns {Group[]} the newest first
+ */
+export function groupIncidents(incidents) {
+  /** @type {Map<string, Group>} */
+  const groups = new Map();
+  for (const incident of incidents) {
+    const key = `${incident.method} ${FAMILY[incident.code] ?? incident.code}`;
+    const old = groups.get(key);
+    groups.set(key, {
+      key,
+      count: (old?.count ?? 0) + 1,
+      first: old?.first ?? incident.t,
+      last: incident.t,
+      newest: incident,
+    });
+  }
+  return [...groups.values()].sort((a, b) => b.last - a.last);
+}
+
+/**
+ * Things to try per formulation. `key` names an option and its new value as a share of the present
+ * one (`times`); `strong` is a value of Baumgarte's constants, as large as the step allows;
+ * `method` is a spelling in which {integrator} and {strong} stand for the present ones.
+ */
+const STEP = { say: "half the step", key: "h", times: 0.5 };
+const PROJECTION = { say: "projection after every step", method: "projection@{integrator}" };
+const TRIES = {
+  index1: [
+    {
+      say: "Baumgarte with α = β = {strong}",
+      method: "baumgarte:alpha={strong},beta={strong}@{integrator}",
+    },
+    PROJECTION,
+    STEP,
+  ],
+  baumgarte: [
+    { say: "α = β = {strong}", key: "alpha", and: "beta", strong: true },
+    PROJECTION,
+    STEP,
+  ],
+  "nullspace-as-printed": [
+    { say: "the null-space form with its missing term", method: "nullspace@{integrator}" },
+    { say: "half the step: the error stays", key: "h", times: 0.5 },
+  ],
+};
+const TRIES_OTHERWISE = [
+  STEP,
+  { say: "reduced coordinates, for comparison", method: "reduced@{integrator}" },
+];
+
+const STRONGEST = 20; // [1/s]
+const LARGEST_H_BETA = 0.4; // step times constant: from about 2 on Runge-Kutta 4 becomes unstable
+
+/** @typedef {{label: string, key?: string, and?: string, value?: number, method?: string}} Try */
+
+/** @param {import("./store.js").Data} data @param {number} m @returns {Try[]} */
+function triesOf(data, m) {
+  const { spelling, formulation } = data.methods[m];
+  const integrator = spelling.slice(spelling.indexOf("@") + 1);
+  const step = Number(settingOf(data.catalogue, spelling, "h")?.value ?? 0);
+  const strong = step > 0 ? niceBelow(Math.min(STRONGEST, LARGEST_H_BETA / step)) : STRONGEST;
+  const fill = (text) => text.replaceAll("{integrator}", integrator).replaceAll("{strong}", strong);
+
+  return (TRIES[formulation] ?? TRIES_OTHERWISE).flatMap((item) => {
+    if (item.method) {
+      const wanted = fill(item.method);
+      const known = cardOf(data.catalogue, "formulation", parseSpelling(wanted).formulation.name);
+      const there = data.methods.some((method) => method.spelling === wanted);
+      return known && !there ? [{ label: fill(item.say), method: wanted }] : [];
+    }
+    const now = settingOf(data.catalogue, spelling, item.key);
+    const value = item.strong ? strong : now && Number((now.value * item.times).toPrecision(6));
+    return now && value !== now.value
+      ? [{ label: fill(item.say), key: item.key, and: item.and, value }]
+      : [];
+  });
+}
+
+/**
+ * A remedy as the engine words it: a spelling and "key=value" can be clicked, anything else is
+ * read.
+ * @returns {Try}
+ */
+export function tryOfRemedy(text) {
+  const setting = /^(\w+)\s*=\s*([-+.\deE]+)$/.exec(text.trim());
+  if (setting) {
+    return { label: `${setting[1]} = ${setting[2]}`, key: setting[1], value: Number(setting[2]) };
+  }
+  return /^[\w-]+(:[^@\s]*)?@\S+$/.test(text.trim())
+    ? { label: text.trim(), method: text.trim() }
+    : { label: text.trim() };
+}
+
+/** What happened to a method until the frame shown, with numbers. */
+function happenedWords(data, m, shown) {
+  const { history, latest } = data;
+  const trend = trendOf(history, m, shown);
+  const reason = latest?.methods[m]?.reason;
+  if (trend.tone === "bad") {
+    return `It ${trend.word}${reason ? `: ${reason}` : ""}.`;
+  }
+  const { off } = errorsOf(data)[m];
+  let at = shown; // the reference may have no sample at the very frame shown
+  while (at > 0 && Number.isNaN(off[at])) {
+    at--;
+  }
+  const parts = [
+    data.scene?.m > 0
+      ? `the loop gap is ${quantity(history.columns[m].gap[shown], "m")} (${trend.word})`
+      : "",
+    Number.isNaN(off[at]) ? "" : `the error of position is ${quantity(off[at], "m")}`,
+    `the energy has changed by ${quantity(history.columns[m].energy_change[shown], "J")}`,
+  ];
+  return `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
+}
+
+/**
+ * The card of a method: the verdict, what happened on this run, the rule behind it, what to try.
+ * Remedies that the engine found for this run come before those that hold in general.
+ * @param {import("./store.js").Data} data
+ * @param {number} m
+ * @param {number} shown
+ */
+export function cardOfMethod(data, m, shown) {
+  const method = data.methods[m];
+  const incidents = data.incidents.filter((one) => one.method === m);
+  const remedies = [...new Set(incidents.slice(-1).flatMap((one) => one.remedies))];
+  return {
+    title: method.title,
+    label: method.label,
+    verdict: verdictAt(data, m, shown),
+    happened: happenedWords(data, m, shown),
+    groups: groupIncidents(incidents),
+    rule: withPowers(method.rule),
+    drift: withPowers(method.drift ?? ""),
+    remedies: remedies.map(tryOfRemedy),
+    tries: triesOf(data, m),
+  };
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Quantities that can be plotted over time, one row each.
+import { errorsOf } from "./errors.js";
+
+/**
+ * `loop`: exists only where a loop can open; `reference`: needs the reference solution; `log`: is
+ * drawn in decades at first; `grey`: the reference has a curve of its own here.
+ * @typedef {{
+ *   name: string, title: string, short: string, unit: string, log: boolean, loop: boolean,
+ *   reference: boolean, grey: "" | "energy" | "own", about: string,
+ *   columnOf: (data: import("./store.js").Data, m: number) => Float64Array,
+ * }} Quantity
+ */
+
+/** A column that is kept as it was received. @param {string} name */
+const received = (name) => (data, m) => data.history.columns[m][name];
+
+/** @type {Quantity[]} */
+export const QUANTITIES = [
+  {
+    name: "off",
+    title: "Error of position, m",
+    short: "error of position",
+    unit: "m",
+    log: true,
+    loop: false,
+    reference: true,
+    grey: "own",
+    about: "distance of the drawn point that is farthest from the reference solution",
+    columnOf: (data, m) => errorsOf(data)[m].off,
+  },
+  {
+    name: "gap",
+    title: "Loop gap ‖φ‖, m",
+    short: "loop gap",
+    unit: "m",
+    log: true,
+    loop: true,
+    reference: false,
+    grey: "",
+    about: "distance between the two halves of the cut joint (constraint violation)",
+    columnOf: received("gap"),
+  },
+  {
+    name: "velocity_gap",
+    title: "Velocity violation ‖Jv‖, m/s",
+    short: "velocity violation",
+    unit: "m/s",
+    log: true,
+    loop: true,
+    reference: false,
+    grey: "",
+    about: "how fast the loops come apart",
+    columnOf: received("velocity_gap"),
+  },
+  {
+    name: "energy_error",
+    title: "Error of energy, J",
+    short: "error of energy",
+    unit: "J",
+    log: true,
+    loop: false,
+    reference: true,
+    grey: "",
+    about: "energy change of the method less that of the reference: the work of loads is in both",
+    columnOf: (data, m) => errorsOf(data)[m].energy,
+  },
+  {
+    name: "energy_change",
+    title: "Energy change |ΔE|, J",
+    short: "energy change",
+    unit: "J",
+    log: true,
+    loop: false,
+    reference: false,
+    grey: "energy",
+    about: "since the start; loads, drives and dampers change the energy as well",
+    columnOf: received("energy_change"),
+  },
+  {
+    name: "pivot_ratio",
+    title: "Distance from singular (pivot ratio of J)",
+    short: "distance from singular",
+    unit: "",
+    log: false,
+    loop: true,
+    reference: false,
+    grey: "",
+    about: "smallest over largest pivot of J: 0 is a singular configuration",
+    columnOf: received("pivot_ratio"),
+  },
+  {
+    name: "ops",
+    title: "Cost, operations",
+    short: "cost in operations",
+    unit: "",
+    log: false,
+    loop: false,
+    reference: false,
+    grey: "",
+    about: "arithmetic operations so far, counted exactly",
+    columnOf: received("ops"),
+  },
+  {
+    name: "evals",
+    title: "Cost, evaluations",
+    short: "cost in evaluations",
+    unit: "",
+    log: false,
+    loop: false,
+    reference: false,
+    grey: "",
+    about: "evaluations of the dynamics so far",
+    columnOf: received("evals"),
+  },
+];
+
+/** @param {string} name @returns {Quantity} */
+export function quantityNamed(name) {
+  const found = QUANTITIES.find((one) => one.name === name);
+  if (!found) {
+    throw new Error(`no quantity is called ${name}`);
+  }
+  return found;
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The verdict on a method: one phrase from its loop gap, its error against the reference solution
+// and its energy. Table, sentence, drawing and live region all use these words.
+import { ROUNDING, quantity, seconds } from "./format.js";
+import { errorsOf } from "./errors.js";
+
+/** A gap that more than doubles from the first half of the motion to the second grows. */
+const GROWTH = 1.5;
+const EARLIEST = 6; // [frames] before it there is nothing to judge
+const OPEN = 1e-2; // of the scene's length: a gap that is the first thing to say
+const VISIBLE = 1e-3; // of the scene's length: a gap that can be seen
+const WRONG = 1e-2; // of the scene's length or energy: one digit is right at most
+const CLOSED = 1e-12; // of the scene's length: rounding
+const MOST_DIGITS = 15;
+
+/**
+ * How the loop gap develops until the frame shown.
+ * @typedef {{word: string, arrow: string, tone: "calm" | "warn" | "bad"}} Trend
+ * @param {import("./history.js").History} history
+ * @param {number} m
+ * @param {number} shown index of the frame shown
+ * @returns {Trend}
+ */
+export function trendOf(history, m, shown) {
+  const t = history.t[shown];
+  if (history.ended[m] <= t) {
+    return { word: `stopped at ${seconds(history.ended[m])}`, arrow: "■", tone: "bad" };
+  }
+  const half = history.indexAt(t / 2);
+  const late = history.worst(m, "gap", half, shown);
+  if (!(late > ROUNDING)) {
+    return { word: "closed", arrow: "→", tone: "calm" };
+  }
+  if (shown < EARLIEST) {
+    return { word: "just started", arrow: "→", tone: "calm" };
+  }
+  const early = history.worst(m, "gap", 0, half);
+  if (late > GROWTH * early) {
+    return { word: "growing", arrow: "↗", tone: "warn" };
+  }
+  return late < early / GROWTH
+    ? { word: "shrinking", arrow: "↘", tone: "calm" }
+    : { word: "held", arrow: "→", tone: "calm" };
+}
+
+/**
+ * Sizes that the verdict rests on, all of them the worst until the frame shown.
+ * @param {import("./store.js").Data} data
+ * @param {number} m
+ * @param {number} shown
+ */
+function measure(data, m, shown) {
+  const { reference, scene } = data;
+  const errors = errorsOf(data)[m];
+  const length = scene?.length || 1;
+  const energyScale = reference?.state === "ready" ? reference.energyScale : NaN;
+  const [gap, off, energy] = ["worstGap", "worstOff", "worstEnergy"].map((n) => errors[n][shown]);
+  return {
+    gap,
+    off,
+    energy,
+    gapShare: gap / length,
+    offShare: off / length,
+    energyShare: energyScale > 0 ? energy / energyScale : 0,
+    loops: (scene?.m ?? 0) > 0,
+    known: !Number.isNaN(off),
+  };
+}
+
+/** Words for a loop that does not look open. */
+function closedWords({ loops, gap, gapShare }) {
+  if (!loops) {
+    return "";
+  }
+  return gapShare <= CLOSED ? "closed" : `closed to ${quantity(gap, "m")}`;
+}
+
+/** @param {string} first @param {string} second */
+const but = (first, second) => (first ? `${first}, but ${second}` : second);
+
+/** Digits that are right, by the worse of motion and energy; no more than the reference has. */
+function rightDigits({ offShare, energyShare }, reference) {
+  const share = Math.max(offShare, energyShare, 10 ** -MOST_DIGITS);
+  const most = Math.floor(Math.min(MOST_DIGITS, reference.digits));
+  return Math.min(most, Math.floor(-Math.log10(share)));
+}
+
+/**
+ * @typedef {{words: string, tone: "calm" | "warn" | "bad", badness: number}} Verdict
+ * badness: for sorting, the worst is the largest
+ * @param {import("./store.js").Data} data
+ * @param {number} m
+ * @param {number} shown index of the frame shown
+ * @returns {Verdict}
+ */
+export function verdictAt(data, m, shown) {
+  const { history, reference } = data;
+  const trend = trendOf(history, m, shown);
+  if (trend.tone === "bad") {
+    return { words: trend.word, tone: "bad", badness: 1e6 };
+  }
+  if (shown < EARLIEST) {
+    return { words: "starts closed", tone: "calm", badness: 0 };
+  }
+
+  const size = measure(data, m, shown);
+  const grows = trend.word === "growing";
+  const open = () => {
+    const gap = grows ? history.columns[m].gap[shown] : size.gap;
+    const words = `open by ${quantity(gap, "m")}${grows ? " and growing" : ""}`;
+    return { words, tone: /** @type {const} */ ("bad"), badness: 1000 + size.gapShare };
+  };
+  if (size.loops && size.gapShare > OPEN) {
+    return open();
+  }
+  if (size.known && size.offShare > WRONG) {
+    const words = but(closedWords(size), `${quantity(size.off, "m")} from the true motion`);
+    return { words, tone: "bad", badness: 100 + size.offShare };
+  }
+  if (size.energyShare > WRONG) {
+    const words = but(closedWords(size), `${quantity(size.energy, "J")} off in energy`);
+    return { words, tone: "bad", badness: 100 + size.energyShare };
+  }
+  if (size.loops && size.gapShare > VISIBLE) {
+    return open();
+  }
+
+  const drifts = size.loops && grows ? `, gap ${quantity(size.gap, "m")} and growing` : "";
+  if (!size.known) {
+    const asked = reference?.state === "asked" ? "not compared yet" : "error unknown";
+    const closed = drifts ? drifts.slice(2) : closedWords(size);
+    const words = [closed, asked].filter(Boolean).join(", ");
+    return { words, tone: drifts ? "warn" : "calm", badness: drifts ? 10 : 1 };
+  }
+  const digits = rightDigits(size, reference);
+  const words = `right to ${digits} digits${drifts}`;
+  return { words, tone: drifts ? "warn" : "calm", badness: drifts ? 10 : -digits };
+}
+
+/** "a", "a and b", "a, b and c" @param {string[]} list */
+export const listed = (list) =>
+  list.length < 2 ? list.join("") : `${list.slice(0, -1).join(", ")} and ${list[list.length - 1]}`;
+
+/**
+ * One sentence per verdict, with the methods that share it; the worst first. No method is left out.
+ * @param {import("./store.js").Data} data
+ * @param {number} shown
+ * @returns {{text: string, tone: Verdict["tone"]}[]}
+ */
+export function sentences(data, shown) {
+  const { history, methods, view } = data;
+  if (!history || shown < 0) {
+    return [];
+  }
+  /** @type {Map<string, {labels: string[], verdict: Verdict}>} */
+  const groups = new Map();
+  methods.forEach(({ label }, m) => {
+    if (view.hidden.has(m)) {
+      return;
+    }
+    const verdict = verdictAt(data, m, shown);
+    const group = groups.get(verdict.words) ?? { labels: [], verdict };
+    group.labels.push(label);
+    groups.set(verdict.words, group);
+  });
+  return [...groups.values()]
+    .sort((a, b) => b.verdict.badness - a.verdict.badness)
+    .map(({ labels, verdict }) => ({
+      text: `${listed(labels)}: ${verdict.words}`,
+      tone: verdict.tone,
+    }));
+}

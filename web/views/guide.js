@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The first minute as a card above the drawing: five steps, each done by the page's own buttons or
+// by the one on the card. It is shown until it is closed, and the browser remembers that.
+import { STEPS } from "../state/guide.js";
+import { listen } from "../state/store.js";
+import { h, say } from "../widgets/dom.js";
+
+const KEY = "holonom-guide";
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../session/session.js").Session} actions
+ * @param {{openStudy: (kind: string) => void}} open
+ */
+export function createGuide(store, actions, open) {
+  const data = store.data;
+  let step = 0;
+  const count = h("span", { class: "count" });
+  const title = h("h2", {});
+  const text = h("p", {});
+  const act = h("button", { type: "button", class: "try", onclick: carryOut });
+  const back = h("button", { type: "button", class: "quiet", onclick: () => go(step - 1) }, "back");
+  const next = h("button", { type: "button", class: "quiet", onclick: () => go(step + 1) });
+  const close = h(
+    "button",
+    { type: "button", class: "tool small", "aria-label": "Close the guide", onclick: hide },
+    "×",
+  );
+  const card = h(
+    "section",
+    { class: "guide", "aria-label": "First minute", hidden: true },
+    h("div", { class: "card-head" }, title, count, act, back, next, close),
+    text,
+  );
+
+  /** @type {Record<string, () => any>} */
+  const DOES = {
+    toggle: () => actions.play(),
+    fallApart: () => actions.fallApart(),
+    askWhy: () =>
+      actions.setView({
+        why: Math.max(
+          0,
+          data.methods.findIndex(({ formulation }) => formulation === "index1"),
+        ),
+      }),
+    holdTogether: () => actions.holdTogether(),
+    study: () => open.openStudy("work-precision"),
+  };
+
+  function carryOut() {
+    DOES[STEPS[step].does]();
+  }
+
+  /** @param {number} wanted */
+  function go(wanted) {
+    if (wanted >= STEPS.length) {
+      hide();
+      return;
+    }
+    step = Math.max(0, wanted);
+    show();
+  }
+
+  function show() {
+    const { title: heading, text: words, button } = STEPS[step];
+    say(title, heading);
+    say(text, words);
+    say(act, button);
+    say(count, `${step + 1}/${STEPS.length}`);
+    say(next, step === STEPS.length - 1 ? "done" : "next");
+    back.hidden = step === 0;
+    check();
+  }
+
+  /** A step that was carried out says so; going on is left to the reader. */
+  function check() {
+    next.classList.toggle("primary", !card.hidden && STEPS[step].done(data));
+  }
+
+  function hide() {
+    card.hidden = true;
+    localStorage.setItem(KEY, "closed");
+    document.getElementById("play")?.focus({ preventScroll: true });
+  }
+
+  listen(store, { frame: check, view: check, methods: check });
+  return {
+    /** Puts the card where it belongs; it opens by itself only the first time. */
+    begin(/** @type {HTMLElement} */ el) {
+      el.prepend(card);
+      if (localStorage.getItem(KEY) !== "closed" && data.scene?.id === "four-bar") {
+        card.hidden = false;
+        show();
+      }
+    },
+    open() {
+      card.hidden = false;
+      go(0);
+      title.tabIndex = -1;
+      title.focus({ preventScroll: true });
+    },
+  };
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// One plot with its menu of quantities, the switch between decades and a linear axis, and a table
+// of the same numbers.
+import { quantity } from "../state/format.js";
+import { thin } from "../state/history.js";
+import { QUANTITIES, quantityNamed } from "../state/quantities.js";
+import { shownIndex } from "../state/store.js";
+import { h, icon, set } from "../widgets/dom.js";
+import { createPlot } from "../widgets/plot.js";
+
+const BUCKETS = 240;
+const TABLE_ROWS = 9;
+
+/**
+ * @param {import("../state/store.js").Data} data
+ * @param {import("../session/session.js").Session} actions
+ * @param {{
+ *   id: string, first: string, onHover: (t: number | null) => void,
+ *   onZoom: (zoom: import("../widgets/plot.js").Zoom) => void,
+ * }} how first: name of the quantity that is shown at first
+ */
+export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
+  let kind = quantityNamed(first);
+  const options = {
+    log: kind.log,
+    unit: kind.unit,
+    onPick: (t) => actions.showTime(t),
+    onHover,
+    onZoom,
+  };
+
+  const menu = h(
+    "select",
+    { id: `plot-${id}`, class: "axis-title", "aria-label": "Quantity of the plot" },
+    ...QUANTITIES.map(({ name, title }) => h("option", { value: name }, title)),
+  );
+  menu.value = first;
+  menu.addEventListener("change", () => choose(menu.value));
+  const log = h("button", { type: "button", class: "quiet", onclick: toggleLog }, "log");
+  const twin = h(
+    "button",
+    { type: "button", class: "quiet", "aria-pressed": "false", onclick: toggleTwin },
+    icon("table"),
+    "table",
+  );
+  const whole = h(
+    "button",
+    { type: "button", class: "quiet", hidden: true, onclick: () => onZoom(null) },
+    "whole run",
+  );
+  const empty = h("p", { class: "no-curve", hidden: true });
+  const canvas = h("div", { class: "curve" }, empty);
+  const table = h("div", { class: "twin", tabindex: "0", role: "region", hidden: true });
+  const figure = h(
+    "figure",
+    { class: "plot" },
+    h("figcaption", {}, menu, h("span", { class: "choices" }, whole, log, twin)),
+    canvas,
+    table,
+  );
+  const plot = createPlot(canvas, options);
+
+  function toggleLog() {
+    options.log = !options.log;
+    setSeries(true);
+    paint();
+  }
+
+  function toggleTwin() {
+    const on = twin.getAttribute("aria-pressed") !== "true";
+    set(twin, { "aria-pressed": String(on) });
+    table.hidden = !on;
+    canvas.hidden = on;
+    paint();
+  }
+
+  /** @param {string} name of a quantity */
+  function choose(name) {
+    kind = quantityNamed(name);
+    menu.value = name;
+    options.log = kind.log;
+    options.unit = kind.unit;
+    setSeries(true);
+    paint();
+  }
+
+  /** The reference among the methods' curves: its energy, or its own error. */
+  const hasGrey = () => data.reference?.state === "ready" && kind.grey !== "";
+
+  /** Is there anything to draw for a method? @param {number} m */
+  const isPresent = (m) =>
+    !data.view.hidden.has(m) &&
+    !(kind.loop && data.scene?.m === 0) &&
+    !(kind.reference && data.reference?.state !== "ready");
+
+  /** Its values over the kept frames; none past its end, and none where it is not drawn. */
+  function greyColumn() {
+    const { history, reference } = data;
+    const column = new Float64Array(history.count).fill(NaN);
+    if (reference && data.view.reference) {
+      column.forEach((_, i) => {
+        const k = history.frameAt(i) / reference.stride;
+        const known = Number.isInteger(k) && k < reference.points.length;
+        const energy = reference.energy[k] - reference.energy[0];
+        column[i] = !known ? NaN : kind.grey === "own" ? reference.own : energy;
+      });
+    }
+    return column;
+  }
+
+  function inks() {
+    const { ink, muted, hairline, paper } = data.look.surfaces[data.theme];
+    return { text: ink, muted, hairline, paper };
+  }
+
+  /** @param {boolean} anew forget the ranges */
+  function setSeries(anew) {
+    if (!data.look || !data.history) {
+      return;
+    }
+    const series = data.methods.map((method, m) => ({
+      label: method.label,
+      colour: data.look.slots[method.slot][data.theme],
+      dash: data.look.slots[method.slot].dash,
+      width: m === data.view.selected ? 2.5 : 1.5,
+      ended: data.history.ended[m],
+      present: true,
+    }));
+    if (hasGrey()) {
+      const label = kind.grey === "own" ? "its own error" : "reference";
+      const { dash, [data.theme]: colour } = data.look.reference;
+      series.push({ label, colour, dash, width: 1.5, ended: NaN, present: false });
+    }
+    set(log, { "aria-pressed": String(options.log) });
+    plot.setSeries(series, inks(), anew, data.duration || 1);
+    showEmpty();
+  }
+
+  /** Why there is no curve, and what gives one. */
+  function showEmpty() {
+    const { reference } = data;
+    const lacks = kind.reference && reference?.state !== "ready";
+    const loopless = kind.loop && data.scene?.m === 0;
+    empty.hidden = !lacks && !loopless;
+    const compute = h(
+      "button",
+      { type: "button", class: "quiet", onclick: () => actions.computeReference() },
+      "compute it",
+    );
+    empty.replaceChildren(
+      lacks
+        ? `no reference solution: ${reference?.reason || "it is being asked for"} `
+        : "this mechanism has no loop that could open",
+      ...(lacks && reference?.state === "none" ? [compute] : []),
+    );
+  }
+
+  function paint() {
+    const { history } = data;
+    if (!history || history.count === 0 || !data.look || history.nMethods !== data.methods.length) {
+      return;
+    }
+    if (canvas.hidden) {
+      fillTable();
+      return;
+    }
+    const nothing = new Float64Array(history.count).fill(NaN);
+    const columns = data.methods.map((_, m) => (isPresent(m) ? kind.columnOf(data, m) : nothing));
+    const grey = hasGrey();
+    if (grey) {
+      columns.push(greyColumn());
+    }
+    plot.setEnded(
+      [...history.ended, ...(grey ? [NaN] : [])],
+      [...data.methods.map((_, m) => isPresent(m)), ...(grey ? [false] : [])],
+    );
+    const map = options.log
+      ? (v) => (Number.isNaN(v) || v === 0 ? null : Math.max(Math.abs(v), plot.floor))
+      : (v) => (Number.isNaN(v) ? null : v);
+    const last = history.t[history.count - 1];
+    const thinned = thin(history.t, columns, history.count, BUCKETS, map);
+    plot.draw(thinned, last, history.t[shownIndex(data)]);
+  }
+
+  /** Indices of the frames in the table: about ten, evenly spread until now. */
+  function tableFrames() {
+    const now = shownIndex(data);
+    const rows = Array.from({ length: TABLE_ROWS + 1 }, (_, k) =>
+      Math.round((now * k) / TABLE_ROWS),
+    );
+    return [...new Set(rows)];
+  }
+
+  function fillTable() {
+    const { history } = data;
+    const drawn = data.methods.map((_, m) => m).filter((m) => !data.view.hidden.has(m));
+    const columns = new Map(drawn.map((m) => [m, kind.columnOf(data, m)]));
+    const head = drawn.map((m) => h("th", { scope: "col" }, data.methods[m].label));
+    const rows = tableFrames().map((i) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, history.t[i].toFixed(2)),
+        ...drawn.map((m) => h("td", {}, quantity(columns.get(m)?.[i], kind.unit))),
+      ),
+    );
+    set(table, { "aria-label": kind.title });
+    table.replaceChildren(
+      h(
+        "table",
+        { class: "numbers" },
+        h("caption", { class: "hidden" }, `${kind.title} over time`),
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "t, s"), ...head)),
+        h("tbody", {}, ...rows),
+      ),
+    );
+  }
+
+  return {
+    figure,
+    setSeries,
+    paint,
+    choose,
+    setHover: (t) => plot.setHover(t),
+    /** @param {import("../widgets/plot.js").Zoom} zoom */
+    setZoom(zoom) {
+      plot.setZoom(zoom);
+      whole.hidden = zoom === null;
+    },
+    dispose: () => plot.dispose(),
+  };
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// One line under the first screen: what is happening, the worst first. A screen reader gets the
+// same words, not more often than every two seconds; methods that stop are announced at once.
+import { shownIndex, listen } from "../state/store.js";
+import { sentences } from "../state/verdict.js";
+import { beforeAndAfter, predictionAt } from "../state/words.js";
+import { h, say } from "../widgets/dom.js";
+
+const REDRAW = 120; // [ms]
+const PAUSE = 2000; // [ms] between two things said
+const PAUSE_ENDS = 1400; // [ms] sooner when someone pauses or plays
+
+/** @param {HTMLElement} el @param {import("../state/store.js").Store} store */
+export function createVerdictBar(el, store) {
+  const data = store.data;
+  const seen = h("div", { class: "seen", "aria-hidden": "true" });
+  const live = h("p", { class: "live hidden", "aria-live": "polite", "aria-atomic": "true" });
+  const banner = h("p", { class: "banner hidden", role: "alert" });
+  const changes = h("p", { class: "change", hidden: true });
+  el.replaceChildren(changes, seen, live, banner);
+  let saidAt = -PAUSE;
+  let painted = 0;
+  let timer = 0;
+  let redraw = 0;
+
+  /** Sentences about the frame shown, with their tones. */
+  function present() {
+    const now = shownIndex(data);
+    if (now < 0) {
+      return [];
+    }
+    if (now === 0) {
+      return [{ text: "all methods start from the same closed configuration", tone: "calm" }];
+    }
+    const ahead = predictionAt(data, now);
+    const list = sentences(data, now);
+    return ahead ? [{ text: ahead, tone: "warn" }, ...list] : list;
+  }
+
+  /** Why methods have stopped until the frame shown. */
+  function failures() {
+    const now = shownIndex(data);
+    return data.methods.flatMap((method, m) => {
+      const end = data.history?.ended[m];
+      const reason = data.latest?.methods[m]?.reason;
+      return end <= data.history?.t[now]
+        ? [`${method.label} stopped at ${end.toFixed(3)} s${reason ? `: ${reason}` : ""}`]
+        : [];
+    });
+  }
+
+  function paint() {
+    painted = performance.now();
+    const list = present();
+    const key = list.map(({ text, tone }) => tone + text).join("\n");
+    if (seen.dataset.text !== key) {
+      seen.dataset.text = key;
+      seen.replaceChildren(
+        ...list.map(({ text, tone }) => h("span", { class: "sentence", "data-tone": tone }, text)),
+      );
+    }
+    say(banner, failures().join("; "));
+    say(changes, beforeAndAfter(data, shownIndex(data)).join("; "));
+    changes.hidden = changes.textContent === "";
+  }
+
+  function speak() {
+    timer = 0;
+    saidAt = performance.now();
+    const text = present().map((one) => one.text);
+    say(live, [...beforeAndAfter(data, shownIndex(data)), ...text].join(". "));
+  }
+
+  function update() {
+    const wait = REDRAW - (performance.now() - painted);
+    if (wait <= 0) {
+      paint();
+    } else if (!redraw) {
+      redraw = window.setTimeout(() => {
+        redraw = 0;
+        paint();
+      }, wait);
+    }
+    if (!timer) {
+      timer = window.setTimeout(speak, Math.max(0, PAUSE - (performance.now() - saidAt)));
+    }
+  }
+
+  /** Something else happens now: it is said soon. @param {number} sooner [ms] */
+  function hurry(sooner) {
+    clearTimeout(timer);
+    timer = 0;
+    saidAt -= sooner;
+    update();
+  }
+
+  const stop = listen(store, {
+    methods: () => hurry(PAUSE),
+    state: () => hurry(PAUSE_ENDS),
+    view: update,
+    reference: update,
+  });
+  return {
+    update,
+    dispose() {
+      stop();
+      clearTimeout(timer);
+      clearTimeout(redraw);
+      el.replaceChildren();
+    },
+  };
+}

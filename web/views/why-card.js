@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// The card that says why a method behaves as it does. It lies over the column of the methods, under
+// the row that it belongs to, and moves nothing.
+import { incidentOf } from "../state/catalogue.js";
+import { cardOfMethod } from "../state/cards.js";
+import { seconds } from "../state/format.js";
+import { listen, shownIndex } from "../state/store.js";
+import { sentenceCase } from "../state/words.js";
+import { h } from "../widgets/dom.js";
+import { tryButtons } from "../widgets/tries.js";
+
+const EDGE = 8; // [px] between the card and the edges of what it lies in
+const MOST_GROUPS = 4;
+
+/**
+ * @param {HTMLElement} el the column of the methods
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../session/session.js").Session} actions
+ */
+export function createWhyCard(el, store, actions) {
+  const data = store.data;
+  const holder = h("div", { class: "why-card", hidden: true, onkeydown: onKey });
+  el.append(holder);
+  let cardOf = -1;
+
+  /** @param {KeyboardEvent} event */
+  function onKey(event) {
+    if (event.key === "Escape") {
+      event.stopPropagation();
+      close();
+    }
+  }
+
+  const buttonOf = (m) => /** @type {HTMLElement[]} */ ([...el.querySelectorAll(".why")])[m];
+
+  function close() {
+    const button = buttonOf(data.view.why);
+    actions.setView({ why: -1 });
+    button?.focus({ preventScroll: true });
+  }
+
+  /** Incidents of the method, one line for each cause. */
+  function incidentLines(groups) {
+    const lines = groups.slice(0, MOST_GROUPS).map(({ count, first, newest }) => {
+      const name = incidentOf(newest.code)?.name ?? newest.code;
+      const times = count > 1 ? `, ${count} times, first at` : " at";
+      return h("li", {}, `${name}${times} ${seconds(first, data.duration)}`);
+    });
+    return lines.length ? [h("ul", { class: "reasons" }, ...lines)] : [];
+  }
+
+  function makeCard(m) {
+    const card = cardOfMethod(data, m, shownIndex(data));
+    const drift =
+      card.drift && !card.rule.includes(card.drift) ? ` ${sentenceCase(card.drift)}` : "";
+    const closeButton = h(
+      "button",
+      { type: "button", class: "tool small", "aria-label": "Close", onclick: close },
+      "×",
+    );
+    const tries = [...card.remedies, ...card.tries];
+    return h(
+      "section",
+      {
+        class: `card slot-${data.methods[m].slot}`,
+        tabindex: "-1",
+        "aria-label": `Why: ${card.title}`,
+      },
+      h("div", { class: "card-head" }, h("h3", {}, `${card.label}: why?`), closeButton),
+      h("p", { class: "happened" }, card.happened),
+      ...incidentLines(card.groups),
+      h("p", { class: "rule" }, `${card.rule}${drift}`),
+      tryButtons(tries, actions.attempt),
+    );
+  }
+
+  /** Under the row, or above it where more room is there; never beyond the window. */
+  function place(m) {
+    const row = /** @type {HTMLElement} */ (buttonOf(m)?.closest("tr"));
+    const home = el.getBoundingClientRect();
+    const at = row.getBoundingClientRect();
+    const lowest = Math.min(home.bottom, innerHeight - EDGE);
+    const height = holder.offsetHeight;
+    const below = at.bottom + height <= lowest;
+    const top = below ? at.bottom : Math.max(home.top, lowest - height);
+    holder.style.top = `${top - home.top}px`;
+  }
+
+  function show() {
+    const m = data.view.why;
+    if (m < 0 || !data.methods[m] || shownIndex(data) < 0) {
+      holder.hidden = true;
+      holder.replaceChildren();
+      cardOf = -1;
+      return;
+    }
+    if (cardOf !== m) {
+      cardOf = m;
+      holder.replaceChildren(makeCard(m));
+      holder.hidden = false;
+      buttonOf(m)?.closest("tr")?.scrollIntoView({ block: "nearest" });
+      place(m);
+      /** @type {HTMLElement} */ (holder.firstElementChild).focus({ preventScroll: true });
+    }
+  }
+
+  const stop = listen(store, {
+    methods: () => {
+      cardOf = -1;
+      show();
+    },
+    view: show,
+  });
+  return {
+    update() {},
+    dispose() {
+      stop();
+      holder.remove();
+    },
+  };
+}

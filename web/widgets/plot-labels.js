@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Names beside the last point of each curve, pushed apart where they would touch.
+
+const SWATCH = 10; // [px] of a curve before its name
+const HEIGHT = 14; // [px] between two names
+/** [px] beside the axes; the same in every plot, so that plots below each other agree. */
+export const LABEL_ROOM = 104;
+
+/** The font of axes and names. */
+export const plotFont = (ratio = 1) =>
+  `${12.5 * ratio}px ${getComputedStyle(document.body).fontFamily}`;
+
+/** A piece of the curve, so that the name itself can be in ink. */
+function drawSample(ctx, x, y, one) {
+  const ratio = devicePixelRatio;
+  ctx.setLineDash(one.dash.map((length) => (length * ratio) / 2));
+  ctx.strokeStyle = one.colour;
+  ctx.lineWidth = 2.5 * ratio;
+  ctx.beginPath();
+  ctx.moveTo(x, y);
+  ctx.lineTo(x + SWATCH * ratio, y);
+  ctx.stroke();
+  ctx.setLineDash([]);
+}
+
+/** Where a run ended. */
+function drawCross(ctx, x, y, colour) {
+  const r = 4 * devicePixelRatio;
+  ctx.setLineDash([]);
+  ctx.strokeStyle = colour;
+  ctx.lineWidth = 2 * devicePixelRatio;
+  ctx.beginPath();
+  ctx.moveTo(x - r, y - r);
+  ctx.lineTo(x + r, y + r);
+  ctx.moveTo(x - r, y + r);
+  ctx.lineTo(x + r, y - r);
+  ctx.stroke();
+}
+
+export function createEndLabels() {
+  /** Index of the last value at a time or before, -1: none. */
+  function lastIndex(times, values, end) {
+    for (let i = values.length - 1; i >= 0; i--) {
+      if (values[i] !== null && values[i] !== undefined && times[i] <= end) {
+        return i;
+      }
+    }
+    return -1;
+  }
+
+  /** @param {any} u @param {any[]} series */
+  function place(u, series, { now, log, range }) {
+    const ratio = devicePixelRatio;
+    const bottom = u.bbox.top + u.bbox.height;
+    const list = series.flatMap((one, k) => {
+      const ys = u.data[k + 1];
+      const i = lastIndex(u.data[0], ys, range[1]);
+      if (i >= 0) {
+        const y = u.valToPos(ys[i], "y", true);
+        return [{ one, x: Math.max(u.bbox.left, u.valToPos(u.data[0][i], "x", true)), at: y, y }];
+      }
+      const isZero = log && one.present && ys.length > 1;
+      const zero = { ...one, label: `${one.label}: 0` };
+      return isZero ? [{ one: zero, x: u.valToPos(now, "x", true), at: bottom, y: bottom }] : [];
+    });
+
+    list.sort((a, b) => a.y - b.y);
+    const low = u.bbox.top + 7 * ratio;
+    const high = bottom - 7 * ratio;
+    list.forEach((item, i) => {
+      item.y = Math.max(item.y, i > 0 ? list[i - 1].y + HEIGHT * ratio : low);
+    });
+    for (let i = list.length - 1; i >= 0; i--) {
+      const most = i === list.length - 1 ? high : list[i + 1].y - HEIGHT * ratio;
+      list[i].y = Math.min(list[i].y, most);
+    }
+    return list;
+  }
+
+  return {
+    /** @param {any} u the plot @param {any[]} series @param {any} how */
+    draw(u, series, how) {
+      const { ctx } = u;
+      const ratio = devicePixelRatio;
+      const right = u.bbox.left + u.bbox.width;
+      ctx.font = plotFont(ratio);
+      ctx.textBaseline = "middle";
+      ctx.textAlign = "left";
+      for (const { one, x: end, y, at } of place(u, series, how)) {
+        const text = Number.isNaN(one.ended) ? one.label : `${one.label} ×`;
+        const width = ctx.measureText(text).width;
+        const room = u.width * ratio - width - (SWATCH + 8) * ratio;
+        const left = Math.min(end + 6 * ratio, right + 6 * ratio, room);
+        const name = left + (SWATCH + 3) * ratio;
+        ctx.fillStyle = how.ink.paper;
+        ctx.globalAlpha = 0.82;
+        ctx.fillRect(left - 2, y - 6.5 * ratio, name - left + width + 4 * ratio, 13 * ratio);
+        ctx.globalAlpha = 1;
+        drawSample(ctx, left, y, one);
+        ctx.fillStyle = how.ink.text;
+        ctx.fillText(text, name, y);
+        if (!Number.isNaN(one.ended)) {
+          drawCross(ctx, end, at, one.colour);
+        }
+      }
+    },
+  };
+}
