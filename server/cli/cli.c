@@ -36,10 +36,10 @@ static const hn_command COMMANDS[] = {
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
-     MODEL_OPTIONS " --method --time --at --every --raw-lambda --reactions --format", 1, 1,
+     MODEL_OPTIONS " --method --time --at --every --raw-lambda --reactions --format --plot", 1, 1,
      hn_command_run},
     {"compare", "SCENE", "several methods on one clock, and where they part",
-     MODEL_OPTIONS " --methods --time --frame", 1, 1, hn_command_compare},
+     MODEL_OPTIONS " --methods --time --frame --plot", 1, 1, hn_command_compare},
     {"study", "SCENE work-precision|budget|stability",
      "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
      ".json or .csv (maps also .svg, .png)",

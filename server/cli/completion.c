@@ -4,7 +4,7 @@
 #include "cli/cli.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
-#include "integrators/method/method_spec.h"
+#include "integrators/method/catalogue.h"
 #include "session/model/model.h"
 
 #include <cjson/cJSON.h>

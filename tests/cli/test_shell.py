@@ -55,6 +55,30 @@ class Completion(unittest.TestCase):
         self.assertIn("bash, zsh and fish", done.stderr)
 
 
+class Plots(unittest.TestCase):
+    def test_compare_draws_every_method_within_the_width(self):
+        env = {**os.environ, "COLUMNS": "70", "LC_ALL": "C.UTF-8"}
+        done = subprocess.run([driver.PROGRAM, "compare", "four-bar", "--time", "2", "--plot"], capture_output=True, text=True,
+                              timeout=60, env=env)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        plot = done.stdout[done.stdout.index("loop gap (constraint violation)"):]
+        self.assertLessEqual(max(map(len, plot.splitlines())), 70)
+        for glyph, method in (("●", "index1@rk4"), ("▲", "projection@rk4"), ("+", "reduced@rk4")):
+            self.assertRegex(plot, rf"  {re.escape(glyph)} {method}")
+        # the unstabilised gap reaches 1e-4 m and more in two seconds, the projected one stays at rounding
+        self.assertRegex(plot, r"1e-0[1-4]┤")
+        self.assertNotIn("\033", plot)
+
+    def test_run_draws_in_place_of_samples_and_in_ascii_where_the_locale_asks(self):
+        env = {**os.environ, "LC_ALL": "C"}
+        done = subprocess.run([driver.PROGRAM, "run", "pendulum", "--time", "1", "--plot"], capture_output=True, text=True, timeout=60,
+                              env=env)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(done.stdout.isascii())
+        self.assertIn("energy change since the start", done.stdout)
+        self.assertNotIn("t,th", done.stdout)
+
+
 class Manual(unittest.TestCase):
     def test_it_names_every_command_and_option(self):
         text = call("manual").stdout.replace("\\-", "-")

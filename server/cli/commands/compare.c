@@ -7,6 +7,8 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
+#include "terminal/motion_plot.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,11 +34,31 @@ static hn_status create(const hn_args *args, const hn_model *model, hn_compariso
     return hn_comparison_create(model, methods, n, &opts, out, diags);
 }
 
-/// The frame in which the clock arrives at the end.
-static void run_to_the_end(hn_comparison *c) {
+/// Keeps gap and energy change of every method at the present frame; a method that has ended leaves a hole.
+static void keep_frame(hn_motion_plot *plot, hn_comparison *c) {
+    if (!hn_motion_plot_next(plot)) {
+        return;
+    }
+    for (int i = 0; i < plot->n_tracks; i++) {
+        hn_sample sample = {0};
+        if (hn_comparison_sample(c, i, &sample) && sample.q) {
+            plot->tracks[i].gap[plot->n - 1] = sample.gap;
+            plot->tracks[i].energy[plot->n - 1] = sample.energy_change;
+        }
+    }
+}
+
+/// The frame in which the clock arrives at the end; `plot` (may be NULL) keeps every frame.
+static void run_to_the_end(hn_comparison *c, hn_motion_plot *plot) {
     hn_progress progress = {0};
+    if (plot) {
+        keep_frame(plot, c);
+    }
     while (!hn_comparison_finished(c)) {
         hn_comparison_next(c);
+        if (plot) {
+            keep_frame(plot, c);
+        }
         double t = (double)hn_comparison_frame(c) * hn_comparison_frame_dt(c);
         hn_progress_tell(&progress, "comparing", fmin(1, t / hn_comparison_duration(c)));
     }
@@ -138,6 +160,18 @@ static int tell_failures(const cJSON *summary, int aloud) {
     return failed;
 }
 
+/// Tracks named by the spelling of their method.
+static void begin_plot(hn_motion_plot *plot, const hn_comparison *c, const char *unit,
+                       char names[][HN_SPEC_MAX]) {
+    *plot = (hn_motion_plot){.dt = hn_comparison_frame_dt(c), .gap_unit = unit};
+    plot->n_tracks = hn_comparison_n_methods(c);
+    for (int i = 0; i < plot->n_tracks; i++) {
+        hn_method_format(hn_run_spec(hn_comparison_run(c, i)), names[i]);
+        plot->tracks[i].name = names[i];
+        plot->tracks[i].slot = hn_comparison_slot(c, i);
+    }
+}
+
 hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
     hn_model *model = NULL;
     hn_comparison *c = NULL;
@@ -152,13 +186,20 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
         hn_model_free(model);
         return hn_report_diags(args, status, &diags);
     }
-    run_to_the_end(c);
+    char names[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
+    hn_motion_plot plot;
+    begin_plot(&plot, c, gap_unit(model), names);
+    run_to_the_end(c, args->plot ? &plot : NULL);
     hn_comparison_summary_json(&b, c);
     cJSON *summary = cJSON_Parse(hn_strbuf_text(&b));
     if (!args->json) {
         hn_strbuf_clear(&b);
         put_table(&b, model, summary);
+        if (args->plot) {
+            hn_motion_plot_text(&b, &plot, hn_terminal_columns(), hn_terminal_colours());
+        }
     }
+    hn_motion_plot_free(&plot);
     hn_exit result = args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
     int failed = tell_failures(summary, !args->json);
     cJSON_Delete(summary);

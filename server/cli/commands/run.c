@@ -7,6 +7,8 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
+#include "terminal/motion_plot.h"
+#include "terminal/width.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -264,6 +266,32 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
     return status;
 }
 
+/// Gap and energy change of the samples, drawn over the index of the sample: they are taken at equal intervals.
+static void put_plot(hn_strbuf *b, const cJSON *run) {
+    const cJSON *samples = hn_document_get(run, "samples");
+    const cJSON *t = hn_document_get(samples, "t"),
+                *last = t ? cJSON_GetArrayItem(t, cJSON_GetArraySize(t) - 1) : NULL;
+    const cJSON *gap = hn_document_get(samples, "gap"),
+                *energy = hn_document_get(samples, "energy");
+    hn_motion_plot plot = {.gap_unit = "m", .n_tracks = 1};
+    plot.tracks[0] = (hn_motion_track){.name = hn_document_text(run, "method")};
+    plot.dt =
+        last ? last->valuedouble / (cJSON_GetArraySize(t) > 1 ? cJSON_GetArraySize(t) - 1 : 1) : 1;
+    const cJSON *g = gap ? gap->child : NULL;
+    const double first = energy && energy->child ? energy->child->valuedouble : 0;
+    for (const cJSON *e = energy ? energy->child : NULL; e && hn_motion_plot_next(&plot);
+         e = e->next) {
+        plot.tracks[0].energy[plot.n - 1] = e->valuedouble - first;
+        if (cJSON_IsNumber(g)) {
+            plot.tracks[0].gap[plot.n - 1] = g->valuedouble;
+        }
+        g = g ? g->next : NULL;
+    }
+    hn_strbuf_clear(b);
+    hn_motion_plot_text(b, &plot, hn_terminal_columns(), hn_terminal_colours());
+    hn_motion_plot_free(&plot);
+}
+
 /// "csv", "ndjson" or "json"; NULL with a fault told.
 static const char *choose_format(const hn_args *args, hn_diags *diags) {
     static const char *const formats[] = {"csv", "ndjson", "json"};
@@ -297,13 +325,17 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         tell_marks(run);
         tell_incidents(run);
-        put_samples(&b, run, strcmp(format, "ndjson") == 0);
+        if (args->plot) {
+            put_plot(&b, run);
+        } else {
+            put_samples(&b, run, strcmp(format, "ndjson") == 0);
+        }
         if (hn_document_text(run, "warning")[0]) {
             fprintf(stderr, "holonom: %s\n", hn_document_text(run, "warning"));
         }
         cJSON_Delete(run);
     }
-    hn_exit result = hn_cli_print(&b);
+    hn_exit result = args->plot ? hn_cli_print_text(&b) : hn_cli_print(&b);
     if (ended != HN_OK && reason[0]) {
         fprintf(stderr, "holonom: the run ended early %s\n", reason);
     }

@@ -78,6 +78,7 @@ static const option OPTIONS[] = {
     {"--long", NULL, OPTION_FLAG, AT(run_long), "what takes minutes too"},
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
+    {"--plot", NULL, OPTION_FLAG, AT(plot), "gap and energy over time, drawn in characters"},
     {"--size", "COLUMNSxROWS", OPTION_TEXT, AT(size), "of the frame as text; 80x24 when left out"},
     {"--once", NULL, OPTION_FLAG, AT(once), "one frame as text, at --t"},
     {"--frames", "N", OPTION_COUNT, AT(frames), "end after N pictures"},

@@ -37,7 +37,7 @@ typedef struct hn_args {
         keep_alive;
     int again, hold;
     int json, csv, open, help, raw_lambda, reactions, run_long;
-    int once, ascii, blocks;
+    int once, ascii, blocks, plot;
 } hn_args;
 
 /// Parses what follows the command's name. HN_ERR_INPUT with a near miss in diag. hn_args_reset()

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terminal/width.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+enum { LEAST = 40, MOST = 300, USUAL = 80 };
+
+int hn_terminal_columns(void) {
+    struct winsize size = {0};
+    const char *said = getenv("COLUMNS");
+    int columns = USUAL;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+        columns = size.ws_col;
+    } else if (said && atoi(said) > 0) {
+        columns = atoi(said);
+    }
+    return columns < LEAST ? LEAST : columns > MOST ? MOST : columns;
+}
+
+bool hn_terminal_colours(void) {
+    const char *no = getenv("NO_COLOR"), *term = getenv("TERM");
+    return isatty(STDOUT_FILENO) && !(no && no[0]) && term && strcmp(term, "dumb") != 0;
+}
