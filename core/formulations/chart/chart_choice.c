@@ -198,11 +198,11 @@ static void begin(hn_chart *chart) {
 }
 
 // the pair of columns whose exchange makes |det J_d| largest, and by how much
-static double best_exchange(const hn_chart *chart, int *dep, int *ind) {
+static double best_exchange(const hn_chart *chart, const hn_chart_point *at, int *dep, int *ind) {
     double best = 0;
     for (int k = 0; k < chart->rank; k++) {
         for (int j = 0; j < chart->r && !(chart->plain_only && chart->at[chart->dep[k]] < 0); j++) {
-            const double gain = hn_chart_exchange(chart, &chart->here, k, j);
+            const double gain = hn_chart_exchange(chart, at, k, j);
             if (gain > best) {
                 best = gain;
                 *dep = k;
@@ -221,7 +221,7 @@ static hn_status improve(hn_chart *chart, double t, const double *q) {
             break;
         }
         hn_chart_make_basis(chart, &chart->here);
-        if (!(best_exchange(chart, &k, &j) > GAIN)) {
+        if (!(best_exchange(chart, &chart->here, &k, &j) > GAIN)) {
             begin(chart);
             return HN_OK;
         }
@@ -258,7 +258,7 @@ static hn_status choose_again(hn_chart *chart, double t, const double *q, int fi
     chart->pivot_start = 0;
     if (hn_chart_factor(chart, &chart->here)) {
         hn_chart_make_basis(chart, &chart->here);
-        if (best_exchange(chart, &k, &j) <= limit) {
+        if (best_exchange(chart, &chart->here, &k, &j) <= limit) {
             begin(chart);
             return HN_OK;
         }
@@ -340,9 +340,41 @@ static int find_holding_ball(const hn_chart *chart) {
     return held_by;
 }
 
+hn_status hn_chart_choose_other(hn_chart *chart) {
+    int k = 0, j = 0;
+    if (!chart->base.valid || !(best_exchange(chart, &chart->base, &k, &j) > GAIN)) {
+        return HN_ERR_CHART;
+    }
+    return hn_chart_choose(chart, chart->base.t, chart->base.q, HN_CHART_BEST);
+}
+
+// the coordinate that would have been the better independent one at `base`, for a user who chose
+static void add_advice(hn_chart *chart) {
+    int k = 0, j = 0;
+    if (!chart->base.valid || !(best_exchange(chart, &chart->base, &k, &j) > GAIN)) {
+        return;
+    }
+    const int column = chart->dep[k];
+    const size_t used = strlen(chart->why);
+    const char *name = column < hn_system_get_info(chart->sys).n_user
+                           ? hn_system_scene(chart->sys)
+                                 ->coordinates[hn_system_user_coordinate(chart->sys, column)]
+                                 .name
+                           : "of a joint";
+    snprintf(chart->why + used, sizeof chart->why - used,
+             "; coordinate=%d (%.30s) passes this configuration", column + 1, name);
+}
+
 hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what) {
     const int ball = find_holding_ball(chart);
-    return ball >= 0 ? fail_ball(chart, t, ball) : hn_chart_fail(chart, HN_ERR_CHART, t, q, what);
+    if (ball >= 0) {
+        return fail_ball(chart, t, ball);
+    }
+    (void)hn_chart_fail(chart, HN_ERR_CHART, t, q, what);
+    if (chart->advises) {
+        add_advice(chart);
+    }
+    return HN_ERR_CHART;
 }
 
 int hn_chart_is_poor(hn_chart *chart, double tau) {
@@ -350,7 +382,7 @@ int hn_chart_is_poor(hn_chart *chart, double tau) {
     if (chart->rank <= 0 || chart->r == 0) {
         return 0;
     }
-    const double gain = best_exchange(chart, &k, &j);
+    const double gain = best_exchange(chart, &chart->here, &k, &j);
     chart->cost.ops += 3.0 * chart->rank * chart->r;
     return gain * tau > 1 && gain > 2;
 }

@@ -16,6 +16,10 @@ enum {
 /// cannot be independent or the rank differs from the one of an earlier choice, HN_ERR_UNSUPPORTED
 /// when the turning of a ball would have to be independent (plain_only).
 HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
+/// Chooses better columns at `base`, where a step from it has met the end of the present choice.
+/// Fails: HN_ERR_CHART, with nothing changed, where the present choice is the best one; otherwise as
+/// hn_chart_choose().
+HN_MUST_CHECK hn_status hn_chart_choose_other(hn_chart *chart);
 /// The end of the chart was passed: HN_ERR_CHART with `what`; where nothing but the turning of a
 /// ball could have taken over since `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name,
 /// because a shorter step changes nothing about that.

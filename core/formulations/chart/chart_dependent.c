@@ -94,6 +94,23 @@ static int factor_dense(hn_chart *chart, hn_chart_point *p) {
     return p->jd.rank == rank;
 }
 
+static bool is_near_fold(const hn_chart *chart, const hn_chart_point *p) {
+    return chart->rank > 0 &&
+           !(hn_chart_smallest_pivot(chart, p) > HN_CHART_FOLD * chart->pivot_start);
+}
+
+// A pivot of the sparse factor may vanish because its order was chosen far away, where another
+// entry was large: the chart has ended only where a pivot stays small in the order that suits this
+// configuration.
+static bool has_regular_order(hn_chart *chart, hn_chart_point *p) {
+    if (!is_square(chart)) {
+        return false;
+    }
+    hn_sparse_lu_set_pattern(p->lu, chart->rank, chart->n_jd, chart->jd_row, chart->jd_col);
+    chart->cost.factorisations++;
+    return factor_sparse(chart, p) && !is_near_fold(chart, p);
+}
+
 int hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
     const double *J = hn_eval_get(chart->loop, HN_TERM_J);
     const size_t nv = (size_t)chart->nv;
@@ -104,8 +121,7 @@ int hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
     if (!(is_square(chart) ? factor_sparse(chart, p) : factor_dense(chart, p))) {
         return 0;
     }
-    return chart->rank == 0 ||
-           hn_chart_smallest_pivot(chart, p) > HN_CHART_FOLD * chart->pivot_start;
+    return !is_near_fold(chart, p) || has_regular_order(chart, p);
 }
 
 void hn_chart_solve_dependent(hn_chart *chart, const hn_chart_point *p, double *b, double *x) {

@@ -30,6 +30,7 @@ typedef struct hn_chart_point {
 typedef struct hn_chart {
     const hn_system *sys;
     int nq, nv, nc, rank, r; ///< r = nv - rank
+    bool advises;            ///< failures name the coordinate that would pass
     int plain_only; ///< 1: only coordinates with a position of their own may be independent
     /// entries that are not identically zero, and where: borrowed from the evaluators
     int n_J, n_M;

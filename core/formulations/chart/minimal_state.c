@@ -159,16 +159,9 @@ static void compare_costs(hn_minimal_state *s, double t) {
     s->n_settled = 0;
 }
 
-hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
-                           const double *v, double *y) {
+// the rest of a start or a change of chart, once the columns are chosen; s->q and s->v hold the state
+static hn_status settle_in(hn_minimal_state *s, double t, double *y) {
     hn_chart *chart = &s->chart;
-    memmove(s->q, q, (size_t)chart->nq * sizeof *q);
-    memmove(s->v, v, (size_t)chart->nv * sizeof *v);
-    chart->dyads = NULL;
-    // a start that is made again gives the same bits
-    s->closings = s->newton_steps = 0;
-    s->n_settled = 0;
-    HN_TRY(hn_chart_choose(chart, t, s->q, first));
     HN_TRY(hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE));
     HN_TRY(choose_position(s, t));
     for (int j = 0; j < chart->r; j++) {
@@ -180,6 +173,30 @@ hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const doubl
     s->volume = 1;
     s->has_rate = 0;
     return status;
+}
+
+hn_status hn_minimal_change_chart(void *self, double t, double *y) {
+    hn_minimal_state *s = self;
+    hn_chart *chart = &s->chart;
+    memcpy(s->q, chart->base.q, (size_t)chart->nq * sizeof *s->q);
+    hn_chart_speeds(chart, &chart->base, y + chart->r, s->v);
+    HN_TRY(hn_chart_choose_other(chart));
+    chart->dyads = NULL;
+    chart->cost.chart_changes++;
+    return settle_in(s, t, y);
+}
+
+hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
+                           const double *v, double *y) {
+    hn_chart *chart = &s->chart;
+    memmove(s->q, q, (size_t)chart->nq * sizeof *q);
+    memmove(s->v, v, (size_t)chart->nv * sizeof *v);
+    chart->dyads = NULL;
+    // a start that is made again gives the same bits
+    s->closings = s->newton_steps = 0;
+    s->n_settled = 0;
+    HN_TRY(hn_chart_choose(chart, t, s->q, first));
+    return settle_in(s, t, y);
 }
 
 hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v) {
@@ -247,8 +264,9 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->v);
     if (jumped_a_dead_point(s, h)) {
         chart->here.valid = 0;
-        return hn_chart_fail(chart, HN_ERR_CHART, t, chart->here.q,
-                             "a dead point lies inside this step: the coordinate turns back there");
+        return hn_chart_fail_end(
+            chart, t, chart->here.q,
+            "a dead point lies inside this step: the coordinate turns back there");
     }
 
     // note how fast the volume of J_d changes, for the next step's check

@@ -43,6 +43,9 @@ void hn_minimal_ode(void *self, hn_ode *out);
 /// q.
 HN_MUST_CHECK hn_status hn_minimal_start(hn_minimal_state *s, int first, double t, const double *q,
                                          const double *v, double *y);
+/// Goes on in another chart from the accepted state y (t), after a step from it failed with
+/// HN_ERR_CHART. Fails: HN_ERR_CHART where the present chart is the best one.
+hn_status hn_minimal_change_chart(void *self, double t, double *y);
 hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q, double *v);
 /// Closes the loops at an accepted state as far as rounding allows and makes it the base of the
 /// next step.

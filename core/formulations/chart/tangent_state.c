@@ -135,15 +135,29 @@ static void speeds_to_basis(const hn_tangent_state *s, const double *v, double *
     }
 }
 
+// the rest of a start or a change of chart, once the columns are chosen; s->v holds the velocities
+static hn_status settle_in(hn_tangent_state *s, double t, double *y) {
+    HN_TRY(close_here(s, t, y));
+    speeds_to_basis(s, s->v, y + s->chart.nq);
+    return hn_chart_settle(&s->chart);
+}
+
 static hn_status start(hn_tangent_state *s, int choice, double t, const double *q, const double *v,
                        double *y) {
     memmove(s->v, v, (size_t)s->chart.nv * sizeof *v);
     memmove(y, q, (size_t)s->chart.nq * sizeof *q);
     (void)hn_system_normalise(s->chart.sys, y);
     HN_TRY(hn_chart_choose(&s->chart, t, y, choice));
-    HN_TRY(close_here(s, t, y));
-    speeds_to_basis(s, s->v, y + s->chart.nq);
-    return hn_chart_settle(&s->chart);
+    return settle_in(s, t, y);
+}
+
+hn_status hn_tangent_change_chart(void *self, double t, double *y) {
+    hn_tangent_state *s = self;
+    hn_chart *chart = &s->chart;
+    hn_chart_speeds(chart, &chart->base, y + chart->nq, s->v);
+    HN_TRY(hn_chart_choose_other(chart));
+    chart->cost.chart_changes++;
+    return settle_in(s, t, y);
 }
 
 hn_status hn_tangent_set_state(void *self, double t, const double *q, const double *v, double *y) {

@@ -24,6 +24,8 @@ void hn_tangent_destroy(void *self);
 void hn_tangent_ode(void *self, hn_ode *out);
 hn_status hn_tangent_set_state(void *self, double t, const double *q, const double *v, double *y);
 hn_status hn_tangent_get_state(void *self, double t, const double *y, double *q, double *v);
+/// Goes on in another chart, as hn_minimal_change_chart().
+hn_status hn_tangent_change_chart(void *self, double t, double *y);
 hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed);
 void hn_tangent_add_cost(const void *self, hn_cost *cost);
 const char *hn_tangent_why(const void *self);

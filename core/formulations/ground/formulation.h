@@ -98,6 +98,10 @@ typedef struct hn_formulation {
     /// Corrects y in place at the end of an accepted step. *changed = 1 if y moved or its meaning
     /// changed: FSAL slopes, history and dense output are then stale. NULL: nothing to do.
     hn_status (*after_step)(void *self, double t, double *y, int *changed);
+    /// Goes on in another chart from the accepted state y, after a step from it failed with
+    /// HN_ERR_CHART; the step is then tried again. Fails: HN_ERR_CHART where the present chart is
+    /// the best one. NULL: there is no other chart.
+    hn_status (*change_chart)(void *self, double t, double *y);
     /// Whether y has a new meaning after each step, so that the dense output of the last step
     /// cannot be read. NULL: no.
     int (*state_is_local)(const void *self);

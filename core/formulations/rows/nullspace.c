@@ -67,6 +67,11 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
                                        : hn_orthonormal_after_step(&s->state, t, y, changed);
 }
 
+static hn_status change_chart(void *self, double t, double *y) {
+    nullspace *s = self;
+    return s->basis == BASIS_PARTITION ? hn_tangent_change_chart(&s->state, t, y) : HN_ERR_CHART;
+}
+
 // the carried basis is another one after each step
 static int state_is_local(const void *self) {
     const nullspace *s = self;
@@ -121,6 +126,7 @@ const hn_formulation hn_formulation_nullspace = {
     .set_state = set_state,
     .get_state = get_state,
     .after_step = after_step,
+    .change_chart = change_chart,
     .state_is_local = state_is_local,
     .add_cost = add_cost,
     .why = why,

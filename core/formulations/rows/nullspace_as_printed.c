@@ -50,6 +50,7 @@ const hn_formulation hn_formulation_nullspace_as_printed = {
     .set_state = hn_tangent_set_state,
     .get_state = hn_tangent_get_state,
     .after_step = hn_tangent_after_step,
+    .change_chart = hn_tangent_change_chart,
     .add_cost = hn_tangent_add_cost,
     .why = hn_tangent_why,
 };

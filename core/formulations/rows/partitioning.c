@@ -70,6 +70,7 @@ const hn_formulation hn_formulation_partitioning = {
     .set_state = set_state,
     .get_state = hn_minimal_get_state,
     .after_step = after_step,
+    .change_chart = hn_minimal_change_chart,
     .add_cost = hn_minimal_add_cost,
     .why = hn_minimal_why,
 };

@@ -36,6 +36,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
                            "coordinate=%d: this scene has coordinates 1 to %d", red->first + 1, nv);
     }
     const hn_status status = hn_minimal_init(&red->state, sys, arena, diag);
+    red->state.chart.advises = true;
     red->state.position = (hn_position)options[OPT_POSITION];
     return status;
 }

@@ -307,6 +307,17 @@ static hn_status take_one(hn_run *run) {
     return run->adaptive ? step_adaptive(run) : step_fixed(run);
 }
 
+// the end of a chart is not the end of the motion: true where another chart takes over
+static bool change_chart(hn_run *run) {
+    if (hn_engine_change_chart(run, &run->main, run->now.t) != HN_OK) {
+        return false;
+    }
+    run->summary.reason[0] = '\0';
+    run->trouble = 0;
+    run->h_next = run->adaptive ? 0 : run->h_next;
+    return true;
+}
+
 static hn_status step_once(hn_run *run) {
     if (run->summary.steps + run->summary.rejected >= run->opts.max_steps) {
         snprintf(run->summary.reason, sizeof run->summary.reason,
@@ -314,9 +325,13 @@ static hn_status step_once(hn_run *run) {
                  run->now.t);
         return HN_ERR_BUDGET;
     }
-    const long long charts = hn_engine_cost(run, &run->main).chart_changes;
+    long long charts = hn_engine_cost(run, &run->main).chart_changes;
     run->has_dense = 1;
-    const hn_status status = take_one(run);
+    hn_status status = take_one(run);
+    if (status == HN_ERR_CHART && change_chart(run)) {
+        charts = hn_engine_cost(run, &run->main).chart_changes;
+        status = take_one(run);
+    }
     run->dense_valid = status == HN_OK && hn_engine_has_dense(run) && run->has_dense &&
                        hn_engine_cost(run, &run->main).chart_changes == charts;
     return status;

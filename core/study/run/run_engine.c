@@ -123,6 +123,18 @@ hn_status hn_engine_advance(hn_run *run, hn_run_engine *e, double t, double t_st
                : run->spec.stepper->advance(e->stepper, &e->ode, t, t_stop, e->y, t_new, e->y_new);
 }
 
+hn_status hn_engine_change_chart(hn_run *run, hn_run_engine *e, double t) {
+    const hn_formulation *f = run->spec.formulation;
+    if (dae_of(run) || !f->change_chart) {
+        return HN_ERR_CHART;
+    }
+    const hn_status status = f->change_chart(e->formulation, t, e->y);
+    if (status == HN_OK) {
+        hn_engine_accepted(run, e, 1);
+    }
+    return status;
+}
+
 hn_status hn_engine_finish(hn_run *run, hn_run_engine *e) {
     const hn_stepper *stepper = run->spec.stepper;
     return dae_of(run) || !stepper->finish ? HN_OK : stepper->finish(e->stepper, &e->ode);

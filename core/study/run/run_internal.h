@@ -131,6 +131,8 @@ hn_status hn_engine_step(hn_run *run, hn_run_engine *e, double t, double h);
 /// 1 if the integrator chooses the size of its steps itself: then `advance` takes the place of `step`.
 int hn_engine_paces_itself(const hn_run *run);
 hn_status hn_engine_advance(hn_run *run, hn_run_engine *e, double t, double t_stop, double *t_new);
+/// Goes on in another chart from the accepted state, see hn_formulation.change_chart.
+hn_status hn_engine_change_chart(hn_run *run, hn_run_engine *e, double t);
 hn_status hn_engine_finish(hn_run *run, hn_run_engine *e); ///< what dense output needs beside
 /// What the formulation does to a state at the end of a step; *changed is set to 1 when y moved.
 hn_status hn_engine_mend(hn_run *run, hn_run_engine *e, double t, double *y, int *changed);
