@@ -55,6 +55,8 @@ static int init_memory(hn_chart *chart, hn_arena *arena) {
     chart->A = hn_arena_doubles(arena, nv * nv);
     chart->z = hn_arena_doubles(arena, nv + nc);
     chart->dq = hn_arena_doubles(arena, nv + nc);
+    chart->follow_q = hn_arena_doubles(arena, (size_t)chart->nq);
+    chart->follow_ind = hn_arena_doubles(arena, nv);
     chart->basis = hn_arena_doubles(arena, nc * nv);
     chart->columns = hn_arena_doubles(arena, nc * nv);
     return ok && !hn_arena_failed(arena);

@@ -47,6 +47,7 @@ typedef struct hn_chart {
     hn_chart_point base;        ///< the last accepted state: q, N, s, t and sign alone
     hn_qr all;                  ///< pivoted factor of all of J, for choosing
     double *c, *Mx, *A, *z, *dq, *delta; ///< scratch
+    double *follow_q, *follow_ind;       ///< nq, nv: scratch of chart_follow.h
     double *basis, *columns;             ///< scratch of the choice
     int *order, *new_dep;
     int *first_dep, has_first; ///< the first choice of all

@@ -1,5 +1,7 @@
 #include "formulations/chart/minimal_state.h"
 
+#include "formulations/chart/chart_follow.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -46,9 +48,8 @@ static hn_status place(hn_minimal_state *s, double t, const double *y, double to
     if (same) {
         return HN_OK;
     }
-    hn_chart_predict(chart, t, y, s->q);
     const long long newton = chart->cost.newton;
-    const hn_status status = hn_chart_close(chart, p, t, s->q, tol);
+    const hn_status status = hn_chart_follow(chart, p, &chart->probe, t, y, s->q, tol);
     s->closings++;
     s->newton_steps += chart->cost.newton - newton;
     return status == HN_OK ? hn_chart_check_mode(chart) : status;
@@ -206,10 +207,7 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
     // at the accepted state itself nothing has to be solved
     const hn_chart_point *p = &chart->base;
     if (!hn_chart_is_at(chart, p, t, q)) {
-        const hn_status status = hn_chart_close(chart, &chart->probe, t, q, HN_CHART_TOL_FINE);
-        if (status != HN_OK) {
-            return status;
-        }
+        HN_TRY(hn_chart_follow(chart, &chart->probe, &chart->here, t, y, q, HN_CHART_TOL_FINE));
         p = &chart->probe;
     }
     hn_chart_speeds(chart, p, y + chart->r, v);
@@ -222,7 +220,7 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
 static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     const hn_chart *chart = &s->chart;
     double along = 0;
-    if (!s->has_rate || s->volume + STEPS_AHEAD * h * s->volume_rate >= 0) {
+    if (chart->r == 0 || !s->has_rate || s->volume + STEPS_AHEAD * h * s->volume_rate >= 0) {
         return 0;
     }
     for (int i = 0; i < chart->nv; i++) {

@@ -1,5 +1,7 @@
 #include "integrators/step/control.h"
 
+#include "dynamics/compile/coordinates.h"
+
 #include <math.h>
 
 double hn_error_norm(int n, const double *err, const double *y0, const double *y1, double rtol,
@@ -40,6 +42,36 @@ double hn_step_factor(hn_step_control *control, double err, int k) {
     control->just_rejected = 0;
     control->last = fmax(err, 1e-4);
     return factor;
+}
+
+// what counts as one for speed i: a radian, or the characteristic length
+static double unit_of(const hn_system *sys, int i) {
+    const hn_scene *scene = hn_system_scene(sys);
+    const bool known = i < hn_system_get_info(sys).n_user;
+    const bool is_length =
+        known && scene->coordinates[hn_system_user_coordinate(sys, i)].kind == HN_LENGTH;
+    return is_length ? hn_system_length(sys) : 1;
+}
+
+double hn_drive_norm(const hn_system *sys, const double *q0, const double *q1) {
+    const int nv = hn_system_get_info(sys).nv;
+    double largest = 0;
+    for (int i = 0; i < nv; i++) {
+        const int at = hn_system_position_of(sys, i);
+        if (at >= 0) {
+            largest = fmax(largest, fabs(q1[at] - q0[at]) / unit_of(sys, i));
+        }
+    }
+    return largest / HN_DRIVE_STEP;
+}
+
+double hn_drive_first_step(const hn_system *sys, const double *v) {
+    const int nv = hn_system_get_info(sys).nv;
+    double fastest = 0;
+    for (int i = 0; i < nv; i++) {
+        fastest = fmax(fastest, fabs(v[i]) / unit_of(sys, i));
+    }
+    return fastest > 0 ? 0.1 * HN_DRIVE_STEP / fastest : 0;
 }
 
 static double scaled_norm(int n, const double *x, const double *y, double rtol, double atol) {

@@ -25,6 +25,18 @@ typedef struct hn_step_control {
 /// embedded order + 1.
 double hn_step_factor(hn_step_control *control, double err, int k);
 
+/// [rad], or of the characteristic length: the largest displacement of a coordinate in one step of a
+/// mechanism without degrees of freedom. Its state is empty and its error 0, so the drive bounds the
+/// step: about 25 steps in a turn of the fastest part show the motion and keep each position solve
+/// near its prediction.
+#define HN_DRIVE_STEP 0.25
+
+/// Returns the largest displacement from q0 to q1 (nq each) over HN_DRIVE_STEP: an error norm for
+/// steps of such a mechanism (accepted when <= 1, order 1).
+double hn_drive_norm(const hn_system *sys, const double *q0, const double *q1);
+/// Returns a first step size for velocities v (nv); 0 where everything is at rest.
+double hn_drive_first_step(const hn_system *sys, const double *v);
+
 /// A first step size from two right-hand sides: h such that an explicit Euler step and the change
 /// of slope stay small. f0 and work are (n) scratch. Fails with the right-hand side's status.
 HN_MUST_CHECK hn_status hn_first_step(const hn_ode *ode, double t, const double *y, int order,

@@ -178,11 +178,19 @@ static double largest_step(const hn_run *run) {
     return hmax > 0 ? hmax : HUGE_VAL;
 }
 
+#define RESTING_STEP 1e-3 // of the time asked for: a driven mechanism at rest tells no time scale
+
 static hn_status choose_first_step(hn_run *run, double rtol, double atol) {
     hn_run_engine *e = &run->main;
     const double h0 = hn_method_option(&run->spec, "h0", 0);
     if (h0 > 0) {
         run->h_next = fmin(h0, largest_step(run));
+        return HN_OK;
+    }
+    if (e->ode.n_pos + e->ode.n_vel == 0) {
+        const double h = hn_drive_first_step(run->sys, run->now.v);
+        run->h_next =
+            fmin(h > 0 ? h : RESTING_STEP * (run->t_asked - run->now.t), largest_step(run));
         return HN_OK;
     }
     return hn_first_step(&e->ode, run->now.t, e->y, run->spec.stepper->order, rtol, atol,
@@ -198,7 +206,12 @@ static double try_adaptive(hn_run *run, double h, double rtol, double atol, int 
         return HUGE_VAL;
     }
     const int n = e->ode.n_pos + e->ode.n_vel;
-    const double err = hn_error_norm(n, e->err, e->y, e->y_new, rtol, atol);
+    double err = hn_error_norm(n, e->err, e->y, e->y_new, rtol, atol);
+    if (n == 0) {
+        *status =
+            hn_engine_read(run, e, run->now.t + h, e->y_new, run->work, run->work + run->info.nq);
+        err = *status == HN_OK ? hn_drive_norm(run->sys, run->now.q, run->work) : HUGE_VAL;
+    }
     if (err <= 1) {
         // a step that nobody looks into is spared the slopes that only dense output needs
         run->has_dense = run->now.t + h >= run->t_asked - LANDING * h;
@@ -231,7 +244,8 @@ static hn_status step_adaptive(hn_run *run) {
     const double rtol = hn_method_option(&run->spec, "rtol", 1e-6);
     const double atol = absolute_tolerance(run, rtol);
     const int order = run->spec.stepper->control_order;
-    const int k = order > 0 ? order : run->spec.stepper->order;
+    const bool is_driven = run->main.ode.n_pos + run->main.ode.n_vel == 0;
+    const int k = is_driven ? 1 : order > 0 ? order : run->spec.stepper->order;
     hn_status status = HN_OK;
     if (run->h_next <= 0) {
         status = choose_first_step(run, rtol, atol);
