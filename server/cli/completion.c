@@ -6,6 +6,7 @@
 #include "cli/shell/print.h"
 #include "integrators/method/catalogue.h"
 #include "session/model/model.h"
+#include "integrators/method/catalogue.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
