@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every number in the text of a lesson comes from a command that is run here. Speaks TAP.
+
+texts.json lists, for each text, what it says (word for word) with the command and the numbers that the command must give: `is`
+within a share, `at_most`, `contains` ... A number of the text that no entry covers is a fault, and so is an entry that the text
+no longer says. An entry without a command says in `because` why it needs none.
+"""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+PROGRAM = os.environ.get("HOLONOM", "build/holonom")
+FACTS = "tests/scenes/texts.json"
+WORDS = {"no": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "18": 18}
+# what a line "* **scene** - one degree of freedom, two loops ..." counts, and where inspect has it
+COUNTED = {
+    r"degrees? of freedom": "start.freedoms|start.dof",
+    r"loops?": "sizes.loops",
+    r"rows?": "sizes.rows",
+    r"motors?": "actuation.actuated",
+    r"drives?": "actuation.actuated",
+}
+_documents = {}
+
+
+def document(command):
+    """What the command prints, as JSON; a run that ends early prints one too."""
+    if command not in _documents:
+        done = subprocess.run([PROGRAM, *shlex.split(command)], capture_output=True, text=True, timeout=300)
+        _documents[command] = json.loads(done.stdout)
+    return _documents[command]
+
+
+def pick(value, path):
+    """'methods.0.worst_gap', 'integrators.name=rk4.real_limit'; 'a|b': the first that is there."""
+    for way in path.split("|"):
+        at = value
+        for step in way.split("."):
+            if isinstance(at, list) and "=" in step:
+                key, wanted = step.split("=")
+                at = next((row for row in at if row.get(key) == wanted), None)
+            elif isinstance(at, list):
+                at = at[int(step)] if int(step) < len(at) else None
+            else:
+                at = at.get(step) if isinstance(at, dict) else None
+        if at is not None:
+            return at
+    raise KeyError(path)
+
+
+def holds(doc, check):
+    """Whether the check holds, and the value that was found."""
+    found = pick(doc, check["at"])
+    if "minus" in check:
+        found -= pick(doc, check["minus"])
+    if "contains" in check:
+        return check["contains"] in found, found
+    if "count" in check:
+        return len(found) == check["count"], len(found)
+    if "at_most" in check:
+        return found <= check["at_most"], found
+    if "least_of" in check:
+        return all(found < pick(doc, other) for other in check["least_of"]), found
+    if "largest_of" in check:
+        return all(found > pick(doc, other) for other in check["largest_of"]), found
+    return abs(found - check["is"]) <= check["within"] * abs(check["is"]), found
+
+
+def faults_of(fact, text):
+    if fact["says"] not in text:
+        return [f"the text does not say: {fact['says']!r}"]
+    if "command" not in fact:
+        return [] if fact.get("because") else [f"no command and no reason: {fact['says']!r}"]
+    doc = document(fact["command"])
+    found = [(check, *holds(doc, check)) for check in fact["checks"]]
+    return [f"{check}: found {value}" for check, good, value in found if not good]
+
+
+def prose(text):
+    """The text with everything blanked that states no number of its own: code, names, links, headings, numbers of lists."""
+    def blank(m):
+        return re.sub(r"[^\n]", " ", m[0])
+
+    for pattern in (r"^ {4}\S.*$", r"^#.*$", r"^!\[.*$", r"^\d+\. ", r"\*\*[\w-]+\*\* - ", r"`[^`\n]*`"):
+        text = re.sub(pattern, blank, text, flags=re.M)
+    return text
+
+
+def uncovered(text, facts):
+    """Numbers of the prose that no fact covers."""
+    spans = []
+    for fact in facts:
+        at = text.find(fact["says"])
+        spans += [(at, at + len(fact["says"]))] if at >= 0 else []
+    numbers = re.finditer(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:e-?\d+)?", prose(text))
+    return [m[0] + " in: " + " ".join(text[max(0, m.start() - 40) : m.end() + 20].split()) for m in numbers
+            if not any(a <= m.start() and m.end() <= b for a, b in spans)]  # fmt: skip
+
+
+def counts(text):
+    """(scene, what, number said, number found) for the lists of scenes."""
+    for scene, words in re.findall(r"^\* \*\*([\w-]+)\*\* - ([^.:]*)", text, flags=re.M):
+        doc = document(f"inspect {scene} --json")
+        for part in re.split(r",| although | though ", words):
+            m = re.match(r"\s*(\w+) (.*)", part)
+            for what, path in COUNTED.items():
+                if m and m[1] in WORDS and re.match(rf"{what}(?![\w-])", m[2]):
+                    yield scene, part.strip(), WORDS[m[1]], pick(doc, path)
+
+
+def main():
+    with open(FACTS, encoding="utf-8") as f:
+        all_facts = json.load(f)
+    results = []
+    for path, facts in all_facts.items():
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        for fact in facts:
+            results.append((f"{path}: {' '.join(fact['says'].split())[:90]}", faults_of(fact, text)))
+        told = list(counts(text))
+        wrong = [f"{scene}: {part}, found {found}" for scene, part, said, found in told if said != found]
+        results.append((f"{path}: {len(told)} counts of its scenes are those of inspect", wrong))
+        results.append((f"{path}: no number without a command", uncovered(text, facts)))
+    texts = sorted(f"lessons/{d}/text.md" for d in os.listdir("lessons") if os.path.exists(f"lessons/{d}/text.md"))
+    results.append(("every text of a lesson is listed", [t for t in texts if t not in all_facts]))
+    for n, (name, faults) in enumerate(results, 1):
+        for fault in faults:
+            print(f"# {fault}")
+        print(f"{'not ok' if faults else 'ok'} {n} - {name}")
+    print(f"1..{len(results)}")
+    return 1 if any(faults for _, faults in results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
