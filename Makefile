@@ -40,12 +40,13 @@ ROOMS_integrators  := step: explicit:step implicit:step constrained:step externa
                       list:step,explicit,implicit,constrained,external method:step,list
 ROOMS_study        := incidents: run:incidents truth:incidents,run account:incidents,run \
                       stability:incidents,run cost:incidents,run,truth
-ROOMS_session      := store: model:store compare:store,model references:store,model face:model \
-                      precision:store,model,compare,references \
-                      accounts:store,model,references,precision \
-                      stability:store,model,references,precision \
-                      extreme:store,model,compare,references,precision \
-                      report:store,model,compare,references,precision,accounts,stability,extreme
+ROOMS_session      := store: model:store job:model compare:store,model references:store,model face:model \
+                      precision:store,model,job,compare,references \
+                      accounts:store,model,job,references,precision \
+                      stability:store,model,job,references,precision \
+                      extreme:store,model,job,compare,references,precision \
+                      report:store,model,job,compare,references,precision,accounts,stability,extreme \
+                      kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
 ROOMS_server       := grade: \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
@@ -319,7 +320,7 @@ extreme: all
 
 # the budget leaves time for the plots and for a machine that is not alone; nothing else should run beside it
 report: all
-	@$(PROGRAM) report --budget 225 --out build/report.html --plots build/report
+	@$(PROGRAM) report --time-limit 225 --out build/report.html --plots build/report
 	@echo 'report: build/report.html, plots in build/report/'
 
 rings: build/.packages-test

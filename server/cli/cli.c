@@ -8,7 +8,7 @@
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
-#include "session/report/report.h"
+#include "session/job/job_request.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -43,24 +43,20 @@ static const hn_command COMMANDS[] = {
     {"study", "SCENE work-precision|budget|stability",
      "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
      ".json or .csv (maps also .svg, .png)",
-     MODEL_OPTIONS
-     " --methods --time --budget --levels --samples --over --preset --grid --csv --out -o "
-     "--shard",
-     1, 2, hn_command_study},
+     MODEL_OPTIONS " --methods --time --grid --csv --out -o", 1, 2, hn_command_study},
     {"report", "[SCENE...]",
-     "studies of several scenes, accounts and survival in one page; --out FILE.html or .json",
-     "--methods --budget --levels --samples --out -o --plots", 0, HN_REPORT_SCENES,
-     hn_command_report},
+     "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
+     "--methods --out -o --plots", 0, HN_JOB_SCENES, hn_command_report},
     {"reference", "SCENE",
      "the reference solution: by two means, the digits they share; --out writes it as it is "
      "shipped",
-     MODEL_OPTIONS " --time --budget --again --hold --out -o", 1, 1, hn_command_reference},
+     MODEL_OPTIONS " --time --out -o", 1, 1, hn_command_reference},
     {"merge", "PART...",
      "the parts of a study (study --shard) put together, as if it had been one run",
      "--csv --out -o", 1, HN_CLI_MAX_WORDS, hn_command_merge},
     {"extreme", "[ID...]",
      "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
-     "--budget --long --csv --out -o", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
+     "--csv --out -o", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
     {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
      MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
      hn_command_snapshot},

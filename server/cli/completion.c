@@ -56,7 +56,7 @@ static void offer_keys(completing c, const cJSON *rows, const char *part) {
     const cJSON *key;
     c.n_head = (int)(last + 1 - c.head);
     c.typed = last + 1;
-    cJSON_ArrayForEach(key, cJSON_GetObjectItem(row, "settings")) {
+    cJSON_ArrayForEach(key, cJSON_GetObjectItem(row, "options")) {
         offer(&c, cJSON_GetStringValue(cJSON_GetObjectItem(key, "key")), "=",
               cJSON_GetStringValue(cJSON_GetObjectItem(key, "about")));
     }

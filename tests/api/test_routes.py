@@ -59,7 +59,7 @@ class Catalogue(driver.ServerCase):
 
     def test_four_bar_has_one_freedom_and_closes(self):
         scene = self.get("/api/v1/scenes/four-bar")
-        self.assertEqual(scene["freedoms"], 1)
+        self.assertEqual(scene["dof"], 1)
         self.assertLess(scene["assembly"]["gap"], 1e-12)
 
     def test_a_setting_in_the_query_moves_the_scene(self):
@@ -178,7 +178,7 @@ class Stateless(driver.ServerCase):
 
     def test_multipliers_that_are_not_determined_are_marked(self):
         # at 1e-8 from flat the rows of a parallelogram are one; a second later they are two
-        near = {"scene": "parallelogram", "settings": {"th_0": 1e-8, "w_0": 1, "g": 0}}
+        near = {"scene": "parallelogram", "parameters": {"th_0": 1e-8, "w_0": 1, "g": 0}}
         self.assertEqual(self.post("terms", {**near, "reactions": True}).json()["lambda_mark"], "one of many")
         run = self.post("runs", {**near, "method": "projection@rk4:h=1e-3", "time": 1, "at": [0, 1]}).json()
         self.assertEqual([run["lambda_marks"][m] for m in run["samples"]["lambda_mark"]], ["one of many", "determined"])
@@ -243,7 +243,7 @@ class Bounded(driver.ServerCase):
         self.assertGreater(len(run["samples"]["t"]), 10)
 
     def test_a_run_is_cut_however_long_one_step_takes(self):
-        self.ask_cut(scene="ring", settings={"n": 60}, method="nullspace@rk4:h=1e-3", time=100, every=10)
+        self.ask_cut(scene="ring", parameters={"n": 60}, method="nullspace@rk4:h=1e-3", time=100, every=10)
 
 
 class Document(driver.ServerCase):

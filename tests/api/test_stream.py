@@ -172,13 +172,13 @@ class Streams(driver.ServerCase):
     def test_new_settings_start_anew(self):
         c = self.server.compare(methods=METHODS)
         parameter = c["scene"]["parameters"][0]
-        changed = self.patch(c["id"], settings={parameter["name"]: parameter["value"] * 1.01})
-        self.assertEqual(changed["settings"], {parameter["name"]: parameter["value"] * 1.01})
+        changed = self.patch(c["id"], parameters={parameter["name"]: parameter["value"] * 1.01})
+        self.assertEqual(changed["parameters"], {parameter["name"]: parameter["value"] * 1.01})
         self.assertEqual(changed["generation"], 1)
         self.assertNotEqual(changed["latest"]["methods"][0]["points"], c["latest"]["methods"][0]["points"])
-        answer = self.server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"settings": {"nonsense": 1}})
+        answer = self.server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"parameters": {"nonsense": 1}})
         self.assert_problem(answer, 422)
-        self.assertEqual(self.server.ask("GET", "/api/v1/comparisons/" + c["id"]).json()["settings"], changed["settings"])
+        self.assertEqual(self.server.ask("GET", "/api/v1/comparisons/" + c["id"]).json()["parameters"], changed["parameters"])
 
     def test_a_setting_of_a_formulation_changes_while_running(self):
         c = self.server.compare(methods=["baumgarte:alpha=5,beta=5@rk4:h=1e-3", METHODS[0]])

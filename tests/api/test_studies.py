@@ -24,19 +24,18 @@ LONG = {"scene": "four-bar", "kind": "work-precision", "methods": METHODS, "samp
 AT_FAULT = [
     ({"kind": "work-precison"}, "/kind", "work-precision"),
     ({"kind": None}, "/kind", "missing"),
-    ({"methods": None}, "/methods", "missing"),
     ({"methods": []}, "/methods", ""),
     ({"methods": METHODS[:1] * 13}, "/methods", "12"),
     ({"methods": ["index1@rk4", "indx1@rk4"]}, "/methods/1", "index1"),
     ({"scene": "pendulumm"}, "/scene", "pendulum"),
-    ({"settings": {"nonsense": 1}}, None, "nonsense"),
+    ({"parameters": {"nonsense": 1}}, None, "nonsense"),
     ({"levels": 8}, "/levels", "7"),
     ({"levels": 1}, "/levels", "2"),
     ({"levels": 2.5}, "/levels", ""),
     ({"samples": -1}, "/samples", "0"),
     ({"samples": 11}, "/samples", "10"),
-    ({"budget": 0}, "/budget", ""),
-    ({"budget": 21}, "/budget", "20 s"),
+    ({"time_limit": 0}, "/time_limit", ""),
+    ({"time_limit": 21}, "/time_limit", "20 s"),
     ({"time": 0}, "/time", ""),
     ({"time": 5000}, "/time", "3600"),
     ({"level": 3}, "/level", "levels"),
@@ -88,7 +87,7 @@ class Studies(driver.ServerCase):
         self.assertEqual((done["state"], done["reason"], done["progress"], done["time_left_s"]), ("finished", "", 1, 0))
         self.assertEqual((done["kind"], done["scene"], done["methods"]), ("work-precision", "pendulum", METHODS))
         same = command_line("pendulum", "work-precision", "--methods", *METHODS, "--time", "0.5", "--levels", "3",
-                            "--samples", "0", "--budget", "20")
+                            "--samples", "0", "--time-limit", "20")
         self.assertEqual(done["document"], same)
 
     def test_budget_is_the_document_of_the_command_line(self):
@@ -100,7 +99,7 @@ class Studies(driver.ServerCase):
         done = wait(self.server, start(self.server, MAP))
         self.assertEqual(done["state"], "finished", done["reason"])
         same = command_line("four-bar", "stability", "--methods", *MAP["methods"], "--time", "0.5", "--preset", "baumgarte",
-                            "--grid", "4x3", "--budget", "20")
+                            "--grid", "4x3", "--time-limit", "20")
         for document in (done["document"], same):
             self.assertGreater(document.pop("elapsed"), 0)
         self.assertEqual(done["document"], same)
@@ -140,10 +139,10 @@ class Studies(driver.ServerCase):
 
     def test_parameters_and_scenes_of_ones_own_are_studied(self):
         scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
-        own = wait(self.server, start(self.server, but(QUICK, scene=scene, settings={"g": 5})))
-        shipped = wait(self.server, start(self.server, but(QUICK, settings={"g": 5})))
+        own = wait(self.server, start(self.server, but(QUICK, scene=scene, parameters={"g": 5})))
+        shipped = wait(self.server, start(self.server, but(QUICK, parameters={"g": 5})))
         other = wait(self.server, start(self.server, QUICK))
-        self.assertEqual(own["settings"], {"g": 5})
+        self.assertEqual(own["parameters"], {"g": 5})
         points = [[m["points"] for m in done["document"]["methods"]] for done in (own, shipped, other)]
         self.assertEqual(points[0], points[1])
         self.assertNotEqual(points[0], points[2])
@@ -159,19 +158,34 @@ class Studies(driver.ServerCase):
         self.assert_problem(self.server.ask("PATCH", f"{AT}/0", {"state": "running"}), 422)
 
     def test_the_index_tells_the_bounds_that_hold(self):
-        limits = self.server.ask("GET", "/api/v1/").json()["limits"]
-        for limit, body, over in (("study_methods", QUICK, lambda n: {"methods": METHODS[:1] * n}),
-                                  ("study_levels", QUICK, lambda n: {"levels": n}),
-                                  ("study_samples", QUICK, lambda n: {"samples": n}),
-                                  ("map_methods", MAP, lambda n: {"methods": MAP["methods"] * n}),
-                                  ("map_side", MAP, lambda n: {"columns": n}),
-                                  ("map_side", MAP, lambda n: {"rows": n}),
-                                  ("run_cpu_s", QUICK, lambda n: {"budget": n}),
-                                  ("comparison_duration_s", QUICK, lambda n: {"time": n})):
-            with self.subTest(limit=limit):
-                changes = over(limits[limit] + 1)
-                document = self.assert_problem(self.server.ask("POST", AT, but(body, **changes)), 422)
-                self.assertEqual(document["errors"][0]["pointer"], "/" + next(iter(changes)))
+        index = self.server.ask("GET", "/api/v1/").json()
+        kinds = {kind["name"]: {field["name"]: field for field in kind["fields"]} for kind in index["studies"]}
+        wp, stability = kinds["work-precision"], kinds["stability"]
+        for body, name, bound, change in (
+            (QUICK, "methods", wp["methods"]["max"], lambda n: METHODS[:1] * n),
+            (QUICK, "levels", wp["levels"]["max"], lambda n: n),
+            (QUICK, "samples", wp["samples"]["max"], lambda n: n),
+            (MAP, "methods", stability["methods"]["max"], lambda n: MAP["methods"] * n),
+            (MAP, "columns", stability["columns"]["max"], lambda n: n),
+            (MAP, "rows", stability["rows"]["max"], lambda n: n),
+            (QUICK, "time_limit", index["limits"]["run_cpu_s"], lambda n: n),
+            (QUICK, "time", index["limits"]["comparison_duration_s"], lambda n: n)):
+            with self.subTest(name=name, kind=body["kind"]):
+                document = self.assert_problem(self.server.ask("POST", AT, but(body, **{name: change(bound + 1)})), 422)
+                self.assertEqual(document["errors"][0]["pointer"], "/" + name)
+
+    def test_the_index_lists_the_kinds_with_what_each_takes(self):
+        kinds = {kind["name"]: kind for kind in self.server.ask("GET", "/api/v1/").json()["studies"]}
+        self.assertEqual(set(kinds), {"work-precision", "stability", "budget"})
+        presets = {preset["name"]: preset for preset in kinds["stability"]["presets"]}
+        choices = next(f["choices"] for f in kinds["stability"]["fields"] if f["name"] == "preset")
+        self.assertEqual(list(presets), choices)
+        self.assertEqual(presets["baumgarte"]["chooses"], ["alpha", "beta"])
+        self.assertEqual(kinds["work-precision"]["chooses"], ["h", "rtol"])
+        for kind in kinds.values():
+            for field in kind["fields"]:
+                self.assertTrue(field["about"], field)
+                self.assertNotEqual(field["name"], "shard", "a part of a study is for the command line")
 
     def test_no_more_than_two_run_at_once_and_the_next_is_told_when_to_ask_again(self):
         running = [start(self.server, LONG) for _ in range(2)]
@@ -223,10 +237,10 @@ class Bounded(unittest.TestCase):
     def test_computing_ends_where_the_server_says(self):
         server = driver.Server("--run-cpu", "0.3")
         try:
-            large = {"scene": "ring", "settings": {"n": 60}}  # a step of it takes milliseconds
+            large = {"scene": "ring", "parameters": {"n": 60}}  # a step of it takes milliseconds
             for body in (LONG, but(BUDGET, time=10), but(MAP, time=20, columns=24, rows=24), {**LONG, **large}, {**MAP, **large}):
                 done = wait(server, start(server, body), 60)
-                self.assertEqual(done["budget_s"], 0.3)
+                self.assertEqual(done["time_limit_s"], 0.3)
                 self.assertIn(done["state"], ("stopped", "failed"), done["reason"])
                 self.assertTrue(done["reason"])
         finally:

@@ -42,16 +42,16 @@ import { createCamera, seenBox } from "../../web/widgets/camera.js";
 const ROOT = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const CATALOGUE = {
   formulations: [
-    { name: "index1", settings: [] },
+    { name: "index1", options: [] },
     {
       name: "baumgarte",
-      settings: [
+      options: [
         { key: "alpha", default: 5 },
         { key: "beta", default: 5 },
       ],
     },
   ],
-  integrators: [{ name: "rk4", settings: [{ key: "h", default: null }] }],
+  integrators: [{ name: "rk4", options: [{ key: "h", default: null }] }],
 };
 
 test("no key is bound twice in a context", () => {

@@ -11,7 +11,7 @@ import { pathToFileURL } from "node:url";
 import { PROGRAM, ROOT, startBrowser } from "./support.mjs";
 
 const METHODS = ["projection@rk4", "index1@rk4", "nullspace-as-printed@rk4"];
-const WORDS = ["--methods", ...METHODS, "--levels", "3", "--samples", "0", "--budget", "0"];
+const WORDS = ["--methods", ...METHODS, "--levels", "3", "--samples", "0", "--time-limit", "0"];
 const MAKE_LIMIT = 120000; // [ms]
 
 let folder, file, browser;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests of studies from the command line share: calls with a folder of their own, strict documents, interrupts and kills."""
 
 import json

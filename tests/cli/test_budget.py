@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Where errors and energy come from, from the command line: the parts add up, and what cannot be told is null."""
 
 import csv
@@ -105,11 +106,11 @@ class Budget(unittest.TestCase):
 
     def test_options_of_other_kinds_and_names_that_tell_no_form_are_refused(self):
         for words, said in (
-            (["--levels", "3"], "--levels"),
+            (["--levels", "3"], "kind budget has no 'levels'"),
             (["--out", "budget.txt"], "end it in .html, .json or .csv"),
             (["--json", "--csv"], "JSON and CSV at once"),
             (["--methods", "projecton@rk4"], "projection"),
-            (["--time", "-1"], "above 0"),
+            (["--time", "-1"], "are allowed"),
         ):
             done = call("study", "fb0", "budget", *words)
             self.assertEqual(done.returncode, INPUT, words)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The extreme matrix from the command line: all cases parse, a cheap part is run, documents agree, faults of files are told."""
 
 import csv
@@ -33,7 +34,7 @@ def verdicts(document):
 
 class Extreme(unittest.TestCase):
     def test_all_cases_parse_and_each_has_a_trial_with_a_reason(self):
-        done = call(["--json", "--budget", "1e-9"])
+        done = call(["--json", "--time-limit", "1e-9"])
         self.assertEqual(done.returncode, DONE, done.stderr)
         cases = json.loads(done.stdout)["cases"]
         self.assertEqual([c["id"] for c in cases], [f"X{n}" for n in range(1, 26)])
@@ -118,9 +119,9 @@ class Extreme(unittest.TestCase):
 
     def test_a_budget_leaves_trials_that_a_richer_run_of_the_same_does(self):
         with tempfile.TemporaryDirectory() as folder:
-            poor = studies.call(["extreme", *SECONDS, "--json", "--budget", "0.2"], folder, text=True)
+            poor = studies.call(["extreme", *SECONDS, "--json", "--time-limit", "0.2"], folder, text=True)
             self.assertTrue(json.loads(poor.stdout)["out_of_time"])
-            self.assertIn("the budget of 0.2 s left trials out; the same command goes on from here", poor.stderr)
+            self.assertIn("the time limit left trials out; the same command goes on from here", poor.stderr)
             rich = studies.call(["extreme", *SECONDS, "--json"], folder, text=True)
         self.assertEqual(rich.stdout, call([*SECONDS, "--json"]).stdout)
 

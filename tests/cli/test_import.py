@@ -50,7 +50,7 @@ class Import(unittest.TestCase):
         answer = json.loads(self.done("import", HERE + "four-bar.xml", "--json").stdout)
         self.assertEqual((answer["format"], answer["bodies"], answer["closing"]), ("MJCF", 3, 1))
         self.assertAlmostEqual(answer["mass"], 4.8, 12)
-        self.assertEqual((answer["assembly"]["freedoms"], answer["assembly"]["vanished"]), (1, 1))
+        self.assertEqual((answer["assembly"]["dof"], answer["assembly"]["vanished"]), (1, 1))
         self.assertLess(answer["assembly"]["gap"], 1e-14)
         self.assertEqual([(n["outcome"], n["line"]) for n in answer["notes"]], [("ignored", 11), ("ignored", 12), ("ignored", 16)])
         self.assertEqual(answer["scene"]["holonom"], 1)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Studies in parts: whatever the number of parts, their order, repetition and overlap, and whatever happens to one on the way, together they are
 the study of one process; parts that do not belong together are refused by the field."""
 
@@ -214,7 +215,7 @@ class Merge(unittest.TestCase):
         self.assertEqual(together.stdout, whole.stdout, together.stderr)
 
     def test_timed_parts_differ_from_one_process_by_the_clock_alone(self):
-        words = [*STUDY[:-2], "--levels", "3", "--samples", "4", "--budget", "0"]
+        words = [*STUDY[:-2], "--levels", "3", "--samples", "4", "--time-limit", "0"]
         whole = json.loads(self.call([*words, "--json"]).stdout)
         files = self.parts(2, words, tag="timed")
         together = json.loads(self.merged(files))
@@ -238,7 +239,7 @@ class Merge(unittest.TestCase):
         self.assertIn("longer in one part than in another", next(p["sentences"] for p in apart["pareto"] if p["cost"] == "time"))
 
     def test_a_ranking_by_time_stands_only_where_both_halves_agree(self):
-        words = ["study", "fb0", "--methods", *METHODS, "--time", "1", "--levels", "3", "--samples", "6", "--budget", "0", "--json"]
+        words = ["study", "fb0", "--methods", *METHODS, "--time", "1", "--levels", "3", "--samples", "6", "--time-limit", "0", "--json"]
         study = json.loads(self.call(words).stdout)
         points = {(m["method"], p["size"]): p for m in study["methods"] for p in m["points"]}
         bands = 0
@@ -256,7 +257,7 @@ class Merge(unittest.TestCase):
         self.assertGreater(bands, 0)
 
     def test_a_part_killed_ten_times_ends_as_an_undisturbed_one(self):
-        words = [*COUNTED[:-2], "--time", "8", "--levels", "6", "--samples", "1", "--budget", "0", "--shard"]
+        words = [*COUNTED[:-2], "--time", "8", "--levels", "6", "--samples", "1", "--time-limit", "0", "--shard"]
         undisturbed = [self.path(f"calm-{i}.json") for i in (1, 2)]
         for i in (1, 2):
             self.assertEqual(self.call([*words, f"{i}/2", "--out", undisturbed[i - 1]]).returncode, DONE)
@@ -271,7 +272,7 @@ class Merge(unittest.TestCase):
         self.assertEqual(json.dumps(without_clock(together)), json.dumps(without_clock(calm)))
 
     def test_an_interrupted_part_is_told_and_goes_on(self):
-        words = [*STUDY[:-4], "--time", "4", "--levels", "6", "--samples", "2", "--budget", "0", "--shard"]
+        words = [*STUDY[:-4], "--time", "4", "--levels", "6", "--samples", "2", "--time-limit", "0", "--shard"]
         files = [self.path(f"int-{i}.json") for i in (1, 2)]
         self.assertEqual(self.call([*words, "2/2", "--out", files[1]]).returncode, DONE)
         words, cache = [*words, "1/2", "--out", files[0]], self.cache("cache-of-the-interrupted")
@@ -286,9 +287,9 @@ class Merge(unittest.TestCase):
 
     def test_what_the_budget_left_out_stays_and_a_richer_run_of_that_part_fills_it(self):
         poor, rich = self.path("poor.json"), self.parts(2)
-        done = self.call([*COUNTED, "--budget", "1e-4", "--shard", "1/2", "--out", poor])
+        done = self.call([*COUNTED, "--time-limit", "1e-4", "--shard", "1/2", "--out", poor])
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertIn(b"the budget of 0.0001 s left", done.stderr)
+        self.assertIn(b"the time limit left points out", done.stderr)
         study = json.loads(self.merged([poor, rich[1]]))
         skipped = [p for m in study["methods"] for p in m["points"] if p["state"] == "skipped"]
         self.assertTrue(skipped)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """`holonom reference`: where a reference solution comes from, what it says of itself, what is refused."""
 
 import json
@@ -52,8 +53,8 @@ class Reference(unittest.TestCase):
         first, second = self.answer(*words), self.answer(*words)
         self.assertEqual((first["source"], second["source"]), ("computed", "kept"))
         self.assertEqual(first["q"], second["q"])
-        self.assertEqual(self.answer(*words, "--again")["source"], "computed")
-        self.assertEqual(self.answer("fb0-lagrangian", "--again")["source"], "computed")
+        self.assertEqual(self.answer(*words, "--recompute")["source"], "computed")
+        self.assertEqual(self.answer("fb0-lagrangian", "--recompute")["source"], "computed")
 
     def test_words_of_a_scene_do_not_part_it_from_its_reference_and_numbers_do(self):
         def reword(scene):
@@ -106,14 +107,14 @@ class Reference(unittest.TestCase):
         self.assertIn("digits", done.stdout)
 
     def test_time_left_is_shown_and_ctrl_c_ends_it(self):
-        status, seen = studies.watch_terminal(["reference", "ring", "--set", "n=12", "--time", "60", "--again"], self.folder, interrupt=True)
+        status, seen = studies.watch_terminal(["reference", "ring", "--set", "n=12", "--time", "60", "--recompute"], self.folder, interrupt=True)
         self.assertEqual(status, ENDED, seen)
         self.assertRegex(seen, r"reference \[[#.]+\] +\d+ %, \d+ (?:s|min) left")
         self.assertIn("stopped on request", seen)
 
     def test_faults_are_told(self):
-        for words, status, text in ((["fb0", "--time", "-1"], INPUT, "above 0"), (["fbo"], INPUT, "did you mean"),
-                                    (["fb0", "--again", "--budget", "1e-9"], ENDED, "takes more"),
+        for words, status, text in ((["fb0", "--time", "-1"], INPUT, "are allowed"), (["fbo"], INPUT, "did you mean"),
+                                    (["fb0", "--recompute", "--time-limit", "1e-9"], ENDED, "takes more"),
                                     (["fb0", "--out", "/nowhere/x.json"], PROGRAM, "cannot write")):
             done = self.call(*words)
             self.assertEqual(done.returncode, status, (words, done.stderr))

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The report over several scenes: one page that asks no network, plots as files, what it counts, and what a cut leaves."""
 
 import json
@@ -14,7 +15,7 @@ import studies  # noqa: E402
 from studies import DONE, ENDED, INPUT, call, driver, strict  # noqa: E402
 
 METHODS = ["index1@rk4", "projection@rk4", "nullspace-as-printed@rk4"]
-SMALL = ["report", "fb0", "n-four-bar", "--methods", *METHODS, "--levels", "4", "--samples", "0", "--budget", "0"]
+SMALL = ["report", "fb0", "n-four-bar", "--methods", *METHODS, "--levels", "4", "--samples", "0", "--time-limit", "0"]
 
 
 def without_clocks(report):
@@ -138,7 +139,7 @@ class Report(unittest.TestCase):
         self.assertEqual(without_clocks(again), without_clocks(strict(self.done.stdout)))
 
     def test_an_interrupt_keeps_scenes_that_are_done(self):
-        words = ["report", "fb0", "seven-body-squeezer", "--methods", *METHODS, "--json", "--budget", "100"]
+        words = ["report", "fb0", "seven-body-squeezer", "--methods", *METHODS, "--json", "--time-limit", "100"]
         with tempfile.TemporaryDirectory() as folder:
             status, out, err = studies.interrupt(words, folder, "study")
             self.assertEqual(status, ENDED, err)
@@ -153,7 +154,7 @@ class Report(unittest.TestCase):
             (["report", "fb-0"], b"fb0"),
             (["report", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["report", "fb0", "--levels", "99"], b"2 to 10"),
-            (["report", "fb0", "--budget", "-3"], b"above 0"),
+            (["report", "fb0", "--time-limit", "-3"], b"are allowed"),
             (["report", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
         ):
             done = call(words, self.kept.name)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Maps of stability from the command line: limits that agree with their prediction, documents, faults, an interrupt."""
 
 import csv
@@ -15,7 +16,7 @@ from studies import DONE, ENDED, INPUT, call, driver, strict  # noqa: E402
 
 SCENE = "stiff-four-bar"
 # no budget: a machine under load leaves no cell out
-STUDY = ["study", SCENE, "stability", "--budget", "0"]
+STUDY = ["study", SCENE, "stability", "--time-limit", "0"]
 SMALL = [*STUDY, "--over", "h=1e-4..1e-1,k=1e5..1e8", "--grid", "4x5", "--time", "0.1", "--methods", "projection@rk4"]
 
 
@@ -105,12 +106,12 @@ class Stability(unittest.TestCase):
             (["--over", "zeta=1..2"], b"'zeta' is no parameter"),
             (["--over", "k=1..1e99"], b"may be 0 to"),
             (["--over", "h=1e-9..1"], b"a trial has at most"),
-            (["--preset", "stifness"], b"no preset called"),
-            (["--preset", "limits", "--over", "h=1e-3..1"], b"either --preset or --over"),
+            (["--preset", "stifness"], b"did you mean 'stiffness'"),
+            (["--preset", "limits", "--over", "h=1e-3..1"], b"not from both"),
             (["--grid", "0x7"], b"not a grid"),
-            (["--grid", "99x99", "--over", "h=1e-3..1,k=1..1e3"], b"2 to 64"),
+            (["--grid", "99x99", "--over", "h=1e-3..1,k=1..1e3"], b"2 to 64 are allowed"),
             (["--out", "x.pdf"], b"cannot be told from its name"),
-            (["--levels", "3"], b"--levels"),
+            (["--levels", "3"], b"kind stability has no 'levels'"),
         ):
             done = self.call(*STUDY, *words)
             self.assertEqual(done.returncode, INPUT, words)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Work-precision studies from the command line: documents that agree, what is kept when a study is cut short, reports without network."""
 
 import csv
@@ -115,10 +116,10 @@ class Study(unittest.TestCase):
             (["study", "fb0", "work-precison"], b"no study called 'work-precison'"),
             (["study", "fb0", "--methods", "index1@rk5"], b"rk5"),
             (["study", "fb0", "--levels", "99"], b"2 to 10"),
-            (["study", "fb0", "--time", "-1"], b"above 0"),
+            (["study", "fb0", "--time", "-1"], b"are allowed"),
             (["study", "fb0", "--out", "x.pdf"], b"cannot be told from its name"),
-            (["study", "fb0", "--samples", "1000"], b"samples of time"),
-            (["study", "fb0", "--budget", "0", "--out", "/no/such/folder/x.html"], b"cannot write"),
+            (["study", "fb0", "--samples", "1000"], b"0 to 10 are allowed"),
+            (["study", "fb0", "--time-limit", "0", "--out", "/no/such/folder/x.html"], b"cannot write"),
             (["extreme", "--out", "/no/such/folder/x.html"], b"cannot write"),
             (["study", "fb0", "--json", "--csv"], b"JSON and CSV at once"),
         ):
@@ -149,7 +150,7 @@ class Study(unittest.TestCase):
         self.assertEqual(without_times(strict(done.stdout)), without_times(undisturbed))
 
     def test_an_interrupt_keeps_what_is_done_and_the_same_command_goes_on(self):
-        words = ["study", "fb0", "--methods", *METHODS, "--time", "2", "--samples", "3", "--json", "--budget", "0"]
+        words = ["study", "fb0", "--methods", *METHODS, "--time", "2", "--samples", "3", "--json", "--time-limit", "0"]
         status, out, err = studies.interrupt(words, self.folder, "study")
         self.assertEqual(status, ENDED, err)
         study = strict(out)
@@ -162,7 +163,7 @@ class Study(unittest.TestCase):
         self.assertEqual(int(found.group(1)) if found else 0, done)
 
     def test_time_left_is_shown_and_again_when_the_study_goes_on(self):
-        words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--budget", "0"]
+        words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--time-limit", "0"]
         status, seen = studies.watch_terminal(words, self.folder, interrupt=True)
         self.assertEqual(status, ENDED)
         self.assertRegex(seen, r"work-precision \[[#.]+\] +\d+ %, \d+ s left")
@@ -174,7 +175,7 @@ class Study(unittest.TestCase):
         self.assertGreater(shares[-1], 90)
 
     def test_a_budget_is_kept_and_what_it_left_out_is_told(self):
-        words = ["study", "fb0", "--time", "10", "--budget", "2", "--json"]
+        words = ["study", "fb0", "--time", "10", "--time-limit", "2", "--json"]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = call(words, self.folder)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

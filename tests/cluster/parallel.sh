@@ -1,7 +1,7 @@
 #!/bin/sh
 # A work-precision study by GNU parallel: several parts at a time on one machine, and then the whole.
 #
-#     parallel.sh 2 8 results four-bar work-precision --budget 0
+#     parallel.sh 2 8 results four-bar work-precision --time-limit 0
 #     holonom merge results/part-*-of-8.json --out results/report.html
 #
 # usage: parallel.sh JOBS PARTS FOLDER SCENE work-precision [OPTION...]

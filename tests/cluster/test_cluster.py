@@ -15,7 +15,7 @@ import slurm  # noqa: E402
 
 PROGRAM = os.path.abspath(driver.PROGRAM)
 STUDY = ["fb0", "work-precision", "--methods", "projection@rk4", "baumgarte:alpha=20,beta=20@rk4", "projection@dopri5", "ggl@radau5", "--time", "1",
-         "--levels", "5", "--samples", "0", "--budget", "0"]
+         "--levels", "5", "--samples", "0", "--time-limit", "0"]
 
 
 def bytes_of(path):

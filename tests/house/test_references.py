@@ -31,7 +31,7 @@ def not_current():
         with open(paths[0], encoding="utf-8") if paths else open(os.devnull, encoding="utf-8") as f:
             stored = json.loads(f.read() or "{}")
         # a budget in which nothing can be computed: what comes was stored
-        answer = reference(name, "--budget", "0.001") if paths else {}
+        answer = reference(name, "--time-limit", "0.001") if paths else {}
         if answer.get("source") != "shipped":
             faults.append(f"{name}: {'not of this scene any more' if paths else 'missing'}; `make references` computes them")
         elif answer["digits"] < LEAST_DIGITS or stored["T"] != answer["time"]:
@@ -43,7 +43,7 @@ def too_short():
     """Ends before the scene does only where the motion is chaotic: digits fall towards the end."""
     faults = []
     for name in names():
-        answer = reference(name, "--budget", "0.001")
+        answer = reference(name, "--time-limit", "0.001")
         digits = answer.get("digits_at", [0])
         if answer.get("time", 0) < answer.get("duration", 1) and not digits[-1] < digits[0] - 4:
             faults.append(f"{name}: ends at {answer.get('time')} s with {digits[-1]:.1f} digits")
@@ -63,7 +63,7 @@ def not_reproduced():
     """Both computations again: each entry within what the two differed by, and a unit in the last place or two."""
     faults = []
     for name in QUICK:
-        stored, again = reference(name), reference(name, "--again")
+        stored, again = reference(name), reference(name, "--recompute")
         if again["source"] != "computed":
             faults.append(f"{name}: not computed")
         allowed = 2 * max(stored["error"]["q"], again["error"]["q"])

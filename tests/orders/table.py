@@ -227,7 +227,7 @@ def pairs(program):
     steppers = {s["name"]: s for s in methods["integrators"]}
     for f in methods["formulations"]:
         for name in f["integrators"]:
-            keys = [s["key"] for s in steppers[name]["settings"]]
+            keys = [s["key"] for s in steppers[name]["options"]]
             if "h" in keys and name not in NO_WINDOW:
                 # where the iteration inside a step follows rtol too, it must not be what is measured
                 yield f, name, steppers[name]["order"], ",rtol=1e-14" if "rtol" in keys else ""

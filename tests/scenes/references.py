@@ -41,7 +41,7 @@ def refresh(program, scene):
     if is_current(program, name, path):
         return name, "current"
     os.makedirs(os.path.dirname(path), exist_ok=True)
-    status, answer = ask(program, name, "--again", "--hold", "--out", path)
+    status, answer = ask(program, name, "--recompute", "--hold", "--out", path)
     if status != 0:
         raise SystemExit(f"{name}: {answer.get('errors', status)}")
     return name, f"{answer['digits']:.1f} digits to t = {answer['time']:g} s"

@@ -96,7 +96,7 @@ export const api = {
   },
   /** @param {string} scene @param {Record<string, number>} settings */
   equations: (scene, settings) =>
-    request("POST", `${BASE}/equations`, { scene, settings, format: "json" }),
+    request("POST", `${BASE}/equations`, { scene, parameters: settings, format: "json" }),
   /** @param {object} body */
   terms: (body) => request("POST", `${BASE}/terms`, body),
   /** @param {object} body */

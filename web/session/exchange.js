@@ -104,7 +104,7 @@ export function createExchange(store, notice) {
       data.id = "";
       await create({
         scene: data.scene.id,
-        settings: data.settings,
+        parameters: data.settings,
         methods: data.methods.map((m) => m.spelling),
         speed: data.speed,
       });

@@ -46,8 +46,8 @@ export function createMethodActions(store, exchange, notice) {
     },
     /** @param {string} name @param {number} value */
     setParameter: (name, value) =>
-      exchange.restart({ settings: { ...data.settings, [name]: value } }),
-    resetParameters: () => exchange.restart({ settings: {} }),
+      exchange.restart({ parameters: { ...data.settings, [name]: value } }),
+    resetParameters: () => exchange.restart({ parameters: {} }),
     /**
      * Carries out a suggestion of a card: an option, or a method in place of its kind.
      * @param {import("../state/cards.js").Try} item

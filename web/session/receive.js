@@ -102,7 +102,7 @@ export function createReceiver(store, notice) {
     covered = description.last_event;
     const restarted = description.generation !== data.generation;
     data.generation = description.generation;
-    data.settings = description.settings ?? {};
+    data.settings = description.parameters ?? {};
     data.frameDt = description.frame_dt ?? description.comparison.frame_dt;
     data.duration = description.duration ?? description.comparison.duration;
     if (restarted) {

@@ -154,11 +154,11 @@ export function createSceneActions(store, exchange, notice) {
         : await suggested();
       const duration = data.scenes.find((scene) => scene.id === id)?.duration ?? SHORT;
       const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
-      await exchange.create({ scene: id, methods, speed, settings: link?.settings ?? {} });
+      await exchange.create({ scene: id, methods, speed, parameters: link?.settings ?? {} });
     },
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
     /** Every term of the equations at one state. @param {{t: number, state: object}} at */
-    terms: (at) => api.terms({ scene: data.scene?.id ?? "", settings: data.settings, ...at }),
+    terms: (at) => api.terms({ scene: data.scene?.id ?? "", parameters: data.settings, ...at }),
   };
   return actions;
 }

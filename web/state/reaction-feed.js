@@ -34,7 +34,7 @@ export function createReactionFeed(store) {
     try {
       const answer = await api.terms({
         scene: scene.id,
-        settings,
+        parameters: settings,
         t,
         state: namedState(scene.coordinates, q, v),
         reactions: true,

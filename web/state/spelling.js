@@ -65,7 +65,7 @@ export function settingOf(catalogue, spelling, key) {
   const parsed = parseSpelling(spelling);
   for (const kind of /** @type {const} */ (["formulation", "integrator"])) {
     const card = cardOf(catalogue, kind, parsed[kind].name);
-    const info = card?.settings.find((setting) => setting.key === key);
+    const info = card?.options.find((setting) => setting.key === key);
     if (info) {
       const written = parsed[kind].settings.find(([name]) => name === key);
       return { kind, info, value: written ? Number(written[1]) : info.default };

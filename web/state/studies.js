@@ -48,7 +48,7 @@ export const presetsOf = (methods) =>
  */
 export function orderOf(kind, { scene, settings, methods }, preset) {
   const all = methods.map(({ spelling }) => spelling);
-  const common = { scene: scene.id, settings, kind };
+  const common = { scene: scene.id, parameters: settings, kind };
   if (kind === "stability") {
     const fitting = preset === "baumgarte" ? all.filter(isBaumgarte) : all;
     return { ...common, methods: fitting.slice(0, MAP_METHODS), preset, ...MAP_SIDE };

@@ -18,11 +18,11 @@
  */
 
 /**
- * `n` coordinates, `m` constraints of rank `rank`, `freedoms` degrees of freedom; `length`, `points`
+ * `n` coordinates, `m` constraints of rank `rank`, `dof` degrees of freedom; `length`, `points`
  * and `envelope` in m; `duration` and `step` in s.
  * @typedef {{
  *   id: string, title: string, about: string, look_for: string, caption: string,
- *   parameters: Parameter[], n: number, m: number, rank: number, freedoms: number, length: number,
+ *   parameters: Parameter[], n: number, m: number, rank: number, dof: number, length: number,
  *   drawing: Drawing, coordinates: {name: string, rate: string}[],
  *   points: number[], ground_points: number[], envelope: number[], extremes?: number[],
  *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]},

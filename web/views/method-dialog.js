@@ -123,7 +123,7 @@ export function createMethodDialog(el, store, actions) {
       if (kind === "integrator" && card?.adaptive && old.integrator.name !== name) {
         kept.delete("h"); // it chooses its step, unless it is told one
       }
-      const list = (card?.settings ?? [])
+      const list = (card?.options ?? [])
         .filter(
           (setting) => keeps(setting, kept) || setting.default === null || isStep(card, setting),
         )
@@ -201,7 +201,7 @@ export function createMethodDialog(el, store, actions) {
 
   function settingFields(kind, part) {
     const card = cardOf(data.catalogue, kind, part.name);
-    return (card?.settings ?? []).map((setting) => {
+    return (card?.options ?? []).map((setting) => {
       const id = `pick-${kind}-${setting.key}`;
       const written = part.settings.find(([key]) => key === setting.key);
       const value = written ? written[1] : "";

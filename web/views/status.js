@@ -55,7 +55,7 @@ export function createStatus(el, body, store) {
   function showScene() {
     const { scene: s } = data;
     if (s) {
-      const freedoms = `${s.freedoms} degree${s.freedoms === 1 ? "" : "s"} of freedom`;
+      const freedoms = `${s.dof} degree${s.dof === 1 ? "" : "s"} of freedom`;
       say(scene, s.m > 0 ? `${freedoms} (${s.n} − ${s.rank})` : freedoms);
     }
   }

@@ -201,7 +201,7 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
     hn_json_key(b, "actuation");
     hn_json_object(b);
     hn_json_put_int(b, "actuated", n);
-    hn_json_put_int(b, "freedoms", freedoms);
+    hn_json_put_int(b, "dof", freedoms);
     hn_json_put_string(b, "reading", reading);
     hn_json_end_object(b);
 }

@@ -25,7 +25,7 @@ static void put_option(hn_strbuf *b, const hn_option *info) {
 }
 
 static void put_options(hn_strbuf *b, const hn_option *table, int n) {
-    hn_json_key(b, "settings");
+    hn_json_key(b, "options");
     hn_json_array(b);
     for (int i = 0; i < n; i++) {
         put_option(b, &table[i]);

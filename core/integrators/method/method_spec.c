@@ -406,7 +406,7 @@ void hn_method_json(hn_strbuf *b, const hn_method_spec *spec) {
     hn_json_put_string(b, "title", title);
     hn_json_put_string(b, "short_name", spec->formulation->short_name);
     hn_json_put_bool(b, "model_error", spec->formulation->model_error);
-    hn_json_key(b, "settings");
+    hn_json_key(b, "options");
     hn_json_object(b);
     put_values(b, spec->formulation->options, spec->formulation->n_options, spec->formulation_set);
     put_values(b, spec->stepper->options, spec->stepper->n_options, spec->stepper_set);

@@ -43,7 +43,7 @@ HN_MUST_CHECK hn_status hn_option_check(const hn_option *info, double value, hn_
 /// Reads one value as hn_method_parse() does ("0,02", "20 ms", "auto"); checked.
 HN_MUST_CHECK hn_status hn_option_parse(const hn_option *info, const char *text, double *value,
                                         hn_diag *diag);
-/// {"spelling","formulation","integrator","title","short_name","model_error","settings":{...}};
+/// {"spelling","formulation","integrator","title","short_name","model_error","options":{...}};
 /// options of the integrator follow those of the formulation, named choices are strings.
 void hn_method_json(hn_strbuf *b, const hn_method_spec *spec);
 #endif

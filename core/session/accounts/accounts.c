@@ -1,12 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/accounts/accounts_internal.h"
+
+#include "base/clock.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-hn_accounts_request hn_accounts_request_default(void) {
-    return (hn_accounts_request){.time = (double)NAN};
-}
 
 // rows -----------------------------------------------------------------------------------------------------------------
 
@@ -33,47 +32,30 @@ double hn_account_part(const hn_account_row *row, int energy, int i) {
 
 // life -----------------------------------------------------------------------------------------------------------------
 
-static hn_status set_methods(hn_accounts *a, hn_diags *diags) {
+static hn_status set_up(hn_accounts *a, hn_diags *diags) {
+    hn_job_request *r = &a->request;
     const hn_scene *scene = hn_model_scene(a->model);
-    const hn_accounts_request *r = &a->request;
-    const char *const *methods = r->n_methods > 0 ? r->methods : scene->methods;
-    a->n = r->n_methods > 0 ? r->n_methods : scene->n_methods;
-    if (a->n > HN_ACCOUNTS_METHODS) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/methods", NULL,
-                            "%d methods were given; %d are the most", a->n, HN_ACCOUNTS_METHODS);
+    if (r->n_methods == 0) {
+        HN_TRY(hn_job_request_set_methods(r, scene->methods, scene->n_methods, diags));
     }
+    HN_TRY(hn_job_complete(r, 0, HN_ACCOUNTS_METHODS, a->specs, diags));
+    a->n = r->n_methods;
     for (int i = 0; i < a->n; i++) {
-        hn_diag diag = {0};
         hn_account_row *row = &a->rows[i];
-        const hn_status status = hn_method_parse(methods[i], &a->specs[i], &diag);
-        if (status != HN_OK) {
-            return hn_diags_add(diags, status, "/methods", diag.hint, "%s", diag.message);
-        }
         hn_method_format(&a->specs[i], row->spelling);
         row->status = HN_ERR_BUDGET;
         snprintf(row->reason, sizeof row->reason, "not begun");
     }
-    return HN_OK;
+    return r->limits.folder ? hn_accounts_open_journal(a, diags) : HN_OK;
 }
 
-static hn_status set_up(hn_accounts *a, hn_diags *diags) {
-    const hn_status status = set_methods(a, diags);
-    if (status == HN_OK && !(a->request.time > 0)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %g s; it must be above 0", a->request.time);
-    }
-    return status == HN_OK && a->request.folder ? hn_accounts_open_journal(a, diags) : status;
-}
-
-hn_status hn_accounts_open(const hn_model *model, const hn_accounts_request *request,
-                           hn_accounts **out, hn_diags *diags) {
+hn_status hn_accounts_open(const hn_job_request *request, hn_accounts **out, hn_diags *diags) {
     hn_accounts *a = calloc(1, sizeof *a);
     if (!a) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    a->model = model;
+    a->model = request->models[0];
     a->request = *request;
-    a->request.time = isnan(request->time) ? hn_model_scene(model)->duration : request->time;
     const hn_status status = set_up(a, diags);
     if (status != HN_OK) {
         hn_accounts_free(a);
@@ -93,20 +75,20 @@ void hn_accounts_free(hn_accounts *a) {
 // making ---------------------------------------------------------------------------------------------------------------
 
 static int ask_stop(void *user) {
-    const hn_accounts *a = user;
-    return a->request.stop && a->request.stop(a->request.user);
+    hn_accounts *a = user;
+    a->stopped |= hn_job_must_stop(&a->request.limits);
+    a->out_of_time |= hn_clock_wall() > a->deadline;
+    return a->stopped || a->out_of_time;
 }
 
-static void tell_progress(void *user, double part) {
+static void report_progress(void *user, double part) {
     const hn_accounts *a = user;
-    if (a->request.progress) {
-        a->request.progress(a->request.user, (a->at + part) / a->n);
-    }
+    hn_job_progress(&a->request.limits, "", (a->at + part) / a->n);
 }
 
 /// 0 when it was stopped.
 static int make_row(hn_accounts *a, hn_account_row *row) {
-    const hn_account_opts opts = {.stop = ask_stop, .progress = tell_progress, .user = a};
+    const hn_account_opts opts = {.stop = ask_stop, .progress = report_progress, .user = a};
     hn_diag diag = {0};
     row->status =
         hn_account_make(hn_model_system(a->model), &a->specs[a->at], hn_model_q(a->model),
@@ -117,7 +99,9 @@ static int make_row(hn_accounts *a, hn_account_row *row) {
 }
 
 int hn_accounts_run(hn_accounts *a) {
+    const double limit = a->request.limits.time_limit;
     int going = 1;
+    a->deadline = limit > 0 ? hn_clock_wall() + limit : HUGE_VAL;
     for (a->at = 0; a->at < a->n && going; a->at++) {
         hn_account_row *row = &a->rows[a->at];
         if (row->status == HN_ERR_BUDGET && (going = make_row(a, row)) != 0) {
@@ -132,6 +116,14 @@ int hn_accounts_run(hn_accounts *a) {
 
 int hn_accounts_resumed(const hn_accounts *a) {
     return a->resumed;
+}
+
+int hn_accounts_stopped(const hn_accounts *a) {
+    return a->stopped;
+}
+
+int hn_accounts_out_of_time(const hn_accounts *a) {
+    return a->out_of_time;
 }
 
 int hn_accounts_n(const hn_accounts *a) {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ACCOUNTS_H
 #define HN_SESSION_ACCOUNTS_H
 // Where errors and energy come from, for several methods of one scene: study/account/account.h method by method, as tables, documents and pictures.
 // With a folder each account is kept as it is made: the same request goes on behind the last whole one.
 
-#include "session/model/model.h"
+#include "session/job/job_request.h"
 #include "study/account/account.h"
 
 enum { HN_ACCOUNTS_METHODS = 24 };
@@ -22,25 +23,21 @@ const hn_coordinate *hn_account_coordinate(const hn_model *model, const hn_accou
 /// Part i of the error (energy = 0, of HN_CAUSE_COUNT) or of the energy (1, of HN_BILL_COUNT); NaN: it cannot be told.
 double hn_account_part(const hn_account_row *row, int energy, int i);
 
-typedef struct hn_accounts_request {
-    const char *const *methods; ///< spellings; NULL: the scene's
-    int n_methods;              ///< at most HN_ACCOUNTS_METHODS
-    double time;                ///< [s]; NaN: the scene's duration
-    const char *folder;         ///< where unfinished accounts are kept; NULL: nowhere
-    int (*stop)(void *user);    ///< asked now and then; NULL: never
-    void (*progress)(void *user, double share);
-    void *user;
-} hn_accounts_request;
-hn_accounts_request hn_accounts_request_default(void);
-
 typedef struct hn_accounts hn_accounts;
-/// Reads the request and what is kept of it. Returns owned in *out; model and request's texts must outlive it. Fails: HN_ERR_INPUT
-/// and HN_ERR_LIMIT (methods, time), HN_ERR_IO as hn_journal_open(), HN_ERR_MEMORY; told in diags.
-HN_MUST_CHECK hn_status hn_accounts_open(const hn_model *model, const hn_accounts_request *request,
-                                         hn_accounts **out, hn_diags *diags);
+/// Checks the request and takes up what an interrupted job of the same request left.
+///
+/// request  in  one model; methods: the scene's where it has none; time limit: none where it has none
+/// Returns owned in *out. The model and the texts of the request must outlive it.
+/// Fails:   HN_ERR_INPUT and HN_ERR_LIMIT (methods, times), HN_ERR_IO as hn_journal_open(),
+///          HN_ERR_MEMORY. All reported in diags.
+HN_MUST_CHECK hn_status hn_accounts_open(const hn_job_request *request, hn_accounts **out,
+                                         hn_diags *diags);
 void hn_accounts_free(hn_accounts *accounts); ///< NULL is legal
-/// Makes those that are not there; 1 when all are, 0 when it was stopped. A method that cannot be accounted for stands with its reason.
+/// Computes the budgets that are not there. Returns 1 when all are; 0: stopped, or out of time. A
+/// method that has no budget stands with its reason.
 int hn_accounts_run(hn_accounts *accounts);
+int hn_accounts_stopped(const hn_accounts *accounts),
+    hn_accounts_out_of_time(const hn_accounts *accounts);
 
 int hn_accounts_resumed(const hn_accounts *accounts); ///< that were there
 int hn_accounts_n(const hn_accounts *accounts);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Accounts as JSON and as CSV.
 #include "session/accounts/accounts_internal.h"
 #include "session/store/csv.h"

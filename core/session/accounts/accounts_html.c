@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Accounts as one HTML file: no network, no script. Both pictures, and every number in tables.
 #include "session/accounts/accounts_internal.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of accounts: a bar a method, a block a part.
 #include "session/accounts/accounts.h"
 

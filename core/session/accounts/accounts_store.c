@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept of unfinished accounts: a line a method.
 #include "session/accounts/accounts_internal.h"
 #include "session/store/stored_json.h"
@@ -70,8 +71,8 @@ static int take_line(void *user, const cJSON *o) {
 }
 
 hn_status hn_accounts_open_journal(hn_accounts *a, hn_diags *diags) {
-    return hn_journal_open(&a->journal, a->request.folder, "budget", accounts_key(a), take_line, a,
-                           diags);
+    return hn_journal_open(&a->journal, a->request.limits.folder, "budget", accounts_key(a),
+                           take_line, a, diags);
 }
 
 static void put_account(hn_strbuf *b, const hn_account *a) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
 #include "formulations/list/formulation_list.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_COMPARISON_H
 #define HN_SESSION_COMPARISON_H
 // A comparison: several methods on one scene and one clock. Frame k holds every method's state at t = k * frame_dt.

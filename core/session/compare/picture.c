@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/picture.h"
 
 #include "base/arena.h"

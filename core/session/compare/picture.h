@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_PICTURE_H
 #define HN_SESSION_PICTURE_H
 // A picture of a mechanism without a display: the poses that several methods reached at one time, or one given pose.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One run with its output: the object of `holonom run --json`.
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trials run, and what is seen compared with what is predicted.
 #include "session/extreme/extreme_internal.h"
 
@@ -18,10 +19,8 @@ const char *hn_extreme_verdict_name(hn_extreme_verdict verdict) {
 
 int hn_extreme_is_stopped(void *user) {
     const hn_extreme_bench *bench = user;
-    if (bench->opts->progress) {
-        bench->opts->progress(bench->opts->user, bench->id, bench->share);
-    }
-    return (bench->opts->stop && bench->opts->stop(bench->opts->user)) ||
+    hn_job_progress(bench->limits, bench->id, bench->share);
+    return hn_job_must_stop(bench->limits) ||
            (bench->deadline > 0 && hn_clock_wall() > bench->deadline);
 }
 
@@ -142,16 +141,16 @@ static int n_trials(const hn_extreme *x) {
     return n;
 }
 
-void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts) {
-    hn_extreme_bench bench = {.lib = x->lib, .opts = opts};
+void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long) {
+    hn_extreme_bench bench = {.lib = x->lib, .limits = limits};
     const int all = n_trials(x);
     int done = 0;
-    bench.deadline = opts->budget > 0 ? hn_clock_wall() + opts->budget : 0;
+    bench.deadline = limits->time_limit > 0 ? hn_clock_wall() + limits->time_limit : 0;
     for (int i = 0; i < x->n_cases; i++) {
         hn_extreme_case *c = &x->cases[i];
         for (int k = 0; k < c->n_trials; k++) {
             hn_extreme_trial *t = &c->trials[k];
-            const int is_left_out = t->is_long && !opts->run_long && t->n_seen == 0;
+            const int is_left_out = t->is_long && !run_long && t->n_seen == 0;
             done++;
             if (is_left_out || t->n_seen > 0) { // done before: what is left is told by the others
                 t->verdict = is_left_out ? HN_EXTREME_LONG : t->verdict;
@@ -165,7 +164,7 @@ void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts) {
         }
         c->verdict = case_verdict(c);
     }
-    x->stopped = opts->stop && opts->stop(opts->user);
+    x->stopped = hn_job_must_stop(limits);
     x->out_of_time = !x->stopped && hn_extreme_is_stopped(&bench);
     hn_journal_end(&x->journal, !x->stopped && !x->out_of_time);
     hn_extreme_bench_clear(&bench);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_H
 #define HN_SESSION_EXTREME_H
 // The extreme matrix: cases in which a method is known to break, or must not, each a data file with what theory says will be
@@ -15,6 +16,7 @@
 #include "base/diag.h"
 #include "base/strbuf.h"
 #include "session/store/journal.h"
+#include "session/job/job_request.h"
 #include "session/model/library.h"
 
 enum {
@@ -130,14 +132,6 @@ typedef struct hn_extreme {
     int stopped, out_of_time;
 } hn_extreme;
 
-typedef struct hn_extreme_opts {
-    double budget; ///< wall time [s]; 0: none. A trial that is begun is ended by it
-    int run_long;  ///< trials that take minutes too
-    void *user;
-    int (*stop)(void *user);
-    void (*progress)(void *user, const char *id, double share);
-} hn_extreme_opts;
-
 /// Reads lessons/extreme/ (one file a case, by number): all cases, or those named ("x4", in any case). The library must outlive it.
 /// Every fault of the files is told with the file's name and a JSON pointer. Fails: HN_ERR_INPUT, HN_ERR_IO, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
@@ -149,8 +143,9 @@ void hn_extreme_free(hn_extreme *x); ///< NULL is legal
 /// Takes the trials that the same cases have done before from the folder, and keeps those to come there until all are done. Before
 /// hn_extreme_run(). Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
 HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags);
-/// Runs all trials that are not done; those that were stopped, or stand behind the budget, say so.
-void hn_extreme_run(hn_extreme *x, const hn_extreme_opts *opts);
+/// Runs all trials that are not done; those that were stopped, or left out by the time limit, say so. A
+/// trial that is begun is ended by the limit. `run_long`: also the trials that run for minutes.
+void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long);
 int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials
 
 // documents, the same on every run: no timings

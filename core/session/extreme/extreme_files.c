@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The files of the extreme matrix: lessons/extreme/xNN-....json.
 #include "session/extreme/extreme_reader.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The extreme matrix as one HTML file: no network, no script; for the screen, light and dark, and for paper.
 #include "session/extreme/extreme_internal.h"
 

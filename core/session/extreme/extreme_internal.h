@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_INTERNAL_H
 #define HN_SESSION_EXTREME_INTERNAL_H
 // The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts), extreme_model.c (scene and start of
@@ -20,7 +21,7 @@ typedef struct hn_extreme_point {
 /// What lasts while trials run: the model last loaded, its exact end, who may stop it.
 typedef struct hn_extreme_bench {
     const hn_library *lib;
-    const hn_extreme_opts *opts;
+    const hn_job_limits *limits;
     double deadline; ///< wall clock [s]; 0: none
     const char *id;  ///< of the present case
     double share;    ///< of all that is done

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How the quantities of a sweep become one number or one word.
 #include "session/extreme/extreme_internal.h"
 

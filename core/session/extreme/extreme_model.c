@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The scene of a point and where its runs start: settings filled in from the sweep, states off the loops by a stated amount.
 #include "dynamics/compile/coordinates.h"
 #include "session/extreme/extreme_internal.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What can be read off a run, a model or a solver's answer: one number each.
 #include "session/extreme/extreme_internal.h"
 
@@ -256,7 +257,7 @@ const hn_extreme_quantity hn_extreme_quantities[] = {
     {"incidents", "", "how many were told, of any kind", EARLY | WATCHED, incident_count, NULL},
     {"assembly-gap", "", "what assembly could not close", HN_EXTREME_MODEL, assembly_gap, NULL},
     {"rank", "", "of J at the start", HN_EXTREME_MODEL, rank, NULL},
-    {"freedoms", "", "at the start", HN_EXTREME_MODEL, freedoms, NULL},
+    {"dof", "", "at the start", HN_EXTREME_MODEL, freedoms, NULL},
     {"sigma-min", "", "smallest singular value of J D at the start", HN_EXTREME_MODEL, sigma_min,
      NULL},
     {"solve-error", "", "of the accelerations, relative", HN_EXTREME_SOLVE, NULL, solve_error},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A case of the extreme matrix, read strictly: every field is known, every number is in bounds, every name exists.
 #include "session/extreme/extreme_reader.h"
 

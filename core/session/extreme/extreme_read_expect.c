@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a trial predicts: a band for a number, or a word for an outcome.
 #include "session/extreme/extreme_reader.h"
 

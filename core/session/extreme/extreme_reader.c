@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_reader.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_READER_H
 #define HN_SESSION_EXTREME_READER_H
 // What the readers of the extreme matrix's files share: where they are, what is wrong, values in bounds.

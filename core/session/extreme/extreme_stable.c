@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures with a loop of their own: the largest step that does not grow, and how fast neighbours part.
 #include "session/extreme/extreme_internal.h"
 

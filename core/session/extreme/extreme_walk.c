@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One run of a point, from its start to its time, with what was seen on the way.
 #include "session/extreme/extreme_internal.h"
 

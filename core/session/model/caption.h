@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_CAPTION_H
 #define HN_SESSION_CAPTION_H
 // What a mechanism is called, in a few words: "crank-rocker, 1 freedom (3 - 2)".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ENVELOPE_H
 #define HN_SESSION_ENVELOPE_H
 // Where a mechanism will be: its points at a state, and the box around its motion, so that a view is fitted once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The equations of motion, with parameters as symbols.
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"

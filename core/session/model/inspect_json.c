@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the compiler made of a scene, and what assembly found at its start.
 #include "dynamics/analyse/inspect.h"
 #include "dynamics/analyse/redundancy.h"
@@ -12,7 +13,7 @@ static void put_start(hn_strbuf *b, const hn_model *model) {
     hn_model_closed_put(b, model);
     hn_json_put_int(b, "rank", a->rank);
     hn_json_put_int(b, "redundant", a->redundant);
-    hn_json_put_int(b, "freedoms", a->freedoms);
+    hn_json_put_int(b, "dof", a->freedoms);
     hn_json_put_number(b, "sigma_min", a->sigma_min);
     hn_json_put_number(b, "sigma_max", a->sigma_max);
     hn_json_put_string(b, "assembly_mode", a->mode_name);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_LIBRARY_H
 #define HN_SESSION_LIBRARY_H
 // Where the shipped things are: scenes, lessons, problems and the page. Found beside the program (a checkout), in the

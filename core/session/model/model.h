@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_MODEL_H
 #define HN_SESSION_MODEL_H
 // A model: a scene loaded, compiled and assembled; and the documents (JSON, text) that the command line and the HTTP
@@ -49,9 +50,9 @@ HN_MUST_CHECK hn_status hn_model_state(const hn_model *model, const hn_state_ent
                                        int n_entries, double *q, double *v, hn_diags *diags);
 
 // documents ---------------------------------------------------------------------------------------------------
-/// Every shipped scene: {"scenes":[{"id","title","about","kind","freedoms","parameters":[...]}...]}; a scene that does not load stands there with its "errors".
+/// Every shipped scene: {"scenes":[{"id","title","about","kind","dof","parameters":[...]}...]}; a scene that does not load stands there with its "errors".
 void hn_scenes_json(hn_strbuf *b, const hn_library *lib);
-/// What a page needs to draw and set up: id, title, about, look_for, kind, parameters, coordinates, rows, n, m, rank, freedoms, caption,
+/// What a page needs to draw and set up: id, title, about, look_for, kind, parameters, coordinates, rows, n, m, rank, dof, caption,
 /// assembly, drawing, points (at the start), envelope, methods, duration, step.
 void hn_model_json(hn_strbuf *b, const hn_model *model);
 /// sizes, tree, loops, rank, operations kept and left out

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The documents that describe a scene: the list of scenes, one scene for a page, its assembly.
 #include "dynamics/compile/coordinates.h"
 #include "session/model/caption.h"
@@ -36,7 +37,7 @@ static void put_scene_head(hn_strbuf *b, const hn_model *model) {
                        : scene->has_formulas ? "bodies, joints and formulas"
                                              : "bodies and joints");
     hn_json_put_string(b, "caption", caption);
-    hn_json_put_int(b, "freedoms", hn_model_assembly(model)->freedoms);
+    hn_json_put_int(b, "dof", hn_model_assembly(model)->freedoms);
     put_params(b, scene);
 }
 
@@ -155,7 +156,7 @@ static void put_assembly_fields(hn_strbuf *b, const hn_model *model) {
     hn_json_put_number(b, "velocity_gap_before", a->velocity_gap_before);
     hn_json_put_number(b, "velocity_gap", a->velocity_gap);
     hn_json_put_int(b, "rank", a->rank);
-    hn_json_put_int(b, "freedoms", a->freedoms);
+    hn_json_put_int(b, "dof", a->freedoms);
     hn_json_put_int(b, "redundant", a->redundant);
     hn_json_put_number(b, "sigma_min", a->sigma_min);
     hn_json_put_number(b, "sigma_max", a->sigma_max);

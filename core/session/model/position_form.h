@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_POSITION_FORM_H
 #define HN_SESSION_POSITION_FORM_H
 // The pose as a function of the independent coordinates, q = f(q_r), as a part of the equations that a scene runs: the coordinates that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/position_json.h"
 
 #include "session/model/position_form.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_POSITION_JSON_H
 #define HN_SESSION_POSITION_JSON_H
 // How the reduced method finds the whole pose from its independent coordinates, as a part of what inspect tells.

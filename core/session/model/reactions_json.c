@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/model/reactions_json.h"
 
 #include "dynamics/evaluate/accel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REACTIONS_JSON_H
 #define HN_SESSION_REACTIONS_JSON_H
 // What joints and constraints carry, as JSON: force [N] and moment [N m] in world axes on a joint's child (on the body of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REDUCED_JSON_H
 #define HN_SESSION_REDUCED_JSON_H
 // The equations left on the free motion, as a part of the terms' document.

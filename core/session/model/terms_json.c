@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every term at one state, in the coordinates of the scene.
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/references/references.h"
 #include "session/precision/study_internal.h"
 
@@ -5,10 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double DEFAULT_BUDGET = 60; // [s]
-static const double REFERENCE_SHARE =
-    0.5;                                // of the budget, for one of the computations of a reference
-static const double CHAOS_SHARE = 0.05; // of the budget
+static const double DEFAULT_LIMIT = 60; // [s]
+// of the time limit: one of the two computations of a reference, and the search for chaos
+static const double REFERENCE_SHARE = 0.5, CHAOS_SHARE = 0.05;
 
 // from the naive to the specialised: fixed steps, chosen steps, differential-algebraic integrators
 static const char *const STANDARD[] = {
@@ -17,64 +17,29 @@ static const char *const STANDARD[] = {
     "index2@hem4",       "index3@rattle",     "index3@genalpha",     "index2@ida",
 };
 
-hn_study_request hn_study_request_default(void) {
-    return (hn_study_request){.time = (double)NAN, .budget = (double)NAN};
-}
-
 const char *const *hn_study_standard(int *n) {
     *n = (int)(sizeof STANDARD / sizeof *STANDARD);
     return STANDARD;
 }
 
-static hn_status parse_methods(const hn_study_request *r, hn_method_spec *specs, hn_diags *diags) {
-    if (r->n_methods > HN_WP_METHODS) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/methods", NULL,
-                            "%d methods were given; a study takes 1 to %d", r->n_methods,
-                            HN_WP_METHODS);
-    }
-    for (int i = 0; i < r->n_methods; i++) {
-        char pointer[32];
-        hn_diag diag = {0};
-        snprintf(pointer, sizeof pointer, "/methods/%d", i);
-        const hn_status status = hn_method_parse(r->methods[i], &specs[i], &diag);
-        if (status != HN_OK) {
-            return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
-        }
-    }
-    return HN_OK;
-}
-
-static hn_status check_times(const hn_study_request *r, hn_diags *diags) {
-    if (!(r->time > 0) || !(r->time <= 1e7)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the end time is %g s; it must be above 0 and at most 1e7 s", r->time);
-    }
-    if (!(r->budget >= 0) || !isfinite(r->budget)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL,
-                            "the budget is %g s; it must be above 0, or 0 for none", r->budget);
-    }
-    return HN_OK;
-}
-
 /// While the reference is computed there is something to see: nothing of the study is done.
-static int ask_and_tell(void *user) {
-    const hn_wp_hooks *hooks = user;
-    if (hooks->progress) {
-        hooks->progress(hooks->user, 0);
-    }
-    return hooks->stop && hooks->stop(hooks->user);
+static int ask_and_report(void *user) {
+    const hn_job_limits *limits = user;
+    hn_job_progress(limits, "", 0);
+    return hn_job_must_stop(limits);
 }
 
 static hn_status find_reference(hn_study *s, hn_diags *diags) {
-    hn_study_request *r = &s->request;
+    hn_job_request *r = &s->request;
     hn_ref_request request = hn_ref_request_default();
     hn_ref_source source;
     request.time = r->time;
-    request.folder = r->folder;
-    request.opts.limits = (hn_walk_limits){REFERENCE_SHARE * r->budget, ask_and_tell, &r->hooks};
-    const hn_status status = hn_reference_get(s->model, &request, &s->ref, &source, diags);
-    s->kept_reference = status == HN_OK && source != HN_REF_COMPUTED;
-    return status;
+    request.folder = r->limits.folder;
+    request.opts.limits =
+        (hn_walk_limits){REFERENCE_SHARE * r->limits.time_limit, ask_and_report, &r->limits};
+    HN_TRY(hn_reference_get(s->model, &request, &s->ref, &source, diags));
+    s->kept_reference = source != HN_REF_COMPUTED;
+    return HN_OK;
 }
 
 void hn_study_find_chaos(hn_study *s, const hn_walk_limits *limits) {
@@ -93,51 +58,70 @@ void hn_study_find_chaos(hn_study *s, const hn_walk_limits *limits) {
     s->wp->horizon = isfinite(horizon) ? horizon : 0;
 }
 
+/// Reads "2/4": the second of four parts. Returns false when it is not that.
+static bool read_shard(const char *text, int *shard, int *n) {
+    char end;
+    const size_t digits = strspn(text, "0123456789");
+    return digits > 0 && digits <= 4 && text[digits] == '/' && strlen(text + digits) <= 5 &&
+           strspn(text + digits + 1, "0123456789") == strlen(text + digits + 1) &&
+           sscanf(text, "%d/%d%c", shard, n, &end) == 2 && *shard > 0 && *n > 0;
+}
+
+static hn_status read_opts(const hn_job_request *r, hn_wp_opts *opts, hn_diags *diags) {
+    const double samples = hn_job_number(r, "samples", HN_WP_SAMPLES);
+    const char *shard = hn_job_text(r, "shard");
+    *opts = (hn_wp_opts){.n_levels = (int)hn_job_number(r, "levels", 0),
+                         .n_samples = samples > 0 ? (int)samples : -1,
+                         .budget = r->limits.time_limit};
+    if (shard && !read_shard(shard, &opts->shard, &opts->n_shards)) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/shard", "as 2/4: the second of four",
+                            "'%.40s' is no part of a study", shard);
+    }
+    return HN_OK;
+}
+
 static hn_status set_up(hn_study *s, hn_diags *diags) {
     hn_method_spec specs[HN_WP_METHODS];
+    hn_wp_opts opts;
     hn_diag diag = {0};
-    const hn_study_request *r = &s->request;
-    hn_status status = check_times(r, diags);
-    if (status == HN_OK) {
-        status = parse_methods(r, specs, diags);
-    }
-    if (status == HN_OK) {
-        status = find_reference(s, diags);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
-    const hn_wp_opts opts = {.n_levels = r->levels,
-                             .n_samples = r->samples,
-                             .budget = r->budget,
-                             .shard = r->shard,
-                             .n_shards = r->n_shards};
-    status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
-                          s->ref, specs, r->n_methods, &opts, &s->wp, &diag);
+    hn_job_request *r = &s->request;
+    HN_TRY(hn_job_complete(r, DEFAULT_LIMIT, HN_WP_METHODS, specs, diags));
+    HN_TRY(read_opts(r, &opts, diags));
+    HN_TRY(find_reference(s, diags));
+
+    // the ladders
+    const hn_status status =
+        hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model), s->ref,
+                     specs, r->n_methods, &opts, &s->wp, &diag);
     if (status != HN_OK) {
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
     }
-    if (r->n_shards == 0) {
-        const hn_walk_limits limits = {CHAOS_SHARE * r->budget, r->hooks.stop, r->hooks.user};
+
+    // a part leaves the question of chaos to the whole
+    if (opts.n_shards == 0) {
+        const hn_walk_limits limits = {CHAOS_SHARE * r->limits.time_limit, r->limits.stop,
+                                       r->limits.user};
         hn_study_find_chaos(s, &limits);
     }
-    return r->folder ? hn_store_open(s, diags) : HN_OK;
+    return r->limits.folder ? hn_store_open(s, diags) : HN_OK;
 }
 
-hn_status hn_study_open(const hn_model *model, const hn_study_request *request, hn_study **out,
-                        hn_diags *diags) {
+hn_status hn_study_open(const hn_job_request *request, hn_study **out, hn_diags *diags) {
     hn_study *s = calloc(1, sizeof *s);
+    hn_status status = HN_OK;
     if (!s) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    s->model = model;
+    s->model = request->models[0];
     s->request = *request;
     if (s->request.n_methods == 0) {
-        s->request.methods = hn_study_standard(&s->request.n_methods);
+        int n;
+        const char *const *standard = hn_study_standard(&n);
+        status = hn_job_request_set_methods(&s->request, standard, n, diags);
     }
-    s->request.time = isnan(request->time) ? hn_model_scene(model)->duration : request->time;
-    s->request.budget = isnan(request->budget) ? DEFAULT_BUDGET : request->budget;
-    const hn_status status = set_up(s, diags);
+    if (status == HN_OK) {
+        status = set_up(s, diags);
+    }
     if (status != HN_OK) {
         hn_study_free(s);
         return status;
@@ -157,15 +141,11 @@ void hn_study_free(hn_study *s) {
 }
 
 static int ask_to_stop(void *user) {
-    const hn_study *s = user;
-    return s->request.hooks.stop && s->request.hooks.stop(s->request.hooks.user);
+    return hn_job_must_stop(&((const hn_study *)user)->request.limits);
 }
 
 static void pass_progress(void *user, double share) {
-    const hn_study *s = user;
-    if (s->request.hooks.progress) {
-        s->request.hooks.progress(s->request.hooks.user, share);
-    }
+    hn_job_progress(&((const hn_study *)user)->request.limits, "", share);
 }
 
 static void keep_point(void *user, int m, int k) {

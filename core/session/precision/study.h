@@ -1,38 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_H
 #define HN_SESSION_STUDY_H
 // A work-precision study of a scene: reference solution, ladders, documents. What takes long is kept in a folder: references
 // (by the scene's hash and the time), and unfinished studies, line by line, so that the same request goes on where it was
 // interrupted, at whatever moment that was.
 
-#include "session/model/model.h"
+#include "session/job/job_request.h"
 #include "study/truth/chaos.h"
 #include "study/cost/pareto.h"
 
 typedef struct hn_study hn_study;
 
-typedef struct hn_study_request {
-    const char *const *methods; ///< spellings; steps and tolerances in them are replaced by ladders
-    int n_methods;              ///< 0: hn_study_standard()
-    double time;                ///< [s]; NaN: the scene's
-    double budget;              ///< wall time [s]; NaN: 60; 0: none
-    int levels;                 ///< sizes per method; 0: 7
-    int samples;                ///< of time per point; 0: HN_WP_SAMPLES; -1: none
-    int shard, n_shards;        ///< part 1..n_shards of the study (study/cost/shards.h); 0, 0: the whole
-    const char *build;  ///< what the program calls itself, for parts of a study; NULL: not told
-    const char *folder; ///< where references and unfinished studies are kept; NULL: nowhere
-    int keep; ///< 1: what is kept of it stays when it is finished too, until hn_study_forget()
-    hn_wp_hooks
-        hooks; ///< `stop` and `progress` are asked and told, also while the reference is computed
-} hn_study_request;
-hn_study_request hn_study_request_default(void);
-
 /// The methods of a study that names none.
 const char *const *hn_study_standard(int *n);
 
-/// Checks the request, finds or computes the reference, takes up what an interrupted study of the same request left. The model and the
-/// request's texts must outlive it. Fails as hn_ref_create() and hn_wp_create() do; HN_ERR_IO: another program is at this very study.
-HN_MUST_CHECK hn_status hn_study_open(const hn_model *model, const hn_study_request *request,
-                                      hn_study **out, hn_diags *diags);
+/// Checks the request, finds or computes the reference solution, and takes up what an interrupted
+/// study of the same request left.
+///
+/// request  in  one model; methods: hn_study_standard() where it has none; time limit: 60 s where it
+///              has none. Values: "levels" (sizes per method, 7), "samples" (of time per point,
+///              HN_WP_SAMPLES; 0: none), "shard" ("2/4": the part of the study; the whole).
+/// Returns owned in *out. The model and the texts of the request must outlive it.
+/// Fails:   as hn_ref_create() and hn_wp_create(); HN_ERR_INPUT: the request; HN_ERR_IO: another
+///          program computes this very study. All reported in diags.
+HN_MUST_CHECK hn_status hn_study_open(const hn_job_request *request, hn_study **out,
+                                      hn_diags *diags);
 void hn_study_free(hn_study *study); ///< NULL is legal; what was kept of an unfinished study stays
 /// Runs what is left. Returns 1 when the study is finished, and then nothing of it is kept but the reference; 0: stopped, or out of its budget.
 int hn_study_run(hn_study *study);

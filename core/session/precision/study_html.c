@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The study as one HTML file: no network, no script. Which plot shows is chosen by radio buttons that style sheets read, so
 // that it works wherever a page can be opened; on paper the chosen one is printed.
 #include "session/precision/study_page.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_INTERNAL_H
 #define HN_SESSION_STUDY_INTERNAL_H
 // The inside of a study: study.c (life), study_store.c (files), study_part.c and study_merge.c (parts), study_doc.c and study_html.c
@@ -11,8 +12,8 @@ enum { HN_PART_FORMAT = 1 }; // counts up when the meaning of a part's fields ch
 
 struct hn_study {
     const hn_model *model;
-    hn_model *own_model; ///< put together from parts: the scene came with them
-    hn_study_request request;
+    hn_model *own_model;    ///< put together from parts: the scene came with them
+    hn_job_request request; ///< time, time limit and methods filled in
     hn_ref *ref;
     hn_wp *wp;
     hn_class classes[HN_WP_METHODS];

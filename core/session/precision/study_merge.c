@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of a study put together. What two parts both say must be the same in every bit, but for what a clock said: of that the
 // record with more samples is taken, and of equals the one that comes first in the alphabet, so that neither order nor repetition
 // matters.
@@ -18,7 +19,7 @@ typedef struct part {
     const char *name;
     cJSON *root;
     int shard, of;
-    double budget, elapsed;
+    double time_limit, elapsed;
 } part;
 
 /// The record of a point that counts so far; NULL: none yet.
@@ -90,7 +91,7 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
     }
     if (!whole_of(p->root, "of", 1, HN_WP_SHARDS, &p->of) ||
         !whole_of(p->root, "shard", 1, p->of, &p->shard) ||
-        !hn_stored_number(p->root, "budget", &p->budget) ||
+        !hn_stored_number(p->root, "time_limit", &p->time_limit) ||
         !hn_stored_number(p->root, "elapsed", &p->elapsed) ||
         !cJSON_IsArray(member(p->root, "points"))) {
         return refuse(g, p, "fields of it are missing");
@@ -197,10 +198,10 @@ static hn_status read_methods(merging *g, hn_method_spec *specs, int *n) {
 }
 
 /// The largest of the parts'; 0, none, is larger than all.
-static double largest_budget(const merging *g) {
-    double largest = g->parts[0].budget;
+static double largest_limit(const merging *g) {
+    double largest = g->parts[0].time_limit;
     for (int i = 1; i < g->n; i++) {
-        const double here = g->parts[i].budget;
+        const double here = g->parts[i].time_limit;
         largest = largest == 0 || here == 0 ? 0 : fmax(largest, here);
     }
     return largest;
@@ -224,8 +225,8 @@ static hn_status set_up(merging *g) {
         !hn_stored_number(at_path(root, "request"), "step", &opts.step) || !(opts.step > 0)) {
         return refuse(g, &g->parts[0], "fields of its request are missing");
     }
-    opts.budget = largest_budget(g);
-    s->request = (hn_study_request){.time = s->ref->T, .budget = opts.budget};
+    opts.budget = largest_limit(g);
+    s->request = (hn_job_request){.time = s->ref->T, .limits.time_limit = opts.budget};
     status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
                           s->ref, specs, n, &opts, &s->wp, &diag);
     return status == HN_OK

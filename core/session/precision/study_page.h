@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_PAGE_H
 #define HN_SESSION_STUDY_PAGE_H
 // Parts of a page about studies, for the page of one (study_html.c) and the report over several (report_html.c).

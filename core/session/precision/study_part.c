@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A part of a study as JSON: all that putting it together needs, so that neither the scene's file nor the folder of references has
 // to be where that is done.
 #include "session/references/references.h"
@@ -82,7 +83,7 @@ void hn_study_part(hn_strbuf *b, const hn_study *s) {
     hn_json_put_int(b, "of", o->n_shards > 0 ? o->n_shards : 1);
     put_scene(b, hn_model_scene(s->model));
     put_request(b, s);
-    hn_json_put_number(b, "budget", s->request.budget);
+    hn_json_put_number(b, "time_limit", s->request.limits.time_limit);
     hn_json_put_number(b, "elapsed", s->wp->elapsed);
     put_yardstick(b, s->wp);
     put_points(b, s);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_PLOT_H
 #define HN_SESSION_STUDY_PLOT_H
 // Error against cost as an SVG picture, in the colours, dashes and markers of render/look.h. Colours are the variables --slot-0 ..

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept of an unfinished study between two runs of the program: a line a point, a line a sample of time.
 #include "session/store/stored_json.h"
 #include "session/precision/study_internal.h"
@@ -150,8 +151,8 @@ static int take_line(void *user, const cJSON *o) {
 }
 
 hn_status hn_store_open(hn_study *s, hn_diags *diags) {
-    return hn_journal_open(&s->journal, s->request.folder, "study", study_key(s), take_line, s,
-                           diags);
+    return hn_journal_open(&s->journal, s->request.limits.folder, "study", study_key(s), take_line,
+                           s, diags);
 }
 
 void hn_store_keep_point(hn_study *s, int m, int k) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A reference solution as JSON: what is stored, and the motion between.
 #include "session/store/columns_json.h"
 #include "session/references/references.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where references are kept. A file that does not fit is not used, never trusted halfway; one that is written appears whole.
 #include "session/references/references.h"
 #include "base/file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REFERENCES_H
 #define HN_SESSION_REFERENCES_H
 // The reference solution of a model, from the nearest place that has it: shipped beside the scene (lessons/NN-topic/references), kept

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/report/report_internal.h"
 
 #include "base/clock.h"
@@ -7,12 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double DEFAULT_BUDGET = 240; // [s]
-static const double STUDY_SHARE = 0.75;   // of a scene's time; accounts and survival take the rest
+static const double DEFAULT_LIMIT = 240; // [s]
+static const double STUDY_SHARE = 0.75;  // of a scene's time; accounts and survival take the rest
 static const double ACCOUNT_SHARE = 0.1;
 static const double SURVIVAL_SHARE = 0.15;
 static const double ACCOUNT_STEP = 4;              // times the scene's
-static const double NO_BUDGET = 1e9;               // [s]
+static const double NO_LIMIT = 1e9;                // [s]
 static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
 
 // one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground; space
@@ -35,28 +36,23 @@ const char *const *hn_report_standard(int *n) {
     return SCENES;
 }
 
-hn_report_request hn_report_request_default(void) {
-    return (hn_report_request){.budget = (double)NAN};
-}
-
 // telling and asking -------------------------------------------------------------------------------------------------
 
 static double elapsed(const hn_report *r) {
     return hn_clock_wall() - r->started;
 }
 
-static void tell(hn_report *r, double part) {
-    const double all = r->request.budget > 0 ? elapsed(r) / r->request.budget : 0;
+static void report_progress(hn_report *r, double part) {
+    const double limit = r->request.limits.time_limit;
+    const double all = limit > 0 ? elapsed(r) / limit : 0;
     const double scenes = (r->at + part) / r->n;
-    if (r->request.progress) {
-        r->request.progress(r->request.user, hn_report_scene_id(&r->scenes[r->at]),
-                            fmin(1, fmax(all, scenes)));
-    }
+    hn_job_progress(&r->request.limits, hn_report_scene_id(&r->scenes[r->at]),
+                    fmin(1, fmax(all, scenes)));
 }
 
 static int ask_stop(void *user) {
     hn_report *r = user;
-    r->stopped |= r->request.stop && r->request.stop(r->request.user);
+    r->stopped |= hn_job_must_stop(&r->request.limits);
     return r->stopped;
 }
 
@@ -66,31 +62,31 @@ static int ask_end(void *user) {
     return ask_stop(r) || hn_clock_wall() > r->until;
 }
 
-static void tell_study(void *user, double part) {
-    tell(user, STUDY_SHARE * part);
+static void study_progress(void *user, const char *part, double share) {
+    (void)part;
+    report_progress(user, STUDY_SHARE * share);
 }
 
-static void tell_account(void *user, double part) {
+static void account_progress(void *user, double part) {
     hn_report *r = user;
     const hn_report_scene *s = &r->scenes[r->at];
-    tell(r, STUDY_SHARE + ACCOUNT_SHARE * (s->n_accounts + part) / HN_REPORT_ACCOUNTS);
+    report_progress(r, STUDY_SHARE + ACCOUNT_SHARE * (s->n_accounts + part) / HN_REPORT_ACCOUNTS);
 }
 
 // one scene ----------------------------------------------------------------------------------------------------------
 
 static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     hn_diags diags = {0};
-    hn_study_request q = hn_study_request_default();
-    q.methods = r->request.methods;
-    q.n_methods = r->request.n_methods;
-    q.levels = r->request.levels;
-    q.samples = r->request.samples;
-    q.budget = r->request.budget > 0 ? STUDY_SHARE * seconds : 0;
-    q.build = r->request.build;
-    q.folder = r->request.folder;
-    q.keep = 1;
-    q.hooks = (hn_wp_hooks){.user = r, .stop = ask_stop, .progress = tell_study};
-    const hn_status status = hn_study_open(s->model, &q, &s->study, &diags);
+    hn_job_request q = r->request;
+    q.models[0] = s->model;
+    q.n_models = 1;
+    q.time = (double)NAN;
+    q.keep = true;
+    q.limits.time_limit = r->request.limits.time_limit > 0 ? STUDY_SHARE * seconds : 0;
+    q.limits.user = r;
+    q.limits.stop = ask_stop;
+    q.limits.progress = study_progress;
+    const hn_status status = hn_study_open(&q, &s->study, &diags);
     if (status == HN_OK) {
         hn_study_run(s->study);
         return HN_OK;
@@ -107,8 +103,10 @@ static void account(hn_report *r, hn_report_scene *s) {
     const hn_ref *ref = hn_study_wp(s->study)->ref;
     // past a singular pose there is no account, which looking for the exact motion finds
     const double *end = ref->q + (size_t)ref->n * (size_t)ref->n_user;
-    const hn_account_opts opts = {
-        .exact = s->singular ? NULL : end, .stop = ask_end, .progress = tell_account, .user = r};
+    const hn_account_opts opts = {.exact = s->singular ? NULL : end,
+                                  .stop = ask_end,
+                                  .progress = account_progress,
+                                  .user = r};
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
         hn_account_row *a = &s->accounts[s->n_accounts];
         hn_diag diag = {0};
@@ -188,7 +186,8 @@ static void survive(hn_report *r, hn_report_scene *s) {
             for (int m = 0; m < wp->n_methods && !ask_end(r); m++) {
                 try_size(s, &judge, m, i * STRIDE % HN_REPORT_SIZES);
             }
-            tell(r, STUDY_SHARE + ACCOUNT_SHARE + SURVIVAL_SHARE * (i + 1) / HN_REPORT_SIZES);
+            report_progress(r, STUDY_SHARE + ACCOUNT_SHARE +
+                                   SURVIVAL_SHARE * (i + 1) / HN_REPORT_SIZES);
         }
     } else {
         r->no_memory = 1;
@@ -216,80 +215,58 @@ static void make_scene(hn_report *r, double seconds) {
 
 // the whole ----------------------------------------------------------------------------------------------------------
 
-static hn_status check(const hn_report_request *q, hn_diags *diags) {
-    if (q->n_models < 1 || q->n_models > HN_REPORT_SCENES) {
+static hn_status complete(hn_job_request *q, hn_diags *diags) {
+    hn_method_spec specs[HN_WP_METHODS];
+    if (q->n_models < 1) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/scenes", NULL,
-                            "%d scenes were given; a report takes 1 to %d", q->n_models,
-                            HN_REPORT_SCENES);
+                            "no scenes were given; a report takes 1 to %d", HN_JOB_SCENES);
     }
-    if (!(q->budget >= 0) || !isfinite(q->budget)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL,
-                            "the budget is %g s; it must be above 0, or 0 for none", q->budget);
+    if (q->n_methods == 0) {
+        int n;
+        const char *const *standard = hn_study_standard(&n);
+        HN_TRY(hn_job_request_set_methods(q, standard, n, diags));
     }
-    if (q->n_methods < 1 || q->n_methods > HN_WP_METHODS) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/methods", NULL,
-                            "%d methods were given; a report takes 1 to %d", q->n_methods,
-                            HN_WP_METHODS);
-    }
-    if (q->levels != 0 && (q->levels < 2 || q->levels > HN_WP_LEVELS)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/levels", NULL,
-                            "%d sizes were asked for; a report takes 2 to %d", q->levels,
-                            HN_WP_LEVELS);
-    }
-    for (int i = 0; i < q->n_methods; i++) {
-        hn_method_spec spec;
-        hn_diag diag = {0};
-        const hn_status status = hn_method_parse(q->methods[i], &spec, &diag);
-        if (status != HN_OK) {
-            return hn_diags_add(diags, status, "/methods", diag.hint, "%s", diag.message);
-        }
-    }
-    return HN_OK;
+    return hn_job_complete(q, DEFAULT_LIMIT, HN_WP_METHODS, specs, diags);
 }
 
 /// Time for the present scene: an even share of what is left.
 static double share_of(const hn_report *r) {
-    return r->request.budget > 0 ? fmax(1, (r->request.budget - elapsed(r)) / (r->n - r->at))
-                                 : NO_BUDGET;
+    const double limit = r->request.limits.time_limit;
+    return limit > 0 ? fmax(1, (limit - elapsed(r)) / (r->n - r->at)) : NO_LIMIT;
 }
 
-hn_status hn_report_make(const hn_report_request *request, hn_report **out, hn_diags *diags) {
-    hn_report_request q = *request;
-    if (q.n_methods == 0) {
-        q.methods = hn_study_standard(&q.n_methods);
-    }
-    q.budget = isnan(q.budget) ? DEFAULT_BUDGET : q.budget;
-    const hn_status status = check(&q, diags);
-    if (status != HN_OK) {
-        return status;
-    }
+hn_status hn_report_open(const hn_job_request *request, hn_report **out, hn_diags *diags) {
+    hn_job_request q = *request;
+    HN_TRY(complete(&q, diags));
     hn_report *r = calloc(1, sizeof *r);
     if (!r) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     r->request = q;
     r->n = q.n_models;
-    r->started = hn_clock_wall();
     for (int i = 0; i < r->n; i++) {
         r->scenes[i].model = q.models[i];
         snprintf(r->scenes[i].reason, sizeof r->scenes[i].reason,
                  "not begun: the report was stopped before");
     }
+    *out = r;
+    return HN_OK;
+}
+
+hn_status hn_report_run(hn_report *r, hn_diags *diags) {
+    r->started = hn_clock_wall();
     for (r->at = 0; r->at < r->n && !ask_stop(r); r->at++) {
         make_scene(r, share_of(r));
     }
+
+    // a report that is whole needs nothing of its studies any more
     for (int i = 0; i < r->n && !r->stopped; i++) {
         if (r->scenes[i].study) {
             hn_study_forget(r->scenes[i].study);
         }
     }
     r->elapsed = elapsed(r);
-    if (r->no_memory) {
-        hn_report_free(r);
-        return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-    }
-    *out = r;
-    return HN_OK;
+    return r->no_memory ? hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory") : HN_OK;
 }
 
 void hn_report_free(hn_report *r) {

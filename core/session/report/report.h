@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_H
 #define HN_SESSION_REPORT_H
 // The full report: for several scenes a work-precision study of the same methods, the account of errors and energy of a few of them,
@@ -13,29 +14,23 @@
 #include "session/precision/study.h"
 #include "study/cost/survival.h"
 
-enum { HN_REPORT_SCENES = 12, HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
-
-typedef struct hn_report_request {
-    const hn_model *const *models; ///< they must outlive the report
-    int n_models;                  ///< 1..HN_REPORT_SCENES
-    const char *const *methods;    ///< spellings, as in a study
-    int n_methods;                 ///< 0: hn_study_standard()
-    double budget;                 ///< wall time of the whole [s]; NaN: 240; 0: none
-    int levels, samples;           ///< as in a study
-    const char *build, *folder;    ///< as in a study
-    int (*stop)(void *user);       ///< asked now and then; NULL: never
-    void (*progress)(void *user, const char *scene, double share); ///< of the whole; may be NULL
-    void *user;
-} hn_report_request;
-hn_report_request hn_report_request_default(void);
+enum { HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
 
 /// The scenes of a report that names none: plane and space, singular, stiff, one loop and several.
 const char *const *hn_report_standard(int *n);
 
 typedef struct hn_report hn_report;
-/// Makes it; what a scene refuses stands in it with its reason. Returns owned in *out. Fails: HN_ERR_INPUT (the request), HN_ERR_MEMORY; told in diags.
-HN_MUST_CHECK hn_status hn_report_make(const hn_report_request *request, hn_report **out,
+/// Checks the request.
+///
+/// request  in  one model or several; methods: hn_study_standard() where it has none; time limit of the
+///              whole: 240 s where it has none. Values: "levels" and "samples", as of a study.
+/// Returns owned in *out. The models and the texts of the request must outlive the report.
+/// Fails:   HN_ERR_INPUT and HN_ERR_LIMIT (the request), HN_ERR_MEMORY. All reported in diags.
+HN_MUST_CHECK hn_status hn_report_open(const hn_job_request *request, hn_report **out,
                                        hn_diags *diags);
+/// Computes it. A scene that cannot be studied stands in it with its reason. Fails: HN_ERR_MEMORY,
+/// reported in diags.
+HN_MUST_CHECK hn_status hn_report_run(hn_report *report, hn_diags *diags);
 void hn_report_free(hn_report *report); ///< NULL is legal
 
 // what is in it

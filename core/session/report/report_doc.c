@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The whole of a report as JSON.
 #include "session/report/report_internal.h"
 
@@ -97,7 +98,7 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s) {
 void hn_report_json(hn_strbuf *b, const hn_report *r) {
     hn_json_object(b);
     hn_json_put_string(b, "report", "work-precision");
-    hn_json_put_number(b, "budget", r->request.budget);
+    hn_json_put_number(b, "time_limit", r->request.limits.time_limit);
     hn_json_put_number(b, "elapsed", r->elapsed);
     hn_json_put_bool(b, "stopped", r->stopped);
     hn_json_key(b, "scenes");

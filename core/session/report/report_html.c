@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The report as one HTML file: the answer on the first screen, then each scene. Scripts only add to it: without them points tell their
 // numbers as the browser shows titles, and every method is drawn.
 #include "session/report/report_internal.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_INTERNAL_H
 #define HN_SESSION_REPORT_INTERNAL_H
 // The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c (pictures), report_html.c and
@@ -6,9 +7,9 @@
 #include "session/report/report.h"
 
 struct hn_report {
-    hn_report_request request; ///< methods and budget filled in
+    hn_job_request request; ///< methods and time limit filled in
     int n;
-    hn_report_scene scenes[HN_REPORT_SCENES];
+    hn_report_scene scenes[HN_JOB_SCENES];
     double started, elapsed; ///< wall clock [s]
     int stopped, no_memory;
     // while it is made

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Strips of survival, the pictures that a report alone has; and any picture as a file.
 #include "session/report/report_internal.h"
 

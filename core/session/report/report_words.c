@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a report says in short: who is cheapest, what each method reaches, and both of them in sentences.
 #include "session/report/report_internal.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_internal.h"
 
 #include "base/clock.h"
@@ -7,10 +8,6 @@
 
 enum { COARSEST_STRIDE = 8, PATH_SHARE = 10 }; // of the budget, for the motion of one scene
 static const double PATH_SECONDS = 5; // computing time of a motion where there is no budget
-
-hn_map_request hn_map_request_default(void) {
-    return (hn_map_request){.time = (double)NAN, .budget = (double)NAN};
-}
 
 hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row) {
     return &map->cells[(m * map->y.n + row) * map->x.n + column];
@@ -32,14 +29,13 @@ static void blank(hn_map *map) {
     }
 }
 
-hn_status hn_map_open(const hn_model *model, const hn_map_request *request, hn_map **out,
-                      hn_diags *diags) {
+hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags) {
     hn_map *map = calloc(1, sizeof *map);
     *out = NULL;
     if (!map) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
-    map->model = model;
+    map->model = request->models[0];
     map->request = *request;
     hn_status status = hn_map_set_up(map, diags);
     if (status == HN_OK) {
@@ -53,7 +49,7 @@ hn_status hn_map_open(const hn_model *model, const hn_map_request *request, hn_m
     }
     if (status == HN_OK) {
         blank(map);
-        status = request->folder ? hn_map_open_journal(map, diags) : HN_OK;
+        status = request->limits.folder ? hn_map_open_journal(map, diags) : HN_OK;
     }
     if (status != HN_OK) {
         hn_map_free(map);
@@ -98,9 +94,8 @@ static hn_status load_scene(hn_map *map, hn_map_scene *s, int column, int row, h
 static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
     hn_diags diags = {0};
     hn_diag diag = {0};
-    const double budget = map->request.budget;
-    const hn_walk_limits limits = {budget > 0 ? budget / PATH_SHARE : PATH_SECONDS, ask_to_stop,
-                                   map};
+    const double limit = map->request.limits.time_limit;
+    const hn_walk_limits limits = {limit > 0 ? limit / PATH_SHARE : PATH_SECONDS, ask_to_stop, map};
     hn_status status = load_scene(map, s, column, row, &diags);
     if (status != HN_OK && diags.n > 0) {
         diag = diags.item[0];
@@ -142,12 +137,9 @@ hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
 }
 
 int hn_map_must_end(hn_map *map) {
-    if (map->request.stop && map->request.stop(map->request.user)) {
-        map->stopped = 1;
-    }
-    if (map->request.budget > 0 && hn_clock_wall() - map->started > map->request.budget) {
-        map->out_of_time = 1;
-    }
+    const double limit = map->request.limits.time_limit;
+    map->stopped |= hn_job_must_stop(&map->request.limits);
+    map->out_of_time |= limit > 0 && hn_clock_wall() - map->started > limit;
     return map->stopped || map->out_of_time;
 }
 
@@ -184,12 +176,6 @@ static int count_pending(const hn_map *map) {
     return n;
 }
 
-static void tell_share(hn_map *map, double share) {
-    if (map->request.progress) {
-        map->request.progress(map->request.user, share);
-    }
-}
-
 // one round: what lies on the grid of this stride and is pending yet; 0 when it has to end
 static int try_round(hn_map *map, int stride) {
     const double all = (double)map->n_methods * map->x.n * map->y.n;
@@ -202,7 +188,7 @@ static int try_round(hn_map *map, int stride) {
                 if (hn_map_must_end(map) || !try_cell(map, m, column, row)) {
                     return 0;
                 }
-                tell_share(map, 0.85 * (1 - count_pending(map) / all));
+                hn_job_progress(&map->request.limits, "", 0.85 * (1 - count_pending(map) / all));
             }
         }
     }
@@ -216,7 +202,7 @@ static int observe(hn_map *map) {
                 return 0;
             }
         }
-        tell_share(map, 0.85 + 0.15 * (i + 1) / map->x.n);
+        hn_job_progress(&map->request.limits, "", 0.85 + 0.15 * (i + 1) / map->x.n);
     }
     return 1;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_H
 #define HN_SESSION_STABILITY_H
 // A map of stability: a grid over two of {a scene's parameters, a method's settings, the step}, every cell a trial that is
@@ -6,7 +7,7 @@
 // compared as numbers. Cells are tried in rounds from coarse to fine; finished ones are kept in a folder, so that the same request
 // goes on where it was interrupted.
 
-#include "session/model/model.h"
+#include "session/job/job_request.h"
 #include "study/stability/stability.h"
 #include "study/cost/workprecision.h"
 
@@ -19,28 +20,15 @@ enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSI
 
 typedef struct hn_map hn_map;
 
-/// Gives the scene with these parameters, owned by the caller.
-typedef hn_status (*hn_map_load)(void *user, const hn_setting *settings, int n, hn_model **out,
-                                 hn_diags *diags);
-
-typedef struct hn_map_request {
-    const char *preset; ///< "stiffness", "mass-ratio", "baumgarte", "limits"; NULL: `over` says it
-    const char *over; ///< "h=1e-4..1e-1,k=1e2..1e8", each with ":lin" or ":log" behind it if wanted
-    int columns, rows; ///< 0: 24 x 24
-    const char *const *methods;
-    int n_methods; ///< 0: index1 and projection with rk4, Dormand-Prince 8 and symplectic Euler as they fit
-    double time;   ///< [s]; NaN: the scene's, shortened where the smallest step would take too many
-    double budget; ///< wall time [s]; NaN: 60; 0: none
-    const char *folder; ///< where unfinished maps are kept; NULL: nowhere
-    hn_map_load load;
-    void *load_user;
-    int (*stop)(void *user);
-    void (*progress)(void *user, double share);
-    void *user;
-} hn_map_request;
-hn_map_request hn_map_request_default(void);
-/// The names of the presets and what each is about; NULL beyond the last.
-const char *hn_map_preset(int i, const char **about);
+/// What a map may be over by name: maker of the axes, name, about, chooses, stabilised (hn_job_preset).
+#define HN_MAP_PRESETS(X)                                                               \
+    X(stiffness_axes, "stiffness", "the step and a stiffness of the scene", "h", false) \
+    X(mass_axes, "mass-ratio", "the step and a mass of the scene", "h", false)          \
+    X(baumgarte_axes, "baumgarte", "alpha and beta of Baumgarte's method, at one step", \
+      "alpha beta", true)                                                               \
+    X(limit_axes, "limits", "the step, doubled until each method fails", "h", false)
+/// Returns preset i; NULL beyond the last.
+const hn_job_preset *hn_map_preset_at(int i);
 
 typedef struct hn_map_axis {
     char name[64]; ///< "h", "alpha", a parameter's; "" of a map with one column
@@ -78,10 +66,16 @@ typedef struct hn_map_agreement {
     const char *why; ///< why nothing could be compared; NULL otherwise
 } hn_map_agreement;
 
-/// Checks the request and takes up what an interrupted map of the same request left. `model` is the scene as it is; it and the request's texts
-/// must outlive the map. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO; told in diags.
-HN_MUST_CHECK hn_status hn_map_open(const hn_model *model, const hn_map_request *request,
-                                    hn_map **out, hn_diags *diags);
+/// Checks the request and takes up what an interrupted map of the same request left.
+///
+/// request  in  one model, the scene as it is, and `load` for the scene with other parameters; methods:
+///              those that fit the axes where it has none; time: the scene's, shortened where the
+///              smallest step would take too many; time limit: 60 s where it has none. Values: "preset"
+///              ("limits" where neither is given) or "over" ("h=1e-4..1e-1,k=1e2..1e8", each with ":lin"
+///              or ":log" behind it if wanted), "columns" and "rows" (24).
+/// Returns owned in *out. The model and the texts of the request must outlive the map.
+/// Fails:   HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO. All reported in diags.
+HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags);
 void hn_map_free(hn_map *map); ///< NULL is legal
 /// Runs what is left. Returns 1 when finished; 0: stopped, or out of its budget.
 int hn_map_run(hn_map *map);

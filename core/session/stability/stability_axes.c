@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a map is asked for: axes from text or from a preset, methods, and how long a trial lasts.
 #include "session/stability/stability_internal.h"
 
@@ -6,8 +7,9 @@
 #include <string.h>
 
 enum { DEFAULT_SIDE = 24 };
-static const double LOG_FROM = 15;     // a range of this ratio and above zero is divided in ratios
-static const double PRESET_SPAN = 1e3; // a preset takes a parameter so far up and down
+static const double DEFAULT_LIMIT = 60; // wall time of a map [s]
+static const double LOG_FROM = 15;      // a range of this ratio and above zero is divided in ratios
+static const double PRESET_SPAN = 1e3;  // a preset takes a parameter so far up and down
 static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
 static const double PRESET_STEPS = 2e4;          // of the finest trial of a preset
 
@@ -100,17 +102,17 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
     char copy[200], *rest = copy;
     hn_map_axis axes[2];
     int n = 0;
-    const int fits = snprintf(copy, sizeof copy, "%s", map->request.over) < (int)sizeof copy;
+    const int fits = snprintf(copy, sizeof copy, "%s", map->over) < (int)sizeof copy;
     for (char *part = strsep(&rest, ","); part; part = strsep(&rest, ",")) {
         char *name;
         double low, high;
         int form;
         if (!fits || n == 2 || !read_axis(part, &name, &low, &high, &form)) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over", "as in h=1e-4..1e-1,k=1e2..1e8",
-                                "'%.80s' does not name one or two axes", map->request.over);
+                                "'%.80s' does not name one or two axes", map->over);
         }
         const int vertical = strcmp(name, "h") == 0 || (n == 1 && !axes[0].is_step);
-        const int side = vertical ? map->request.rows : map->request.columns;
+        const int side = vertical ? map->n_rows : map->n_columns;
         const hn_status status = make_axis(map, &axes[n], name, low, high, side, form, diags);
         if (status != HN_OK) {
             return status;
@@ -173,7 +175,7 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
             "nothing vibrates or creeps at the start, so no range of steps follows");
     }
     const double low = FINEST / fast, high = fmin(100, COARSEST / (slow > 0 ? slow : fast));
-    if (isnan(map->request.time)) {
+    if (map->shortens) {
         map->T = fmin(map->T, PRESET_STEPS * low);
     }
     return make_axis(map, &map->y, "h", low, fmax(high, 40 * low), n, 'l', diags);
@@ -195,8 +197,7 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
     const double low = fmax(found->min, middle / PRESET_SPAN),
                  high = fmin(found->max, middle * PRESET_SPAN);
     double first, last;
-    hn_status status =
-        make_axis(map, &map->x, found->name, low, high, map->request.columns, 'l', diags);
+    hn_status status = make_axis(map, &map->x, found->name, low, high, map->n_columns, 'l', diags);
     if (status == HN_OK) {
         status = rate_with(map, found->name, low, &first, diags);
     }
@@ -204,16 +205,16 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
         status = rate_with(map, found->name, high, &last, diags);
     }
     return status == HN_OK
-               ? steps_for(map, fmin(first, last), fmax(first, last), map->request.rows, diags)
+               ? steps_for(map, fmin(first, last), fmax(first, last), map->n_rows, diags)
                : status;
 }
 
 static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
     const double h = hn_method_option(&map->specs[0], "h", 1e-3);
     hn_status status =
-        make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->request.columns, 'l', diags);
+        make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->n_columns, 'l', diags);
     if (status == HN_OK) {
-        status = make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->request.rows, 'l', diags);
+        status = make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->n_rows, 'l', diags);
     }
     return status;
 }
@@ -241,29 +242,23 @@ static hn_status limit_axes(hn_map *map, hn_diags *diags) {
 }
 
 static const struct {
-    const char *name, *about;
+    hn_job_preset preset;
     hn_status (*make)(hn_map *map, hn_diags *diags);
-    int stabilised; ///< 1: of formulations that have alpha and beta
 } PRESETS[] = {
-    {"stiffness", "steps over a stiffness of the scene", stiffness_axes, 0},
-    {"mass-ratio", "steps over a mass of the scene", mass_axes, 0},
-    {"baumgarte", "beta over alpha at one step", baumgarte_axes, 1},
-    {"limits", "steps doubled until each method fails", limit_axes, 0},
+#define ROW(maker, name, about, chooses, stabilised) {{name, about, chooses, stabilised}, maker},
+    HN_MAP_PRESETS(ROW)
+#undef ROW
 };
 enum { N_PRESETS = sizeof PRESETS / sizeof *PRESETS };
 
-const char *hn_map_preset(int i, const char **about) {
-    if (i < 0 || i >= N_PRESETS) {
-        return NULL;
-    }
-    *about = PRESETS[i].about;
-    return PRESETS[i].name;
+const hn_job_preset *hn_map_preset_at(int i) {
+    return i >= 0 && i < N_PRESETS ? &PRESETS[i].preset : NULL;
 }
 
-/// -1: there is none of that name.
+/// Returns -1 when there is none of that name.
 static int find_preset(const char *name) {
     for (int i = 0; i < N_PRESETS; i++) {
-        if (strcmp(PRESETS[i].name, name) == 0) {
+        if (strcmp(PRESETS[i].preset.name, name) == 0) {
             return i;
         }
     }
@@ -271,40 +266,33 @@ static int find_preset(const char *name) {
 }
 
 static hn_status take_preset(hn_map *map, hn_diags *diags) {
-    const int i = find_preset(map->request.preset);
+    const int i = find_preset(map->preset);
     if (i >= 0) {
         return PRESETS[i].make(map, diags);
     }
     return hn_diags_add(diags, HN_ERR_INPUT, "/preset",
                         "there are stiffness, mass-ratio, baumgarte and limits",
-                        "there is no preset called '%.40s'", map->request.preset);
+                        "there is no preset called '%.40s'", map->preset);
 }
 
 // methods ----------------------------------------------------------------------------------------------------------
 
+/// The methods of the request, or those that fit the axes.
 static hn_status take_methods(hn_map *map, hn_diags *diags) {
-    const hn_map_request *r = &map->request;
-    const int preset = r->preset ? find_preset(r->preset) : -1;
-    const int stabilised = r->preset ? preset >= 0 && PRESETS[preset].stabilised
-                                     : strstr(r->over, "alpha=") || strstr(r->over, "beta=");
-    const char *const *list = r->n_methods ? r->methods : stabilised ? STABILISED : STANDARD;
-    const int n = r->n_methods ? r->n_methods : stabilised ? 2 : 3;
-    if (n > HN_MAP_METHODS) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/methods", NULL,
-                            "%d methods were given; a map takes 1 to %d", n, HN_MAP_METHODS);
+    hn_job_request *r = &map->request;
+    const int preset = map->preset ? find_preset(map->preset) : -1;
+    const int stabilised = map->preset ? preset >= 0 && PRESETS[preset].preset.stabilised
+                                       : strstr(map->over, "alpha=") || strstr(map->over, "beta=");
+    if (r->n_methods == 0) {
+        HN_TRY(hn_job_request_set_methods(r, stabilised ? STABILISED : STANDARD, stabilised ? 2 : 3,
+                                          diags));
     }
-    for (int m = 0; m < n; m++) {
-        char pointer[32];
-        hn_diag diag = {0};
-        snprintf(pointer, sizeof pointer, "/methods/%d", m);
-        const hn_status status = hn_method_parse(list[m], &map->specs[m], &diag);
-        if (status != HN_OK) {
-            return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
-        }
+    HN_TRY(hn_job_complete(r, DEFAULT_LIMIT, HN_MAP_METHODS, map->specs, diags));
+    map->n_methods = r->n_methods;
+    for (int m = 0; m < map->n_methods; m++) {
         snprintf(map->names[m], HN_SPEC_MAX, "%s@%s", map->specs[m].formulation->name,
                  map->specs[m].stepper->name);
     }
-    map->n_methods = n;
     return HN_OK;
 }
 
@@ -341,34 +329,36 @@ static hn_status check_sizes(hn_map *map, hn_diags *diags) {
                                                          map->n_scenes, HN_MAP_MODELS);
 }
 
-hn_status hn_map_set_up(hn_map *map, hn_diags *diags) {
-    hn_map_request *r = &map->request;
-    r->columns = r->columns ? r->columns : DEFAULT_SIDE;
-    r->rows = r->rows ? r->rows : DEFAULT_SIDE;
-    r->budget = isnan(r->budget) ? 60 : r->budget;
-    map->T = isnan(r->time) ? hn_model_scene(map->model)->duration : r->time;
-    if (r->columns < 2 || r->rows < 2 || r->columns > HN_MAP_SIDE || r->rows > HN_MAP_SIDE) {
+/// What the map is over, and how finely.
+static hn_status take_values(hn_map *map, hn_diags *diags) {
+    const hn_job_request *r = &map->request;
+    map->n_columns = (int)hn_job_number(r, "columns", DEFAULT_SIDE);
+    map->n_rows = (int)hn_job_number(r, "rows", DEFAULT_SIDE);
+    map->preset = hn_job_text(r, "preset");
+    map->over = hn_job_text(r, "over");
+    if (map->preset && map->over) {
+        return hn_diags_add(diags, HN_ERR_INPUT, "/over", "give one of them",
+                            "a map has its axes from 'preset' or from 'over', not from both");
+    }
+    if (!map->preset && !map->over) {
+        map->preset = "limits";
+    }
+    if (map->n_columns < 2 || map->n_rows < 2 || map->n_columns > HN_MAP_SIDE ||
+        map->n_rows > HN_MAP_SIDE) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/grid", NULL,
-                            "a grid of %d by %d; each side has 2 to %d", r->columns, r->rows,
-                            HN_MAP_SIDE);
+                            "a grid of %d by %d; each side has 2 to %d", map->n_columns,
+                            map->n_rows, HN_MAP_SIDE);
     }
-    if (!(map->T > 0) || !(map->T <= 1e7) || !(r->budget >= 0) || !isfinite(r->budget)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
-                            "the time is %g s and the budget %g s; the time must be above 0 and at "
-                            "most 1e7 s, the budget 0 or more",
-                            map->T, r->budget);
-    }
-    if (!r->preset == !r->over) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL,
-                            "a map needs either --preset or --over");
-    }
-    hn_status status = take_methods(map, diags);
-    if (status == HN_OK) {
-        status = r->preset ? take_preset(map, diags) : read_over(map, diags);
-    }
-    if (status == HN_OK) {
-        name_methods(map);
-        status = check_sizes(map, diags);
-    }
-    return status;
+    return HN_OK;
+}
+
+hn_status hn_map_set_up(hn_map *map, hn_diags *diags) {
+    const bool shortens = isnan(map->request.time);
+    HN_TRY(take_values(map, diags));
+    HN_TRY(take_methods(map, diags));
+    map->T = map->request.time;
+    map->shortens = shortens;
+    HN_TRY(map->preset ? take_preset(map, diags) : read_over(map, diags));
+    name_methods(map);
+    return check_sizes(map, diags);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a column says: the boundary predicted, the boundary observed, and whether they are the same.
 #include "session/stability/stability_internal.h"
 

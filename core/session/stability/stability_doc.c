@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/store/csv.h"
 #include "session/stability/stability.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_FRAME_H
 #define HN_SESSION_STABILITY_FRAME_H
 // Where things stand in a picture of a map, and how a class looks: for the SVG and for the PNG alike.

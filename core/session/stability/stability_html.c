@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A map as SVG, on its own and inside one HTML file: no network, no script. A cell's outcome is its title, which a browser shows
 // when the cell is pointed at.
 #include "session/stability/stability_frame.h"

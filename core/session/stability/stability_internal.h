@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_INTERNAL_H
 #define HN_SESSION_STABILITY_INTERNAL_H
 // The inside of a map: stability.c (life and running), stability_axes.c (what is asked for), stability_column.c (what a column says),
@@ -16,12 +17,16 @@ typedef struct hn_map_scene {
 
 struct hn_map {
     const hn_model *model;
-    hn_map_request request;
+    hn_job_request request; ///< time limit filled in
+    const char *preset;     ///< NULL: `over`
+    const char *over;
+    int n_columns, n_rows; ///< asked for
     hn_map_axis x, y;
     int n_methods;
     hn_method_spec specs[HN_MAP_METHODS];
     char names[HN_MAP_METHODS][HN_SPEC_MAX];
     double T;
+    bool shortens; ///< a preset may shorten T: the request has no end of its own
     int n_scenes;
     hn_map_scene *scenes;
     hn_map_cell *cells; ///< method, row, column

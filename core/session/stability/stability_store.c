@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept of an unfinished map: a line a cell, a line a column's observed boundary.
 #include "session/stability/stability_internal.h"
 #include "session/store/stored_json.h"
@@ -76,8 +77,8 @@ static int take_line(void *user, const cJSON *o) {
 }
 
 hn_status hn_map_open_journal(hn_map *map, hn_diags *diags) {
-    return hn_journal_open(&map->journal, map->request.folder, "stability", map_key(map), take_line,
-                           map, diags);
+    return hn_journal_open(&map->journal, map->request.limits.folder, "stability", map_key(map),
+                           take_line, map, diags);
 }
 
 static void begin_line(hn_strbuf *b, int m, int column) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/store/columns_json.h"
 
 static const hn_coordinate *coordinate_of(const hn_system *sys, int user) {

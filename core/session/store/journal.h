@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_JOURNAL_H
 #define HN_SESSION_JOURNAL_H
 // The journal of unfinished work: a file of lines, a JSON object for each piece that is done. It is read up to its last whole line and

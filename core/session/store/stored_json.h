@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STORED_JSON_H
 #define HN_SESSION_STORED_JSON_H
 // Reading back what the program has written as JSON: each returns 1 when the member is there and fits. A null is a NaN that was written.

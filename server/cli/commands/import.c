@@ -111,7 +111,7 @@ static void put_assembly(hn_strbuf *b, const hn_model *model, const hn_diags *wh
     hn_json_put_int(b, "rank", a->rank);
     hn_json_put_int(b, "redundant", a->redundant);
     hn_json_put_int(b, "vanished", hn_system_get_info(hn_model_system(model)).rows_dropped);
-    hn_json_put_int(b, "freedoms", a->freedoms);
+    hn_json_put_int(b, "dof", a->freedoms);
     hn_json_end_object(b);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/args.h"
 
+#include "session/kinds/job.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -57,25 +59,10 @@ static const option OPTIONS[] = {
      "MJCF: the keyframe to start from; the first when left out, qpos0 for none"},
     {"--frame", "DT", OPTION_NUMBER, AT(frame_dt),
      "time between looks at the states [s]; chosen when left out"},
-    {"--budget", "S", OPTION_NUMBER, AT(budget),
-     "wall time of the study [s]; 60 when left out, 0: none"},
-    {"--levels", "N", OPTION_COUNT, AT(levels), "steps or tolerances per method; 7 when left out"},
-    {"--samples", "N", OPTION_COUNT, AT(samples),
-     "samples of time per point; 10 when left out, 0: counts alone"},
-    {"--again", NULL, OPTION_FLAG, AT(again), "computed anew, whatever is shipped or kept"},
-    {"--hold", NULL, OPTION_FLAG, AT(hold),
-     "end it where fewer than 6 digits are sure, if that is earlier"},
-    {"--shard", "I/N", OPTION_TEXT, AT(shard),
-     "part I of N of the study, for 'holonom merge' to put together"},
-    {"--over", "AXES", OPTION_TEXT, AT(over),
-     "one or two axes of a map, as in h=1e-4..1e-1,k=1e2..1e8 (:lin or :log behind one)"},
-    {"--preset", "NAME", OPTION_TEXT, AT(preset),
-     "axes by name: stiffness, mass-ratio, baumgarte or limits"},
     {"--grid", "NxM", OPTION_TEXT, AT(grid), "columns and rows of a map; 24x24 when left out"},
     {"--plots", "DIR", OPTION_TEXT, AT(plots),
      "a folder for every plot of the report, as SVG and PNG"},
     {"--csv", NULL, OPTION_FLAG, AT(csv), "one row a point on standard output"},
-    {"--long", NULL, OPTION_FLAG, AT(run_long), "what takes minutes too"},
     {"--width", "PIXELS", OPTION_COUNT, AT(width), "width of the picture"},
     {"--height", "PIXELS", OPTION_COUNT, AT(height), "height of the picture"},
     {"--plot", NULL, OPTION_FLAG, AT(plot), "gap and energy over time, drawn in characters"},
@@ -135,22 +122,6 @@ static const option *find_option(const hn_command *command, const char *name, si
     return NULL;
 }
 
-static hn_status tell_unknown(const hn_command *command, const char *name, hn_diag *diag) {
-    const char *names[N_OPTIONS];
-    char hint[HN_DIAG_HINT];
-    int n = 0;
-    for (int i = 0; i < N_OPTIONS; i++) {
-        if (is_offered(command, &OPTIONS[i])) {
-            names[n++] = OPTIONS[i].name;
-        }
-    }
-    const char *near = hn_nearest_name(name, names, n);
-    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help %s' lists its options",
-             near ? near : command->name);
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%s' has no option '%.60s'", command->name,
-                       name);
-}
-
 int hn_number_parse(const char *text, double *out) {
     char *end;
     double value = strtod(text, &end);
@@ -161,6 +132,110 @@ int hn_number_parse(const char *text, double *out) {
     return 1;
 }
 
+static hn_status bad_number(const option *o, const char *text, hn_diag *diag) {
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes %s, not '%.60s'", o->name,
+                       o->kind == OPTION_COUNT     ? "a whole number from 0"
+                       : o->kind == OPTION_NUMBERS ? "finite numbers separated by commas"
+                                                   : "a finite number",
+                       text);
+}
+
+// ---- options that are fields of a job (session/kinds/job.h) ----
+
+enum { OPTION_NAME = 32, MOST_FIELDS = 24 };
+
+/// "--time-limit" of the field "time_limit".
+static void name_option(const hn_field *f, char out[OPTION_NAME]) {
+    snprintf(out, OPTION_NAME, "--%s", f->name);
+    for (char *p = out; *p; p++) {
+        *p = *p == '_' ? '-' : *p;
+    }
+}
+
+/// Fields that are options of this command, each name once. Returns how many.
+static int list_fields(const hn_command *command, const hn_field *list[MOST_FIELDS]) {
+    const hn_job_kind *kind;
+    int n = 0;
+    for (int i = 0; (kind = hn_job_kind_at(i)) != NULL; i++) {
+        if (strcmp(kind->command, command->name) != 0) {
+            continue;
+        }
+        for (const hn_field *f = kind->fields; f->name; f++) {
+            int known = !f->argument;
+            for (int k = 0; k < n && !known; k++) {
+                known = strcmp(list[k]->name, f->name) == 0;
+            }
+            if (!known && n < MOST_FIELDS) {
+                list[n++] = f;
+            }
+        }
+    }
+    return n;
+}
+
+static const hn_field *find_field(const hn_command *command, const char *name, size_t n) {
+    const hn_field *list[MOST_FIELDS];
+    const int n_fields = list_fields(command, list);
+    for (int i = 0; i < n_fields; i++) {
+        char known[OPTION_NAME];
+        name_option(list[i], known);
+        if (strlen(known) == n && memcmp(known, name, n) == 0) {
+            return list[i];
+        }
+    }
+    return NULL;
+}
+
+/// The option of a field as a row of the table above; its value is kept in args->fields.
+static option option_of(const hn_field *f, char name[OPTION_NAME]) {
+    name_option(f, name);
+    return (option){.name = name,
+                    .argument = f->argument,
+                    .kind = f->type == HN_FIELD_BOOL      ? OPTION_FLAG
+                            : f->type == HN_FIELD_INTEGER ? OPTION_COUNT
+                            : f->type == HN_FIELD_NUMBER  ? OPTION_NUMBER
+                                                          : OPTION_TEXT,
+                    .about = f->about};
+}
+
+static hn_status keep_field(hn_args *args, const hn_field *f, const option *o, const char *text,
+                            hn_diag *diag) {
+    double number = 0;
+    if (!args->fields) {
+        args->fields = cJSON_CreateObject();
+    }
+    if (o->kind != OPTION_FLAG && o->kind != OPTION_TEXT && !hn_number_parse(text, &number)) {
+        return bad_number(o, text, diag);
+    }
+    cJSON *value = o->kind == OPTION_FLAG   ? cJSON_CreateTrue()
+                   : o->kind == OPTION_TEXT ? cJSON_CreateString(text)
+                                            : cJSON_CreateNumber(number);
+    cJSON_DeleteItemFromObjectCaseSensitive(args->fields, f->name);
+    return cJSON_AddItemToObject(args->fields, f->name, value) ? HN_OK : HN_ERR_MEMORY;
+}
+
+static hn_status report_unknown(const hn_command *command, const char *name, hn_diag *diag) {
+    const char *names[N_OPTIONS + MOST_FIELDS];
+    const hn_field *fields[MOST_FIELDS];
+    char hint[HN_DIAG_HINT], field_names[MOST_FIELDS][OPTION_NAME];
+    int n = 0;
+    for (int i = 0; i < N_OPTIONS; i++) {
+        if (is_offered(command, &OPTIONS[i])) {
+            names[n++] = OPTIONS[i].name;
+        }
+    }
+    const int n_fields = list_fields(command, fields);
+    for (int i = 0; i < n_fields; i++) {
+        name_option(fields[i], field_names[i]);
+        names[n++] = field_names[i];
+    }
+    const char *near = hn_nearest_name(name, names, n);
+    snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help %s' lists its options",
+             near ? near : command->name);
+    return hn_diag_set(diag, HN_ERR_INPUT, NULL, hint, "'%s' has no option '%.60s'", command->name,
+                       name);
+}
+
 static hn_status add_word(hn_words *words, const char *word, hn_diag *diag) {
     if (words->n == HN_CLI_MAX_WORDS) {
         return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "more than %d words were given",
@@ -168,14 +243,6 @@ static hn_status add_word(hn_words *words, const char *word, hn_diag *diag) {
     }
     words->word[words->n++] = word;
     return HN_OK;
-}
-
-static hn_status bad_number(const option *o, const char *text, hn_diag *diag) {
-    return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes %s, not '%.60s'", o->name,
-                       o->kind == OPTION_COUNT     ? "a whole number from 0"
-                       : o->kind == OPTION_NUMBERS ? "finite numbers separated by commas"
-                                                   : "a finite number",
-                       text);
 }
 
 static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *text,
@@ -233,34 +300,51 @@ static int looks_like_option(const char *word) {
     return word[0] == '-' && word[1] && !hn_number_parse(word, &number);
 }
 
+/// Puts one value where the option keeps it.
+static hn_status put_value(hn_args *args, const option *o, const hn_field *field, const char *text,
+                           hn_diag *diag) {
+    return field ? keep_field(args, field, o, text, diag) : read_value(args, o, text, diag);
+}
+
+/// Reads the value or values of an option; *i is left at the last word.
+static hn_status take_values(hn_args *args, const option *o, const hn_field *field, int argc,
+                             char **argv, int *i, hn_diag *diag) {
+    if (*i + 1 >= argc || (o->kind != OPTION_TEXT && looks_like_option(argv[*i + 1]))) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs %s", o->name, o->argument);
+    }
+    HN_TRY(put_value(args, o, field, argv[++*i], diag));
+    while (o->kind == OPTION_WORDS && *i + 1 < argc && !looks_like_option(argv[*i + 1])) {
+        HN_TRY(put_value(args, o, field, argv[++*i], diag));
+    }
+    return HN_OK;
+}
+
 /// One option with what belongs to it; *i is left at its last word.
 static hn_status take_option(hn_args *args, const hn_command *command, int argc, char **argv,
                              int *i, hn_diag *diag) {
     const char *word = argv[*i], *inline_value = strchr(word, '=');
-    size_t n = inline_value && word[1] == '-' ? (size_t)(inline_value - word) : strlen(word);
+    const size_t n = inline_value && word[1] == '-' ? (size_t)(inline_value - word) : strlen(word);
+    char name[OPTION_NAME];
+    option of_field;
+
+    // an option of the table, or a field of the command's jobs
     const option *o = find_option(command, word, n);
+    const hn_field *field = o ? NULL : find_field(command, word, n);
+    if (field) {
+        of_field = option_of(field, name);
+        o = &of_field;
+    }
     if (!o) {
-        return tell_unknown(command, word, diag);
+        return report_unknown(command, word, diag);
     }
-    if (add_word(&args->given, o->name, diag) != HN_OK) {
-        return HN_ERR_LIMIT;
-    }
+
+    // its value: none, behind '=', or the words that follow
     if (o->kind == OPTION_FLAG) {
         return word[n] ? hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s takes no value", o->name)
-                       : read_value(args, o, "", diag);
+                       : put_value(args, o, field, "", diag);
     }
-    if (word[n]) {
-        return read_value(args, o, inline_value + 1, diag);
-    }
-    if (*i + 1 >= argc || (o->kind != OPTION_TEXT && looks_like_option(argv[*i + 1]))) {
-        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL, "%s needs %s", o->name, o->argument);
-    }
-    hn_status status = read_value(args, o, argv[++*i], diag);
-    while (status == HN_OK && o->kind == OPTION_WORDS && *i + 1 < argc &&
-           !looks_like_option(argv[*i + 1])) {
-        status = read_value(args, o, argv[++*i], diag);
-    }
-    return status;
+    return word[n] ? put_value(args, o, field, inline_value + 1, diag)
+                   : take_values(args, o, field, argc, argv, i, diag);
 }
 
 static void set_defaults(hn_args *args) {
@@ -305,32 +389,34 @@ hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc, char
     return HN_OK;
 }
 
-hn_status hn_args_allow_only(const hn_args *args, const char *options, const char *whose,
-                             hn_diags *diags) {
-    for (int i = 0; i < args->given.n; i++) {
-        const char *name = args->given.word[i];
-        if (strcmp(name, "--json") != 0 && !lists(options, name)) {
-            return hn_diags_add(diags, HN_ERR_INPUT, NULL, options, "%s does not read %s", whose,
-                                name);
-        }
-    }
-    return HN_OK;
-}
-
 void hn_args_reset(hn_args *args) {
     free(args->at.value);
     args->at = (hn_numbers){0};
+    cJSON_Delete(args->fields);
+    args->fields = NULL;
 }
 
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out) {
+    const hn_field *fields[MOST_FIELDS];
     for (int k = 0; k < N_OPTIONS; k++) {
         const option *o = &OPTIONS[k];
         if (is_offered(command, o) && i-- == 0) {
-            *out = (hn_option_row){o->name, o->argument, o->about};
+            *out = (hn_option_row){.argument = o->argument, .about = o->about};
+            snprintf(out->name, sizeof out->name, "%s", o->name);
             return true;
         }
     }
-    return false;
+
+    // behind the table the fields of the command's jobs
+    const int n = list_fields(command, fields);
+    if (i < n) {
+        *out = (hn_option_row){.argument = fields[i]->argument, .about = fields[i]->about};
+        name_option(fields[i], out->name);
+        if (fields[i]->type == HN_FIELD_BOOL) {
+            out->argument = NULL;
+        }
+    }
+    return i < n;
 }
 
 void hn_args_describe(hn_strbuf *b, const hn_command *command) {

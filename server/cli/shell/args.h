@@ -7,6 +7,7 @@
 #include "base/strbuf.h"
 #include "cli/shell/command.h"
 
+#include <cjson/cJSON.h>
 #include <stdbool.h>
 
 enum { HN_CLI_MAX_WORDS = 256 };
@@ -26,18 +27,15 @@ typedef struct hn_numbers {
 /// texts NULL.
 typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
-    hn_words given; ///< names of the options that were given, as in the table
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *shard, *over, *preset,
-        *grid, *plots, *size;
+    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *grid, *plots, *size;
     double time, every, t, port, width, height, seed, frame_dt, frames;
-    double budget, levels, samples;
     double history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause, expiry,
         keep_alive;
-    int again, hold;
-    int json, csv, open, help, raw_lambda, reactions, run_long;
+    int json, csv, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot;
+    cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;
 
 /// Parses what follows the command's name. HN_ERR_INPUT with a near miss in diag. hn_args_reset()
@@ -49,14 +47,11 @@ void hn_args_reset(hn_args *args);
 void hn_args_describe(hn_strbuf *b, const hn_command *command);
 /// One option as help, manual and completion show it; argument NULL: a flag.
 typedef struct hn_option_row {
-    const char *name, *argument, *about;
+    char name[32];
+    const char *argument, *about;
 } hn_option_row;
 /// The i-th option that a command reads; false: there are no more.
 bool hn_args_option(const hn_command *command, int i, hn_option_row *out);
-/// HN_ERR_INPUT when an option was given that is not one of `options` (separated by spaces):
-/// `whose` does not read it.
-HN_MUST_CHECK hn_status hn_args_allow_only(const hn_args *args, const char *options,
-                                           const char *whose, hn_diags *diags);
 /// A finite number and nothing behind it; 0 otherwise.
 int hn_number_parse(const char *text, double *out);
 #endif

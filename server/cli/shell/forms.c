@@ -14,32 +14,35 @@ int hn_path_ends_in(const char *path, const char *suffix) {
     return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
 
-static int count(const hn_forms *forms) {
+static int count(const hn_job_form *forms) {
     int n = 0;
-    while (n < HN_FORMS && forms->form[n].suffix) {
+    while (n < HN_JOB_FORMS && forms[n].suffix) {
         n++;
     }
     return n;
 }
 
 /// The form of a file of this name, or with this suffix; -1: there is none.
-static int find(const hn_forms *forms, const char *path) {
+static int find(const hn_job_form *forms, const char *path) {
     for (int i = 0; i < count(forms); i++) {
-        if (hn_path_ends_in(path, forms->form[i].suffix)) {
+        if (hn_path_ends_in(path, forms[i].suffix)) {
             return i;
         }
     }
     return -1;
 }
 
-hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *diags) {
+hn_status hn_forms_check(const hn_job_form *forms, const hn_args *args, hn_diags *diags) {
     char hint[HN_DIAG_HINT] = "end it in ";
     const int n = count(forms);
     if (args->out && find(forms, args->out) < 0) {
         for (int i = 0; i < n; i++) {
             const size_t used = strlen(hint);
-            snprintf(hint + used, sizeof hint - used, "%s%s", hn_word_joint(i, n, " or "),
-                     forms->form[i].suffix);
+            snprintf(hint + used, sizeof hint - used, "%s%s",
+                     i == 0       ? ""
+                     : i == n - 1 ? " or "
+                                  : ", ",
+                     forms[i].suffix);
         }
         return hn_diags_add(diags, HN_ERR_INPUT, "/out", hint,
                             "what to write into '%.200s' cannot be told from its name", args->out);
@@ -51,20 +54,28 @@ hn_status hn_forms_check(const hn_forms *forms, const hn_args *args, hn_diags *d
     return hn_cli_check_folder(args->out, diags);
 }
 
-hn_exit hn_forms_write(const hn_forms *forms, const hn_args *args, const void *work) {
+hn_exit hn_forms_print(const hn_job_form *forms, hn_text_writer text, const hn_args *args,
+                       const void *work) {
     hn_strbuf b;
     hn_strbuf_init(&b);
+    if (args->json || args->csv || !text) {
+        forms[find(forms, args->csv ? "-.csv" : "-.json")].put(&b, work);
+        return hn_cli_print(&b);
+    }
+    text(&b, work);
+    return hn_cli_print_text(&b);
+}
+
+hn_exit hn_forms_write(const hn_job_form *forms, hn_text_writer text, const hn_args *args,
+                       const void *work) {
     if (args->out) {
-        forms->form[find(forms, args->out)].put(&b, work);
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        forms[find(forms, args->out)].put(&b, work);
         const hn_exit written = hn_cli_write_file(args, args->out, &b);
         if (written != HN_EXIT_DONE) {
             return written;
         }
     }
-    if (args->json || args->csv) {
-        forms->form[find(forms, args->json ? "-.json" : "-.csv")].put(&b, work);
-        return hn_cli_print(&b);
-    }
-    forms->text(&b, work);
-    return hn_cli_print_text(&b);
+    return hn_forms_print(forms, text, args, work);
 }

@@ -3,17 +3,26 @@
 #include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
-#include "cli/study/study.h"
+#include "cli/shell/forms.h"
+#include "cli/study/work_precision_text.h"
+#include "session/kinds/job.h"
 #include "session/precision/study.h"
 
 enum {
     MOST_BYTES = 64 << 20
 }; // of a part: some hundred points with their coordinates take less than one
 
+HN_JOB_FORM(text, hn_study, hn_study_text)
+
+/// What the parts are merged to.
+static const hn_job_kind *merged(void) {
+    return hn_job_kind_find("work-precision");
+}
+
 static hn_status merge_files(const hn_args *args, hn_strbuf *texts, hn_study **out,
                              hn_diags *diags) {
     hn_study_part_text parts[HN_CLI_MAX_WORDS];
-    hn_status status = hn_forms_check(&hn_study_forms, args, diags);
+    hn_status status = hn_forms_check(merged()->forms, args, diags);
     for (int i = 0; i < args->words.n && status == HN_OK; i++) {
         status = hn_file_load(args->words.word[i], MOST_BYTES, &texts[i], diags);
         parts[i] = (hn_study_part_text){args->words.word[i], hn_strbuf_text(&texts[i]), texts[i].n};
@@ -36,7 +45,7 @@ hn_exit hn_command_merge(const hn_library *lib, const hn_args *args) {
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }
-    const hn_exit result = hn_forms_write(&hn_study_forms, args, study);
+    const hn_exit result = hn_forms_write(merged()->forms, put_text, args, study);
     hn_study_free(study);
     return result;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/comparisons.h"
 
-#include "http/ground/body.h"
+#include "session/job/field.h"
 #include "http/live/session.h"
 #include "http/live/stream.h"
 #include "http/request/context.h"
@@ -255,9 +255,9 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .scene = &scene,
         .methods = methods,
         .n_methods = read_methods(body, methods),
-        .frame_dt = hn_body_number(body, "frame_dt", 0),
-        .duration = hn_body_number(body, "duration", 0),
-        .speed = hn_body_number(body, "speed", 1),
+        .frame_dt = hn_fields_number(body, "frame_dt", 0),
+        .duration = hn_fields_number(body, "duration", 0),
+        .speed = hn_fields_number(body, "speed", 1),
         .client = r->client,
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };

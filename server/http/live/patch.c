@@ -2,7 +2,7 @@
 // What PATCH can change. Everything that can fail is tried before anything is changed, so that a
 // request at fault leaves the comparison as it was.
 #include "base/clock.h"
-#include "http/ground/body.h"
+#include "session/job/field.h"
 #include "http/live/session_internal.h"
 
 #include <string.h>
@@ -18,16 +18,16 @@ typedef struct change {
 } change;
 
 static change read_change(const cJSON *body) {
-    const char *state = hn_body_text(body, "state");
+    const char *state = hn_fields_text(body, "state");
     return (change){
         .methods = cJSON_GetObjectItemCaseSensitive(body, "methods"),
-        .settings = cJSON_GetObjectItemCaseSensitive(body, "settings"),
+        .settings = cJSON_GetObjectItemCaseSensitive(body, "parameters"),
         .set = cJSON_GetObjectItemCaseSensitive(body, "set"),
         .wants_state = state != NULL,
         .run = state && strcmp(state, "running") == 0,
         .reset = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(body, "reset")),
-        .step = (int)hn_body_number(body, "step", 0),
-        .speed = hn_body_number(body, "speed", 0),
+        .step = (int)hn_fields_number(body, "step", 0),
+        .speed = hn_fields_number(body, "speed", 0),
     };
 }
 
@@ -88,8 +88,8 @@ static hn_status build(hn_session *session, const change *c, hn_subject *fresh, 
 static hn_status set_running(hn_subject *bench, const cJSON *set, hn_diags *diags) {
     hn_diag diag = {0};
     hn_status status =
-        hn_comparison_set(bench->comparison, (int)hn_body_number(set, "method", -1),
-                          hn_body_text(set, "key"), hn_body_number(set, "value", 0), &diag);
+        hn_comparison_set(bench->comparison, (int)hn_fields_number(set, "method", -1),
+                          hn_fields_text(set, "key"), hn_fields_number(set, "value", 0), &diag);
     if (status != HN_OK) {
         const char *pointer = strncmp(diag.pointer, "/set", 4) == 0 ? diag.pointer : "/set/value";
         hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);

@@ -78,7 +78,7 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     hn_json_put_int(b, "last_event", (long long)session->history.last_id);
     put_raw(b, "scene", &session->scene_json);
     put_raw(b, "comparison", &session->comparison_json);
-    put_raw(b, "settings", &session->settings_json);
+    put_raw(b, "parameters", &session->settings_json);
     put_raw(b, "latest", &session->latest);
     hn_json_key(b, "links");
     hn_json_object(b);

@@ -2,7 +2,7 @@
 #include "http/request/request.h"
 
 #include "base/json_text.h"
-#include "http/ground/body.h"
+#include "session/job/field.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -144,7 +144,7 @@ int hn_request_read_body(hn_request *r) {
     if (!cJSON_IsObject(r->json)) {
         status = hn_diags_add(&diags, HN_ERR_INPUT, "", NULL, "the body must be a JSON object");
     } else {
-        status = hn_body_check(r->json, r->route->fields, "", &diags);
+        status = hn_fields_check(r->json, r->route->fields, "", true, &diags);
     }
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);

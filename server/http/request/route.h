@@ -3,7 +3,7 @@
 #define HN_HTTP_ROUTE_H
 // One row of the table of routes, and the search for the row that an address belongs to.
 
-#include "http/ground/body.h"
+#include "session/job/field.h"
 
 enum { HN_MAX_PARTS = 2, HN_HEADER_TEXT = 256 };
 

@@ -22,13 +22,13 @@ void hn_scene_request_reset(hn_scene_request *order) {
 hn_status hn_scene_request_add(hn_scene_request *order, const char *name, size_t n_name,
                                double value, hn_diags *diags) {
     char pointer[HN_DIAG_POINTER];
-    snprintf(pointer, sizeof pointer, "/settings/%.*s", (int)(n_name < 100 ? n_name : 100), name);
+    snprintf(pointer, sizeof pointer, "/parameters/%.*s", (int)(n_name < 100 ? n_name : 100), name);
     if (!isfinite(value)) {
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "the value is not a finite number");
     }
     if (order->n == HN_SCENE_MAX_PARAMS) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/settings", NULL,
-                            "more than %d settings were given", HN_SCENE_MAX_PARAMS);
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/parameters", NULL,
+                            "more than %d parameters were given", HN_SCENE_MAX_PARAMS);
     }
     char *copy = strndup(name, n_name);
     if (!copy) {
@@ -64,7 +64,7 @@ hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body, hn_d
     if (!order->name && !order->text) {
         return HN_ERR_MEMORY;
     }
-    return hn_scene_request_read_settings(order, cJSON_GetObjectItemCaseSensitive(body, "settings"),
+    return hn_scene_request_read_settings(order, cJSON_GetObjectItemCaseSensitive(body, "parameters"),
                                           diags);
 }
 
@@ -94,7 +94,7 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
 static void prefix_pointers(hn_diags *diags, int first) {
     for (int i = first; i < diags->n; i++) {
         char *p = diags->item[i].pointer;
-        if (strncmp(p, "/settings", 9) != 0 && strncmp(p, "/scene", 6) != 0) {
+        if (strncmp(p, "/parameters", 11) != 0 && strncmp(p, "/scene", 6) != 0) {
             char longer[HN_DIAG_POINTER + 8];
             snprintf(longer, sizeof longer, "/scene%s", p);
             snprintf(p, HN_DIAG_POINTER, "%.*s", HN_DIAG_POINTER - 1, longer);

@@ -20,7 +20,7 @@ typedef struct hn_scene_request {
     char *names[HN_SCENE_MAX_PARAMS];
 } hn_scene_request;
 
-/// From the members "scene" and "settings". Start from a zeroed order; hn_scene_request_reset()
+/// From the members "scene" and "parameters". Start from a zeroed order; hn_scene_request_reset()
 /// afterwards in any case.
 HN_MUST_CHECK hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body,
                                               hn_diags *diags);

@@ -12,6 +12,7 @@
 #include "integrators/method/method_spec.h"
 #include "render/look.h"
 #include "session/compare/comparison.h"
+#include "session/kinds/job.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"
 #include "session/references/references.h"
@@ -39,11 +40,6 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"run_cpu_s", o->max_run_cpu},
                 {"frame_cpu_s", o->frame_cpu},
                 {"studies_at_once", o->max_studies},
-                {"study_methods", HN_STUDIES_METHODS},
-                {"study_levels", HN_STUDIES_LEVELS},
-                {"study_samples", HN_STUDIES_SAMPLES},
-                {"map_methods", HN_STUDIES_MAPS},
-                {"map_side", HN_STUDIES_SIDE},
                 {"studies_kept", HN_STUDIES_KEPT},
                 {"long_requests_at_once", o->pool},
                 {"long_requests_waiting", o->queue},
@@ -104,6 +100,8 @@ void hn_handle_index(hn_request *r) {
     }
     hn_json_end_object(&b);
     put_limits(&b, &r->context->opts);
+    hn_json_key(&b, "studies");
+    hn_job_kinds_json(&b);
     put_routes(&b, &r->context->routes);
     hn_json_key(&b, "incidents");
     hn_incident_kinds_json(&b);
@@ -152,7 +150,7 @@ static hn_status see_setting(void *user, const char *value) {
     char *end;
     double x = value[n] ? strtod(value + n + 1, &end) : 0;
     if (!value[n] || n == 0 || end == value + n + 1 || *end) {
-        return hn_diags_add(q->diags, HN_ERR_INPUT, "/settings", "set=l1:1.2",
+        return hn_diags_add(q->diags, HN_ERR_INPUT, "/parameters", "set=l1:1.2",
                             "'%.80s' is not a parameter and a number", value);
     }
     return hn_scene_request_add(q->order, value, n, x, q->diags);

@@ -201,14 +201,14 @@ static const struct {
     {"Comparison",
      "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
      "\"duration\",\"generation\","
-     "\"scene\",\"comparison\",\"settings\",\"latest\",\"links\"],\"properties\":{\"id\":" TEXT
+     "\"scene\",\"comparison\",\"parameters\",\"latest\",\"links\"],\"properties\":{\"id\":" TEXT
      ",\"state\":{\"enum\":[\"paused\",\"running\",\"finished\"]},\"speed\":{\"type\":\"number\"},"
      "\"frame\":{\"type\":\"integer\"},\"t\":{\"type\":\"number\"},\"frame_dt\":{\"type\":"
      "\"number\"},"
      "\"duration\":{\"type\":\"number\"},\"generation\":{\"type\":\"integer\"},\"lag\":{\"type\":"
      "\"number\"},"
      "\"last_event\":{\"type\":\"integer\"},\"scene\":{\"$ref\":\"#/components/schemas/Scene\"},"
-     "\"comparison\":{\"type\":\"object\"},\"settings\":{\"type\":\"object\","
+     "\"comparison\":{\"type\":\"object\"},\"parameters\":{\"type\":\"object\","
      "\"additionalProperties\":{\"type\":\"number\"}},"
      "\"latest\":{\"oneOf\":[{\"$ref\":\"#/components/schemas/Frame\"},{\"type\":\"null\"}]},"
      "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
@@ -222,12 +222,12 @@ static const struct {
      "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
      "until "
      "there is one\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
-     "\"time_left_s\",\"budget_s\",\"scene\",\"settings\",\"methods\",\"document\",\"links\"],"
+     "\"time_left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"],"
      "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
      ",\"state\":{\"enum\":[\"running\",\"finished\",\"stopped\",\"failed\"]},\"reason\":" TEXT
      ",\"hint\":" TEXT ",\"progress\":{\"type\":\"number\"},\"elapsed_s\":{\"type\":\"number\"},"
-     "\"time_left_s\":" MAYBE_NUMBER ",\"budget_s\":{\"type\":\"number\"},\"scene\":{\"type\":["
-     "\"string\",\"null\"]},\"settings\":{\"type\":\"object\",\"additionalProperties\":{\"type\":"
+     "\"time_left_s\":" MAYBE_NUMBER ",\"time_limit_s\":{\"type\":\"number\"},\"scene\":{\"type\":["
+     "\"string\",\"null\"]},\"parameters\":{\"type\":\"object\",\"additionalProperties\":{\"type\":"
      "\"number\"}},\"methods\":" TEXTS ",\"document\":{\"type\":[\"object\",\"null\"]},\"links\":{"
      "\"type\":\"object\",\"additionalProperties\":" TEXT "}}}"},
     {"Verdict", "{\"type\":\"object\"}"},

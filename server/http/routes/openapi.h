@@ -4,7 +4,7 @@
 // The OpenAPI 3.1 document, written from the table of routes and their fields.
 
 #include "base/strbuf.h"
-#include "http/ground/body.h"
+#include "session/job/field.h"
 
 struct hn_request;
 

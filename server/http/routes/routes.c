@@ -7,6 +7,7 @@
 #include "http/routes/openapi.h"
 #include "http/routes/stateless.h"
 #include "http/studies/studies.h"
+#include "http/studies/study_fields.h"
 #include "render/canvas.h"
 #include "session/compare/comparison.h"
 
@@ -21,7 +22,7 @@
      .required = 1,                                        \
      .about = "a shipped scene's id or a scene object"},   \
     {                                                      \
-        .name = "settings", .type = HN_FIELD_BY_NAME,      \
+        .name = "parameters", .type = HN_FIELD_BY_NAME,    \
         .about = "parameters that differ from the scene's" \
     }
 
@@ -165,7 +166,7 @@ static const hn_field SET[] = {
     {.name = "key",
      .type = HN_FIELD_TEXT,
      .required = 1,
-     .about = "name of a setting, such as alpha"},
+     .about = "name of an option, such as alpha"},
     {.name = "value", .type = HN_FIELD_NUMBER, .required = 1, .about = "the new value"},
     END_OF_FIELDS};
 
@@ -187,70 +188,16 @@ static const hn_field CHANGE[] = {
      .min = 1,
      .max = HN_COMPARISON_MAX_METHODS,
      .about = "new methods; all start anew"},
-    {.name = "settings",
+    {.name = "parameters",
      .type = HN_FIELD_BY_NAME,
      .about = "all parameters that differ from the scene's; all methods start anew"},
     {.name = "set",
      .type = HN_FIELD_RECORD,
      .record = SET,
-     .about = "a setting of a formulation, changed while running"},
+     .about = "an option of a formulation, changed while running"},
     END_OF_FIELDS};
 
 static const char *const STOPPED[] = {"stopped", NULL};
-static const char *const MAP_PRESETS[] = {"stiffness", "mass-ratio", "baumgarte", "limits", NULL};
-
-static const hn_field STUDY[] = {
-    SCENE_FIELDS,
-    {.name = "kind",
-     .type = HN_FIELD_CHOICE,
-     .required = 1,
-     .choices = hn_studies_kind_names,
-     .about = "what is studied"},
-    {.name = "methods",
-     .type = HN_FIELD_TEXTS,
-     .required = 1,
-     .min = 1,
-     .max = HN_STUDIES_METHODS,
-     .about = "spellings of methods; a study chooses steps and tolerances itself"},
-    {.name = "time",
-     .type = HN_FIELD_NUMBER,
-     .min = 1e-9,
-     .max = 1e6,
-     .about = "end [s]; the scene's when left out"},
-    {.name = "budget",
-     .type = HN_FIELD_NUMBER,
-     .min = 0.01,
-     .max = 3600,
-     .about = "wall time [s]; run_cpu_s when left out, and at most"},
-    {.name = "levels",
-     .type = HN_FIELD_INTEGER,
-     .min = 2,
-     .max = HN_STUDIES_LEVELS,
-     .about = "work-precision: steps or tolerances per method"},
-    {.name = "samples",
-     .type = HN_FIELD_INTEGER,
-     .min = 0,
-     .max = HN_STUDIES_SAMPLES,
-     .about = "work-precision: measurements of time per point"},
-    {.name = "preset",
-     .type = HN_FIELD_CHOICE,
-     .choices = MAP_PRESETS,
-     .about = "stability: what the map is over"},
-    {.name = "over",
-     .type = HN_FIELD_TEXT,
-     .about = "stability: the axes in place of a preset: h=1e-4..1e-1,k=1e2..1e8:log"},
-    {.name = "columns",
-     .type = HN_FIELD_INTEGER,
-     .min = 2,
-     .max = HN_STUDIES_SIDE,
-     .about = "stability: of the map"},
-    {.name = "rows",
-     .type = HN_FIELD_INTEGER,
-     .min = 2,
-     .max = HN_STUDIES_SIDE,
-     .about = "stability: of the map"},
-    END_OF_FIELDS};
-
 static const hn_field STUDY_CHANGE[] = {{.name = "state",
                                          .type = HN_FIELD_CHOICE,
                                          .required = 1,
@@ -335,7 +282,7 @@ static const hn_route ROUTES[] = {
      EVENTS_QUERY},
     {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
      "StudyList", "The studies there are", NULL},
-    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, STUDY, JSON, "202",
+    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON, "202",
      "Study", "Starts a study; its Location tells the progress, and the document when it is done",
      NULL},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",

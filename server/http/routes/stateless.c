@@ -57,7 +57,7 @@ void hn_handle_terms(hn_request *r) {
         cJSON_ArrayForEach(item, state) {
             entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
         }
-        const double t = hn_body_number(r->json, "t", 0);
+        const double t = hn_fields_number(r->json, "t", 0);
         status = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions"))
                      ? hn_model_terms_json_with_reactions(&b, model, t, entries, n, &diags)
                      : hn_model_terms_json(&b, model, t, entries, n, &diags);
@@ -92,7 +92,7 @@ void hn_handle_equations(hn_request *r) {
     if (!model) {
         return;
     }
-    const char *format = hn_body_text(r->json, "format");
+    const char *format = hn_fields_text(r->json, "format");
     format = format ? format : "text";
     hn_equation_form form = strcmp(format, "latex") == 0  ? HN_EQUATIONS_LATEX
                             : strcmp(format, "json") == 0 ? HN_EQUATIONS_JSON
@@ -137,10 +137,10 @@ void hn_handle_run(hn_request *r) {
     const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
     double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
     hn_run_request request = {
-        .method = hn_body_text(r->json, "method"),
-        .time = hn_body_number(r->json, "time", 0),
+        .method = hn_fields_text(r->json, "method"),
+        .time = hn_fields_number(r->json, "time", 0),
         .at = at ? times : NULL,
-        .every = hn_body_number(r->json, "every", 0),
+        .every = hn_fields_number(r->json, "every", 0),
         .max_samples = r->context->opts.max_samples,
         .max_numbers = r->context->opts.max_numbers,
         .reactions = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions")),
@@ -167,7 +167,7 @@ void hn_handle_snapshot(hn_request *r) {
     if (!model) {
         return;
     }
-    const char *methods[HN_COMPARISON_MAX_METHODS], *theme = hn_body_text(r->json, "theme");
+    const char *methods[HN_COMPARISON_MAX_METHODS], *theme = hn_fields_text(r->json, "theme");
     const cJSON *item;
     int n = 0;
     hn_status ended = HN_OK;
@@ -176,12 +176,12 @@ void hn_handle_snapshot(hn_request *r) {
     }
     hn_picture_request request = {.methods = methods,
                                   .n_methods = n,
-                                  .time = hn_body_number(r->json, "time", 0),
-                                  .width = (int)hn_body_number(r->json, "width", 0),
-                                  .height = (int)hn_body_number(r->json, "height", 0),
+                                  .time = hn_fields_number(r->json, "time", 0),
+                                  .width = (int)hn_fields_number(r->json, "width", 0),
+                                  .height = (int)hn_fields_number(r->json, "height", 0),
                                   .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
                                                                                : HN_THEME_LIGHT,
-                                  .view = hn_body_text(r->json, "view"),
+                                  .view = hn_fields_text(r->json, "view"),
                                   .cpu_budget = r->context->opts.max_run_cpu};
     hn_strbuf png;
     hn_diags diags = {0};
@@ -223,12 +223,12 @@ void hn_handle_grade(hn_request *r) {
     char *submission =
         cJSON_PrintUnformatted(cJSON_GetObjectItemCaseSensitive(r->json, "submission"));
     hn_status status =
-        v && submission ? hn_shelf_exercise_load(r->context->lib, hn_body_text(r->json, "problem"),
+        v && submission ? hn_shelf_exercise_load(r->context->lib, hn_fields_text(r->json, "problem"),
                                                  &problem, &diags)
                         : HN_ERR_MEMORY;
     if (status == HN_OK) {
         status = hn_grade_json(problem, submission, strlen(submission),
-                               (uint64_t)hn_body_number(r->json, "seed", 0), v);
+                               (uint64_t)hn_fields_number(r->json, "seed", 0), v);
     }
     if (status == HN_OK) {
         hn_verdict_json(&b, v);

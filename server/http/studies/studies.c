@@ -4,8 +4,10 @@
 #include "base/clock.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
-#include "http/studies/studies_internal.h"
-#include "integrators/method/method_spec.h"
+#include "http/studies/study_fields.h"
+#include "http/studies/study_work.h"
+#include "study/run/pace.h"
+#include "base/clock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,25 +40,11 @@ struct hn_studies {
 
 // ---- one study --------------------------------------------------------------------------------------------------
 
-static void reset_order(hn_study_order *o) {
-    hn_scene_request_reset(&o->scene);
-    for (int i = 0; i < o->n_methods; i++) {
-        free(o->methods[i]);
-    }
-    free(o->preset);
-    free(o->over);
-    *o = (hn_study_order){0};
-}
-
 static void free_study(study *s) {
     if (s) {
-        if (s->work.kind && s->work.kind->release) {
-            s->work.kind->release(&s->work);
-        }
         hn_strbuf_reset(&s->result.document);
         hn_strbuf_reset(&s->result.report);
-        hn_model_free(s->work.model);
-        reset_order(&s->work.order);
+        hn_study_work_reset(&s->work);
         free(s);
     }
 }
@@ -77,9 +65,7 @@ static void *work(void *arg) {
     hn_study_result result = {0};
     hn_strbuf_init(&result.document);
     hn_strbuf_init(&result.report);
-    s->work.wall_end = hn_clock_wall() + s->work.order.budget;
-    s->work.cpu_end = hn_clock_thread() + all->opts->max_run_cpu;
-    s->work.kind->run(&s->work, &result);
+    hn_study_work_run(&s->work, all->opts->max_run_cpu, &result);
     if (result.document.failed || result.report.failed) {
         result.state = HN_STUDY_FAILED;
         snprintf(result.reason, sizeof result.reason, "%s", hn_status_text(HN_ERR_MEMORY));
@@ -109,13 +95,13 @@ static const char *state_name(const study *s) {
     return names[s->done ? s->result.state : HN_STUDY_RUNNING];
 }
 
-/// Seconds to go, by what was done so far and never beyond the budget; NaN when too little is known.
+/// Seconds to go, by what was done so far and never beyond the time limit; NaN when too little is known.
 static double time_left(const study *s, double share, double elapsed) {
     if (s->done) {
         return 0;
     }
     const double by_share = share > TELLING ? elapsed * (1 - share) / share : (double)NAN;
-    return fmin(by_share, fmax(0, s->work.order.budget - elapsed));
+    return fmin(by_share, fmax(0, s->work.request.limits.time_limit - elapsed));
 }
 
 static void put_progress(hn_strbuf *b, const study *s) {
@@ -130,7 +116,7 @@ static void put_progress(hn_strbuf *b, const study *s) {
 
 /// With the lock held.
 static void put_study(hn_strbuf *b, const study *s) {
-    const hn_study_order *o = &s->work.order;
+    const hn_job_request *r = &s->work.request;
     char self[64];
     snprintf(self, sizeof self, "/api/v1/studies/%s", s->id);
     hn_json_object(b);
@@ -140,12 +126,12 @@ static void put_study(hn_strbuf *b, const study *s) {
     hn_json_put_string(b, "reason", s->result.reason);
     hn_json_put_string(b, "hint", s->result.hint);
     put_progress(b, s);
-    hn_json_put_number(b, "budget_s", o->budget);
+    hn_json_put_number(b, "time_limit_s", r->limits.time_limit);
     hn_json_put_string(b, "scene", hn_model_scene(s->work.model)->id);
-    hn_json_key(b, "settings");
-    hn_scene_request_settings_json(b, &o->scene);
+    hn_json_key(b, "parameters");
+    hn_scene_request_settings_json(b, &s->work.scene);
     hn_json_key(b, "methods");
-    hn_json_strings(b, (const char *const *)o->methods, (size_t)o->n_methods);
+    hn_json_strings(b, r->methods, (size_t)r->n_methods);
     hn_json_key(b, "document");
     hn_json_raw(b, s->result.document.n ? hn_strbuf_text(&s->result.document) : "null");
     hn_json_key(b, "links");
@@ -163,6 +149,7 @@ static void put_study(hn_strbuf *b, const study *s) {
 
 hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib) {
     hn_studies *all = calloc(1, sizeof *all);
+    hn_study_fields_fill();
     if (all) {
         pthread_mutex_init(&all->lock, NULL);
         pthread_cond_init(&all->changed, NULL);
@@ -243,109 +230,6 @@ void hn_studies_free(hn_studies *all) {
         pthread_mutex_destroy(&all->lock);
         free(all);
     }
-}
-
-// ---- what is asked for ------------------------------------------------------------------------------------------
-
-/// Members that this kind has no use for are told, not ignored.
-static hn_status check_options(const cJSON *body, const hn_study_kind_row *kind, hn_diags *diags) {
-    static const char *const options[] = {"levels", "samples", "preset", "over", "columns", "rows"};
-    hn_status status = HN_OK;
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        if (cJSON_GetObjectItemCaseSensitive(body, options[i]) &&
-            !strstr(kind->options, options[i])) {
-            char pointer[32];
-            snprintf(pointer, sizeof pointer, "/%s", options[i]);
-            status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
-                                  "a study of kind %s has no '%s'", kind->name, options[i]);
-        }
-    }
-    return status;
-}
-
-static hn_status read_methods(hn_study_order *o, const cJSON *body, const hn_study_kind_row *kind,
-                              hn_diags *diags) {
-    const cJSON *list = cJSON_GetObjectItemCaseSensitive(body, "methods"), *item;
-    hn_status status = HN_OK;
-    if (cJSON_GetArraySize(list) > kind->most_methods) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/methods", NULL,
-                            "%d methods were given; a study of kind %s takes %d at most",
-                            cJSON_GetArraySize(list), kind->name, kind->most_methods);
-    }
-    cJSON_ArrayForEach(item, list) {
-        hn_method_spec spec;
-        hn_diag diag = {0};
-        char pointer[32];
-        snprintf(pointer, sizeof pointer, "/methods/%d", o->n_methods);
-        const hn_status one = hn_method_parse(item->valuestring, &spec, &diag);
-        if (one != HN_OK) {
-            status = hn_diags_add(diags, one, pointer, diag.hint, "%s", diag.message);
-        }
-        o->methods[o->n_methods] = strdup(item->valuestring);
-        if (!o->methods[o->n_methods++]) {
-            return HN_ERR_MEMORY;
-        }
-    }
-    return status;
-}
-
-static hn_status read_text(const cJSON *body, const char *name, char **out) {
-    const char *text = hn_body_text(body, name);
-    *out = text ? strdup(text) : NULL;
-    return text && !*out ? HN_ERR_MEMORY : HN_OK;
-}
-
-static hn_status read_bounds(hn_study_order *o, const cJSON *body, const hn_http_opts *opts,
-                             hn_diags *diags) {
-    const double samples = hn_body_number(body, "samples", HN_STUDIES_SAMPLES);
-    o->time = hn_body_number(body, "time", (double)NAN);
-    o->budget = hn_body_number(body, "budget", opts->max_run_cpu);
-    o->levels = (int)hn_body_number(body, "levels", HN_STUDIES_LEVELS);
-    o->samples = samples == 0 ? -1 : (int)samples;
-    o->columns = (int)hn_body_number(body, "columns", 0);
-    o->rows = (int)hn_body_number(body, "rows", 0);
-    if (o->budget > opts->max_run_cpu) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/budget", NULL,
-                            "the budget is %g s; this server computes %g s at most", o->budget,
-                            opts->max_run_cpu);
-    }
-    if (o->time > opts->max_duration) {
-        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL,
-                            "the time is %g s; at most %g s are run", o->time, opts->max_duration);
-    }
-    return HN_OK;
-}
-
-static hn_status read_order(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
-                            hn_diags *diags) {
-    hn_study_order *o = &w->order;
-    w->kind = hn_study_kind_find(hn_body_text(body, "kind"));
-    hn_status status = check_options(body, w->kind, diags);
-    if (status == HN_OK) {
-        status = read_methods(o, body, w->kind, diags);
-    }
-    if (status == HN_OK) {
-        status = read_bounds(o, body, opts, diags);
-    }
-    if (status == HN_OK) {
-        status = read_text(body, "preset", &o->preset);
-    }
-    if (status == HN_OK) {
-        status = read_text(body, "over", &o->over);
-    }
-    if (status == HN_OK) {
-        status = hn_scene_request_read(&o->scene, body, diags);
-    }
-    if (status == HN_OK) {
-        status = hn_scene_request_load(&o->scene, w->lib, 0, &w->model, diags);
-    }
-    if (status == HN_OK && !(hn_model_scene(w->model)->duration <= opts->max_duration) &&
-        isnan(o->time)) {
-        status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "say until when",
-                              "the scene lasts %g s; at most %g s are run",
-                              hn_model_scene(w->model)->duration, opts->max_duration);
-    }
-    return status == HN_OK && w->kind->prepare ? w->kind->prepare(w, diags) : status;
 }
 
 static void name_study(study *s) {
@@ -473,7 +357,7 @@ void hn_handle_studies_create(hn_request *r) {
         s->all = all;
         s->work.lib = all->lib;
         name_study(s);
-        status = read_order(&s->work, r->json, all->opts, &diags);
+        status = hn_study_work_read(&s->work, r->json, all->opts, &diags);
     }
     if (status == HN_OK) {
         status = start(all, s);

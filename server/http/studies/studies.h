@@ -7,14 +7,7 @@
 #include "http/ground/http_opts.h"
 #include "session/model/library.h"
 
-enum {
-    HN_STUDIES_METHODS = 12,
-    HN_STUDIES_LEVELS = 7,
-    HN_STUDIES_SAMPLES = 10,
-    HN_STUDIES_SIDE = 24,
-    HN_STUDIES_MAPS = 4, ///< methods of one map
-    HN_STUDIES_KEPT = 16 ///< running and finished ones
-};
+enum { HN_STUDIES_KEPT = 16 }; ///< running and finished ones
 
 typedef struct hn_studies hn_studies;
 struct hn_request;
@@ -24,9 +17,6 @@ hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib);
 /// Asks every study to stop and waits for their threads. NULL is legal.
 void hn_studies_stop(hn_studies *all);
 void hn_studies_free(hn_studies *all); ///< stops first; NULL is legal
-
-/// The kinds, for the field table; ends with NULL.
-extern const char *const hn_studies_kind_names[];
 
 // handlers
 void hn_handle_studies_list(struct hn_request *r);

@@ -33,7 +33,7 @@ static void joints_are_told_as_what_they_are_with_limits_and_motors(void **state
     // the cross of the universal joint is no body: depth 1 and 2 only
     assert_non_null(strstr(text, "[\"ground\",\"  a by universal U\",\"    b by spherical S\"]"));
     assert_non_null(strstr(text, "{\"name\":\"U_2\",\"min\":-1}"));
-    assert_non_null(strstr(text, "\"actuated\":1,\"freedoms\":5,\"reading\":\"under-actuated"));
+    assert_non_null(strstr(text, "\"actuated\":1,\"dof\":5,\"reading\":\"under-actuated"));
     assert_non_null(strstr(text, "unit quaternion"));
     hn_strbuf_reset(&b);
     hn_model_close(&m);

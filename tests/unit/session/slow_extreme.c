@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The extreme matrix but for its longest cases: no prediction fails, and it is the same each time.
 
 #include "session/extreme/extreme.h"
@@ -13,10 +14,10 @@ enum { N_CASES = sizeof CASES / sizeof *CASES };
 static void run_all(const hn_library *lib, hn_strbuf *text) {
     hn_extreme *x = NULL;
     hn_diags diags = {0};
-    const hn_extreme_opts opts = {0};
+    const hn_job_limits limits = {0};
     assert_int_equal(hn_extreme_load(lib, CASES, N_CASES, &x, &diags), HN_OK);
     assert_int_equal(x->n_cases, N_CASES);
-    hn_extreme_run(x, &opts);
+    hn_extreme_run(x, &limits, false);
     for (int i = 0; i < x->n_cases; i++) {
         for (int k = 0; k < x->cases[i].n_trials; k++) {
             const hn_extreme_trial *t = &x->cases[i].trials[k];

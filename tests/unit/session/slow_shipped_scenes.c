@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every scene of the library at many random states near its start; where nothing takes energy, none is lost but by the order.
 
 #include "session/model/model.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanisms read from other programs' files move as the same mechanisms written by hand.
 #include "support/near.h"
 

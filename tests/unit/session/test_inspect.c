@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the compiler kept and left out, told of scenes for which it can be counted by hand.
 #include "session/model/lists.h"
 #include "session/model/model.h"
@@ -66,9 +67,9 @@ static void four_bar_has_three_speeds_two_rows_one_freedom(void **state) {
     const cJSON *modes = cJSON_GetObjectItemCaseSensitive(start, "assembly_modes");
     assert_string_equal(modes->valuestring, "+");
     const cJSON *motors = cJSON_GetObjectItemCaseSensitive(d, "actuation");
-    assert_true(number(motors, "freedoms") == 1);
+    assert_true(number(motors, "dof") == 1);
     assert_true(number(start, "rank") == 2);
-    assert_true(number(start, "freedoms") == 1);
+    assert_true(number(start, "dof") == 1);
     // the ground and three bodies; three of five closure rows say nothing in a plane
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(d, "tree")), 4);
     assert_true(number(find(d, "left_out", "what", "closure rows"), "count") == 3);

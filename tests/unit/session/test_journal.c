@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A journal holds whole lines of whoever has it, and nothing of what was cut or does not fit.
 #include "support/near.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The derivatives that formulations give to implicit integrators, on every scene of the library against differences of their own
 // right-hand sides, and the systems solved by structure against the full matrix.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every scene of the library, at random states near its start and in motion: facts that hold for any mechanism.
 
 #include "session/model/model.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Maps of stability: the same cells whatever happens on the way, boundaries that agree, requests that are refused.
 #include "session/stability/stability.h"
 
@@ -18,14 +19,16 @@ static hn_status load(void *user, const hn_setting *settings, int n, hn_model **
     return hn_model_load(NULL, &source, out, diags);
 }
 
-static hn_map_request request_for(const char *over, const char *const *methods, int n) {
-    hn_map_request r = hn_map_request_default();
-    r.over = over;
-    r.columns = r.rows = 6;
-    r.methods = methods;
-    r.n_methods = n;
+static hn_job_request request_for(const hn_model *model, const char *over,
+                                  const char *const *methods, int n) {
+    hn_job_request r = hn_job_request_default(model);
+    hn_diags diags = {0};
+    assert_int_equal(hn_job_request_set_methods(&r, methods, n, &diags), HN_OK);
+    hn_job_request_set_text(&r, "over", over);
+    hn_job_request_set(&r, "columns", 6);
+    hn_job_request_set(&r, "rows", 6);
     r.time = 0.2;
-    r.budget = 0;
+    r.limits.time_limit = 0;
     r.load = load;
     return r;
 }
@@ -37,10 +40,10 @@ static hn_model *open_model(void) {
     return model;
 }
 
-static hn_map *open_map(const hn_model *model, const hn_map_request *r) {
+static hn_map *open_map(const hn_job_request *r) {
     hn_map *map = NULL;
     hn_diags diags = {0};
-    if (hn_map_open(model, r, &map, &diags) != HN_OK) {
+    if (hn_map_open(r, &map, &diags) != HN_OK) {
         fail_msg("%s", diags.item[0].message);
     }
     return map;
@@ -53,8 +56,8 @@ static void
 the_observed_boundary_is_the_predicted_one_over_four_decades_of_stiffness(void **state) {
     (void)state;
     hn_model *model = open_model();
-    const hn_map_request r = request_for(OVER, METHODS, 2);
-    hn_map *map = open_map(model, &r);
+    const hn_job_request r = request_for(model, OVER, METHODS, 2);
+    hn_map *map = open_map(&r);
     assert_int_equal(hn_map_run(map), 1);
     assert_string_equal(hn_map_y(map)->name, "h");
     assert_string_equal(hn_map_x(map)->name, "k");
@@ -91,21 +94,21 @@ static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **
     char folder[] = "/tmp/holonom-map-XXXXXX";
     assert_non_null(mkdtemp(folder));
     hn_model *model = open_model();
-    hn_map_request r = request_for(OVER, METHODS, 1);
+    hn_job_request r = request_for(model, OVER, METHODS, 1);
     hn_strbuf whole, pieces;
-    hn_map *map = open_map(model, &r);
+    hn_map *map = open_map(&r);
     assert_int_equal(hn_map_run(map), 1);
     text_of(map, &whole);
     hn_map_free(map);
 
     int left = 0, finished = 0, rounds = 0, resumed = 0;
-    r.folder = folder;
-    r.stop = stop_later;
-    r.user = &left;
+    r.limits.folder = folder;
+    r.limits.stop = stop_later;
+    r.limits.user = &left;
     while (!finished) {
         assert_true(++rounds < 200);
         left = 150 + 50 * rounds;
-        map = open_map(model, &r);
+        map = open_map(&r);
         resumed += hn_map_resumed(map) > 0;
         finished = hn_map_run(map);
         if (!finished) {
@@ -126,9 +129,9 @@ static void a_map_interrupted_again_and_again_ends_as_an_undisturbed_one(void **
 static void documents_hold_every_cell_and_no_number_that_is_none(void **state) {
     (void)state;
     hn_model *model = open_model();
-    const hn_map_request r =
-        request_for("alpha=10..1e4,beta=10..1e4", (const char *const[]){"baumgarte@rk4:h=1e-3"}, 1);
-    hn_map *map = open_map(model, &r);
+    const hn_job_request r = request_for(model, "alpha=10..1e4,beta=10..1e4",
+                                         (const char *const[]){"baumgarte@rk4:h=1e-3"}, 1);
+    hn_map *map = open_map(&r);
     hn_strbuf b;
     hn_diag diag = {0};
     assert_int_equal(hn_map_run(map), 1);
@@ -163,10 +166,10 @@ static void requests_at_fault_are_told_by_field(void **state) {
         "k=1..2,m2=1..2,g=0..1", "k=-5..5", "h=1e-9..1e-8"};
     hn_model *model = open_model();
     for (size_t i = 0; i < sizeof overs / sizeof *overs; i++) {
-        const hn_map_request r = request_for(overs[i], METHODS, 1);
+        const hn_job_request r = request_for(model, overs[i], METHODS, 1);
         hn_map *map = NULL;
         hn_diags diags = {0};
-        const hn_status status = hn_map_open(model, &r, &map, &diags);
+        const hn_status status = hn_map_open(&r, &map, &diags);
         if (status != HN_ERR_INPUT && status != HN_ERR_LIMIT) {
             fail_msg("%s gave status %d", overs[i], (int)status);
         }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept of studies: taken up where it was cut, never trusted halfway.
 #include "support/near.h"
 
@@ -69,20 +70,26 @@ static int stop_with_a_point(void *user) {
     return *study && points_done(*study) > 0;
 }
 
+static hn_job_request request_for(const hn_model *model) {
+    hn_job_request r = hn_job_request_default(model);
+    hn_diags diags = {0};
+    assert_int_equal(hn_job_request_set_methods(&r, METHODS, 2, &diags), HN_OK);
+    return r;
+}
+
 static hn_study *open_study(const place *p, hn_study **cut) {
     hn_study *study = NULL;
     hn_diags diags = {0};
-    hn_study_request r = hn_study_request_default();
-    r.methods = METHODS;
-    r.n_methods = 2;
+    hn_job_request r = request_for(p->model);
     r.time = 0.5;
-    r.levels = 3;
-    r.samples = -1;
-    r.folder = p->folder;
+    hn_job_request_set(&r, "levels", 3);
+    hn_job_request_set(&r, "samples", 0);
+    r.limits.folder = p->folder;
     if (cut) {
-        r.hooks = (hn_wp_hooks){.user = cut, .stop = stop_with_a_point};
+        r.limits.user = cut;
+        r.limits.stop = stop_with_a_point;
     }
-    if (hn_study_open(p->model, &r, &study, &diags) != HN_OK) {
+    if (hn_study_open(&r, &study, &diags) != HN_OK) {
         fail_msg("%s", diags.item[0].message);
     }
     return study;
@@ -169,13 +176,11 @@ static void the_same_study_twice_at_once_is_refused(void **state) {
     hn_study *second = NULL;
     open_place(&p, "fb0");
     hn_study *first = open_study(&p, NULL);
-    hn_study_request r = hn_study_request_default();
-    r.methods = METHODS;
-    r.n_methods = 2;
+    hn_job_request r = request_for(p.model);
     r.time = 0.5;
-    r.levels = 3;
-    r.folder = p.folder;
-    assert_int_equal(hn_study_open(p.model, &r, &second, &diags), HN_ERR_IO);
+    hn_job_request_set(&r, "levels", 3);
+    r.limits.folder = p.folder;
+    assert_int_equal(hn_study_open(&r, &second, &diags), HN_ERR_IO);
     assert_null(second);
     hn_study_free(first);
     close_place(&p);
@@ -188,14 +193,12 @@ static hn_pareto bands_of(const char *scene, double T, double *horizon) {
     hn_diags diags = {0};
     hn_pareto pareto;
     open_place(&p, scene);
-    hn_study_request r = hn_study_request_default();
-    r.methods = METHODS;
-    r.n_methods = 2;
+    hn_job_request r = request_for(p.model);
     r.time = T;
-    r.levels = 3;
-    r.samples = -1;
-    r.budget = 0;
-    assert_int_equal(hn_study_open(p.model, &r, &study, &diags), HN_OK);
+    hn_job_request_set(&r, "levels", 3);
+    hn_job_request_set(&r, "samples", 0);
+    r.limits.time_limit = 0;
+    assert_int_equal(hn_study_open(&r, &study, &diags), HN_OK);
     assert_int_equal(hn_study_run(study), 1);
     hn_wp_pareto(hn_study_wp(study), hn_study_classes(study), HN_ERROR_Q, HN_COST_OPS, &pareto);
     *horizon = hn_study_wp(study)->horizon;

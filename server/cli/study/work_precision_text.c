@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/study/study_text.h"
+#include "cli/study/work_precision_text.h"
 
 #include "base/units.h"
 #include "cli/shell/args.h"

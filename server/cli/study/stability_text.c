@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/table.h"
-#include "cli/study/study_stability.h"
+#include "cli/study/stability_text.h"
 #include "session/stability/stability_frame.h"
 
 #include <math.h>

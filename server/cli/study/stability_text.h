@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_CLI_STUDY_STABILITY_H
-#define HN_CLI_STUDY_STABILITY_H
+#ifndef HN_CLI_STABILITY_TEXT_H
+#define HN_CLI_STABILITY_TEXT_H
 // A map of stability for a terminal.
 
 #include "session/stability/stability.h"

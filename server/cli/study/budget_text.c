@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom study SCENE budget: where the error at the end comes from, and the energy.
-#include "cli/shell/diagnostics.h"
-#include "cli/shell/progress.h"
+#include "cli/study/budget_text.h"
+
 #include "cli/shell/table.h"
-#include "cli/study/study.h"
-#include "session/accounts/accounts.h"
-
-static void show_progress(void *user, double share) {
-    hn_progress_tell(user, "budget", share);
-}
-
-// the tables for people ----------------------------------------------------------------------------------------------
 
 static void put_errors(hn_strbuf *b, const hn_accounts *a) {
     hn_table t;
@@ -90,7 +81,7 @@ static void put_legend(hn_strbuf *b) {
                      "\"-\": it cannot be told.\n");
 }
 
-static void put_tables(hn_strbuf *b, const hn_accounts *a) {
+void hn_accounts_text(hn_strbuf *b, const hn_accounts *a) {
     const hn_scene *scene = hn_model_scene(hn_accounts_model(a));
     hn_strbuf_printf(b, "%s, to t = %g s\n\nWhere the error at the end comes from\n",
                      scene->title ? scene->title : scene->id, hn_accounts_time(a));
@@ -100,55 +91,3 @@ static void put_tables(hn_strbuf *b, const hn_accounts *a) {
     put_reasons(b, a);
     put_legend(b);
 }
-
-// the command --------------------------------------------------------------------------------------------------------
-
-HN_FORM(html, hn_accounts, hn_accounts_html)
-HN_FORM(json, hn_accounts, hn_accounts_json)
-HN_FORM(csv, hn_accounts, hn_accounts_csv)
-HN_FORM(text, hn_accounts, put_tables)
-static const hn_forms FORMS = {{{".html", put_html}, {".json", put_json}, {".csv", put_csv}},
-                               put_text};
-
-static hn_status check_args(const hn_args *args, hn_diags *diags) {
-    return hn_forms_check(&FORMS, args, diags);
-}
-
-static hn_exit account_for(const hn_library *lib, const hn_args *args, const hn_model *model) {
-    (void)lib;
-    char folder[400];
-    hn_diags diags = {0};
-    hn_progress progress = {0};
-    hn_accounts *accounts = NULL;
-    const hn_accounts_request request = {
-        .methods = args->methods.word,
-        .n_methods = args->methods.n,
-        .time = args->time,
-        .folder = hn_study_folder(args, folder),
-        .stop = hn_is_interrupted,
-        .progress = show_progress,
-        .user = &progress,
-    };
-    const hn_status status = hn_accounts_open(model, &request, &accounts, &diags);
-    if (status != HN_OK) {
-        return hn_report_diags(args, status, &diags);
-    }
-    hn_study_tell_resumed(args, hn_accounts_resumed(accounts), "methods");
-    hn_interrupt_begin();
-    const int whole = hn_accounts_run(accounts);
-    hn_progress_end(&progress);
-    hn_interrupt_end();
-    hn_study_tell_end(!whole, 0, 0, "", request.folder);
-    const hn_exit result = hn_forms_write(&FORMS, args, accounts);
-    hn_accounts_free(accounts);
-    return result == HN_EXIT_DONE && !whole ? HN_EXIT_ENDED : result;
-}
-
-const hn_study_kind hn_study_kind_budget = {
-    .name = "budget",
-    .about =
-        "where the error at the end comes from, and the energy; --out FILE.html, .json or .csv",
-    .options = "--set --methods --time --csv --out -o",
-    .check = check_args,
-    .run = account_for,
-};

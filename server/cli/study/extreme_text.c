@@ -1,22 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom extreme [ID...]: cases in which methods break, predicted and observed.
-#include "cli/shell/commands.h"
-#include "cli/shell/diagnostics.h"
-#include "cli/shell/progress.h"
-#include "cli/study/study.h"
-#include "session/extreme/extreme.h"
+#include "cli/study/extreme_text.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static void show_progress(void *user, const char *id, double share) {
-    char what[40];
-    snprintf(what, sizeof what, "extreme %.20s", id);
-    hn_progress_tell(user, what, share);
-}
-
-// the table for people -----------------------------------------------------------------------------------------------
 
 enum { WHAT = 58, PREDICTED = 32, OBSERVED = 40 };
 
@@ -86,7 +72,7 @@ static void put_case(hn_strbuf *b, const hn_extreme_case *c) {
     hn_strbuf_add(b, "\n");
 }
 
-static void put_table(hn_strbuf *b, const hn_extreme *x) {
+void hn_extreme_text(hn_strbuf *b, const hn_extreme *x) {
     put_row(b, "what", "predicted", "observed", "verdict");
     hn_strbuf_add(b, "\n");
     for (int i = 0; i < x->n_cases; i++) {
@@ -101,63 +87,4 @@ static void put_table(hn_strbuf *b, const hn_extreme *x) {
         }
     }
     hn_strbuf_printf(b, "; %d cases\n", x->n_cases);
-}
-
-// the command --------------------------------------------------------------------------------------------------------
-
-HN_FORM(html, hn_extreme, hn_extreme_html)
-HN_FORM(json, hn_extreme, hn_extreme_json)
-HN_FORM(csv, hn_extreme, hn_extreme_csv)
-HN_FORM(text, hn_extreme, put_table)
-static const hn_forms FORMS = {{{".html", put_html}, {".json", put_json}, {".csv", put_csv}},
-                               put_text};
-
-static hn_status check_args(const hn_args *args, hn_diags *diags) {
-    const hn_status status = hn_forms_check(&FORMS, args, diags);
-    return status == HN_OK && args->budget < 0
-               ? hn_diags_add(diags, HN_ERR_INPUT, "/budget", NULL, "a budget is not negative")
-               : status;
-}
-
-static hn_status load(const hn_library *lib, const hn_args *args, const char *folder,
-                      hn_extreme **out, hn_diags *diags) {
-    hn_status status = check_args(args, diags);
-    if (status == HN_OK) {
-        status = hn_extreme_load(lib, args->words.word, args->words.n, out, diags);
-    }
-    if (status == HN_OK && folder) {
-        status = hn_extreme_resume(*out, folder, diags);
-    }
-    return status;
-}
-
-hn_exit hn_command_extreme(const hn_library *lib, const hn_args *args) {
-    char place[400];
-    const char *folder = hn_study_folder(args, place);
-    hn_extreme *x = NULL;
-    hn_diags diags = {0};
-    hn_progress progress = {0};
-    const hn_status status = load(lib, args, folder, &x, &diags);
-    if (status != HN_OK) {
-        hn_extreme_free(x);
-        return hn_report_diags(args, status, &diags);
-    }
-    const hn_extreme_opts opts = {.budget = isnan(args->budget) ? 0 : args->budget,
-                                  .run_long = args->run_long,
-                                  .user = &progress,
-                                  .stop = hn_is_interrupted,
-                                  .progress = show_progress};
-    hn_study_tell_resumed(args, x->resumed, "trials");
-    hn_interrupt_begin();
-    hn_extreme_run(x, &opts);
-    hn_interrupt_end();
-    hn_progress_end(&progress);
-    hn_study_tell_end(x->stopped, x->out_of_time, opts.budget, "trials", folder);
-    hn_exit result = hn_forms_write(&FORMS, args, x);
-    const int whole = hn_extreme_count(x, HN_EXTREME_FAIL) == 0 && !x->stopped;
-    if (result == HN_EXIT_DONE && !whole) {
-        result = HN_EXIT_ENDED;
-    }
-    hn_extreme_free(x);
-    return result;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "http/ground/body.h"
+#include "session/job/field.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -8,7 +8,7 @@
 
 enum { MAX_FIELDS = 24, MAX_MEMBERS = 5000 };
 
-static int n_fields(const hn_field *fields) {
+int hn_fields_count(const hn_field *fields) {
     int n = 0;
     while (fields[n].name) {
         n++;
@@ -16,7 +16,7 @@ static int n_fields(const hn_field *fields) {
     return n;
 }
 
-static const hn_field *find_field(const hn_field *fields, const char *name) {
+const hn_field *hn_fields_find(const hn_field *fields, const char *name) {
     for (; fields->name; fields++) {
         if (strcmp(fields->name, name) == 0) {
             return fields;
@@ -67,26 +67,26 @@ static const char *type_words(const hn_field *f) {
     return "any value";
 }
 
-/// 1 if every member is a number (or string).
-static int all_are(const cJSON *list, int (*is)(const cJSON *)) {
+/// Returns true if every member is a number (or string).
+static bool all_are(const cJSON *list, bool (*is)(const cJSON *)) {
     const cJSON *item;
     cJSON_ArrayForEach(item, list) {
         if (!is(item)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int is_number(const cJSON *item) {
+static bool is_number(const cJSON *item) {
     return cJSON_IsNumber(item);
 }
 
-static int is_text(const cJSON *item) {
+static bool is_text(const cJSON *item) {
     return cJSON_IsString(item);
 }
 
-static int has_type(const cJSON *value, const hn_field *f) {
+static bool has_type(const cJSON *value, const hn_field *f) {
     switch (f->type) {
     case HN_FIELD_SCENE:
         return cJSON_IsString(value) || cJSON_IsObject(value);
@@ -110,7 +110,7 @@ static int has_type(const cJSON *value, const hn_field *f) {
     case HN_FIELD_ANY:
         break;
     }
-    return 1;
+    return true;
 }
 
 static hn_status check_choice(const char *text, const hn_field *f, const char *pointer,
@@ -132,26 +132,27 @@ static hn_status check_choice(const char *text, const hn_field *f, const char *p
 }
 
 static hn_status check_range(const cJSON *value, const hn_field *f, const char *pointer,
-                             hn_diags *diags) {
-    int counted = cJSON_IsArray(value);
-    double x = counted ? cJSON_GetArraySize(value) : value->valuedouble;
-    if ((f->min == 0 && f->max == 0) || (x >= f->min && x <= f->max)) {
+                             bool served, hn_diags *diags) {
+    const bool counted = cJSON_IsArray(value);
+    const double x = counted ? cJSON_GetArraySize(value) : value->valuedouble;
+    const double max = served && f->served_max > 0 ? f->served_max : f->max;
+    if ((f->min == 0 && max == 0) || (x >= f->min && x <= max)) {
         return HN_OK;
     }
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
                         counted ? "'%s' has %g entries; %g to %g are allowed"
                                 : "'%s' is %g; %g to %g are allowed",
-                        f->name, x, f->min, f->max);
+                        f->name, x, f->min, max);
 }
 
 static hn_status check_member(const cJSON *value, const hn_field *f, const char *pointer,
-                              hn_diags *diags) {
+                              bool served, hn_diags *diags) {
     if (!has_type(value, f)) {
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' must be %s", f->name,
                             type_words(f));
     }
     if (cJSON_IsNumber(value) || cJSON_IsArray(value)) {
-        return check_range(value, f, pointer, diags);
+        return check_range(value, f, pointer, served, diags);
     }
     if (f->type == HN_FIELD_BY_NAME && cJSON_GetArraySize(value) > MAX_MEMBERS) {
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
@@ -161,13 +162,14 @@ static hn_status check_member(const cJSON *value, const hn_field *f, const char 
     if (f->type == HN_FIELD_CHOICE) {
         return check_choice(value->valuestring, f, pointer, diags);
     }
-    return f->type == HN_FIELD_RECORD ? hn_body_check(value, f->record, pointer, diags) : HN_OK;
+    return f->type == HN_FIELD_RECORD ? hn_fields_check(value, f->record, pointer, served, diags)
+                                      : HN_OK;
 }
 
-static hn_status tell_unknown(const char *name, const hn_field *fields, const char *pointer,
-                              hn_diags *diags) {
+static hn_status report_unknown(const char *name, const hn_field *fields, const char *pointer,
+                                hn_diags *diags) {
     const char *names[MAX_FIELDS];
-    int n = n_fields(fields);
+    int n = hn_fields_count(fields);
     HN_ASSERT(n <= MAX_FIELDS);
     char hint[HN_DIAG_HINT] = "fields: ";
     for (int i = 0; i < n; i++) {
@@ -184,29 +186,31 @@ static hn_status tell_unknown(const char *name, const hn_field *fields, const ch
 
 /// One member of the object; `seen` has a bit for each field that came before.
 static hn_status check_one(const cJSON *item, const hn_field *fields, const char *parent,
-                           uint32_t *seen, hn_diags *diags) {
+                           bool served, uint32_t *seen, hn_diags *diags) {
     char pointer[HN_DIAG_POINTER];
-    const hn_field *f = find_field(fields, item->string);
+    const hn_field *f = hn_fields_find(fields, item->string);
     member_pointer(pointer, parent, item->string);
-    if (!f) {
-        return tell_unknown(item->string, fields, pointer, diags);
+    if (!f || (served && f->served_max < 0)) {
+        return report_unknown(item->string, fields, pointer, diags);
     }
     const uint32_t bit = UINT32_C(1) << (f - fields);
     if (*seen & bit) {
         return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is written twice", f->name);
     }
     *seen |= bit;
-    return check_member(item, f, pointer, diags);
+    return check_member(item, f, pointer, served, diags);
 }
 
-hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char *parent,
-                        hn_diags *diags) {
-    HN_ASSERT(n_fields(fields) <= MAX_FIELDS);
+hn_status hn_fields_check(const cJSON *object, const hn_field *fields, const char *parent,
+                          bool served, hn_diags *diags) {
+    HN_ASSERT(hn_fields_count(fields) <= MAX_FIELDS);
     uint32_t seen = 0;
     hn_status status = HN_OK;
     const cJSON *item;
+
+    // every member is known, written once, and of its type
     cJSON_ArrayForEach(item, object) {
-        const hn_status one = check_one(item, fields, parent, &seen, diags);
+        const hn_status one = check_one(item, fields, parent, served, &seen, diags);
         status = one != HN_OK ? one : status;
         // whoever sends more faults than are listed gets no more work out of this
         if (diags->found >= HN_DIAG_MAX) {
@@ -214,6 +218,7 @@ hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char 
         }
     }
 
+    // nothing that is required is missing
     for (const hn_field *f = fields; f->name; f++) {
         if (f->required && !(seen & UINT32_C(1) << (f - fields))) {
             char pointer[HN_DIAG_POINTER];
@@ -225,11 +230,11 @@ hn_status hn_body_check(const cJSON *object, const hn_field *fields, const char 
     return status;
 }
 
-double hn_body_number(const cJSON *body, const char *name, double otherwise) {
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(body, name);
+double hn_fields_number(const cJSON *object, const char *name, double otherwise) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
     return cJSON_IsNumber(item) ? item->valuedouble : otherwise;
 }
 
-const char *hn_body_text(const cJSON *body, const char *name) {
-    return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(body, name));
+const char *hn_fields_text(const cJSON *object, const char *name) {
+    return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, name));
 }

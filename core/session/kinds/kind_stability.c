@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stability map: where steps are stable, predicted from the spectrum and tried.
+#include "session/kinds/job.h"
+#include "session/stability/stability.h"
+
+static const char *const PRESETS[] = {
+#define NAME(maker, name, about, chooses, stabilised) name,
+    HN_MAP_PRESETS(NAME)
+#undef NAME
+        NULL};
+
+static const hn_field FIELDS[] = {
+    HN_JOB_METHODS_FIELD(HN_MAP_METHODS, 4),
+    HN_JOB_TIME_FIELD,
+    HN_JOB_TIME_LIMIT_FIELD("60 when left out, 0: none"),
+    {.name = "preset",
+     .type = HN_FIELD_CHOICE,
+     .choices = PRESETS,
+     .argument = "NAME",
+     .about = "axes of the map by name; limits when left out"},
+    {.name = "over",
+     .type = HN_FIELD_TEXT,
+     .argument = "AXES",
+     .about = "one or two axes in place of a preset, as in h=1e-4..1e-1,k=1e2..1e8, each with :lin "
+              "or :log behind it if wanted"},
+    {.name = "columns",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_MAP_SIDE,
+     .served_max = 24,
+     .about = "columns of the map; 24 when left out"},
+    {.name = "rows",
+     .type = HN_FIELD_INTEGER,
+     .min = 2,
+     .max = HN_MAP_SIDE,
+     .served_max = 24,
+     .about = "rows of the map; 24 when left out"},
+    HN_JOB_END_OF_FIELDS,
+};
+
+static hn_status open_map(const hn_job_request *request, void **work, hn_diags *diags) {
+    return hn_map_open(request, (hn_map **)work, diags);
+}
+
+static int resumed(const void *work) {
+    return hn_map_resumed(work);
+}
+
+static hn_status run(void *work, const hn_job_request *request, hn_job_end *end, hn_diags *diags) {
+    (void)request, (void)diags;
+    hn_map_run(work);
+    end->stopped = hn_map_stopped(work);
+    end->out_of_time = hn_map_out_of_time(work);
+    return HN_OK;
+}
+
+static void release(void *work) {
+    hn_map_free(work);
+}
+
+static void write_png(hn_strbuf *b, const hn_map *map) {
+    hn_diag diag = {0};
+    b->failed |= hn_map_png(b, map, &diag) != HN_OK;
+}
+
+HN_JOB_FORM(html, hn_map, hn_map_html)
+HN_JOB_FORM(json, hn_map, hn_map_json)
+HN_JOB_FORM(csv, hn_map, hn_map_csv)
+HN_JOB_FORM(svg, hn_map, hn_map_svg)
+HN_JOB_FORM(png, hn_map, write_png)
+
+const hn_job_kind hn_kind_stability = {
+    .name = "stability",
+    .about = "where steps are stable: the limit predicted from the spectrum, and tried",
+    .command = "study",
+    .pieces = "cells",
+    .chooses = "h",
+    .served = true,
+    .fields = FIELDS,
+    .preset = hn_map_preset_at,
+    .forms = {{".html", put_html},
+              {".json", put_json},
+              {".csv", put_csv},
+              {".svg", put_svg},
+              {".png", put_png}},
+    .open = open_map,
+    .resumed = resumed,
+    .run = run,
+    .release = release,
+};

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLI_BUDGET_TEXT_H
+#define HN_CLI_BUDGET_TEXT_H
+// Error budgets for people at a terminal: where errors and energy come from, method by method.
+
+#include "session/accounts/accounts.h"
+
+void hn_accounts_text(hn_strbuf *b, const hn_accounts *accounts);
+#endif

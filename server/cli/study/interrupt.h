@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_CLI_INTERRUPT_H
+#define HN_CLI_INTERRUPT_H
+// Ctrl-C asks a long job to stop instead of ending the program.
+
+#include "base/status.h"
+
+void hn_interrupt_begin(void);
+void hn_interrupt_end(void);
+int hn_is_interrupted(void *unused); ///< 1 once asked: the `stop` of a job
+#endif

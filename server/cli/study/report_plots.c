@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/study/report_plots.h"
+
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
+
+#include <errno.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+extern char **environ;
+
+#define PNG_ZOOM "2" // pixels a unit of the drawing: sharp in print and on dense screens
+
+/// 1: done; 0: it failed; -1: there is no such program.
+static int convert(const char *svg, const char *png) {
+    char *const words[] = {"rsvg-convert", "-z", PNG_ZOOM, "-o", (char *)png, (char *)svg, NULL};
+    pid_t pid;
+    int status = 0;
+    const int error = posix_spawnp(&pid, words[0], NULL, NULL, words, environ);
+    if (error != 0) {
+        return error == ENOENT ? -1 : 0;
+    }
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {}
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static hn_exit fail(const hn_args *args, const char *path, const char *why) {
+    hn_diag diag = {0};
+    hn_diag_set(&diag, HN_ERR_IO, "/plots", NULL, "cannot write '%.200s': %s", path, why);
+    return hn_report_diag(args, &diag);
+}
+
+/// One plot as SVG, and as PNG while there is a program that makes one.
+static hn_exit write_plot(const hn_args *args, const hn_report_plot *plot, int *converts,
+                          int *written) {
+    char svg[700], png[700];
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (!hn_report_plot_svg(&b, plot)) {
+        hn_strbuf_reset(&b);
+        return HN_EXIT_DONE;
+    }
+    if (snprintf(svg, sizeof svg, "%s/%s.svg", args->plots, plot->name) >= (int)sizeof svg ||
+        snprintf(png, sizeof png, "%s/%s.png", args->plots, plot->name) >= (int)sizeof png) {
+        hn_strbuf_reset(&b);
+        return fail(args, args->plots, "the name of the folder is too long");
+    }
+    const hn_exit done = hn_cli_write_file(args, svg, &b);
+    if (done != HN_EXIT_DONE) {
+        return done;
+    }
+    ++*written;
+    if (*converts) {
+        const int converted = convert(svg, png);
+        if (converted == 0) {
+            return fail(args, png, "rsvg-convert failed");
+        }
+        *converts = converted > 0;
+    }
+    return HN_EXIT_DONE;
+}
+
+hn_exit hn_write_plots(const hn_args *args, const hn_report *r) {
+    int converts = 1, written = 0;
+    if (mkdir(args->plots, 0777) != 0 && errno != EEXIST) {
+        return fail(args, args->plots, strerror(errno));
+    }
+    for (int i = 0; i < hn_report_n_plots(r); i++) {
+        const hn_report_plot plot = hn_report_plot_at(r, i);
+        const hn_exit done = write_plot(args, &plot, &converts, &written);
+        if (done != HN_EXIT_DONE) {
+            return done;
+        }
+    }
+    if (!converts) {
+        fprintf(stderr,
+                "holonom: %d plots as SVG; PNG too where there is rsvg-convert (Debian: "
+                "librsvg2-bin)\n",
+                written);
+    }
+    return HN_EXIT_DONE;
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/studies/study_work.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// ---- what is asked for ----
+
+/// The scene as it was asked for, with these parameters on top.
+static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_model **out,
+                           hn_diags *diags) {
+    const hn_study_work *w = user;
+    hn_scene_request scene = {0};
+    hn_status status = hn_scene_request_copy(&scene, &w->scene);
+    for (int i = 0; i < n && status == HN_OK; i++) {
+        status = hn_scene_request_add(&scene, parameters[i].name, strlen(parameters[i].name),
+                                      parameters[i].value, diags);
+    }
+    if (status == HN_OK) {
+        status = hn_scene_request_load(&scene, w->lib, 0, out, diags);
+    }
+    hn_scene_request_reset(&scene);
+    return status;
+}
+
+static int must_stop(void *user) {
+    hn_study_work *w = user;
+    w->cpu_used_up |= hn_clock_thread() > w->cpu_end;
+    return w->cpu_used_up || atomic_load(&w->stop);
+}
+
+static void keep_share(void *user, const char *part, double share) {
+    (void)part;
+    atomic_store(&((hn_study_work *)user)->share, share);
+}
+
+/// The members of the body that are fields of the kind, checked and with the bounds of this server.
+static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
+                             hn_diags *diags) {
+    w->kind = hn_job_kind_find(hn_fields_text(body, "kind"));
+    w->body = cJSON_Duplicate(body, 1);
+    cJSON_DeleteItemFromObjectCaseSensitive(w->body, "scene");
+    cJSON_DeleteItemFromObjectCaseSensitive(w->body, "parameters");
+    cJSON_DeleteItemFromObjectCaseSensitive(w->body, "kind");
+    HN_TRY(hn_job_check(w->kind, w->body, true, diags));
+    HN_TRY(hn_job_request_read(&w->request, w->body, w->kind->fields, diags));
+    double *limit = &w->request.limits.time_limit;
+    *limit = isnan(*limit) ? opts->max_run_cpu : *limit;
+    if (!(*limit > 0 && *limit <= opts->max_run_cpu)) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/time_limit", NULL,
+                            "the time limit is %g s; this server computes %g s at most", *limit,
+                            opts->max_run_cpu);
+    }
+    if (w->request.time > opts->max_duration) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL,
+                            "the time is %g s; at most %g s are run", w->request.time,
+                            opts->max_duration);
+    }
+    return HN_OK;
+}
+
+/// Tries every spelling, so that each fault is reported and before the computation.
+static hn_status check_methods(const hn_job_request *r, hn_diags *diags) {
+    hn_status status = HN_OK;
+    for (int i = 0; i < r->n_methods; i++) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        char pointer[32];
+        snprintf(pointer, sizeof pointer, "/methods/%d", i);
+        const hn_status one = hn_method_parse(r->methods[i], &spec, &diag);
+        if (one != HN_OK) {
+            status = hn_diags_add(diags, one, pointer, diag.hint, "%s", diag.message);
+        }
+    }
+    return status;
+}
+
+hn_status hn_study_work_read(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
+                             hn_diags *diags) {
+    w->request = hn_job_request_default(NULL);
+    HN_TRY(read_fields(w, body, opts, diags));
+    HN_TRY(check_methods(&w->request, diags));
+
+    // the scene, and how long it may last
+    HN_TRY(hn_scene_request_read(&w->scene, body, diags));
+    HN_TRY(hn_scene_request_load(&w->scene, w->lib, 0, &w->model, diags));
+    const double duration = hn_model_scene(w->model)->duration;
+    if (isnan(w->request.time) && !(duration <= opts->max_duration)) {
+        return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "say until when",
+                            "the scene lasts %g s; at most %g s are run", duration,
+                            opts->max_duration);
+    }
+
+    // the job; what opens slowly is left to the thread of the study
+    w->request.models[0] = w->model;
+    w->request.n_models = 1;
+    w->request.load = load_with;
+    w->request.load_user = w;
+    w->request.limits.stop = must_stop;
+    w->request.limits.progress = keep_share;
+    w->request.limits.user = w;
+    w->cpu_end = HUGE_VAL;
+    return w->kind->opens_slowly ? HN_OK : hn_job_open(w->kind, &w->request, &w->job, diags);
+}
+
+void hn_study_work_reset(hn_study_work *w) {
+    hn_job_free(w->job);
+    hn_model_free(w->model);
+    hn_scene_request_reset(&w->scene);
+    cJSON_Delete(w->body);
+    w->job = NULL;
+    w->model = NULL;
+    w->body = NULL;
+}
+
+// ---- the computation ----
+
+/// Says why a document is no more than a part.
+static void report_end(const hn_study_work *w, const hn_job_end *end, hn_study_result *out) {
+    if (w->cpu_used_up) {
+        out->state = HN_STUDY_STOPPED;
+        snprintf(out->reason, sizeof out->reason,
+                 "the computing time of one study is used up; what was done is shown");
+    } else if (atomic_load(&w->stop)) {
+        out->state = HN_STUDY_STOPPED;
+        snprintf(out->reason, sizeof out->reason, "stopped on request; what was done is shown");
+    } else if (end->out_of_time) {
+        out->state = HN_STUDY_STOPPED;
+        snprintf(out->reason, sizeof out->reason, "the time limit of %g s left something out",
+                 w->request.limits.time_limit);
+    } else {
+        out->state = HN_STUDY_FINISHED;
+    }
+}
+
+static void report_failure(const hn_study_work *w, hn_status status, const hn_diags *diags,
+                           hn_study_result *out) {
+    out->state = HN_STUDY_FAILED;
+    snprintf(out->reason, sizeof out->reason, "%s",
+             w->cpu_used_up
+                 ? "the computing time of one study is used up before there was anything to show"
+             : atomic_load(&w->stop) ? "stopped before there was anything to show"
+             : diags->n > 0          ? diags->item[0].message
+                                     : hn_status_text(status));
+    snprintf(out->hint, sizeof out->hint, "%s", diags->n > 0 ? diags->item[0].hint : "");
+}
+
+void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out) {
+    hn_diags diags = {0};
+    hn_job_end end = {0};
+    hn_status status = HN_OK;
+    w->cpu_end = hn_clock_thread() + cpu_seconds;
+    if (!w->job) {
+        status = hn_job_open(w->kind, &w->request, &w->job, &diags);
+    }
+    if (status == HN_OK) {
+        status = hn_job_run(w->job, &end, &diags);
+    }
+    if (status != HN_OK) {
+        report_failure(w, status, &diags, out);
+        return;
+    }
+    report_end(w, &end, out);
+    hn_job_write(&out->document, w->job, ".json");
+    hn_job_write(&out->report, w->job, ".html");
+}

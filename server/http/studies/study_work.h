@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_STUDY_WORK_H
+#define HN_HTTP_STUDY_WORK_H
+// One study as work: what a body asks for, and the job (session/kinds/job.h) that computes it.
+
+#include "http/ground/http_opts.h"
+#include "http/request/scene_request.h"
+#include "session/kinds/job.h"
+
+#include <stdatomic.h>
+
+typedef enum hn_study_state {
+    HN_STUDY_RUNNING,
+    HN_STUDY_FINISHED,
+    HN_STUDY_STOPPED, ///< a part is done: `reason` says why no more
+    HN_STUDY_FAILED   ///< there is no document
+} hn_study_state;
+
+/// What the thread of a study works on. It alone touches it once it runs, but for the atomics.
+typedef struct hn_study_work {
+    const hn_library *lib;
+    const hn_job_kind *kind;
+    hn_scene_request scene;
+    cJSON *body; ///< owned: the values of the kind's fields; the job borrows its texts
+    hn_model *model;
+    hn_job_request request;
+    hn_job *job;    ///< NULL before hn_study_work_run(), for kinds that open slowly
+    double cpu_end; ///< [s] of the thread's own clock
+    int cpu_used_up;
+    _Atomic double share; ///< of the whole study that is done
+    atomic_int stop;
+} hn_study_work;
+
+/// How a study ended.
+typedef struct hn_study_result {
+    hn_study_state state;
+    hn_strbuf document; ///< JSON
+    hn_strbuf report;   ///< HTML; empty when the kind has none
+    char reason[HN_DIAG_MESSAGE], hint[HN_DIAG_HINT];
+} hn_study_result;
+
+/// Reads and checks a body and loads its scene; start from a zeroed work with `lib` set. Fails: HN_ERR_INPUT,
+/// HN_ERR_LIMIT and what the kind refuses before its computation; reported in diags with pointers into
+/// the body. hn_study_work_reset() afterwards in any case.
+HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,
+                                           const hn_http_opts *opts, hn_diags *diags);
+/// Computes until the end, the time limit, `cpu_seconds` of this thread, or w->stop. The document is
+/// complete JSON whatever the end, but not when the study failed.
+void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out);
+void hn_study_work_reset(hn_study_work *w);
+#endif
