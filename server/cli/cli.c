@@ -3,6 +3,7 @@
 
 #include "build.h"
 #include "cli/completion.h"
+#include "cli/examples.h"
 #include "cli/manual.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -10,6 +11,7 @@
 #include "cli/shell/print.h"
 #include "session/job/job_request.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -127,9 +129,25 @@ static void describe_all(hn_strbuf *b) {
 }
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {
+    const char *const *examples = hn_examples_of(command->name);
     hn_strbuf_printf(b, "holonom %s %s\n  %s\n\n", command->name, command->words, command->about);
     hn_args_describe(b, command);
+    hn_strbuf_add(b, examples ? "\nexamples\n" : "");
+    for (int i = 0; examples && i < HN_CLI_EXAMPLES; i++) {
+        hn_strbuf_printf(b, "  holonom %s\n", examples[i]);
+    }
 }
+
+/// What `holonom` alone says: the first three things to do.
+static const char FIRST_STEPS[] =
+    "holonom: mechanisms with closed loops, many methods on one clock\n\n"
+    "Start with one of these:\n"
+    "  holonom serve                  the page, in a browser\n"
+    "  holonom tui four-bar           the same workbench in this terminal\n"
+    "  holonom compare four-bar       several methods, and where they part\n"
+    "  holonom run four-bar --plot    one method, drawn over time\n"
+    "  holonom list scenes            the mechanisms that are there\n\n"
+    "'holonom help' lists all commands, 'holonom help COMMAND' explains one.\n";
 
 static hn_diag unknown_command(const char *name) {
     const char *names[N_COMMANDS];
@@ -230,27 +248,35 @@ static hn_exit complete(int n, char **words) {
     return HN_EXIT_DONE;
 }
 
+/// "scenes", "methods", "lessons" and "problems" are short for "list scenes" ...
+static bool is_list(const char *word) {
+    static const char *const kinds[] = {"scenes", "methods", "lessons", "problems"};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strcmp(word, kinds[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int hn_cli_main(int argc, char **argv) {
     hn_args args = {0};
     hn_diag diag = {0};
     if (argc < 2) {
-        hn_strbuf b;
-        hn_strbuf_init(&b);
-        describe_all(&b);
-        fputs(hn_strbuf_text(&b), stderr);
-        hn_strbuf_reset(&b);
+        fputs(FIRST_STEPS, stderr);
         return HN_EXIT_INPUT;
     }
     if (strcmp(argv[1], "complete") == 0) {
         return complete(argc - 2, argv + 2);
     }
-    const char *name = command_word(argv[1]);
+    const bool list = is_list(argv[1]);
+    const char *name = list ? "list" : command_word(argv[1]);
     const hn_command *command = find_command(name);
     if (!command) {
         diag = unknown_command(name);
         return hn_report_diag(NULL, &diag);
     }
-    hn_status status = hn_args_parse(&args, command, argc - 2, argv + 2, &diag);
+    hn_status status = hn_args_parse(&args, command, argc - 2 + list, argv + 2 - list, &diag);
     hn_exit result = status == HN_OK ? run_command(command, &args) : hn_report_diag(&args, &diag);
     hn_args_reset(&args);
     return result;

@@ -3,6 +3,7 @@
 
 #include "build.h"
 #include "cli/cli.h"
+#include "cli/examples.h"
 #include "cli/shell/print.h"
 
 /// Text of a table in roff: backslashes, hyphens and a leading dot or quote are no commands.
@@ -42,6 +43,16 @@ static void put_command(hn_strbuf *b, const hn_command *command) {
         put_text(b, o.about);
         hn_strbuf_add(b, "\n");
     }
+
+    // its examples, line by line
+    const char *const *examples = hn_examples_of(command->name);
+    hn_strbuf_add(b, ".PP\nExamples:\n.nf\n");
+    for (int i = 0; examples && i < HN_CLI_EXAMPLES; i++) {
+        hn_strbuf_add(b, "    holonom ");
+        put_text(b, examples[i]);
+        hn_strbuf_add(b, "\n");
+    }
+    hn_strbuf_add(b, ".fi\n");
 }
 
 static void put_sections(hn_strbuf *b) {

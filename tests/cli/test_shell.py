@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Comfort in a shell: completion asks the program, the manual is made from the tables of the help."""
 
+import fcntl
 import os
+import pty
 import re
+import shutil
+import struct
 import subprocess
 import sys
+import tempfile
+import termios
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
@@ -55,6 +61,45 @@ class Completion(unittest.TestCase):
         self.assertIn("bash, zsh and fish", done.stderr)
 
 
+# they wait for somebody, take minutes, or need files of their own; other tests run these commands
+LEFT_OUT = ("serve", "report", "merge", "import")
+
+
+class Help(unittest.TestCase):
+    def test_holonom_alone_says_what_to_do_first(self):
+        done = call()
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        for command in ("holonom serve", "holonom tui", "holonom compare", "holonom help"):
+            self.assertIn(command, done.stderr)
+
+    def test_every_command_has_three_examples_and_they_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            answer = os.path.join(os.path.dirname(__file__), "..", "..", "lessons", "01-closed-loops", "answers", "p3.json")
+            shutil.copy(answer, os.path.join(folder, "answer.json"))
+            for command in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M):
+                lines = re.findall(r"^  holonom (.+)$", call("help", command).stdout.split("examples\n")[-1], re.M)
+                self.assertEqual(len(lines), 3, command)
+                for line in lines:
+                    if command not in LEFT_OUT and not re.search(r"[|>]", line) and line != "tui":
+                        done = subprocess.run([driver.PROGRAM, *line.split()], capture_output=True, text=True, timeout=300, cwd=folder,
+                                              stdin=subprocess.DEVNULL)
+                        self.assertEqual((line, done.returncode), (line, 0), done.stderr)
+
+    def test_lists_have_short_names(self):
+        for kind in ("scenes", "methods", "lessons", "problems"):
+            self.assertEqual(call(kind).stdout, call("list", kind).stdout)
+
+    def test_a_long_text_goes_through_the_pager_of_a_terminal(self):
+        master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 10, 80, 0, 0))
+        env = {**os.environ, "PAGER": "sed -n 's/^/paged /;1p'", "LC_ALL": "C.UTF-8"}
+        with subprocess.Popen([driver.PROGRAM, "list", "scenes"], stdin=slave, stdout=slave, env=env) as process:
+            process.wait(timeout=60)
+        os.close(slave)
+        self.assertTrue(os.read(master, 4096).startswith(b"paged "))
+        os.close(master)
+
+
 class Plots(unittest.TestCase):
     def test_compare_draws_every_method_within_the_width(self):
         env = {**os.environ, "COLUMNS": "70", "LC_ALL": "C.UTF-8"}
@@ -89,7 +134,7 @@ class Manual(unittest.TestCase):
 
     def test_no_line_is_a_request_that_roff_does_not_know(self):
         requests = set(re.findall(r"^\.(\w+)", call("manual").stdout, re.M))
-        self.assertLessEqual(requests, {"TH", "SH", "SS", "TP", "B", "nf", "fi"})
+        self.assertLessEqual(requests, {"TH", "SH", "SS", "TP", "PP", "B", "nf", "fi"})
 
 
 if __name__ == "__main__":

@@ -4,9 +4,16 @@
 #include "cli/shell/plain.h"
 
 #include <errno.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { COMMAND_NOT_FOUND = 127 }; // of the shell that starts the pager
 
 hn_exit hn_cli_print(hn_strbuf *text) {
     int ok = !text->failed;
@@ -25,6 +32,38 @@ hn_exit hn_cli_print(hn_strbuf *text) {
     return ok ? HN_EXIT_DONE : HN_EXIT_PROGRAM;
 }
 
+/// More lines than a terminal has, and somebody in front of it.
+static bool wants_pager(const hn_strbuf *text) {
+    struct winsize size = {0};
+    int lines = 0;
+    if (!isatty(STDOUT_FILENO) || !isatty(STDIN_FILENO) ||
+        ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) {
+        return false;
+    }
+    for (const char *c = hn_strbuf_text(text); *c; c++) {
+        lines += *c == '\n';
+    }
+    return size.ws_row > 0 && lines >= size.ws_row;
+}
+
+/// Through $PAGER, or less; false: there is none, and nothing was shown.
+static bool page(const hn_strbuf *text) {
+    const char *pager = getenv("PAGER");
+    if (pager && (!pager[0] || strcmp(pager, "cat") == 0)) {
+        return false;
+    }
+    // what the reader leaves unread is no fault
+    signal(SIGPIPE, SIG_IGN);
+    setenv("LESS", "FRX", 0);
+    FILE *out = popen(pager ? pager : "less", "w");
+    if (!out) {
+        return false;
+    }
+    fwrite(hn_strbuf_text(text), 1, text->n, out);
+    const int status = pclose(out);
+    return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) != COMMAND_NOT_FOUND;
+}
+
 hn_exit hn_cli_print_text(hn_strbuf *text) {
     if (!text->failed && hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"))) {
         hn_strbuf plain;
@@ -32,6 +71,10 @@ hn_exit hn_cli_print_text(hn_strbuf *text) {
         hn_plain_add(&plain, hn_strbuf_text(text));
         hn_strbuf_reset(text);
         *text = plain;
+    }
+    if (!text->failed && wants_pager(text) && page(text)) {
+        hn_strbuf_reset(text);
+        return HN_EXIT_DONE;
     }
     return hn_cli_print(text);
 }
