@@ -2,7 +2,6 @@
 // @ts-check
 // What the server's index tells of itself: limits, incidents and kinds of studies. This is the only
 // module that knows them; everything else asks here.
-import { INCIDENTS } from "./incidents.js";
 
 /** Kinds of studies, in the order of their tabs. */
 export const KINDS = /** @type {const} */ (["work-precision", "stability", "budget"]);
@@ -17,9 +16,12 @@ const PRESETS = [
 
 /** methods: in one comparison; frames: that one request may step. */
 let known = { methods: 8, frames: 600 };
+/** @type {Map<string, {code: string, name: string, rule: string}>} by code */
+let incidents = new Map();
 
 /** Reads the answer of `GET /api/v1/`. @param {any} index */
 export function readIndex(index) {
+  incidents = new Map(index.incidents.map((one) => [one.code, one]));
   known = { methods: index.limits.methods, frames: index.limits.frames ?? known.frames };
 }
 
@@ -31,7 +33,7 @@ export const limits = () => known;
  * @param {string} code of the engine
  * @returns {{name: string, rule: string} | undefined}
  */
-export const incidentOf = (code) => INCIDENTS[code];
+export const incidentOf = (code) => incidents.get(code);
 
 /** The stability maps, in the order they are offered. */
 export const presets = () => PRESETS;

@@ -15,7 +15,7 @@ export const KEYS = [
     context: "page",
     action: "step",
     argument: 1,
-    means: "one frame on",
+    means: "one frame forward",
     shown: "→",
   },
   {
@@ -32,7 +32,7 @@ export const KEYS = [
     context: "page",
     action: "step",
     argument: 10,
-    means: "ten frames on",
+    means: "ten frames forward",
     shown: "Shift →",
   },
   {
@@ -44,7 +44,12 @@ export const KEYS = [
     means: "ten frames back",
     shown: "Shift ←",
   },
-  { key: "Backspace", context: "page", action: "reset", means: "back to the start" },
+  {
+    key: "Backspace",
+    context: "page",
+    action: "reset",
+    means: "back to the start of the recording",
+  },
   { key: "-", context: "page", action: "slower", means: "slower" },
   { key: "=", context: "page", action: "faster", means: "faster" },
   { key: "l", context: "page", action: "share", means: "a link to what is shown", shown: "L" },
@@ -53,7 +58,7 @@ export const KEYS = [
     context: "page",
     action: "study",
     argument: "work-precision",
-    means: "what accuracy costs",
+    means: "study: what accuracy costs",
     shown: "W",
   },
   {
@@ -61,7 +66,7 @@ export const KEYS = [
     context: "page",
     action: "study",
     argument: "stability",
-    means: "map of stability",
+    means: "study: where steps are stable",
     shown: "B",
   },
   {
@@ -69,7 +74,7 @@ export const KEYS = [
     context: "page",
     action: "study",
     argument: "budget",
-    means: "where the error comes from",
+    means: "study: where the error comes from",
     shown: "E",
   },
   { key: "F1", context: "page", action: "help", means: "this table" },

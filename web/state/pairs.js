@@ -9,7 +9,7 @@ const FORMS = {
   ode: "an ordinary differential equation",
   index1: "the equations of index 1, multipliers among the unknowns",
   stabilised: "the stabilised equations of index 1, multipliers among the unknowns",
-  index2: "the equations of index 2, the loop at speed level",
+  index2: "the equations of index 2, the loop at velocity level",
   ggl: "the stabilised equations of index 2",
   index3: "the equations of index 3, the loop at position level",
   augmented: "the equations with an augmented Lagrangian",
@@ -47,9 +47,9 @@ export function misfit(catalogue, formulation, integrator) {
   }
   const limits = card.limits ? `; ${card.limits}` : "";
   return stepper.forms.includes(card.form)
-    ? `${stepper.title} does not serve ${card.title}${limits}`
+    ? `${stepper.title} does not fit ${card.title}${limits}`
     : `${stepper.title} takes ${enumerate(stepper.forms.map(wordsOf))}; ` +
-        `${card.title} hands over ${wordsOf(card.form)}${limits}`;
+        `${card.title} gives ${wordsOf(card.form)}${limits}`;
 }
 
 /**

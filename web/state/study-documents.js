@@ -5,15 +5,23 @@ import { withPowers } from "./format.js";
 
 export const ERRORS = [
   { name: "q", word: "position", about: "largest error of a coordinate, angles in rad" },
-  { name: "v", word: "speed", about: "largest error of a speed, over the fastest of the motion" },
+  {
+    name: "v",
+    word: "velocity",
+    about: "largest error of a velocity, relative to the fastest of the motion",
+  },
   {
     name: "reaction",
     word: "reactions",
-    about: "largest error of a loop's force, over the largest of the motion",
+    about: "largest error of a loop's force, relative to the largest of the motion",
   },
   { name: "gap", word: "gap", about: "largest loop gap" },
-  { name: "velocity_gap", word: "speed gap", about: "how fast the loops come apart, at most" },
-  { name: "energy", word: "energy", about: "largest error of the energy, over its swing" },
+  {
+    name: "velocity_gap",
+    word: "velocity violation",
+    about: "largest velocity violation: how fast the loops come apart",
+  },
+  { name: "energy", word: "energy", about: "largest error of the energy, relative to its range" },
 ];
 
 export const COSTS = [
@@ -152,9 +160,9 @@ export const CAUSES = [
     name: "projection",
     word: "projection",
     letter: "P",
-    about: "moves of the projection along the motion",
+    about: "displacement by the projection along the motion",
   },
-  { name: "drift", word: "drift", letter: "D", about: "what leads off the loops and stays there" },
+  { name: "drift", word: "drift", letter: "D", about: "constraint violation that remains" },
   { name: "solve", word: "solve", letter: "L", about: "rounding of the linear solve" },
   { name: "rounding", word: "rounding", letter: "R", about: "rounding of the sums" },
 ];
@@ -172,13 +180,13 @@ export const BILL = [
     name: "loops",
     word: "loops",
     letter: "O",
-    about: "loop forces, where the loops are not closed in speed",
+    about: "loop forces, where the loops have a velocity violation",
   },
   {
     name: "outside",
     word: "loads",
     letter: "W",
-    about: "dampers, drives and loads: work that is meant",
+    about: "work of dampers, drives and loads: intended",
   },
 ];
 
@@ -213,11 +221,11 @@ export function barsOf(parts, order) {
 export const CLASSES = {
   stable: { letter: "s", word: "stable, error below 1 %" },
   inaccurate: { letter: "i", word: "stable, inaccurate" },
-  grew: { letter: "g", word: "grew" },
+  grew: { letter: "g", word: "unstable: the error grew" },
   stopped: { letter: "x", word: "stopped with a reason" },
   refused: { letter: "r", word: "refused" },
-  skipped: { letter: "?", word: "out of time" },
-  pending: { letter: "", word: "not tried" },
+  skipped: { letter: "?", word: "not run: time limit reached" },
+  pending: { letter: "", word: "not run yet" },
 };
 
 /**

@@ -73,7 +73,7 @@ function closedWords({ loops, gap, gapShare }) {
   if (!loops) {
     return "";
   }
-  return gapShare <= CLOSED ? "closed" : `closed to ${quantity(gap, "m")}`;
+  return gapShare <= CLOSED ? "closed" : `closed to ${quantity(gap, "m", 1)}`;
 }
 
 /** @param {string} first @param {string} second */

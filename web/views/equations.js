@@ -88,7 +88,7 @@ export function createEquations(el, store, actions) {
       h(
         "p",
         { class: "about" },
-        `Speeds, in the order of rows and columns: ${answer.speeds.join(", ")}. Entries not listed are zero.`,
+        `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Matrices M are symmetric and only their lower half is listed; other entries not listed are zero.`,
       ),
       ...(answer.coordinates ?? []).map(({ name, is }) =>
         h("p", { class: "about" }, `${name}: ${is}.`),

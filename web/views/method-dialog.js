@@ -178,7 +178,7 @@ export function createMethodDialog(el, store, actions) {
     const stepper = cardOf(data.catalogue, "integrator", integrator.value);
     say(about, withPowers(card?.rule ?? ""));
     const notes = [
-      card?.when_not && `Not for ${card.when_not}.`,
+      card?.when_not && `Not suitable: ${card.when_not}.`,
       card?.limits && `${capital(card.limits)}.`,
       card?.order_note && `Order: ${card.order_note}.`,
     ];

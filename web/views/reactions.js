@@ -18,7 +18,7 @@ const AXES = [
 const NAMES = { world: ["x", "y", "z"], joint: ["1", "2", "3"] };
 const DIGITS = 3;
 const LOST =
-  " No digit of forces that close the loops is left: the rows of the loops all but depend on each other here.";
+  " The forces that close the loops have no correct digit left: the loop constraints are almost dependent here.";
 
 /**
  * @param {HTMLElement} el
@@ -110,7 +110,7 @@ export function createReactions(el, store, actions) {
       cell(sizeOf(item.force), "N", zero.force),
       ...forces.map((k) => cell(force?.[k], "N", zero.force)),
       ...moments.map((k) => cell(moment?.[k], "N m", zero.moment)),
-      h("td", { class: "note" }, item.determined ? "" : "one of many: rows depend on each other"),
+      h("td", { class: "note" }, item.determined ? "" : "one of many: constraints are dependent"),
     );
   }
 
@@ -143,7 +143,7 @@ export function createReactions(el, store, actions) {
   /** @param {string} kind @param {boolean} determined */
   function noteOf(kind, determined) {
     if (!determined) {
-      return "one of many: rows depend on each other";
+      return "one of many: constraints are dependent";
     }
     return kind === "energies" ? "in the joint's moment or force above" : "";
   }
@@ -167,12 +167,12 @@ export function createReactions(el, store, actions) {
     if (answer.list.length === 0) {
       say(
         whose,
-        `Formulas have no joints; what each constraint does along each coordinate: ${when}`,
+        `Formulas have no joints. Generalised force of each constraint along each coordinate: ${when}`,
       );
       table.replaceChildren();
       return;
     }
-    say(whose, `What each joint's parent exerts on its child, at the joint: ${when}`);
+    say(whose, `Force and moment of the parent body on the child body, at the joint: ${when}`);
     const shown = columns();
     const zero = zeroOf(answer.list, data.scene.length);
     table.replaceChildren(

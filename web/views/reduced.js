@@ -65,14 +65,14 @@ function vectors(reduced) {
 function tables(reduced, names) {
   const { independent, rates } = reduced;
   if (independent.length > MOST) {
-    const text = `${independent.length} freedoms: "holonom terms" prints their matrices.`;
+    const text = `${independent.length} degrees of freedom: "holonom terms" prints their matrices.`;
     return [h("p", { class: "about" }, text)];
   }
   return [
     vectors(reduced),
     table(term("M", "mass"), independent, independent, reduced.M_r),
     table(term("C", "speeds squared"), rates, independent, reduced.C_r),
-    table("Φ how fast each coordinate moves", rates, names, reduced.Phi),
+    table("Φ: velocity of each coordinate per independent velocity", rates, names, reduced.Phi),
   ];
 }
 
@@ -91,7 +91,7 @@ export function createReduced(store, actions, set) {
   const node = h(
     "details",
     { class: "fold reduced-panel" },
-    h("summary", {}, h("h3", {}, "Reduced to the free motion")),
+    h("summary", {}, h("h3", {}, "Reduced to independent coordinates")),
     rule,
     about,
     numbers,
@@ -117,7 +117,7 @@ export function createReduced(store, actions, set) {
     if (!reduced.exists) {
       rule.replaceChildren();
       numbers.replaceChildren();
-      say(about, `There are no such coordinates here: ${reduced.why}.`);
+      say(about, `No independent coordinates exist here: ${reduced.why}.`);
       return;
     }
     const latex = reduced.d_r ? MOVED : REST;
@@ -192,7 +192,7 @@ export function createReduced(store, actions, set) {
           ? h(
               "p",
               { class: "about" },
-              `The pose from ${independent.join(", ")}, as reduced coordinates find it: ${answers}.`,
+              `The configuration follows from ${independent.join(", ")}: ${answers}.`,
             )
           : "",
         ...steps.map(stepLines),

@@ -69,7 +69,7 @@ export function createStudyBudget(store) {
             unit: account.unit,
             parts: account.parts,
             sum: account.sum,
-            what: `${account.coordinate} at the end is off by`,
+            what: `the error of ${account.coordinate} at the end is`,
           }
         : {
             total: account.change,
@@ -117,12 +117,12 @@ export function createStudyBudget(store) {
   function row(method, m) {
     const account = accountOf(method);
     const why =
-      method.state === "done" ? "there is no reference solution to be off from" : method.reason;
+      method.state === "done" ? "there is no reference solution to compare with" : method.reason;
     const partly = method.state === "failed" ? ` (it ended early: ${method.reason})` : "";
     const differs =
       account && Math.abs(account.sum - account.total) > ADDS_UP * Math.abs(account.total);
     const warning = differs
-      ? `; its parts add up to ${numberOf(account.sum, account.unit)}: so large an error is no sum of small ones`
+      ? `; the parts add up to ${numberOf(account.sum, account.unit)}: an error this large is not the sum of small contributions`
       : "";
     const words = account
       ? `${account.what} ${numberOf(account.total, account.unit)}${warning}${partly}`
@@ -188,8 +188,8 @@ export function createStudyBudget(store) {
     }
     about.textContent =
       shown.name === "error"
-        ? "Each bar holds the parts of one method's error, in shares of it: what pushed the coordinate forward to the right, what held it back to the left. They add up to it while it is small."
-        : "Each bar holds what put energy in (right) and what took it out (left), in shares. They add up to the change.";
+        ? "Each bar shows the parts of one method's error as shares: parts that pushed the coordinate forward point right, parts that held it back point left. Small errors are the sum of their parts."
+        : "Each bar shows the parts that added energy (right) and removed energy (left) as shares. Their sum is the energy change.";
     list.replaceChildren(...study().methods.map(row));
     legend.replaceChildren(
       ...shown.order.map(({ letter, about: words }, i) =>

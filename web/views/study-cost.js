@@ -35,7 +35,10 @@ const NARROW = 560; // [px] below which there is less room for names
 export function costText(kind, value) {
   const { unit } = byName(COSTS, kind);
   return kind === "operations"
-    ? `${quantity(value, "", 2)} operations`.replace(/ ([kMG]) operations/, " $1op")
+    ? `${quantity(value, "", 2)} operations`
+        .replace(/ k operations/, " thousand operations")
+        .replace(/ M operations/, " million operations")
+        .replace(/ G operations/, " billion operations")
     : kind === "evaluations"
       ? `${Math.round(value)} evaluations`
       : quantity(value, unit);
@@ -119,7 +122,7 @@ export function createStudyCost(store, onPick) {
       return `${name}: ${dot.state}: ${dot.reason}`;
     }
     const value = dot.bound
-      ? `at most ${scientific(floorOf(study(), view.error))}, which the reference cannot tell from 0`
+      ? `at most ${scientific(floorOf(study(), view.error))}, the resolution of the reference`
       : scientific(dot.error);
     return `${name}: error ${value}, ${costText(view.cost, dot.cost)}`;
   }
@@ -129,8 +132,8 @@ export function createStudyCost(store, onPick) {
     say(
       told,
       dot
-        ? `${wordsOf(dot)}. Click or Enter: run the method so.`
-        : "Point at a mark, or reach it with the arrow keys; a click runs the method with this step.",
+        ? `${wordsOf(dot)}. Click or press Enter to run the method with this step.`
+        : "Point at a mark or reach it with the arrow keys. A click runs the method with this step.",
     );
   }
 
@@ -199,9 +202,7 @@ export function createStudyCost(store, onPick) {
       `Error of ${error.word} against ${cost.word}, by method; arrow keys go from point to point`,
     );
     if (!box) {
-      picture.replaceChildren(
-        s("text", { x: 12, y: 40, class: "note" }, "no point has come to its end"),
-      );
+      picture.replaceChildren(s("text", { x: 12, y: 40, class: "note" }, "no run has finished"));
       return;
     }
     const inner = { w: width - ROOM.left - right, h: HEIGHT - ROOM.top - ROOM.bottom };
@@ -226,7 +227,7 @@ export function createStudyCost(store, onPick) {
         s(
           "text",
           { x: ROOM.left + 6, y: Math.min(bottom - 5, y(floor) + 14), class: "note" },
-          "what the reference itself may be off",
+          "error of the reference itself",
         ),
       );
     }
@@ -357,9 +358,10 @@ export function createStudyCost(store, onPick) {
     fillTable();
     const lines = sentencesOf(study(), view.error, view.cost);
     sentences.replaceChildren(
-      ...(lines.length ? lines : ["Accuracies are ranked for position, speed and reactions."]).map(
-        (line) => h("li", {}, line),
-      ),
+      ...(lines.length
+        ? lines
+        : ["Methods are ranked for errors of position, velocity and reactions."]
+      ).map((line) => h("li", {}, line)),
     );
     classes.replaceChildren(
       ...study().methods.map((method, m) =>

@@ -236,7 +236,9 @@ export function createStudyMap(store, actions) {
         const [i, j] = node ? placed(node) : [0, 0];
         say(
           told,
-          node ? `${wordsOf(at(i).method, at(i).column, j)}. Click or Enter: run it so.` : IDLE,
+          node
+            ? `${wordsOf(at(i).method, at(i).column, j)}. Click or press Enter to run the method with these values.`
+            : IDLE,
         );
       },
     });
@@ -251,7 +253,8 @@ export function createStudyMap(store, actions) {
     );
   }
 
-  const IDLE = "Point at a cell, or reach it with the arrow keys; a click runs the method so.";
+  const IDLE =
+    "Point at a cell or reach it with the arrow keys. A click runs the method with these values.";
 
   function fillLegend() {
     const used = new Set(
@@ -297,7 +300,7 @@ export function createStudyMap(store, actions) {
                 { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
                 s("circle", { cx: 9, cy: 9, r: 6, class: "here" }),
               ),
-              "as it runs now",
+              "present values",
             ),
           ]
         : []),

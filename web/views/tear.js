@@ -75,7 +75,7 @@ export function createTear(el, store) {
     figure.classList.toggle("none", !tear);
     if (!tear || !Number.isFinite(tear.gap)) {
       say(power, "no cut");
-      say(size, data.scene?.m ? "its rows close no joint" : "no loop to close");
+      say(size, data.scene?.m ? "the constraints close no joint" : "no loop to close");
       say(whose, "");
       return;
     }

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a student needs for "why does it fall apart?" is on the first screen and stays in its place.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createBench, playTo, read, screenshot, until } from "./support.mjs";
+
+const { open } = createBench();
+
+/** Boxes of elements, by a name each. */
+function boxesOf(page, selectors) {
+  return page.evaluate(
+    (wanted) =>
+      Object.fromEntries(
+        Object.entries(wanted).map(([name, selector]) => {
+          const { left, top, right, bottom } = document
+            .querySelector(selector)
+            .getBoundingClientRect();
+          return [name, { left, top, right, bottom }];
+        }),
+      ),
+    selectors,
+  );
+}
+
+const FIRST = {
+  drawing: ".stage",
+  error: "figure.plot:nth-child(1) .curve",
+  gap: "figure.plot:nth-child(2) .curve",
+  play: "#play",
+  step: "#set-h",
+  alpha: "#set-alpha",
+  beta: "#set-beta",
+  "first verdict": "tbody tr:nth-child(1) .words",
+  "last verdict": "tbody tr:nth-child(5) .words",
+  sentence: "#verdict",
+};
+
+for (const [width, height] of [
+  [1366, 768],
+  [1920, 1080],
+  [1024, 768],
+]) {
+  for (const colorScheme of ["light", "dark"]) {
+    test(`${width}x${height} ${colorScheme}: nothing of the first screen is below the fold, nothing overlaps`, async (t) => {
+      const page = await open(t, { viewport: { width, height }, colorScheme });
+      await playTo(page, 3);
+      const boxes = await boxesOf(page, FIRST);
+      for (const [name, { top, bottom, left, right }] of Object.entries(boxes)) {
+        assert.ok(top >= 0 && bottom <= height && right <= width, `${name}: ${top} to ${bottom}`);
+        assert.ok(bottom - top >= 16 && right - left >= 40, `${name} is ${bottom - top} px high`);
+      }
+      assert.ok(boxes.gap.bottom - boxes.gap.top > 120, "the plot of the gap can be read");
+      const sections = Object.values(
+        await boxesOf(page, {
+          mechanism: "#mechanism",
+          plots: "#plots",
+          methods: "#methods",
+          verdict: "#verdict",
+          transport: "#transport",
+        }),
+      );
+      const overlap = (a, b) =>
+        a.left < b.right - 1 &&
+        b.left < a.right - 1 &&
+        a.top < b.bottom - 1 &&
+        b.top < a.bottom - 1;
+      sections.forEach((a, i) =>
+        sections.slice(i + 1).forEach((b) => assert.ok(!overlap(a, b), JSON.stringify([a, b]))),
+      );
+      const clipped = await page.evaluate(() =>
+        [...document.querySelectorAll(".method-table .number, .method-table .words")]
+          .filter((node) => node.scrollWidth > node.clientWidth + 1 && node.clientWidth > 0)
+          .map((node) => node.textContent),
+      );
+      assert.deepEqual(clipped, [], "every number and verdict is there in full");
+      await screenshot(page, `first-${width}-${colorScheme}`, { seen: true });
+    });
+  }
+}
+
+test("the card that says why opens in sight, under its row, takes the focus and moves nothing", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  await playTo(page, 3);
+  const before = await boxesOf(page, FIRST);
+  for (const label of ["index-1", "projection", "reduced"]) {
+    await page.getByRole("button", { name: `Why? ${label}` }).click();
+    const { card } = await boxesOf(page, { card: ".card" });
+    assert.ok(card.top >= 0 && card.bottom <= 768, `${label}: ${card.top} to ${card.bottom}`);
+    assert.ok(await page.evaluate(() => document.activeElement.classList.contains("card")));
+    assert.deepEqual(await boxesOf(page, FIRST), before);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.locator(".card").count(), 0);
+    assert.equal(
+      await page.evaluate(() => document.activeElement.getAttribute("aria-label")),
+      `Why? ${label}`,
+    );
+  }
+});
+
+test("the drawer of parameters moves nothing and closes with Escape", async (t) => {
+  const page = await open(t, { viewport: { width: 1366, height: 768 } });
+  const before = await boxesOf(page, FIRST);
+  await page.getByRole("button", { name: "lengths, masses, start" }).click();
+  assert.ok(await page.locator("#parameter-l1").isVisible());
+  assert.deepEqual(await boxesOf(page, FIRST), before);
+  await page.focus("#parameters .quiet");
+  await page.keyboard.press("Escape");
+  assert.ok(await page.locator("#parameters").isHidden());
+});
+
+test("table, sentence and live region say the same of a run that is closed and wrong", async (t) => {
+  const page = await open(t);
+  await playTo(page, 3);
+  const words = await page.textContent("tbody tr:nth-child(4) .words");
+  assert.match(words, /^closed, but \d+ mm from the true motion$/);
+  await page.waitForFunction(
+    (text) => document.querySelector(".seen").textContent.includes(text),
+    words,
+  );
+  await page.waitForFunction(
+    (text) => document.querySelector(".live").textContent.includes(text),
+    words,
+  );
+  assert.doesNotMatch(await page.textContent("main"), /closed to rounding/);
+});
+
+test("text is 15 px or more, and there are four sizes of it", async (t) => {
+  const page = await open(t);
+  const sizes = await page.evaluate(() => [
+    ...new Set(
+      [...document.querySelectorAll("body *")]
+        .filter(
+          (node) =>
+            [...node.childNodes].some((one) => one.nodeType === 3 && one.textContent.trim()) &&
+            node.checkVisibility() &&
+            !node.closest("svg, option, .katex"),
+        )
+        .map((node) => getComputedStyle(node).fontSize),
+    ),
+  ]);
+  assert.deepEqual(sizes.sort(), ["13px", "14px", "15px", "18px"]);
+  assert.equal(await page.evaluate(() => getComputedStyle(document.body).fontSize), "15px");
+});
+
+test("it opens on a step that tells; two buttons let it fall apart and hold it together", async (t) => {
+  const page = await open(t);
+  assert.ok(
+    await read(page, (data) => data.methods.every(({ spelling }) => /h=0\.02/.test(spelling))),
+  );
+  await page.getByRole("button", { name: "let it fall apart" }).first().click();
+  await until(page, (data) => data.latest?.t > 2.5);
+  await page.waitForFunction(() =>
+    /^open by .* growing$/.test(document.querySelector("tbody tr .words").textContent),
+  );
+  await page.getByRole("button", { name: "hold it together" }).click();
+  await until(page, (data) => data.methods[0].formulation === "baumgarte" && data.latest?.t > 2.5);
+  const words = await page.locator("tbody .words").allTextContents();
+  assert.ok(
+    words.every((text) => !text.startsWith("open")),
+    words.join("; "),
+  );
+});
+
+test("the first minute goes on by its own buttons, can be closed, and stays closed", async (t) => {
+  const page = await open(t);
+  const guide = page.locator(".guide");
+  await guide.getByRole("button", { name: "Play" }).click();
+  await until(page, (data) => data.state === "running");
+  await guide.getByRole("button", { name: "next" }).click();
+  assert.match(await guide.textContent(), /falls apart/);
+  await guide.getByRole("button", { name: "next" }).click();
+  await guide.getByRole("button", { name: "Why?" }).click();
+  assert.ok(await page.locator(".card").isVisible());
+  await page.keyboard.press("Escape");
+  await guide.getByRole("button", { name: "Close the guide" }).click();
+  await page.reload();
+  await page.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
+  assert.ok(await guide.isHidden());
+  await page.getByRole("button", { name: "guide", exact: true }).click();
+  assert.ok(await guide.isVisible());
+});
+
+test("a special word explains itself on hover and on focus, and Escape closes that", async (t) => {
+  const page = await open(t);
+  const term = page.locator("th.gap .term");
+  await term.hover();
+  assert.match(await page.textContent("#tip"), /^Loop gap \(constraint violation\)/);
+  await page.mouse.move(400, 400);
+  assert.ok(await page.locator("#tip").isHidden());
+  await page.keyboard.press("Tab");
+  await term.focus();
+  assert.ok(await page.locator("#tip").isVisible());
+  assert.equal(await term.getAttribute("aria-describedby"), "tip");
+  await page.keyboard.press("Escape");
+  assert.ok(await page.locator("#tip").isHidden());
+});
