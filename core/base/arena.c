@@ -60,7 +60,8 @@ void hn_arena_free(hn_arena *arena) {
     free(arena);
 }
 
-/// A new block of at least `size` bytes, twice the last one's, so that n requests take O(log n) blocks.
+/// A new block of at least `size` bytes, twice the last one's, so that n requests take O(log n)
+/// blocks.
 static int grow(hn_arena *arena, size_t size) {
     const size_t last = arena->newest->size;
     const size_t doubled = last <= SIZE_MAX / 4 ? 2 * last : last;
@@ -80,7 +81,8 @@ void *hn_arena_get(hn_arena *arena, size_t size) {
         return NULL;
     }
 
-    // every piece takes whole lines of 64 bytes: two pieces never share one, and size 0 has an address
+    // every piece takes whole lines of 64 bytes: two pieces never share one, and size 0 has an
+    // address
     const size_t lines = size == 0 ? 1 : (size + ALIGNMENT - 1) / ALIGNMENT;
     const size_t rounded = lines * ALIGNMENT;
     if (arena->newest->size - arena->newest->used < rounded && !grow(arena, rounded)) {
@@ -119,7 +121,7 @@ char *hn_arena_strdup(hn_arena *arena, const char *text) {
     return copy == NULL ? NULL : memcpy(copy, text, n);
 }
 
-int hn_arena_failed(const hn_arena *arena) {
+bool hn_arena_failed(const hn_arena *arena) {
     return arena->failed;
 }
 

@@ -3,6 +3,7 @@
 // A run of memory that is given out piece by piece and freed at once. Blocks grow on demand
 // while things are built; a step never asks. The high-water mark is recorded.
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct hn_arena hn_arena;
@@ -11,8 +12,8 @@ typedef struct hn_arena hn_arena;
 hn_arena *hn_arena_create(size_t first_block);
 void hn_arena_free(hn_arena *arena); ///< NULL is legal
 
-/// Zeroed, aligned to 64 bytes; NULL when memory is out (then hn_arena_failed() stays true). size 0 gives a
-/// valid pointer. Borrowed: lives until the arena is freed.
+/// Zeroed, aligned to 64 bytes; NULL when memory is out (then hn_arena_failed() stays true). size 0
+/// gives a valid pointer. Borrowed: lives until the arena is freed.
 void *hn_arena_get(hn_arena *arena, size_t size);
 /// n doubles / ints, zeroed; NULL on overflow or when memory is out.
 double *hn_arena_doubles(hn_arena *arena, size_t n);
@@ -20,7 +21,7 @@ int *hn_arena_ints(hn_arena *arena, size_t n);
 /// A copy of the text; NULL in, NULL out.
 char *hn_arena_strdup(hn_arena *arena, const char *text);
 
-int hn_arena_failed(
-    const hn_arena *arena); ///< 1 once any request failed: check once after building
+/// True once any request failed: check once after building
+bool hn_arena_failed(const hn_arena *arena);
 size_t hn_arena_used(const hn_arena *arena); ///< bytes given out
 #endif

@@ -78,6 +78,8 @@ static int edit_distance(const char *a, int na, const char *b, int nb) {
     for (int j = 0; j <= nb; j++) {
         last[j] = j;
     }
+
+    // row by row: substitute, insert, delete, transpose
     for (int i = 1; i <= na; i++) {
         now[0] = i;
         for (int j = 1; j <= nb; j++) {
@@ -88,6 +90,8 @@ static int edit_distance(const char *a, int na, const char *b, int nb) {
                 now[j] = min_int(now[j], before[j - 2] + 1);
             }
         }
+
+        // rotate the three rows
         int *spare = before;
         before = last;
         last = now;
@@ -96,7 +100,8 @@ static int edit_distance(const char *a, int na, const char *b, int nb) {
     return last[nb];
 }
 
-/// The first name that the word is a part of, where it is long enough to mean something: 'stewart' is 'stewart-6-3'.
+/// The first name that the word is a part of, where it is long enough to mean something: 'stewart'
+/// is 'stewart-6-3'.
 static const char *first_that_holds(const char *word, size_t length, const char *const *names,
                                     int n) {
     for (int i = 0; length >= 4 && i < n; i++) {
@@ -113,9 +118,13 @@ const char *hn_nearest_name(const char *word, const char *const *names, int n) {
     if (length == 0 || length > NAME_MAX_COMPARED) {
         return NULL;
     }
+
+    // a short word may have one wrong letter, a long one a third of them
     const int allowed = length < 6 ? 1 : (int)length / 3;
     const char *best = NULL;
     int best_distance = allowed + 1;
+
+    // the nearest; the first of several
     for (int i = 0; i < n; i++) {
         const size_t m = strlen(names[i]);
         if (m > NAME_MAX_COMPARED) {
@@ -127,5 +136,6 @@ const char *hn_nearest_name(const char *word, const char *const *names, int n) {
             best = names[i];
         }
     }
+
     return best ? best : first_that_holds(word, length, names, n);
 }

@@ -21,17 +21,20 @@ typedef struct hn_diags {
     hn_diag item[HN_DIAG_MAX];
 } hn_diags;
 
-/// Adds one fault and returns `status`, so that `return hn_diags_add(...)` reads well. `d` may be NULL.
-/// `pointer` and `hint` may be NULL. Text too long is cut at a character boundary and ends in "...".
+/// Adds one fault and returns `status`, so that `return hn_diags_add(...)` reads well. `d` may be
+/// NULL. `pointer` and `hint` may be NULL. Text too long is cut at a character boundary and ends in
+/// "...".
 hn_status hn_diags_add(hn_diags *d, hn_status status, const char *pointer, const char *hint,
                        const char *format, ...) HN_PRINTF(5, 6);
 
-/// Fills one diag (message by format); hint and pointer may be NULL; `d` may be NULL. Returns `status`.
+/// Fills one diag (message by format); hint and pointer may be NULL; `d` may be NULL. Returns
+/// `status`.
 hn_status hn_diag_set(hn_diag *d, hn_status status, const char *pointer, const char *hint,
                       const char *format, ...) HN_PRINTF(5, 6);
 
 /// The candidate nearest to `word` by edit distance (transpositions count 1, case ignored), within
-/// max(1, strlen(word) / 3); failing that the first that has the word, of four letters or more, in it; else NULL. `names` holds n strings.
+/// max(1, strlen(word) / 3); failing that the first that has the word, of four letters or more, in
+/// it; else NULL. `names` holds n strings.
 const char *hn_nearest_name(const char *word, const char *const *names, int n);
 
 #endif

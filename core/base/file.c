@@ -136,7 +136,8 @@ static int open_beside(const char *target, hn_strbuf *name) {
     return fd;
 }
 
-/// Replaces `target`, or makes it; `old` is what stands there (NULL: nothing). Returns 0 or an errno.
+/// Replaces `target`, or makes it; `old` is what stands there (NULL: nothing). Returns 0 or an
+/// errno.
 static int replace(const char *target, const struct stat *old, const void *bytes, size_t n) {
     hn_strbuf name;
     hn_strbuf_init(&name);

@@ -19,7 +19,8 @@ HN_MUST_CHECK hn_status hn_file_read(const char *path, size_t most, hn_strbuf *t
 HN_MUST_CHECK hn_status hn_file_load(const char *path, size_t most, hn_strbuf *text,
                                      hn_diags *diags);
 
-/// Reads standard input to its end, waiting for it; at most `most` bytes. Fails like hn_file_load().
+/// Reads standard input to its end, waiting for it; at most `most` bytes. Fails like
+/// hn_file_load().
 HN_MUST_CHECK hn_status hn_file_read_stdin(size_t most, hn_strbuf *text, hn_diags *diags);
 
 /// Writes n bytes to the file at `path`.

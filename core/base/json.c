@@ -51,8 +51,8 @@ void hn_json_end_array(hn_strbuf *b) {
     close_nest(b, "]");
 }
 
-/// Length of the well-formed UTF-8 sequence at s, 0 if there is none (RFC 3629, section 4: no overlong
-/// forms, no surrogates, nothing above U+10FFFF).
+/// Length of the well-formed UTF-8 sequence at s, 0 if there is none (RFC 3629, section 4: no
+/// overlong forms, no surrogates, nothing above U+10FFFF).
 static size_t utf8_length(const unsigned char *s) {
     const unsigned char lead = s[0];
     if (lead < 0x80) {

@@ -90,6 +90,8 @@ static int number(scan *s) {
     if (peek(s) == '-') {
         s->at++;
     }
+
+    // whole part
     if (peek(s) == '0') {
         s->at++;
         if (is_digit(peek(s))) {
@@ -99,6 +101,8 @@ static int number(scan *s) {
     } else if (!digits(s, "a digit")) {
         return 0;
     }
+
+    // fraction and exponent
     if (peek(s) == '.') {
         s->at++;
         if (!digits(s, "a digit after the decimal point")) {
@@ -114,6 +118,8 @@ static int number(scan *s) {
             return 0;
         }
     }
+
+    // the value must fit a double; strtod needs a zero at the end
     char copy[NUMBER_MAX + 1];
     size_t length = s->at - start;
     s->at = start;
@@ -132,7 +138,8 @@ static int number(scan *s) {
     return 1;
 }
 
-/// Length of the UTF-8 sequence at the scan's place, 0 if it is not valid (overlong, surrogate, beyond U+10FFFF).
+/// Length of the UTF-8 sequence at the scan's place, 0 if it is not valid (overlong, surrogate,
+/// beyond U+10FFFF).
 static size_t utf8_length(const scan *s) {
     const unsigned char *p = (const unsigned char *)s->text + s->at;
     size_t left = s->n - s->at, length = p[0] < 0x80   ? 1
@@ -183,6 +190,8 @@ static int escape(scan *s) {
     if (c != 'u') {
         return 1;
     }
+
+    // four hex digits: a character, or half a surrogate pair
     int value = hex4(s);
     if (value < 0) {
         return 0;
@@ -193,6 +202,8 @@ static int escape(scan *s) {
     if (value >= 0xDC00 && value <= 0xDFFF) {
         return fail(s, HN_ERR_INPUT, NULL, "the second half of a surrogate pair stands alone");
     }
+
+    // the other half must follow
     if (value >= 0xD800 && value <= 0xDBFF) {
         int pair = s->n - s->at >= 6 && s->text[s->at] == '\\' && s->text[s->at + 1] == 'u';
         s->at += pair ? 2 : 0;
@@ -211,6 +222,8 @@ static int string(scan *s) {
     size_t start = s->at++;
     for (;;) {
         int c = peek(s);
+
+        // the end, or why there is none
         if (c == '"') {
             s->at++;
             return 1;
@@ -223,6 +236,8 @@ static int string(scan *s) {
             return expected(s, "a line break inside a text is written \\n",
                             "a character or the closing '\"'");
         }
+
+        // an escape, or one character of UTF-8
         if (c == '\\') {
             if (!escape(s)) {
                 return 0;
@@ -275,6 +290,8 @@ static int container(scan *s, int close, int (*item)(scan *)) {
         snprintf(message, sizeof message, "nested deeper than the %d levels allowed", s->max_depth);
         return fail(s, HN_ERR_LIMIT, NULL, message);
     }
+
+    // the empty container
     s->at++;
     skip_space(s);
     if (peek(s) == close) {
@@ -282,6 +299,8 @@ static int container(scan *s, int close, int (*item)(scan *)) {
         s->depth--;
         return 1;
     }
+
+    // items with commas between them
     for (;;) {
         if (!item(s)) {
             return 0;
@@ -303,6 +322,8 @@ static int container(scan *s, int close, int (*item)(scan *)) {
 static int value(scan *s) {
     skip_space(s);
     int c = peek(s);
+
+    // the first character decides; frequent slips get a hint of their own
     switch (c) {
     case '{':
         return container(s, '}', member);
@@ -332,6 +353,7 @@ static int value(scan *s) {
     default:
         break;
     }
+
     if (c == '-' || is_digit(c)) {
         return number(s);
     }

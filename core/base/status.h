@@ -1,6 +1,7 @@
 #ifndef HN_BASE_STATUS_H
 #define HN_BASE_STATUS_H
-// What a function that can fail on its data hands back. One list gives the enum, its name and its sentence.
+// What a function that can fail on its data hands back. One list gives the enum, its name and its
+// sentence.
 
 #include <stdlib.h>
 
@@ -33,10 +34,11 @@ typedef enum hn_status {
 
 /// Returns the status of `call` from the calling function unless it is HN_OK.
 /// Legal wherever memory belongs to an arena, so that an early return leaks nothing.
-#define HN_TRY(call)                                                                              \
-    do {                                                                                          \
-        const hn_status hn_try_status = (call);                                                   \
-        if (hn_try_status != HN_OK) return hn_try_status;                                         \
+#define HN_TRY(call)                            \
+    do {                                        \
+        const hn_status hn_try_status = (call); \
+        if (hn_try_status != HN_OK)             \
+            return hn_try_status;               \
     } while (0)
 
 #define HN_MUST_CHECK __attribute__((warn_unused_result))

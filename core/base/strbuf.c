@@ -51,6 +51,8 @@ static int reserve(hn_strbuf *b, size_t more) {
     if (b->text != NULL && more < b->cap - b->n) {
         return 1;
     }
+
+    // sizes that would overflow count as out of memory
     if (more > SIZE_MAX / 4 || b->n > SIZE_MAX / 4) {
         b->failed = 1;
         return 0;
@@ -59,6 +61,7 @@ static int reserve(hn_strbuf *b, size_t more) {
     if (cap < b->n + more + 1) {
         cap = b->n + more + 1;
     }
+
     char *text = realloc(b->text, cap);
     if (text == NULL) {
         b->failed = 1;

@@ -1,8 +1,9 @@
 #ifndef HN_BASE_STRBUF_H
 #define HN_BASE_STRBUF_H
-// A growing text with one sticky error flag, and on it a JSON writer: commas and nesting are kept by the
-// buffer; numbers are written with 17 significant digits (shortest text that reads back to the same double
-// is allowed); a number that is not finite is written as null, so that JSON never holds NaN or Infinity.
+// A growing text with one sticky error flag, and on it a JSON writer: commas and nesting are kept
+// by the buffer; numbers are written with 17 significant digits (shortest text that reads back to
+// the same double is allowed); a number that is not finite is written as null, so that JSON never
+// holds NaN or Infinity.
 
 #include "base/status.h"
 
@@ -22,8 +23,8 @@ typedef struct hn_strbuf {
 void hn_strbuf_init(hn_strbuf *b);
 void hn_strbuf_reset(hn_strbuf *b); ///< frees the text; the buffer can be used again
 void hn_strbuf_clear(hn_strbuf *b); ///< keeps the memory, forgets the text
-char *hn_strbuf_take(
-    hn_strbuf *b); ///< returns owned text (free()), buffer is empty again; NULL if failed
+/// returns owned text (free()), buffer is empty again; NULL if failed
+char *hn_strbuf_take(hn_strbuf *b);
 const char *hn_strbuf_text(const hn_strbuf *b); ///< never NULL ("" while empty)
 void hn_strbuf_add(hn_strbuf *b, const char *text);
 void hn_strbuf_add_n(hn_strbuf *b, const char *bytes, size_t n);

@@ -18,7 +18,8 @@ static int takes_prefix(const char *unit) {
             return 0;
         }
     }
-    // kilo of a power would mean the power of a kilo; "kg m" and the like begin with a prefix already
+    // kilo of a power would mean the power of a kilo; "kg m" and the like begin with a prefix
+    // already
     return strchr(unit, '^') == NULL && strncmp(unit, "kg", 2) != 0;
 }
 

@@ -1,5 +1,8 @@
 // Exact derivatives, substitution and evaluation: sweeps over node ids, no recursion.
 
+#include "expr/diff.h"
+
+#include "expr/construct.h"
 #include "expr/graph_internal.h"
 
 #include <math.h>
@@ -20,13 +23,16 @@ static void sweep_values_reset(sweep_values *s) {
     free(s->argument_at);
 }
 
-/// Collects the nodes below e and copies the order: constructors called during the sweep start their own.
+/// Collects the nodes below e and copies the order: constructors called during the sweep start
+/// their own.
 static int sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n, uint64_t deps) {
     *s = (sweep_values){0};
     if (g->failed || !hn_sweep_collect(g, e, n, deps)) {
         g->failed = 1;
         return 0;
     }
+
+    // room for the nodes and their arguments
     s->n = g->sweep->n;
     for (int32_t i = 0; i < s->n; i++) {
         s->n_arguments += (size_t)g->nodes[g->sweep->order[i]].n_args;
@@ -38,6 +44,8 @@ static int sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n
         g->failed = 1;
         return 0;
     }
+
+    // positions of the arguments, looked up once
     size_t k = 0;
     for (int32_t i = 0; i < s->n; i++) {
         const hn_node *node = &g->nodes[g->sweep->order[i]];
@@ -64,7 +72,7 @@ static void fill_zero(hn_ex *out, int n) {
     }
 }
 
-// forward --------------------------------------------------------------------------------------------------
+// ---- forward ----
 
 enum { MAX_ARITY = 2, SMALL_SUM = 64 };
 
@@ -117,6 +125,7 @@ void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, con
     const uint64_t deps = deps_of_symbols(g, symbols, n_sym);
     fill_zero(out, n);
     if (sweep_values_init(g, &s, e, n, deps)) {
+        // seeds at the symbols
         fill_zero(s.value, s.n);
         for (int i = 0; i < n_sym; i++) {
             const int32_t at = hn_sweep_find(g, g->symbols[symbols[i]].node);
@@ -124,11 +133,15 @@ void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, con
                 s.value[at] = seed[i];
             }
         }
+
+        // positions of the results: the sweep ends when new nodes are made
         int32_t *end = malloc((size_t)n * sizeof *end + 1);
         g->failed |= end == NULL;
         for (int i = 0; i < n && end; i++) {
             end[i] = hn_sweep_find(g, e[i].n);
         }
+
+        // from arguments to results
         const int *at = s.argument_at;
         for (int32_t i = 0; i < s.n && !g->failed; i++) {
             const hn_node node = g->nodes[s.id[i]];
@@ -139,6 +152,7 @@ void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, con
             }
             at += node.n_args;
         }
+
         for (int i = 0; i < n && !g->failed; i++) {
             out[i] = end[i] >= 0 ? hn_scale(e[i].c, s.value[end[i]]) : hn_zero();
         }
@@ -154,7 +168,7 @@ void hn_diff(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex *out) {
     }
 }
 
-// reverse --------------------------------------------------------------------------------------------------
+// ---- reverse ----
 
 /// Contributions to the adjoints: a list per node, so that each adjoint becomes one flat sum.
 typedef struct adjoints {
@@ -228,6 +242,8 @@ void hn_diff_reverse(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex 
     if (sweep_values_init(g, &s, &e, 1, deps_of_symbols(g, symbols, n_sym)) && s.n > 0 &&
         adjoints_init(g, &a, &s)) {
         add_contribution(&a, s.n - 1, (hn_ex){e.c, HN_NODE_ONE}); // e.n has the highest id
+
+        // from the result back to the symbols
         const int *at = s.argument_at + s.n_arguments;
         for (int32_t i = s.n - 1; i >= 0 && !g->failed; i--) {
             const hn_node node = g->nodes[s.id[i]];
@@ -243,6 +259,7 @@ void hn_diff_reverse(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex 
             }
         }
     }
+
     if (g->failed) {
         fill_zero(out, n_sym);
     }
@@ -250,7 +267,7 @@ void hn_diff_reverse(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex 
     sweep_values_reset(&s);
 }
 
-// substitution and value -----------------------------------------------------------------------------------
+// ---- substitution and value ----
 
 static hn_ex rebuilt(hn_graph *g, hn_node node, const int *at, const hn_ex *value) {
     hn_ex small[SMALL_SUM];
@@ -276,6 +293,7 @@ void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const
     int32_t *end = malloc((size_t)n * sizeof *end + 1);
     g->failed |= end == NULL;
     if (sweep_values_init(g, &s, e, n, deps_of_symbols(g, symbols, n_sym))) {
+        // each node stands for itself, the symbols for what replaces them
         for (int32_t i = 0; i < s.n; i++) {
             s.value[i] = (hn_ex){1, s.id[i]};
         }
@@ -288,6 +306,8 @@ void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const
         for (int i = 0; i < n; i++) {
             end[i] = hn_sweep_find(g, e[i].n);
         }
+
+        // from arguments to results
         const int *at = s.argument_at;
         for (int32_t i = 0; i < s.n && !g->failed; i++) {
             const hn_node node = g->nodes[s.id[i]];
@@ -297,6 +317,7 @@ void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const
             at += node.n_args;
         }
     }
+
     for (int i = 0; i < n; i++) {
         const hn_ex whole = e[i];
         out[i] = g->failed ? hn_zero() : end[i] < 0 ? whole : hn_scale(whole.c, s.value[end[i]]);

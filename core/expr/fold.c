@@ -1,10 +1,12 @@
 // Constructors of products and functions. Each returns the canonical form described in graph.h.
 
+#include "expr/construct.h"
+
 #include "expr/graph_internal.h"
 
 #include <math.h>
 
-// numbers --------------------------------------------------------------------------------------------------
+// ---- numbers ----
 
 hn_ex hn_num(double value) {
     HN_ASSERT(isfinite(value));
@@ -24,19 +26,22 @@ hn_ex hn_scale(double k, hn_ex a) {
     return scaled(k * a.c, a.n);
 }
 
-// products -------------------------------------------------------------------------------------------------
+// ---- products ----
 
 typedef struct product {
     hn_factor f[2 * HN_MAX_FACTORS];
     int n;
 } product;
 
-/// Merges the sorted factor lists of two nodes; operands with too many factors count as factors themselves.
+/// Merges the sorted factor lists of two nodes; operands with too many factors count as factors
+/// themselves.
 static void merge_factors(const hn_graph *g, int32_t a, int32_t b, product *out) {
     hn_factor one_a, one_b;
     int na, nb;
     const hn_factor *fa = hn_node_factors(g, a, &one_a, &na);
     const hn_factor *fb = hn_node_factors(g, b, &one_b, &nb);
+
+    // too many factors: the operands count as one factor each
     if (na + nb > HN_MAX_FACTORS) {
         one_a = (hn_factor){a, 1};
         one_b = (hn_factor){b, 1};
@@ -44,6 +49,8 @@ static void merge_factors(const hn_graph *g, int32_t a, int32_t b, product *out)
         fb = &one_b;
         na = nb = 1;
     }
+
+    // merge two sorted lists, powers of one node added
     int i = 0, k = 0;
     out->n = 0;
     while (i < na || k < nb) {
@@ -67,12 +74,14 @@ static int find_factor(const product *p, int32_t node) {
     return -1;
 }
 
-/// Cancels x against 1/x and turns sqrt(x)^2 into x. Returns 1 if anything changed; `extra` then holds
-/// what came out of square roots.
+/// Cancels x against 1/x and turns sqrt(x)^2 into x. Returns 1 if anything changed; `extra` then
+/// holds what came out of square roots.
 static int simplify_factors(hn_graph *g, product *p, hn_ex *extra) {
     int changed = 0;
     for (int i = 0; i < p->n; i++) {
         const hn_node *node = &g->nodes[p->f[i].node];
+
+        // x / x
         if (node->op == HN_OP_RECIP && node->args[0].c == 1) {
             const int k = find_factor(p, node->args[0].n);
             if (k >= 0 && p->f[k].power > 0 && p->f[i].power > 0) {
@@ -82,6 +91,7 @@ static int simplify_factors(hn_graph *g, product *p, hn_ex *extra) {
                 changed = 1;
             }
         } else if (node->op == HN_OP_SQRT && p->f[i].power >= 2) {
+            // two square roots of x are x
             const hn_ex inside = node->args[0];
             const int half = p->f[i].power / 2;
             p->f[i].power -= 2 * half;
@@ -163,7 +173,7 @@ hn_ex hn_div(hn_graph *g, hn_ex a, hn_ex b) {
     return hn_mul(g, a, hn_apply(g, HN_OP_RECIP, &b));
 }
 
-// functions ------------------------------------------------------------------------------------------------
+// ---- functions ----
 
 static hn_ex node_of(hn_graph *g, hn_op op, const hn_ex *args) {
     return scaled(1, hn_graph_intern_args(g, op, args, hn_op_get_info(op)->arity));
@@ -241,12 +251,16 @@ hn_ex hn_apply(hn_graph *g, hn_op op, const hn_ex *args) {
     if (g->failed) {
         return hn_zero();
     }
+
+    // numbers alone give a number
     if (op == HN_OP_MUL) {
         return hn_mul(g, args[0], args[1]);
     }
     if (fold_numbers(op, args, &folded)) {
         return folded;
     }
+
+    // functions with rules of their own
     const double c = args[0].c;
     switch (op) {
     case HN_OP_RECIP:
@@ -267,6 +281,8 @@ hn_ex hn_apply(hn_graph *g, hn_op op, const hn_ex *args) {
     default:
         break;
     }
+
+    // odd and even functions take a positive coefficient
     if (info->parity != HN_PARITY_NONE && c < 0) {
         const hn_ex positive = hn_neg(args[0]);
         return hn_scale(info->parity == HN_PARITY_ODD ? -1 : 1, node_of(g, op, &positive));

@@ -8,7 +8,7 @@
 
 enum { PIECE_BYTES = 1 << 16, FIRST_NODES = 256, FIRST_TABLE = 1024 };
 
-// memory --------------------------------------------------------------------------------------------------
+// ---- memory ----
 
 /// Bytes that never move, carved from large pieces of the arena; NULL when memory is out.
 static void *carve(hn_graph *g, size_t size) {
@@ -52,12 +52,15 @@ static int grow_table(hn_graph *g) {
     if (2u * (uint32_t)(g->n + 1) <= g->table_size) {
         return 1;
     }
+
     const uint32_t size = g->table_size ? 2 * g->table_size : FIRST_TABLE;
     int32_t *table = malloc(size * sizeof *table);
     if (!table) {
         g->failed = 1;
         return 0;
     }
+
+    // every node finds its place in the larger table
     memset(table, 0xff, size * sizeof *table);
     for (int32_t i = 0; i < g->n; i++) {
         uint32_t k = (uint32_t)g->nodes[i].hash & (size - 1);
@@ -66,13 +69,14 @@ static int grow_table(hn_graph *g) {
         }
         table[k] = i;
     }
+
     free(g->table);
     g->table = table;
     g->table_size = size;
     return 1;
 }
 
-// keys -----------------------------------------------------------------------------------------------------
+// ---- keys ----
 
 static uint64_t hash_word(uint64_t h, uint64_t word) {
     return (h ^ word) * 0x9e3779b97f4a7c15ull + (h >> 29);
@@ -146,7 +150,7 @@ int32_t hn_graph_lookup_product(const hn_graph *g, const hn_factor *factors, int
     return find_product(g, hash_product(factors, n), factors, n);
 }
 
-// nodes ---------------------------------------------------------------------------------------------------
+// ---- nodes ----
 
 /// Appends a node with room for n arguments; NULL when memory is out.
 static hn_node *new_node(hn_graph *g, hn_op op, uint64_t hash, const hn_ex *args, int n_args) {
@@ -225,7 +229,7 @@ const hn_factor *hn_node_factors(const hn_graph *g, int32_t node, hn_factor *one
     return one;
 }
 
-// the graph ------------------------------------------------------------------------------------------------
+// ---- the graph ----
 
 hn_graph *hn_graph_create(void) {
     hn_graph *g = calloc(1, sizeof *g);
@@ -259,7 +263,7 @@ void hn_graph_free(hn_graph *g) {
     free(g);
 }
 
-int hn_graph_failed(const hn_graph *g) {
+bool hn_graph_failed(const hn_graph *g) {
     return g->failed;
 }
 
@@ -267,7 +271,7 @@ int hn_graph_size(const hn_graph *g) {
     return g->n;
 }
 
-// symbols --------------------------------------------------------------------------------------------------
+// ---- symbols ----
 
 static uint64_t hash_symbol(const char *name) {
     return hn_hash_mix(hn_hash_text(HN_HASH_START + HN_OP_SYMBOL, name));
@@ -344,13 +348,13 @@ int hn_ex_symbol(const hn_graph *g, hn_ex e) {
     return e.c == 1 ? g->nodes[e.n].symbol : -1;
 }
 
-// reading --------------------------------------------------------------------------------------------------
+// ---- reading ----
 
-int hn_is_zero(hn_ex e) {
+bool hn_is_zero(hn_ex e) {
     return e.n == HN_NODE_ONE && e.c == 0;
 }
 
-int hn_is_number(hn_ex e, double *value) {
+bool hn_is_number(hn_ex e, double *value) {
     if (e.n != HN_NODE_ONE) {
         return 0;
     }
@@ -360,7 +364,7 @@ int hn_is_number(hn_ex e, double *value) {
     return 1;
 }
 
-int hn_ex_same(hn_ex a, hn_ex b) {
+bool hn_ex_same(hn_ex a, hn_ex b) {
     return a.n == b.n && a.c == b.c;
 }
 
@@ -370,7 +374,7 @@ hn_node_view hn_graph_node(const hn_graph *g, int32_t node) {
     return (hn_node_view){(hn_op)p->op, p->n_args, p->args, p->symbol};
 }
 
-// sweeps ---------------------------------------------------------------------------------------------------
+// ---- sweeps ----
 
 static int grow_sweep(hn_sweep *s, int32_t size) {
     if (size <= s->cap) {
@@ -409,6 +413,8 @@ int hn_sweep_collect(const hn_graph *g, const hn_ex *e, int n, uint64_t deps) {
         s->stamp[id] = s->now;                                                   \
         s->order[s->n++] = (id);                                                 \
     }
+
+    // breadth first from the roots; `order` is the queue
     for (int i = 0; i < n; i++) {
         VISIT(e[i].n)
     }
@@ -419,6 +425,8 @@ int hn_sweep_collect(const hn_graph *g, const hn_ex *e, int n, uint64_t deps) {
         }
     }
 #undef VISIT
+
+    // ascending ids: arguments before results
     qsort(s->order, (size_t)s->n, sizeof *s->order, compare_ids);
     for (int32_t i = 0; i < s->n; i++) {
         s->slot[s->order[i]] = i;
@@ -431,7 +439,7 @@ int32_t hn_sweep_find(const hn_graph *g, int32_t node) {
     return node < s->cap && s->stamp[node] == s->now ? s->slot[node] : -1;
 }
 
-int hn_depends_on(const hn_graph *g, hn_ex e, int symbol) {
+bool hn_depends_on(const hn_graph *g, hn_ex e, int symbol) {
     HN_ASSERT(symbol >= 0 && symbol < g->n_symbols);
     const uint64_t bit = 1ull << (symbol % 64);
     if (!(g->nodes[e.n].deps & bit) || g->n_symbols <= 64) {

@@ -2,21 +2,26 @@
 #define HN_EXPR_GRAPH_H
 // The expression graph: every quantity of a scene as a directed graph of interned nodes.
 //
-// An expression is a coefficient times a node, {c, n}: negation and scaling cost nothing, and a sign never
-// hides a common sub-expression. Node 0 is the constant one, so the number k is {k, HN_NODE_ONE} and zero is
-// {0, HN_NODE_ONE} (always in that form). Constructors fold constants, drop zeros and ones, sort factors,
-// normalise a sum to leading coefficient 1, cancel coefficients with a tolerance relative to their size
-// (HN_CANCEL_TOL), combine c^2 + s^2 of one argument inside a sum when both carry the same remaining factors,
-// and never expand a product of sums. A sum is flat, but a nested sum is flattened only where the result
-// gets no longer. Equal structure means equal node id.
+// construct.h builds expressions, diff.h differentiates and substitutes, print.h writes them as
+// text and parse.h reads them.
 //
-// The graph owns its nodes and never frees one before hn_graph_free(); a tape outlives its graph. When
-// memory runs out the graph is marked failed, constructors return zero, and hn_graph_failed() says so:
-// check once after building. A graph belongs to one thread.
+// An expression is a coefficient times a node, {c, n}: negation and scaling cost nothing, and a
+// sign never hides a common sub-expression. Node 0 is the constant one, so the number k is {k,
+// HN_NODE_ONE} and zero is {0, HN_NODE_ONE} (always in that form). Constructors fold constants,
+// drop zeros and ones, sort factors, normalise a sum to leading coefficient 1, cancel coefficients
+// with a tolerance relative to their size (HN_CANCEL_TOL), combine c^2 + s^2 of one argument inside
+// a sum when both carry the same remaining factors, and never expand a product of sums. A sum is
+// flat, but a nested sum is flattened only where the result gets no longer. Equal structure means
+// equal node id.
+//
+// The graph owns its nodes and never frees one before hn_graph_free(); a tape outlives its graph.
+// When memory runs out the graph is marked failed, constructors return zero, and hn_graph_failed()
+// says so: check once after building. A graph belongs to one thread.
 
 #include "base/status.h"
 #include "expr/ops.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct hn_graph hn_graph;
@@ -31,11 +36,12 @@ enum { HN_NODE_ONE = 0 };
 
 hn_graph *hn_graph_create(void); ///< returns owned; NULL when memory is out
 void hn_graph_free(hn_graph *g);
-int hn_graph_failed(const hn_graph *g);
+bool hn_graph_failed(const hn_graph *g);
 int hn_graph_size(const hn_graph *g); ///< nodes so far
 
-/// A named input: q1, v1, t, alpha, a parameter kept symbolic ... The same name gives the same symbol. `latex`
-/// may be NULL (derived from the name). Symbols are numbered 0, 1, ... in order of creation.
+/// A named input: q1, v1, t, alpha, a parameter kept symbolic ... The same name gives the same
+/// symbol. `latex` may be NULL (derived from the name). Symbols are numbered 0, 1, ... in order of
+/// creation.
 hn_ex hn_symbol(hn_graph *g, const char *name, const char *latex);
 int hn_graph_find_symbol(const hn_graph *g, const char *name); ///< its number, or -1
 int hn_graph_n_symbols(const hn_graph *g);
@@ -43,54 +49,22 @@ const char *hn_graph_symbol_name(const hn_graph *g, int symbol);
 hn_ex hn_graph_symbol_expr(const hn_graph *g, int symbol);
 int hn_ex_symbol(const hn_graph *g, hn_ex e); ///< symbol number if e is {1, symbol}, else -1
 
-// construction -----------------------------------------------------------------------------------
-hn_ex hn_num(double value); ///< value must be finite
-hn_ex hn_add(hn_graph *g, hn_ex a, hn_ex b);
-hn_ex hn_sub(hn_graph *g, hn_ex a, hn_ex b);
-hn_ex hn_neg(hn_ex a);
-hn_ex hn_scale(double k, hn_ex a);
-hn_ex hn_mul(hn_graph *g, hn_ex a, hn_ex b);
-hn_ex hn_div(
-    hn_graph *g, hn_ex a,
-    hn_ex
-        b); ///< by a number: times the reciprocal; by zero: graph keeps 1/0 as a node and evaluates to inf
-hn_ex hn_sum(hn_graph *g, const hn_ex *terms, int n); ///< flat sum of n terms
-/// Any operator of the table by its code; `args` holds hn_op_get_info(op)->arity expressions.
-hn_ex hn_apply(hn_graph *g, hn_op op, const hn_ex *args);
-hn_ex hn_sin(hn_graph *g, hn_ex a);
-hn_ex hn_cos(hn_graph *g, hn_ex a);
-hn_ex hn_sqrt(hn_graph *g, hn_ex a);
-hn_ex hn_pow_int(hn_graph *g, hn_ex a, int power);
-
-// reading ----------------------------------------------------------------------------------------
-int hn_is_zero(hn_ex e);                  ///< exactly the number 0
-int hn_is_number(hn_ex e, double *value); ///< 1 if constant; value may be NULL
-int hn_ex_same(hn_ex a, hn_ex b);
+// ---- reading ----
+bool hn_is_zero(hn_ex e);                  ///< exactly the number 0
+bool hn_is_number(hn_ex e, double *value); ///< true if constant; value may be NULL
+bool hn_ex_same(hn_ex a, hn_ex b);
 
 /// One node, for printers, differentiation and the tape compiler. Arguments are borrowed.
 typedef struct hn_node_view {
     hn_op op; ///< HN_OP_ONE, _SYMBOL, _SUM, _MUL or a function
     int n_args;
-    const hn_ex
-        *args; ///< sum: the terms; product: two factors with coefficient 1; function: its arguments
+    /// sum: the terms; product: two factors with coefficient 1; function: its arguments
+    const hn_ex *args;
     int symbol; ///< for HN_OP_SYMBOL
 } hn_node_view;
 hn_node_view hn_graph_node(const hn_graph *g, int32_t node);
 
-// differentiation, exact ---------------------------------------------------------------------------
-/// d e / d symbol for each of n_sym symbols: out[i]. Forward over the whole graph, results interned.
-void hn_diff(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex *out);
-/// Directional derivative of n expressions in the direction seed[i] along symbols[i] (forward mode, one sweep).
-void hn_diff_forward(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *seed,
-                     int n_sym, hn_ex *out);
-/// Gradient of one expression by reverse mode, one sweep: out[i] = d e / d symbols[i].
-void hn_diff_reverse(hn_graph *g, hn_ex e, const int *symbols, int n_sym, hn_ex *out);
-/// e with each symbols[i] replaced by with[i], all at once; n expressions in, n out.
-void hn_substitute(hn_graph *g, const hn_ex *e, int n, const int *symbols, const hn_ex *with,
-                   int n_sym, hn_ex *out);
-/// 1 if e depends on the symbol.
-int hn_depends_on(const hn_graph *g, hn_ex e, int symbol);
-/// Value at x[symbol] (array by symbol number), straight from the graph: slow, for checks and constants.
-double hn_graph_eval(hn_graph *g, hn_ex e, const double *x);
+/// True if e depends on the symbol.
+bool hn_depends_on(const hn_graph *g, hn_ex e, int symbol);
 
 #endif

@@ -2,17 +2,18 @@
 #define HN_EXPR_GRAPH_INTERNAL_H
 // How the graph stores its nodes; for the files of expr/ alone.
 //
-// A node's key is what makes two of them equal: a product's key is its sorted list of factors with powers, so
-// that a (b c) and (a b) c are one node; any other node's key is its operator and arguments. Node ids ascend
-// from arguments to results, so a loop over ids replaces recursion everywhere.
+// A node's key is what makes two of them equal: a product's key is its sorted list of factors with
+// powers, so that a (b c) and (a b) c are one node; any other node's key is its operator and
+// arguments. Node ids ascend from arguments to results, so a loop over ids replaces recursion
+// everywhere.
 
 #include "base/arena.h"
 #include "expr/graph.h"
 
 #include <stddef.h>
 
-/// Products of more different factors than this stop merging their lists (which would cost n^2 memory on a
-/// chain of n): the operands then count as factors themselves.
+/// Products of more different factors than this stop merging their lists (which would cost n^2
+/// memory on a chain of n): the operands then count as factors themselves.
 enum { HN_MAX_FACTORS = 24 };
 
 typedef struct hn_factor {
@@ -70,8 +71,8 @@ int32_t hn_graph_intern_product(hn_graph *g, const hn_factor *factors, int n, in
 /// The factors of any node: those of a product, else the node itself once (in *one).
 const hn_factor *hn_node_factors(const hn_graph *g, int32_t node, hn_factor *one, int *n);
 
-/// Collects the nodes below e[0..n-1] into g->sweep->order (ascending), following a node only where it
-/// depends on one of `deps`. Returns 0 when memory is out.
+/// Collects the nodes below e[0..n-1] into g->sweep->order (ascending), following a node only where
+/// it depends on one of `deps`. Returns 0 when memory is out.
 int hn_sweep_collect(const hn_graph *g, const hn_ex *e, int n, uint64_t deps);
 /// Position of a node in the order of the last sweep, or -1.
 int32_t hn_sweep_find(const hn_graph *g, int32_t node);

@@ -1,11 +1,12 @@
 #include "expr/ops.h"
 
+#include "expr/construct.h"
 #include "expr/graph.h"
 
 #include <string.h>
 #include <tgmath.h> // one expression gives a value in double and one in long double
 
-// values ---------------------------------------------------------------------------------------------------
+// ---- values ----
 
 #define VALUE_1(fn, expression)                          \
     static double fn(const double *x) {                  \
@@ -37,7 +38,7 @@ VALUE_1(value_pow, pow(x[0], x[1]))
 VALUE_1(value_min, isnan(x[0]) || x[0] <= x[1] ? x[0] : x[1])
 VALUE_1(value_max, isnan(x[0]) || x[0] >= x[1] ? x[0] : x[1])
 
-// partial derivatives: d[i] = d f / d a[i], f = *self -----------------------------------------------------------
+// ---- partial derivatives: d[i] = d f / d a[i], f = *self ----
 
 #define PARTIALS(fn) static void fn(hn_graph *g, const hn_ex *self, const hn_ex *a, hn_ex *d)
 #define UNUSED(x) ((void)(x))
@@ -138,7 +139,7 @@ PARTIALS(partials_max) { // the first where a - b >= 0
     d[1] = hn_sub(g, hn_num(1), d[0]);
 }
 
-// the table ------------------------------------------------------------------------------------------------------
+// ---- the table ----
 
 #define value_none NULL
 #define value_none_long NULL

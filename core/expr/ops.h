@@ -1,10 +1,10 @@
 #ifndef HN_EXPR_OPS_H
 #define HN_EXPR_OPS_H
-// The one table of operators: name as typed, arity, cost, value, derivative, text and LaTeX form, C form. The
-// parser, the folder, differentiation, the printers and the tape all read it.
+// The one table of operators: name as typed, arity, cost, value, derivative, text and LaTeX form, C
+// form. The parser, the folder, differentiation, the printers and the tape all read it.
 
-/// code, name as typed, arity (-1: any), 1 if people may type name(...), parity, value_ and partials_ suffix
-/// (ops.c), LaTeX, C (#1 and #2 stand for the arguments)
+/// code, name as typed, arity (-1: any), 1 if people may type name(...), parity, value_ and
+/// partials_ suffix (ops.c), LaTeX, C (#1 and #2 stand for the arguments)
 #define HN_OP_LIST(X)                                                                      \
     X(HN_OP_ONE, "1", 0, 0, NONE, none, "1", "1.0")                                        \
     X(HN_OP_SYMBOL, "symbol", 0, 0, NONE, none, "", "")                                    \
@@ -45,13 +45,13 @@ struct hn_ex;
 /// f(-x) = -f(x), f(-x) = f(x), or neither.
 typedef enum hn_parity { HN_PARITY_NONE, HN_PARITY_ODD, HN_PARITY_EVEN } hn_parity;
 
-/// Value of the operator; `x` holds its arguments. Takes the one-sided convention at a kink: sign(0) = 0,
-/// step(0) = 1. NaN in gives NaN out.
+/// Value of the operator; `x` holds its arguments. Takes the one-sided convention at a kink:
+/// sign(0) = 0, step(0) = 1. NaN in gives NaN out.
 typedef double (*hn_op_value)(const double *x);
 /// The same in extended precision.
 typedef long double (*hn_op_value_long)(const long double *x);
-/// Writes d f / d args[i] to partial[i]; `self` is f(args) itself, so that exp, tan or sqrt reuse it.
-/// abs' = sign, sign' = step' = 0, and of two equal arguments min and max follow the first.
+/// Writes d f / d args[i] to partial[i]; `self` is f(args) itself, so that exp, tan or sqrt reuse
+/// it. abs' = sign, sign' = step' = 0, and of two equal arguments min and max follow the first.
 typedef void (*hn_op_partials)(struct hn_graph *g, const struct hn_ex *self,
                                const struct hn_ex *args, struct hn_ex *partial);
 

@@ -1,5 +1,7 @@
 #include "expr/parse.h"
 
+#include "expr/construct.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -78,7 +80,8 @@ static int is_name_char(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/// Digits with an optional fraction and exponent; the end of it, or NULL. strtod alone would take hex, inf and nan.
+/// Digits with an optional fraction and exponent; the end of it, or NULL. strtod alone would take
+/// hex, inf and nan.
 static const char *scan_number(const char *s) {
     const char *c = s;
     int digits = 0;
@@ -90,9 +93,12 @@ static const char *scan_number(const char *s) {
             digits++;
         }
     }
+
     if (!digits) {
         return NULL;
     }
+
+    // an exponent only where digits follow: 2e is 2 and the name e
     if (*c == 'e' || *c == 'E') {
         const char *x = c + 1 + (c[1] == '+' || c[1] == '-');
         if (isdigit((unsigned char)*x)) {
@@ -108,12 +114,15 @@ static hn_ex parse_number(parser *p) {
     if (!end) {
         return fail(p, start, NULL, "a lone '.' is not a number");
     }
+
     const double value = strtod(p->text + start, NULL);
     p->at = (size_t)(end - p->text);
     if (!isfinite(value)) {
         return fail(p, start, NULL, "%.*s is too large for a double",
                     (int)(p->at - start < 40 ? p->at - start : 40), p->text + start);
     }
+
+    // what may not follow a number
     if (p->text[p->at] == '.') {
         return fail(p, p->at, NULL, "a second '.' in a number");
     }
@@ -169,6 +178,8 @@ static int parse_arguments(parser *p, hn_ex *args, int max) {
         p->at++;
         return 0;
     }
+
+    // all are read, the first `max` kept: the caller reports how many there are
     for (;;) {
         const hn_ex a = parse_sum(p);
         if (n < max) {
@@ -198,6 +209,7 @@ static hn_ex parse_call(parser *p, size_t at, const char *name) {
     if (op == HN_OP_COUNT && !is_hypot) {
         return unknown_function(p, at, name);
     }
+
     const int arity = is_hypot ? 2 : hn_op_get_info(op)->arity;
     hn_ex args[2] = {hn_num(0), hn_num(0)};
     const int n = parse_arguments(p, args, 2);
@@ -208,6 +220,8 @@ static hn_ex parse_call(parser *p, size_t at, const char *name) {
         return fail(p, at, NULL, "%s takes %d argument%s; %d %s given", name, arity,
                     arity == 1 ? "" : "s", n, n == 1 ? "was" : "were");
     }
+
+    // hypot is no operator: sqrt(a^2 + b^2)
     if (is_hypot) {
         return hn_sqrt(
             p->g, hn_add(p->g, hn_mul(p->g, args[0], args[0]), hn_mul(p->g, args[1], args[1])));
@@ -241,6 +255,8 @@ static hn_ex parse_name(parser *p) {
         name[n++] = p->text[p->at++];
     }
     name[n] = 0;
+
+    // a function, a name of the context, a built-in constant
     if (peek(p) == '(') {
         return parse_call(p, start, name);
     }
@@ -352,6 +368,7 @@ static hn_ex parse_product(parser *p) {
             break;
         }
         p->at++;
+
         const hn_ex b = parse_signed(p);
         double divisor;
         if (c == '*') {
@@ -362,6 +379,8 @@ static hn_ex parse_product(parser *p) {
         } else {
             e = hn_div(p->g, e, b);
         }
+
+        // numbers fold at once: say where they overflow
         if (!isfinite(e.c)) {
             return fail(p, at, NULL, "the product of the numbers here is too large for a double");
         }
@@ -369,7 +388,8 @@ static hn_ex parse_product(parser *p) {
     return e;
 }
 
-/// The terms of one chain of + and -, so that it becomes one flat sum. Few fit without asking for memory.
+/// The terms of one chain of + and -, so that it becomes one flat sum. Few fit without asking for
+/// memory.
 typedef struct chain {
     hn_ex *term;
     int n, cap;
@@ -401,6 +421,10 @@ static hn_ex parse_sum(parser *p) {
     size_t at = p->at;
     chain s = {.n = 0, .cap = CHUNK};
     s.term = s.few;
+
+    // terms are gathered and summed at once: a chain of sums would cost n^2
+
+    // terms are gathered and summed at once: a chain of sums would cost n^2
     char sign = '+';
     int more = 0;
     do {
@@ -414,6 +438,7 @@ static hn_ex parse_sum(parser *p) {
             at = p->at++;
         }
     } while (more);
+
     hn_ex e = p->status != HN_OK ? hn_num(0) : s.n == 1 ? s.term[0] : hn_sum(p->g, s.term, s.n);
     if (!isfinite(e.c)) {
         e = fail(p, at, NULL, "the sum of the numbers here is too large for a double");
@@ -447,6 +472,8 @@ hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts, hn_
     p.max_depth = p.opts->max_depth > 0 ? p.opts->max_depth : DEFAULT_DEPTH;
     const int max_chars = p.opts->max_chars > 0 ? p.opts->max_chars : DEFAULT_CHARS;
     const size_t n = strlen(text);
+
+    // texts that are no formula
     if (n > (size_t)max_chars) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, "split it with parameters",
                            "the formula has %zu characters; at most %d are read", n, max_chars);
@@ -455,6 +482,8 @@ hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts, hn_
         fail(&p, 0, NULL, "the formula is empty");
         return p.status;
     }
+
+    // one expression and nothing behind it
     const hn_ex e = parse_sum(&p);
     if (p.status == HN_OK && peek(&p) != 0) {
         unexpected_rest(&p);

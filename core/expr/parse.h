@@ -1,7 +1,8 @@
 #ifndef HN_EXPR_PARSE_H
 #define HN_EXPR_PARSE_H
-// Formulas as people type them: l1*cos(th1) - d, -x^2 (= -(x^2)), 2^-3^2 (right associative), 1e-3, pi, 3 l1?
-// (no implicit product: the error says so and shows where), functions of the operator table. ** is ^.
+// Formulas as people type them: l1*cos(th1) - d, -x^2 (= -(x^2)), 2^-3^2 (right associative), 1e-3,
+// pi, 3 l1? (no implicit product: the error says so and shows where), functions of the operator
+// table. ** is ^.
 
 #include "base/diag.h"
 #include "expr/graph.h"
@@ -18,8 +19,9 @@ typedef struct hn_parse_opts {
     int max_chars; ///< 0: 20000
 } hn_parse_opts;
 
-/// The expression of `text`. Fails with HN_ERR_INPUT and a diag that has the column, what was found and, for an
-/// unknown name or function, the nearest known one. 1/0 and log(-1) written with numbers are errors too.
+/// The expression of `text`. Fails with HN_ERR_INPUT and a diag that has the column, what was found
+/// and, for an unknown name or function, the nearest known one. 1/0 and log(-1) written with
+/// numbers are errors too.
 HN_MUST_CHECK hn_status hn_parse(hn_graph *g, const char *text, const hn_parse_opts *opts,
                                  hn_ex *out, hn_diag *diag);
 

@@ -1,5 +1,6 @@
 #include "expr/print.h"
 
+#include "expr/construct.h"
 #include "expr/graph_internal.h"
 
 #include <ctype.h>
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A shared node is written out at each use, so text can grow far beyond the graph: bounded, see hn_print().
+// A shared node is written out at each use, so text can grow far beyond the graph: bounded, see
+// hn_print().
 enum { MAX_DEPTH = 2000, MAX_BYTES = 4 << 20 };
 
 /// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
@@ -36,7 +38,7 @@ static void close_paren(printer *p) {
     put(p, p->form == HN_PRINT_LATEX ? "\\right)" : ")");
 }
 
-// numbers -----------------------------------------------------------------------------------------------------
+// ---- numbers ----
 
 /// The shortest text that reads back exactly, or `digits` significant digits.
 static void format_number(double value, int digits, char out[40]) {
@@ -90,7 +92,7 @@ static void put_number(printer *p, double value) {
     }
 }
 
-// names ---------------------------------------------------------------------------------------------------------
+// ---- names ----
 
 static const char *const GREEK[][2] = {
     {"alpha", "\\alpha"}, {"beta", "\\beta"}, {"gamma", "\\gamma"},   {"delta", "\\delta"},
@@ -107,6 +109,8 @@ static void put_latex_name(printer *p, const char *name) {
         put(p, "}");
         return;
     }
+
+    // the stem is a Greek letter, a single letter or a word
     size_t n = 0;
     while (isalpha((unsigned char)name[n])) {
         n++;
@@ -123,6 +127,8 @@ static void put_latex_name(printer *p, const char *name) {
     } else {
         hn_strbuf_printf(p->b, n > 1 ? "\\mathrm{%s}" : "%s", stem);
     }
+
+    // everything behind it is the index
     if (*rest == '_') {
         rest++;
     }
@@ -146,7 +152,7 @@ static void put_symbol(printer *p, int symbol) {
     }
 }
 
-// functions -------------------------------------------------------------------------------------------------------
+// ---- functions ----
 
 /// A form with #1 and #2 for the arguments.
 static void put_template(printer *p, const char *form, const hn_ex *args) {
@@ -182,6 +188,8 @@ static void put_function(printer *p, const hn_node *node, int power) {
         put_arguments(p, node->args, node->n_args);
         return;
     }
+
+    // LaTeX: a template, or a name with its power and arguments
     if (strchr(info->latex, '#')) {
         put_template(p, info->latex, node->args);
         return;
@@ -190,6 +198,7 @@ static void put_function(printer *p, const hn_node *node, int power) {
     if (power > 1) {
         hn_strbuf_printf(p->b, "^{%d}", power);
     }
+
     const int lone = node->n_args == 1 && hn_ex_symbol(p->g, node->args[0]) >= 0;
     if (lone) {
         put(p, " ");
@@ -209,7 +218,7 @@ static int takes_power(const printer *p, const hn_node *node) {
            !strchr(hn_op_get_info((hn_op)node->op)->latex, '#');
 }
 
-// products --------------------------------------------------------------------------------------------------------
+// ---- products ----
 
 /// base^power as text of at least the strength of a factor.
 static void put_power(printer *p, hn_ex base, int power) {
@@ -314,10 +323,11 @@ static void put_product(printer *p, int32_t n, double c) {
     }
 }
 
-// sums ------------------------------------------------------------------------------------------------------------
+// ---- sums ----
 
-/// A factor before a sum is given to its terms: 3*x + 1 reads better than the graph's own 3*(x + 1/3). Text must
-/// give the same node when read, so there only where division by the factor brings every coefficient back.
+/// A factor before a sum is given to its terms: 3*x + 1 reads better than the graph's own 3*(x +
+/// 1/3). Text must give the same node when read, so there only where division by the factor brings
+/// every coefficient back.
 static int can_distribute(const printer *p, const hn_node *node, double factor) {
     for (int i = 0; i < node->n_args && p->form == HN_PRINT_TEXT && p->digits == 0; i++) {
         const double c = node->args[i].c;

@@ -7,9 +7,9 @@
 
 typedef enum hn_print_form { HN_PRINT_TEXT, HN_PRINT_LATEX, HN_PRINT_C } hn_print_form;
 
-/// Appends e. Numbers with `digits` significant digits (0: as many as read back exactly). A node that is used twice is
-/// written twice, so a deep graph can have no reasonable text: beyond 4 MiB or 2,000 levels of nesting the buffer is marked
-/// failed.
+/// Appends e. Numbers with `digits` significant digits (0: as many as read back exactly). A node
+/// that is used twice is written twice, so a deep graph can have no reasonable text: beyond 4 MiB
+/// or 2,000 levels of nesting the buffer is marked failed.
 void hn_print(hn_strbuf *b, const hn_graph *g, hn_ex e, hn_print_form form, int digits);
 
 #endif

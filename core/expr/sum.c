@@ -1,5 +1,7 @@
-// The constructor of sums: merge equal terms, c^2 + s^2 = 1, flatten nested sums where that is no longer,
-// leading coefficient 1.
+// The constructor of sums: merge equal terms, c^2 + s^2 = 1, flatten nested sums where that is no
+// longer, leading coefficient 1.
+
+#include "expr/construct.h"
 
 #include "expr/graph_internal.h"
 
@@ -120,9 +122,10 @@ static int find_term(const terms *s, int32_t node) {
     return -1;
 }
 
-// c^2 + s^2 ------------------------------------------------------------------------------------------------
+// ---- c^2 + s^2 ----
 
-/// The factors of a product with one square of factor `i` taken out, and `add` squared put in (if >= 0).
+/// The factors of a product with one square of factor `i` taken out, and `add` squared put in (if
+/// >= 0).
 static int exchange_square(const hn_factor *f, int n, int i, int32_t add, hn_factor *out) {
     int m = 0;
     for (int k = 0; k < n; k++) {
@@ -131,9 +134,12 @@ static int exchange_square(const hn_factor *f, int n, int i, int32_t add, hn_fac
             out[m++] = x;
         }
     }
+
     if (add < 0) {
         return m;
     }
+
+    // the place of `add` in the sorted list, or its power raised
     int k = m;
     for (; k > 0 && out[k - 1].node > add; k--) {
         out[k] = out[k - 1];
@@ -147,7 +153,8 @@ static int exchange_square(const hn_factor *f, int n, int i, int32_t add, hn_fac
     return m + 1;
 }
 
-/// For the square of a sine or cosine in term i: the term with the square of the other, the rest the same.
+/// For the square of a sine or cosine in term i: the term with the square of the other, the rest
+/// the same.
 static int find_partner(const hn_graph *g, const terms *s, int i, int factor) {
     const hn_node *node = &g->nodes[s->t[i].n];
     const hn_node *trig = &g->nodes[node->factors[factor].node];
@@ -205,9 +212,10 @@ static void reduce(hn_graph *g, terms *s) {
     while (!g->failed && combine_one_square(g, s)) {}
 }
 
-// nested sums ----------------------------------------------------------------------------------------------
+// ---- nested sums ----
 
-/// What a list costs: its terms, and the coefficients that are not those of the leading term up to sign.
+/// What a list costs: its terms, and the coefficients that are not those of the leading term up to
+/// sign.
 static int cost(const terms *s) {
     int n = s->n;
     for (int i = 1; i < s->n; i++) {
@@ -240,8 +248,8 @@ static int last_sum(const hn_graph *g, const terms *s) {
     return -1;
 }
 
-/// Opens nested sums one after the other, the outermost first, starting with term `first`; keeps the list
-/// in *s as soon as one is found that costs no more.
+/// Opens nested sums one after the other, the outermost first, starting with term `first`; keeps
+/// the list in *s as soon as one is found that costs no more.
 static int flatten_from(hn_graph *g, terms *s, int first, int depth) {
     terms trial;
     terms_init(&trial);
@@ -278,7 +286,7 @@ static int flatten_once(hn_graph *g, terms *s) {
     return 0;
 }
 
-// the sum --------------------------------------------------------------------------------------------------
+// ---- the sum ----
 
 /// Quotients of coefficients that are 1 but for rounding are 1: a last bit must not cost a product.
 static double snap(double k) {

@@ -40,7 +40,7 @@ hn_tape_code_info hn_tape_get_code_info(int code) {
     return code >= 0 && code < TAPE_SINCOS ? table[code] : (hn_tape_code_info){0};
 }
 
-// evaluation -----------------------------------------------------------------------------------------------
+// ---- evaluation ----
 
 // operands of the instruction at `i`
 #define a (w[i->v[1]])
@@ -50,7 +50,8 @@ hn_tape_code_info hn_tape_get_code_info(int code) {
 #define e (w[i->v[5]])
 #define f (w[i->v[6]])
 
-/// One jump per instruction, from the end of the one before, so that the processor learns each one's successor.
+/// One jump per instruction, from the end of the one before, so that the processor learns each
+/// one's successor.
 static void run(const hn_tape_instruction *i, double *w) {
 #define LABEL(code, key, n, expression) &&run_##code,
 #define NEXT \
@@ -60,6 +61,8 @@ static void run(const hn_tape_instruction *i, double *w) {
     run_##code : w[i->v[0]] = (expression); \
     NEXT;
 #define TAPE_ARITHMETIC(X) HN_TAPE_OPS_BUT_END(X)
+
+    // one label per instruction, in the order of the codes
     __extension__ static const void *const label[TAPE_CODES] = {
         HN_TAPE_OPS(LABEL) && run_sincos, &&run_sin, &&run_cos, &&run_call1, &&run_call2};
     __extension__({ goto *label[i->code]; });
@@ -117,7 +120,7 @@ const uint16_t *hn_tape_output_slots(const hn_tape *tape) {
     return tape->outputs;
 }
 
-// listing --------------------------------------------------------------------------------------------------
+// ---- listing ----
 
 static const char *name_of(const hn_tape_instruction *i) {
     switch (i->code) {

@@ -1,9 +1,10 @@
 #ifndef HN_EXPR_TAPE_H
 #define HN_EXPR_TAPE_H
-// A tape: straight-line code for chosen outputs of a graph. Dead code is gone, sin and cos of one argument
-// share one instruction, slots are reused, pairs of operations are fused (a b + c d, ...) with separate
-// rounding, and operations are counted exactly. Evaluation allocates nothing and is the same to the last bit
-// on every call. A tape is constant after compilation and may be shared by threads; slots are per thread.
+// A tape: straight-line code for chosen outputs of a graph. Dead code is gone, sin and cos of one
+// argument share one instruction, slots are reused, pairs of operations are fused (a b + c d, ...)
+// with separate rounding, and operations are counted exactly. Evaluation allocates nothing and is
+// the same to the last bit on every call. A tape is constant after compilation and may be shared by
+// threads; slots are per thread.
 
 #include "expr/graph.h"
 
@@ -14,34 +15,32 @@ typedef struct hn_tape hn_tape;
 /// Exact counts of one evaluation.
 typedef struct hn_tape_info {
     int n_inputs, n_outputs;
-    int add, mul, div, sincos, sqrt,
-        other;        ///< arithmetic operations; sub counts as add, a lone sin or cos as one sincos
+    /// arithmetic operations; sub counts as add, a lone sin or cos as one sincos
+    int add, mul, div, sincos, sqrt, other;
     int ops;          ///< the sum of the line above
     int instructions; ///< what the interpreter dispatches
     int slots;        ///< doubles of workspace
 } hn_tape_info;
 
-/// Compiles n_out expressions; input i of the tape is symbols[i]. A symbol used but not listed is a programmer's
-/// error. Returns owned in *out. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 65,000 live values).
+/// Compiles n_out expressions; input i of the tape is symbols[i]. A symbol used but not listed is a
+/// programmer's error. Returns owned in *out. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 65,000
+/// live values).
 HN_MUST_CHECK hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out,
                                         const int *symbols, int n_sym, hn_tape **out);
 void hn_tape_free(hn_tape *tape);
 hn_tape_info hn_tape_get_info(const hn_tape *tape);
-/// Doubles that hn_tape_eval() needs as `work`; call hn_tape_prepare() once on a fresh workspace (loads constants).
+/// Doubles that hn_tape_eval() needs as `work`; call hn_tape_prepare() once on a fresh workspace
+/// (loads constants).
 size_t hn_tape_work_size(const hn_tape *tape);
 void hn_tape_prepare(const hn_tape *tape, double *work);
 /// in (n_inputs) -> out (n_outputs). in and out must not overlap work.
 void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *work);
 
-/// The same without copying, for callers that keep a workspace: inputs are work[0 .. n_inputs-1] and stay as they are; output k is
-/// work[hn_tape_output_slots()[k]] afterwards (borrowed, n_outputs).
+/// The same without copying, for callers that keep a workspace: inputs are work[0 .. n_inputs-1]
+/// and stay as they are; output k is work[hn_tape_output_slots()[k]] afterwards (borrowed,
+/// n_outputs).
 void hn_tape_run(const hn_tape *tape, double *work);
 const uint16_t *hn_tape_output_slots(const hn_tape *tape);
-
-/// The same instructions in extended precision: `work` holds hn_tape_work_size() long doubles, and outputs stand at the same slots.
-/// Constants are those of the double tape, so both evaluate one and the same model. About five times as slow.
-void hn_tape_prepare_long(const hn_tape *tape, long double *work);
-void hn_tape_run_long(const hn_tape *tape, long double *work);
 
 struct hn_strbuf;
 /// One instruction a line, for tests and the curious.

@@ -2,6 +2,8 @@
 
 #include "expr/tape_internal.h"
 
+#include "expr/tape_lower.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,7 +33,7 @@ typedef struct compiler {
 
 enum { NEW, OPEN, DONE };
 
-// which operations share an instruction -----------------------------------------------------------------------
+// ---- which operations share an instruction ----
 
 static const hn_ir_arg *args_of(const compiler *c, int32_t id) {
     return c->ir.args + c->ir.nodes[id].first;
@@ -87,6 +89,8 @@ static void find_partners(compiler *c) {
     }
     int32_t *sine_of = c->last_use; // by argument; free until slots are given out
     memset(sine_of, 0xff, (size_t)c->ir.n * sizeof *sine_of);
+
+    // sines are noted by argument, then cosines look for theirs
     for (int pass = 0; pass < 2; pass++) {
         const int op = pass ? HN_OP_COS : HN_OP_SIN;
         for (int32_t i = 0; i < c->ir.n; i++) {
@@ -105,7 +109,7 @@ static void find_partners(compiler *c) {
     }
 }
 
-// drafts -------------------------------------------------------------------------------------------------
+// ---- drafts ----
 
 static void add_operand(draft *d, int32_t id) {
     d->operand[d->n_operands++] = id;
@@ -149,12 +153,16 @@ static void draft_sum(const compiler *c, int32_t id, draft *d) {
 static void draft_product(const compiler *c, int32_t id, draft *d) {
     const int32_t a = args_of(c, id)[0].node, b = args_of(c, id)[1].node;
     const int32_t inner = c->absorbed[a] ? a : b, other = c->absorbed[a] ? b : a;
+
+    // a plain product
     d->code = TAPE_MUL;
     if (!c->absorbed[inner]) {
         add_operand(d, a);
         add_operand(d, b);
         return;
     }
+
+    // (a + b) * c
     const hn_ir_arg *in = args_of(c, inner);
     if (c->ir.nodes[inner].kind == HN_IR_SUM) {
         const int swap = in[0].sign < 0;
@@ -164,6 +172,8 @@ static void draft_product(const compiler *c, int32_t id, draft *d) {
         add_operand(d, other);
         return;
     }
+
+    // three factors, or four
     add_operand(d, in[0].node);
     add_operand(d, in[1].node);
     d->code = TAPE_MUL3;
@@ -198,6 +208,8 @@ static void draft_call(const compiler *c, int32_t id, draft *d) {
 /// The instruction that computes a node; code TAPE_END for inputs and constants, which need none.
 static draft make_draft(const compiler *c, int32_t id) {
     draft d = {.code = TAPE_END, .result = id, .second = -1};
+
+    // nothing to do for what is there before the tape runs
     switch ((hn_ir_kind)c->ir.nodes[id].kind) {
     case HN_IR_CONST:
     case HN_IR_INPUT:
@@ -222,7 +234,7 @@ static draft make_draft(const compiler *c, int32_t id) {
     return d;
 }
 
-// order --------------------------------------------------------------------------------------------------
+// ---- order ----
 
 static void sort_by_need(const compiler *c, draft *d) {
     for (int i = 1; i < d->n_operands; i++) {
@@ -235,7 +247,8 @@ static void sort_by_need(const compiler *c, draft *d) {
     }
 }
 
-/// Sethi and Ullman: the operand that needs most goes first, each one done occupies a slot. `d` is sorted.
+/// Sethi and Ullman: the operand that needs most goes first, each one done occupies a slot. `d` is
+/// sorted.
 static int32_t need_of(const compiler *c, const draft *d) {
     int32_t need = d->n_operands ? 1 : 0;
     for (int i = d->n_operands - 1, held = 0; i >= 0; i--, held++) {
@@ -272,6 +285,8 @@ static void walk(compiler *c, int32_t root) {
             n--;
             continue;
         }
+
+        // operands are done: the node comes after them
         draft sorted = d;
         sort_by_need(c, &sorted);
         if (c->state[id] == OPEN) {
@@ -279,6 +294,8 @@ static void walk(compiler *c, int32_t root) {
             n--;
             continue;
         }
+
+        // first its operands, the most demanding one last on the stack
         c->state[id] = OPEN;
         for (int i = 0; i < sorted.n_operands; i++) {
             if (c->state[sorted.operand[i]] == NEW) {
@@ -300,7 +317,7 @@ static void order_all(compiler *c) {
     }
 }
 
-// slots --------------------------------------------------------------------------------------------------
+// ---- slots ----
 
 static void find_last_uses(compiler *c) {
     memset(c->last_use, 0xff, (size_t)c->ir.n * sizeof *c->last_use);
@@ -390,7 +407,7 @@ static int place_all(compiler *c, free_slots *f, hn_tape_instruction *code) {
     return 1;
 }
 
-// counting and assembling ----------------------------------------------------------------------------------
+// ---- counting and assembling ----
 
 static void count_operations(const compiler *c, hn_tape_info *info) {
     for (int32_t i = 0; i < c->ir.n; i++) {
@@ -398,6 +415,8 @@ static void count_operations(const compiler *c, hn_tape_info *info) {
         if (!node->live) {
             continue;
         }
+
+        // operations as written, whatever instruction they share
         switch ((hn_ir_kind)node->kind) {
         case HN_IR_CONST:
         case HN_IR_INPUT:
@@ -468,10 +487,13 @@ static hn_status assemble(compiler *c, int n_inputs, hn_tape *tape) {
     if (!place_fixed(c, n_inputs)) {
         return HN_ERR_LIMIT;
     }
+
     tape->code = malloc(((size_t)c->n_drafts + 1) * sizeof *tape->code);
     tape->constants = calloc((size_t)c->n_constants + 1, sizeof *tape->constants);
     tape->outputs = calloc((size_t)c->ir.n_outputs + 1, sizeof *tape->outputs);
     f.slot = malloc(((size_t)HN_TAPE_MAX_SLOTS + 1) * sizeof *f.slot);
+
+    // slots are given out in the order of the drafts
     if (!tape->code || !tape->constants || !tape->outputs || !f.slot) {
         status = HN_ERR_MEMORY;
     } else if (!place_all(c, &f, tape->code)) {
@@ -488,6 +510,7 @@ static hn_status assemble(compiler *c, int n_inputs, hn_tape *tape) {
                                     .slots = c->n_slots};
         count_operations(c, &tape->info);
     }
+
     free(f.slot);
     return status;
 }
@@ -497,9 +520,13 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
     compiler c = {0};
     hn_tape *tape = calloc(1, sizeof *tape);
     hn_status status = tape ? HN_OK : HN_ERR_MEMORY;
+
+    // graph to operations without coefficients
     if (!status) {
         status = hn_ir_lower(&c.ir, g, outputs, n_out, symbols, n_sym);
     }
+
+    // sums of two and three terms, dead code gone
     if (!status) {
         hn_ir_mark_live(&c.ir);
         hn_ir_flatten_sums(&c.ir);
@@ -507,6 +534,8 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
         hn_ir_mark_live(&c.ir);
         status = c.ir.failed || !compiler_alloc(&c) ? HN_ERR_MEMORY : HN_OK;
     }
+
+    // instructions, their order, their slots
     if (!status) {
         absorb_in_sums(&c);
         absorb_in_products(&c);
@@ -515,6 +544,7 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
         find_last_uses(&c);
         status = assemble(&c, n_sym, tape);
     }
+
     compiler_reset(&c);
     if (status) {
         hn_tape_free(tape);

@@ -1,9 +1,11 @@
 #ifndef HN_EXPR_TAPE_INTERNAL_H
 #define HN_EXPR_TAPE_INTERNAL_H
-// Instructions of the tape. Each is 16 bytes: what to do, where the result goes (v[0]), and up to six operands.
+// Instructions of the tape. Each is 16 bytes: what to do, where the result goes (v[0]), and up to
+// six operands.
 //
-// Workspace: inputs first, then constants, then slots that are reused. A sum of two or three terms is one
-// instruction; its key has a digit per term, in ascending order: 1 for + a b, 2 for + a, 3 for - a b, 4 for - a.
+// Workspace: inputs first, then constants, then slots that are reused. A sum of two or three terms
+// is one instruction; its key has a digit per term, in ascending order: 1 for + a b, 2 for + a, 3
+// for - a b, 4 for - a.
 
 #include "expr/tape.h"
 #include "expr/tape_ir.h"
@@ -49,8 +51,8 @@
     X(TAPE_SUM_244, 244, 3, a - (b + c))
 // clang-format on
 
-/// Instructions that are not one expression: sine and cosine of `a` to v[0] and v[2]; a call of the operator
-/// v[7 - 1] with one or two arguments.
+/// Instructions that are not one expression: sine and cosine of `a` to v[0] and v[2]; a call of the
+/// operator v[7 - 1] with one or two arguments.
 enum {
 #define TAPE_ENUM(code, key, n, expression) code,
     HN_TAPE_OPS(TAPE_ENUM)

@@ -154,7 +154,7 @@ int32_t hn_ir_call(hn_ir *ir, hn_op op, const int32_t *args, int n, int *fresh) 
                   fresh);
 }
 
-// passes ---------------------------------------------------------------------------------------------------
+// ---- passes ----
 
 /// Arguments have lower ids than what uses them until sums are split; then only a walk is safe.
 void hn_ir_mark_live(hn_ir *ir) {
@@ -163,6 +163,7 @@ void hn_ir_mark_live(hn_ir *ir) {
         ir->failed = 1;
         return;
     }
+
     int32_t n = 0;
     for (int32_t i = 0; i < ir->n; i++) {
         ir->nodes[i].live = 0;
@@ -173,6 +174,8 @@ void hn_ir_mark_live(hn_ir *ir) {
         ir->nodes[id].live = 1;      \
         stack[n++] = (id);           \
     }
+
+    // from the outputs down, each node once
     for (int32_t i = 0; i < ir->n_outputs; i++) {
         USE(ir->outputs[i])
     }
@@ -198,10 +201,13 @@ static void flatten_sum(hn_ir *ir, int32_t id) {
         const int32_t a = ir->args[first + i].node;
         total += is_lone_sum(ir, a) ? ir->nodes[a].n_args : 1;
     }
+
     if (total == n || !grow(ir, total)) {
         ir->failed |= total != n;
         return;
     }
+
+    // terms of inner sums take their places in the outer one
     hn_ir_arg *out = ir->args + ir->n_args;
     for (int32_t i = 0; i < n; i++) {
         const hn_ir_arg a = ir->args[first + i];
@@ -217,6 +223,7 @@ static void flatten_sum(hn_ir *ir, int32_t id) {
         inner->live = 0;
         inner->uses = 0;
     }
+
     ir->nodes[id].first = ir->n_args;
     ir->nodes[id].n_args = total;
     ir->n_args += total;
@@ -252,6 +259,8 @@ static void split_sum(hn_ir *ir, int32_t id) {
     }
     memcpy(t, ir->args + ir->nodes[id].first, (size_t)n * sizeof *t);
     lead_with_positive(t, n);
+
+    // pieces of three terms, each the first term of the next
     int32_t at = 0;
     hn_ir_arg piece[3] = {t[0], {0, 1}, {0, 1}};
     for (at = 1; n - at > 2; at += 2) {

@@ -1,10 +1,11 @@
 #ifndef HN_EXPR_TAPE_IR_H
 #define HN_EXPR_TAPE_IR_H
-// What lies between graph and tape: operations without coefficients, interned like the graph's nodes.
+// What lies between graph and tape: operations without coefficients, interned like the graph's
+// nodes.
 //
-// A graph node n is represented by {k, i}: n = k * (value of IR node i). The factor k travels on through
-// products and is paid for, as a multiplication by a constant, only where a sum, a function or an output
-// cannot take it in. A sum's terms carry signs, so that negation is free inside sums.
+// A graph node n is represented by {k, i}: n = k * (value of IR node i). The factor k travels on
+// through products and is paid for, as a multiplication by a constant, only where a sum, a function
+// or an output cannot take it in. A sum's terms carry signs, so that negation is free inside sums.
 
 #include "expr/graph.h"
 
@@ -50,7 +51,8 @@ typedef struct hn_ir {
 
 void hn_ir_reset(hn_ir *ir);
 
-// Each gives the node's id and sets *fresh (may be NULL) to 1 if it was new. They return 0 once memory is out.
+// Each gives the node's id and sets *fresh (may be NULL) to 1 if it was new. They return 0 once
+// memory is out.
 int32_t hn_ir_const(hn_ir *ir, double value);
 int32_t hn_ir_input(hn_ir *ir, int32_t input);
 int32_t hn_ir_mul(hn_ir *ir, int32_t a, int32_t b, int *fresh);
@@ -60,10 +62,6 @@ int32_t hn_ir_neg(hn_ir *ir, int32_t a);
 int32_t hn_ir_call(hn_ir *ir, hn_op op, const int32_t *args, int n, int *fresh);
 /// The product a b if it exists, else -1.
 int32_t hn_ir_find_mul(const hn_ir *ir, int32_t a, int32_t b);
-
-/// Brings the outputs of a graph into this form. Symbols map to inputs by position.
-HN_MUST_CHECK hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out,
-                                    const int *symbols, int n_sym);
 
 /// Opens sums inside sums that nothing else uses; needs the counts of hn_ir_mark_live().
 void hn_ir_flatten_sums(hn_ir *ir);

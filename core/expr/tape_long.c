@@ -1,6 +1,8 @@
 // The tape in extended precision: a plain loop, for what is computed once and kept.
 #define _GNU_SOURCE // sincosl
 
+#include "expr/tape_long.h"
+
 #include "expr/tape_internal.h"
 
 #include <string.h>

@@ -1,4 +1,7 @@
-// Graph to IR: places coefficients, takes common factors out of sums, turns reciprocals into divisions.
+// Graph to IR: places coefficients, takes common factors out of sums, turns reciprocals into
+// divisions.
+
+#include "expr/tape_lower.h"
 
 #include "expr/graph_internal.h"
 #include "expr/tape_ir.h"
@@ -47,7 +50,7 @@ static double snap_unit(double k) {
     return fabs(fabs(k) - 1) <= tolerance ? copysign(1, k) : k;
 }
 
-// products -------------------------------------------------------------------------------------------------
+// ---- products ----
 
 static void mark_single(lowering *l, int32_t ir, int fresh, int single) {
     l->ir->nodes[ir].single = (uint8_t)(fresh && single);
@@ -81,8 +84,8 @@ static int32_t multiply(lowering *l, int32_t a, int32_t b, int single) {
     return result;
 }
 
-/// |k| times a node; k goes into the numerator of a lone quotient of numbers, or meets a product it was
-/// already multiplied with.
+/// |k| times a node; k goes into the numerator of a lone quotient of numbers, or meets a product it
+/// was already multiplied with.
 static int32_t scale_node(lowering *l, double k, int32_t id) {
     hn_ir *ir = l->ir;
     k = fabs(k);
@@ -93,15 +96,20 @@ static int32_t scale_node(lowering *l, double k, int32_t id) {
     if (node.kind == HN_IR_CONST) {
         return hn_ir_const(ir, k * node.value);
     }
+
     const int32_t first = node.n_args ? ir->args[node.first].node : 0;
     const int32_t constant = hn_ir_const(ir, k);
     int fresh;
+
+    // k (c / x) = (k c) / x
     if (node.kind == HN_IR_DIV && node.single && ir->nodes[first].kind == HN_IR_CONST) {
         const int32_t numerator = hn_ir_const(ir, k * ir->nodes[first].value);
         const int32_t q = hn_ir_div(ir, numerator, ir->args[node.first + 1].node, &fresh);
         mark_single(l, q, fresh, 1);
         return q;
     }
+
+    // k (a b) = (k a) b where k a is there already
     if (node.kind == HN_IR_MUL && node.single) {
         for (int i = 0; i < 2; i++) {
             const int32_t a = ir->args[node.first + i].node, b = ir->args[node.first + 1 - i].node;
@@ -126,15 +134,18 @@ static int32_t exact(lowering *l, double c, value v) {
     return node->kind == HN_IR_CONST ? hn_ir_const(l->ir, -node->value) : hn_ir_neg(l->ir, scaled);
 }
 
-// common factors -------------------------------------------------------------------------------------------
+// ---- common factors ----
 
-/// The atoms of a product that may be taken apart; stops (whole as one atom) where there are too many.
+/// The atoms of a product that may be taken apart; stops (whole as one atom) where there are too
+/// many.
 static void collect_atoms(const hn_ir *ir, int32_t id, item *out) {
     const hn_ir_node *node = &ir->nodes[id];
     int32_t stack[MAX_ATOMS];
     int depth = 0;
     out->n = 0;
     stack[depth++] = id;
+
+    // products made for one use are taken apart; too many atoms: the node is one
     while (depth > 0) {
         const int32_t at = stack[--depth];
         node = &ir->nodes[at];
@@ -190,7 +201,8 @@ static int32_t build_product(lowering *l, item *t) {
     return t->atom[0];
 }
 
-/// The atom that occurs in most products of the list, the one computed last among equals; -1 if none is shared.
+/// The atom that occurs in most products of the list, the one computed last among equals; -1 if
+/// none is shared.
 static int32_t commonest_atom(const item *t, int n) {
     int32_t best = -1;
     int best_count = 1;
@@ -211,7 +223,8 @@ static int32_t commonest_atom(const item *t, int n) {
 
 static hn_ir_arg sum_of_items(lowering *l, item *t, int n);
 
-/// a b + a c + rest = a (b + c) + rest: moves the terms with `atom` into one; returns the new length.
+/// a b + a c + rest = a (b + c) + rest: moves the terms with `atom` into one; returns the new
+/// length.
 static int take_out(lowering *l, item *t, int n, int32_t atom) {
     item inner[MAX_FACTORED_TERMS];
     int n_inner = 0, rest = 0;
@@ -234,7 +247,8 @@ static int compare_args(const void *a, const void *b) {
                               : (x->sign < y->sign) - (x->sign > y->sign);
 }
 
-/// The sum of signed IR nodes in the order they become available; all negative: the sign goes outside.
+/// The sum of signed IR nodes in the order they become available; all negative: the sign goes
+/// outside.
 static hn_ir_arg signed_sum(lowering *l, hn_ir_arg *t, int n) {
     qsort(t, (size_t)n, sizeof *t, compare_args);
     int positive = 0;
@@ -265,7 +279,7 @@ static hn_ir_arg sum_of_items(lowering *l, item *t, int n) {
     return signed_sum(l, list, n);
 }
 
-// sums -----------------------------------------------------------------------------------------------------
+// ---- sums ----
 
 /// Multiplications by constants if the sum is held divided by `lead`.
 static int scale_cost(const value *t, int n, const usage *u, double lead) {
@@ -279,11 +293,13 @@ static int scale_cost(const value *t, int n, const usage *u, double lead) {
     return cost;
 }
 
-/// The scale of a sum: that of a term, or of a use, whichever leaves the fewest multiplications; its sign
-/// makes a demanded coefficient positive where a term stays positive with it.
+/// The scale of a sum: that of a term, or of a use, whichever leaves the fewest multiplications;
+/// its sign makes a demanded coefficient positive where a term stays positive with it.
 static double choose_lead(const value *t, int n, const usage *u) {
     double best = 1;
     int best_cost = scale_cost(t, n, u, 1);
+
+    // every coefficient that occurs is a candidate
     for (int i = 0; i < n + u->n_demands && i < 32; i++) {
         const double lead = i < u->n_demands ? 1 / fabs(u->demand[i]) : fabs(t[i - u->n_demands].k);
         const int ok = i < u->n_demands || t[i - u->n_demands].ir >= 0;
@@ -293,6 +309,8 @@ static double choose_lead(const value *t, int n, const usage *u) {
             best_cost = cost;
         }
     }
+
+    // the sign
     int positive = 0, negative = 0, wanted = 0;
     for (int i = 0; i < n; i++) {
         positive += t[i].k > 0;
@@ -325,11 +343,14 @@ static value lower_sum(lowering *l, const hn_node *node, const usage *u) {
     hn_ir_arg *list = calloc((size_t)n + 1, sizeof *list);
     value result = {1, 0};
     if (t && list) {
+        // terms as factor and node; -1: a constant
         for (int i = 0; i < n; i++) {
             const value v = l->value[hn_sweep_find(l->g, node->args[i].n)];
             const int one = node->args[i].n == HN_NODE_ONE;
             t[i] = (value){node->args[i].c * (one ? 1 : v.k), one ? -1 : v.ir};
         }
+
+        // few terms share factors, many are added as they are
         const double lead = choose_lead(t, n, u);
         hn_ir_arg sum;
         if (n <= MAX_FACTORED_TERMS) {
@@ -347,6 +368,7 @@ static value lower_sum(lowering *l, const hn_node *node, const usage *u) {
             }
             sum = signed_sum(l, list, n);
         }
+
         result = (value){lead * sum.sign, sum.node};
     }
     l->ir->failed |= !t || !list;
@@ -355,7 +377,7 @@ static value lower_sum(lowering *l, const hn_node *node, const usage *u) {
     return result;
 }
 
-// functions and the sweep ----------------------------------------------------------------------------------
+// ---- functions and the sweep ----
 
 static value lower_call(lowering *l, const hn_node *node, int single) {
     const hn_op_info *info = hn_op_get_info((hn_op)node->op);
@@ -389,6 +411,8 @@ static value lower_recip(lowering *l, const hn_node *node, int single) {
 
 static value lower_node(lowering *l, const hn_node *node, const usage *u) {
     const int single = u->uses == 1;
+
+    // one rule for each kind of node
     switch (node->op) {
     case HN_OP_ONE:
         return (value){1, hn_ir_const(l->ir, 1)};
@@ -454,6 +478,8 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
     if (g->failed || !hn_sweep_collect(g, outputs, n_out, ~0ull)) {
         return HN_ERR_MEMORY;
     }
+
+    // scratch by position in the sweep
     const size_t n = (size_t)g->sweep->n;
     lowering l = {.ir = ir,
                   .g = g,
@@ -463,6 +489,7 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
     ir->outputs = calloc((size_t)n_out + 1, sizeof *ir->outputs);
     ir->n_outputs = n_out;
     ir->failed = !l.usage || !l.value || !l.input_of_symbol || !ir->outputs;
+
     if (!ir->failed) {
         memset(l.input_of_symbol, 0xff, (size_t)g->n_symbols * sizeof(int32_t));
         for (int i = 0; i < n_sym; i++) {
@@ -470,6 +497,7 @@ hn_status hn_ir_lower(hn_ir *ir, hn_graph *g, const hn_ex *outputs, int n_out, c
         }
         lower_all(&l, outputs, n_out);
     }
+
     free(l.usage);
     free(l.value);
     free(l.input_of_symbol);

@@ -18,7 +18,8 @@ static void exchange(double *x, double *y) {
     *y = keep;
 }
 
-// rows and columns k and p of what is left from `first` on; L so far stays, the solve exchanges as it goes
+// rows and columns k and p of what is left from `first` on; L so far stays, the solve exchanges as
+// it goes
 static void swap(double *A, int n, int first, int k, int p) {
     for (int j = first; j < n && k != p; j++) {
         exchange(at(A, n, k, j), at(A, n, p, j));
@@ -79,7 +80,8 @@ static void eliminate_two(double *A, int n, int k) {
         const double x = entry(A, n, i, k), y = entry(A, n, i, k + 1);
         const double l1 = (c * x - b * y) / det, l2 = (a * y - b * x) / det;
         for (int j = k + 2; j <= i; j++) {
-            // columns k and k + 1 of the rows above i hold L already; their old values stand mirrored in rows k and k + 1
+            // columns k and k + 1 of the rows above i hold L already; their old values stand
+            // mirrored in rows k and k + 1
             *at(A, n, i, j) -= l1 * entry(A, n, k, j) + l2 * entry(A, n, k + 1, j);
             *at(A, n, j, i) = entry(A, n, i, j);
         }
@@ -100,6 +102,8 @@ hn_status hn_bunch_kaufman(int n, double *A, int *pivot, double tol, int *negati
         if (!(fmax(fabs(entry(A, n, k, k)), off) > tol)) {
             return HN_ERR_SINGULAR;
         }
+
+        // a block of one or two rows
         const int size = choose(A, n, k, &p);
         swap(A, n, k, k + size - 1, p);
         if (size == 1) {
@@ -113,6 +117,7 @@ hn_status hn_bunch_kaufman(int n, double *A, int *pivot, double tol, int *negati
         }
         k += size;
     }
+
     if (negative) {
         *negative = below;
     }
@@ -120,6 +125,7 @@ hn_status hn_bunch_kaufman(int n, double *A, int *pivot, double tol, int *negati
 }
 
 void hn_bunch_kaufman_solve(int n, const double *A, const int *pivot, double *x) {
+    // L y = P b
     for (int k = 0; k < n; k += pivot[k] < 0 ? 2 : 1) {
         const int two = pivot[k] < 0;
         exchange(&x[k + two], &x[two ? -pivot[k] - 1 : pivot[k]]);
@@ -127,6 +133,8 @@ void hn_bunch_kaufman_solve(int n, const double *A, const int *pivot, double *x)
             x[i] -= entry(A, n, i, k) * x[k] + (two ? entry(A, n, i, k + 1) * x[k + 1] : 0);
         }
     }
+
+    // D z = y, blocks of two by Cramer's rule
     for (int k = 0; k < n; k += pivot[k] < 0 ? 2 : 1) {
         if (pivot[k] >= 0) {
             x[k] /= entry(A, n, k, k);
@@ -138,6 +146,8 @@ void hn_bunch_kaufman_solve(int n, const double *A, const int *pivot, double *x)
         x[k] = x1;
         x[k + 1] = x2;
     }
+
+    // L' P x = z
     for (int k = n - 1; k >= 0;) {
         const int two = pivot[k] < 0, first = k - two;
         for (int i = k + 1; i < n; i++) {

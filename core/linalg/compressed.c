@@ -57,6 +57,8 @@ static void sort_places(hn_compressed *c) {
     int *by_column = c->row; // overwritten from the front, behind where it is read
     sort_by(c, c->put_row, NULL, c->by_row);
     sort_by(c, c->put_col, c->by_row, by_column);
+
+    // equal row and column: one place
     int places = 0, col = -1, row = -1;
     for (int i = 0; i < c->n_puts; i++) {
         const int k = by_column[i];
@@ -69,6 +71,7 @@ static void sort_places(hn_compressed *c) {
         }
         c->place[k] = places - 1;
     }
+
     for (; col < c->n; col++) {
         c->start[col + 1] = places;
     }

@@ -1,7 +1,7 @@
 #ifndef HN_LINALG_COMPRESSED_H
 #define HN_LINALG_COMPRESSED_H
-// A sparse matrix in compressed columns, filled entry by entry in a sequence that seldom changes: the first time the places are
-// sorted, after that each value goes straight to its place.
+// A sparse matrix in compressed columns, filled entry by entry in a sequence that seldom changes:
+// the first time the places are sorted, after that each value goes straight to its place.
 
 #include "base/arena.h"
 #include "base/status.h"
@@ -23,8 +23,8 @@ typedef struct hn_compressed {
 HN_MUST_CHECK int hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max, int entries_max);
 void hn_compressed_begin(hn_compressed *c, int n);
 void hn_compressed_put(hn_compressed *c, int row, int col, double re, double im);
-/// Sums what was put into `values` (`parts` for each of start[n] places: re, or re and im). Returns 1 when the places are those of the
-/// last time, 0 when they are new. Allocates nothing.
+/// Sums what was put into `values` (`parts` for each of start[n] places: re, or re and im). Returns
+/// 1 when the places are those of the last time, 0 when they are new. Allocates nothing.
 int hn_compressed_end(hn_compressed *c, int parts, double *values);
 /// What was put so far, real parts, as n x n row-major.
 void hn_compressed_copy(const hn_compressed *c, double *out);

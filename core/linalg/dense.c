@@ -35,7 +35,7 @@ double hn_norm2(int n, const double *x) {
     return max * sqrt(sum);
 }
 
-int hn_all_finite(int n, const double *x) {
+bool hn_all_finite(int n, const double *x) {
     for (int i = 0; i < n; i++) {
         if (!isfinite(x[i])) {
             return 0;

@@ -1,14 +1,16 @@
 #ifndef HN_LINALG_DENSE_H
 #define HN_LINALG_DENSE_H
-// Small dense kernels. Matrices are row-major; nothing here allocates, and every sum runs in one fixed order, so the same
-// input gives the same bits.
+// Small dense kernels. Matrices are row-major; nothing here allocates, and every sum runs in one
+// fixed order, so the same input gives the same bits.
 
 #include "base/status.h"
+
+#include <stdbool.h>
 
 double hn_dot(int n, const double *x, const double *y);
 double hn_norm2(int n, const double *x);    ///< Euclidean, safe against overflow of the squares
 double hn_norm_max(int n, const double *x); ///< max |x_i|; 0 for n = 0
-int hn_all_finite(int n, const double *x);  ///< 1 when no entry is NaN or infinite
+bool hn_all_finite(int n, const double *x); ///< true when no entry is NaN or infinite
 
 /// y += s x
 void hn_axpy(int n, double s, const double *x, double *y);
@@ -21,9 +23,9 @@ double hn_quad_sym(int n, const double *A, const double *x, const double *y);
 /// Copies the lower triangle of A onto its upper one.
 void hn_mirror_lower(int n, double *A);
 
-/// Cholesky A = L L' in place: the lower triangle is read and replaced by L, the upper one is left alone. `lda` is the
-/// distance between rows. A pivot not above `tol` fails with HN_ERR_SINGULAR, one below -tol with HN_ERR_NOT_SPD (A is then
-/// spoiled); tol is absolute: scale the matrix first.
+/// Cholesky A = L L' in place: the lower triangle is read and replaced by L, the upper one is left
+/// alone. `lda` is the distance between rows. A pivot not above `tol` fails with HN_ERR_SINGULAR,
+/// one below -tol with HN_ERR_NOT_SPD (A is then spoiled); tol is absolute: scale the matrix first.
 HN_MUST_CHECK hn_status hn_cholesky(int n, double *A, int lda, double tol);
 /// x <- A^-1 x with L from hn_cholesky().
 void hn_cholesky_solve(int n, const double *L, int lda, double *x);

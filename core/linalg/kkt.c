@@ -2,6 +2,7 @@
 
 #include "linalg/bunch_kaufman.h"
 #include "linalg/dense.h"
+#include "linalg/equilibrate.h"
 #include "linalg/saddle.h"
 
 #include <float.h>
@@ -10,10 +11,10 @@
 
 // of the equilibrated matrix, whose entries are about 1 (within a factor of four)
 static const double PIVOT_TOL = 1e-13;
-static const double MASSLESS = 1e-14; // of the largest mass
-// The shift of the proximal matrix against J M^-1 J', which is about 1 after scaling: a turn gains shift / eigenvalue. The first
-// serves in two or three turns; where light and heavy bodies meet, eigenvalues are small too and a smaller one is taken, at the
-// price of rounding / shift in multipliers that make no force.
+// The shift of the proximal matrix against J M^-1 J', which is about 1 after scaling: a turn gains
+// shift / eigenvalue. The first
+// serves in two or three turns; where light and heavy bodies meet, eigenvalues are small too and a
+// smaller one is taken, at the price of rounding / shift in multipliers that make no force.
 static const double PROXIMAL_SHIFTS[] = {1e-6, 1e-9, 1e-12};
 static const double PROXIMAL_TOL = 1e-14; // of the accelerations: what the last turn may still move
 enum { MAX_TURNS = 12, N_SHIFTS = 3 };
@@ -58,34 +59,31 @@ hn_kkt *hn_kkt_create(hn_arena *arena, int nv, int nc) {
     return k->saddle && !hn_arena_failed(arena) ? k : NULL;
 }
 
-// --- equilibration ------------------------------------------------------------------------------------------------
+// ---- equilibration ----
 
-/// The power of two next below 1 / size: scaling with it rounds nothing, so that refinement meets the very system it was given.
+/// The power of two next below 1 / size: scaling with it rounds nothing, so that refinement meets
+/// the very system it was given.
 static double reciprocal(double size) {
     return ldexp(1, -ilogb(size));
 }
 
-/// D = diag(M)^-1/2; a massless coordinate by what the rows see of it. Returns a massless coordinate, -1: none, -2: M is negative.
-static int scale_coordinates(hn_kkt *k, const double *M, const double *J) {
-    double heaviest = 0;
-    int massless = -1;
-    for (int j = 0; j < k->nv; j++) {
-        heaviest = fmax(heaviest, M[(size_t)j * (size_t)k->nv + (size_t)j]);
-    }
+/// D = diag(M)^-1/2; a massless coordinate is scaled by what the rows see of it. *massless: the
+/// last such coordinate, -1 where there is none. Fails: HN_ERR_NOT_SPD.
+static hn_status scale_coordinates(hn_kkt *k, const double *M, const double *J, int *massless) {
+    double heaviest;
+    HN_TRY(hn_heaviest_mass(k->nv, M, &heaviest));
+    *massless = -1;
     for (int j = 0; j < k->nv; j++) {
         const double m = M[(size_t)j * (size_t)k->nv + (size_t)j];
-        double seen = 0;
-        if (m < 0) {
-            return -2;
+        if (!hn_is_massless(m, heaviest)) {
+            k->scale[j] = reciprocal(sqrt(m));
+            continue;
         }
-        for (int i = 0; i < k->nc; i++) {
-            seen = fmax(seen, fabs(J[(size_t)i * (size_t)k->nv + (size_t)j]));
-        }
-        const int light = !(m > MASSLESS * heaviest);
-        k->scale[j] = light ? (seen > 0 ? reciprocal(seen) : 1) : reciprocal(sqrt(m));
-        massless = light ? j : massless;
+        const double seen = hn_column_size(k->nv, k->nc, J, j);
+        k->scale[j] = seen > 0 ? reciprocal(seen) : 1;
+        *massless = j;
     }
-    return massless;
+    return HN_OK;
 }
 
 static void scale_rows(hn_kkt *k, const double *J) {
@@ -115,7 +113,7 @@ static void fill(hn_kkt *k, const double *M, const double *J) {
     }
 }
 
-// --- factors -------------------------------------------------------------------------------------------------------
+// ---- factors ----
 
 static hn_status factor_symmetric(hn_kkt *k, double shift) {
     const size_t n = (size_t)k->n;
@@ -132,7 +130,8 @@ static hn_status factor_symmetric(hn_kkt *k, double shift) {
                              : HN_ERR_NOT_SPD; // one for each row, or M is not definite on ker J
 }
 
-/// L in the first nv rows and columns of F, X = L^-1 J' transposed in the rows below, S = X' X = its Cholesky factor.
+/// L in the first nv rows and columns of F, X = L^-1 J' transposed in the rows below, S = X' X =
+/// its Cholesky factor.
 static hn_status factor_range(hn_kkt *k) {
     const size_t n = (size_t)k->n, nv = (size_t)k->nv, nc = (size_t)k->nc;
     memcpy(k->F, k->K, n * n * sizeof *k->F);
@@ -178,7 +177,7 @@ static void solve(hn_kkt *k, double *x) {
     hn_lower_t_solve(k->nv, k->F, k->n, y);
 }
 
-// --- refinement and condition ------------------------------------------------------------------------------------------
+// ---- refinement and condition ----
 
 /// r = b - K x in twice the precision.
 static void find_residual(hn_kkt *k) {
@@ -192,7 +191,8 @@ static void find_residual(hn_kkt *k) {
     }
 }
 
-/// Corrections x += F^-1 (b - K x) while they halve. With the proximal F this is the proximal iteration itself.
+/// Corrections x += F^-1 (b - K x) while they halve. With the proximal F this is the proximal
+/// iteration itself.
 static int refine(hn_kkt *k, int max) {
     double last = HUGE_VAL;
     int kept = 0;
@@ -200,13 +200,15 @@ static int refine(hn_kkt *k, int max) {
         find_residual(k);
         memcpy(k->step, k->r, (size_t)k->n * sizeof *k->step);
         solve(k, k->step);
-        // contradictory rows make multipliers grow for ever; the accelerations settle. Where forces cancel in them they are known
-        // to the rounding of these
+
+        // contradictory rows make multipliers grow for ever; the accelerations settle. Where forces
+        // cancel in them they are known to the rounding of these
         const int proximal = k->way == HN_KKT_PROXIMAL, judged = proximal ? k->nv : k->n;
         const double cancelled = proximal ? hn_norm_max(k->n, k->b) : 0,
                      size = fmax(cancelled, hn_norm_max(judged, k->x)),
                      moved = hn_norm_max(judged, k->step);
         k->moved = size > 0 ? moved / size : 0;
+
         if (!(moved > 2 * DBL_EPSILON * size) || !(moved < 0.5 * last)) {
             break;
         }
@@ -237,6 +239,8 @@ static double estimate_condition(hn_kkt *k) {
     for (int i = 0; i < k->n; i++) {
         x[i] = 1.0 / k->n;
     }
+
+    // Hager's method: 1-norm of the inverse by solves
     for (int turn = 0; turn < 5; turn++) {
         double size = 0;
         int best = 0;
@@ -248,6 +252,8 @@ static double estimate_condition(hn_kkt *k) {
         if (size <= bound) {
             break;
         }
+
+        // the unit vector that promises most comes next
         bound = size;
         solve(k, x);
         for (int i = 1; i < k->n; i++) {
@@ -263,7 +269,7 @@ static double estimate_condition(hn_kkt *k) {
     return bound * norm_of_columns(k);
 }
 
-// --- the door ------------------------------------------------------------------------------------------------------------
+// ---- the door ----
 
 static hn_status solve_by_saddle(hn_kkt *k, const double *M, const double *J, const double *f,
                                  const double *gamma, double *a, double *lambda,
@@ -329,10 +335,8 @@ static hn_status solve_proximal(hn_kkt *k, hn_kkt_info *info) {
 static hn_status solve_equilibrated(hn_kkt *k, const double *M, const double *J, const double *f,
                                     const double *gamma, double *a, double *lambda,
                                     hn_kkt_info *info) {
-    const int massless = scale_coordinates(k, M, J);
-    if (massless == -2) {
-        return HN_ERR_NOT_SPD;
-    }
+    int massless;
+    HN_TRY(scale_coordinates(k, M, J, &massless));
     if (massless >= 0 && k->way == HN_KKT_RANGE_SPACE) {
         info->massless = massless;
         return HN_ERR_SINGULAR;

@@ -41,6 +41,7 @@ hn_status hn_lu_factor(int n, double *A, int *pivot, double *scale) {
     const size_t w = (size_t)n;
     const hn_status status = find_scale(n, A, n, scale);
     for (int k = 0; status == HN_OK && k < n; k++) {
+        // the largest entry of the column, rows scaled
         int best = k;
         double most = 0;
         for (int i = k; i < n; i++) {
@@ -59,6 +60,8 @@ hn_status hn_lu_factor(int n, double *A, int *pivot, double *scale) {
             swap_rows(n, row, A + (size_t)best * w);
             swap_scale(scale, k, best);
         }
+
+        // eliminate below it
         for (int i = k + 1; i < n; i++) {
             double *other = A + (size_t)i * w;
             if (other[k] == 0) {
@@ -95,7 +98,7 @@ void hn_lu_solve(int n, const double *A, const int *pivot, double *x) {
     }
 }
 
-// complex: the same by parts --------------------------------------------------------------------------------
+// ---- complex: the same by parts ----
 
 static double size_of(hn_complex a) {
     return fabs(a.re) + fabs(a.im);
@@ -120,6 +123,7 @@ hn_status hn_lu_factor_complex(int n, hn_complex *A, int *pivot, double *scale) 
     const size_t w = (size_t)n;
     const hn_status status = find_scale(n, &A[0].re, 2 * n, scale);
     for (int k = 0; status == HN_OK && k < n; k++) {
+        // the largest entry of the column, rows scaled
         int best = k;
         double most = 0;
         for (int i = k; i < n; i++) {
@@ -138,6 +142,8 @@ hn_status hn_lu_factor_complex(int n, hn_complex *A, int *pivot, double *scale) 
             swap_rows(2 * n, &row->re, &A[(size_t)best * w].re);
             swap_scale(scale, k, best);
         }
+
+        // eliminate below it
         for (int i = k + 1; i < n; i++) {
             hn_complex *other = A + (size_t)i * w;
             if (other[k].re == 0 && other[k].im == 0) {

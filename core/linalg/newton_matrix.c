@@ -90,7 +90,7 @@ int hn_newton_matrix_is_sparse(const hn_newton_matrix *m) {
     return m->sparse;
 }
 
-// --- filling --------------------------------------------------------------------------------------------------
+// ---- filling ----
 
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n) {
     HN_ASSERT(n >= 0 && n <= m->n_max);
@@ -127,7 +127,7 @@ void hn_newton_matrix_copy(const hn_newton_matrix *m, double *out) {
     }
 }
 
-// --- factoring ------------------------------------------------------------------------------------------------
+// ---- factoring ----
 
 static hn_status factor_dense(hn_newton_matrix *m) {
     const double n = m->n;

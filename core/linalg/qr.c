@@ -41,7 +41,8 @@ static void swap_columns(hn_qr *qr, int k, int p) {
     qr->norm[qr->n + p] = qr->norm[qr->n + k];
 }
 
-/// Householder vector of column k below row k: v_k = 1 is implied, the rest is stored, R_kk replaces the head.
+/// Householder vector of column k below row k: v_k = 1 is implied, the rest is stored, R_kk
+/// replaces the head.
 static void reflect_column(hn_qr *qr, int k) {
     double *x = column(qr, k) + k;
     int tail = qr->m - k - 1;
@@ -68,7 +69,8 @@ static void apply_reflector(const hn_qr *qr, int k, double *x) {
     hn_axpy(tail, -s, v + 1, x + k + 1);
 }
 
-/// Norm of the part of column j below row k, from its norm before step k; computed afresh once too much has cancelled.
+/// Norm of the part of column j below row k, from its norm before step k; computed afresh once too
+/// much has cancelled.
 static void downdate_norm(hn_qr *qr, int k, int j) {
     double *norm = qr->norm, *fresh = qr->norm + qr->n;
     if (norm[j] == 0) {
@@ -106,6 +108,7 @@ void hn_qr_factor(hn_qr *qr, int m, int n, double rank_tol) {
         qr->norm[j] = qr->norm[n + j] = hn_norm2(m, column(qr, j));
     }
 
+    // column by column, the longest of what is left first
     double limit = 0, first = 0;
     for (int k = 0; k < n && k < m; k++) {
         int p = largest_norm(qr, k);
@@ -207,7 +210,8 @@ static void start_vector(int n, double *x) {
     }
 }
 
-/// One extreme singular value: `inverse` iterates with (R'R)^-1. Growth of |x| per half sweep tends to sigma or 1 / sigma.
+/// One extreme singular value: `inverse` iterates with (R'R)^-1. Growth of |x| per half sweep tends
+/// to sigma or 1 / sigma.
 static double iterate_sigma(const hn_qr *qr, int inverse) {
     double *x = qr->work, growth = 0;
     start_vector(qr->rank, x);
@@ -216,6 +220,8 @@ static double iterate_sigma(const hn_qr *qr, int inverse) {
         for (int i = 0; i < qr->rank; i++) {
             x[i] /= norm;
         }
+
+        // one half step: the growth is the singular value or its inverse
         if (inverse) {
             hn_qr_solve_rt(qr, x);
         } else {
@@ -226,6 +232,8 @@ static double iterate_sigma(const hn_qr *qr, int inverse) {
         if (fabs(growth - last) <= 1e-10 * growth) {
             break;
         }
+
+        // the other half
         if (inverse) {
             hn_qr_solve_r(qr, x);
         } else {

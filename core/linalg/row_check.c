@@ -89,6 +89,7 @@ hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries, co
     if (!hn_newton_matrix_wants_sparse(nc + nv, 2LL * n_entries)) {
         return HN_OK;
     }
+
     hn_row_check *c = hn_arena_get(arena, sizeof *c);
     if (!c) {
         return HN_ERR_MEMORY;
@@ -98,6 +99,8 @@ hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries, co
     if (n < 0) {
         return HN_OK;
     }
+
+    // products of entries, and the places of their sums
     c->products = hn_arena_get(arena, ((size_t)n + 1) * sizeof *c->products);
     c->sum_row = hn_arena_ints(arena, (size_t)n);
     c->sum_col = hn_arena_ints(arena, (size_t)n);
@@ -107,6 +110,7 @@ hn_status hn_row_check_create(hn_arena *arena, int nc, int nv, int n_entries, co
     if (hn_arena_failed(arena) || list_products(c) != HN_OK) {
         return HN_ERR_MEMORY;
     }
+
     c->spd = hn_sparse_spd_create(arena, nc, c->n_sums, c->sum_row, c->sum_col);
     *out = c->spd ? c : NULL;
     return c->spd ? HN_OK : HN_ERR_MEMORY;

@@ -1,6 +1,7 @@
 #include "linalg/saddle.h"
 
 #include "linalg/dense.h"
+#include "linalg/equilibrate.h"
 #include "linalg/qr.h"
 
 #include <float.h>
@@ -10,7 +11,6 @@
 // a scaled mass pivot counts as zero at or below this times nv
 static const double MASS_TOL = 16 * DBL_EPSILON;
 // masses below this times the largest are scaled by what the constraints see of them
-static const double MASSLESS = 1e-14;
 
 struct hn_saddle_ws {
     int nv_max, nc_max;
@@ -20,7 +20,9 @@ struct hn_saddle_ws {
     double *d, *r; // equilibration: D of the coordinates, R of the rows
     hn_qr qr;      // of (R J D)', nv x nc
     double *
-        T; // Q' D M D Q, nv x nv; the lower triangle of its last block is replaced by its Cholesky factor
+        // Q' D M D Q, nv x nv; the lower triangle of its last block is replaced by its Cholesky
+        // factor
+        T;
     hn_qr kernel;                  // orthonormal basis of ker J', nc x (nc - rank)
     hn_qr scaled_kernel;           // the same for R J D
     double *fs, *gs, *lam1, *work; // scratch of one solve: nv, nc, nc, nv
@@ -57,7 +59,7 @@ hn_saddle_ws *hn_saddle_ws_create(hn_arena *arena, int nv, int nc) {
     return got && !hn_arena_failed(arena) ? ws : NULL;
 }
 
-// --- factorisation -------------------------------------------------------------------------------------------
+// ---- factorisation ----
 
 static int inputs_finite(int nv, int nc, const double *M, const double *J) {
     for (int i = 0; i < nv; i++) {
@@ -68,35 +70,23 @@ static int inputs_finite(int nv, int nc, const double *M, const double *J) {
     return hn_all_finite(nc * nv, J);
 }
 
-static double column_size(const hn_saddle_ws *ws, int j) {
-    double size = 0;
-    for (int i = 0; i < ws->nc; i++) {
-        size = fmax(size, fabs(ws->J[(size_t)i * ws->nv + j]));
-    }
-    return size;
-}
-
-/// D = diag(M)^-1/2. A massless coordinate is scaled so that the constraints see it as much as the best seen massive one.
+/// D = diag(M)^-1/2. A massless coordinate is scaled so that the constraints see it as much as the
+/// best seen massive one.
 static hn_status scale_coordinates(hn_saddle_ws *ws) {
     int nv = ws->nv;
-    double heaviest = 0;
-    for (int j = 0; j < nv; j++) {
-        double m = ws->M[(size_t)j * nv + j];
-        if (m < 0) {
-            return HN_ERR_NOT_SPD;
-        }
-        heaviest = fmax(heaviest, m);
-    }
+    double heaviest;
+    HN_TRY(hn_heaviest_mass(nv, ws->M, &heaviest));
 
+    // massless ones, scaled by what the constraints see of the others
     double seen = 0;
     for (int j = 0; j < nv; j++) {
         double m = ws->M[(size_t)j * nv + j];
-        ws->d[j] = m > MASSLESS * heaviest ? 1 / sqrt(m) : 0;
-        seen = fmax(seen, ws->d[j] * column_size(ws, j));
+        ws->d[j] = hn_is_massless(m, heaviest) ? 0 : 1 / sqrt(m);
+        seen = fmax(seen, ws->d[j] * hn_column_size(nv, ws->nc, ws->J, j));
     }
     for (int j = 0; j < nv; j++) {
         if (ws->d[j] == 0) {
-            double size = column_size(ws, j);
+            double size = hn_column_size(nv, ws->nc, ws->J, j);
             ws->d[j] = size > 0 ? (seen > 0 ? seen : 1) / size : 1;
         }
     }
@@ -107,7 +97,8 @@ static double row_unit(const hn_saddle_ws *ws, int i) {
     return ws->opts.row_unit ? ws->opts.row_unit[i] : 1;
 }
 
-/// R makes every row of J D of unit length, short ones less (row_floor); qr.a receives (R J D)' (whose columns are the rows of J).
+/// R makes every row of J D of unit length, short ones less (row_floor); qr.a receives (R J D)'
+/// (whose columns are the rows of J).
 static void scale_rows(hn_saddle_ws *ws) {
     int nv = ws->nv;
     double longest = 0;
@@ -129,7 +120,8 @@ static void scale_rows(hn_saddle_ws *ws) {
     }
 }
 
-/// T <- H T H for one reflector H = I - tau v v' of the QR: the symmetric rank-two form of Golub & Van Loan, sec. 8.3.1.
+/// T <- H T H for one reflector H = I - tau v v' of the QR: the symmetric rank-two form of Golub &
+/// Van Loan, sec. 8.3.1.
 static void reflect_both_sides(hn_saddle_ws *ws, int k) {
     int nv = ws->nv;
     double tau = ws->qr.tau[k], *v = ws->work, *p = ws->fs;
@@ -162,7 +154,8 @@ static hn_status factor_kernel_mass(hn_saddle_ws *ws) {
     return hn_cholesky(nv - rank, ws->T + (size_t)rank * nv + rank, nv, MASS_TOL * nv);
 }
 
-/// Orthonormal bases of the multipliers that make no force: columns P [-R11^-1 R12; I] of ker (R J D)', and R times them.
+/// Orthonormal bases of the multipliers that make no force: columns P [-R11^-1 R12; I] of ker (R J
+/// D)', and R times them.
 static void factor_kernels(hn_saddle_ws *ws) {
     int nc = ws->nc, rank = ws->qr.rank, extra = nc - rank;
     for (int k = 0; k < extra; k++) {
@@ -192,6 +185,8 @@ hn_status hn_saddle_factor(int nv, int nc, const double *M, const double *J, hn_
     if (!inputs_finite(nv, nc, M, J)) {
         return HN_ERR_DIVERGED;
     }
+
+    // copies, since refinement needs the matrices as they came
     ws->nv = nv;
     ws->nc = nc;
     memcpy(ws->M, M, (size_t)nv * nv * sizeof *M);
@@ -202,6 +197,8 @@ hn_status hn_saddle_factor(int nv, int nc, const double *M, const double *J, hn_
     if (status != HN_OK) {
         return status;
     }
+
+    // rank from J, then the mass on its kernel
     scale_rows(ws);
     hn_qr_factor(&ws->qr, nv, nc, fmax(ws->opts.rank_tol, 1e3 * DBL_EPSILON * (nv > nc ? nv : nc)));
     if (info) {
@@ -220,9 +217,10 @@ hn_status hn_saddle_factor(int nv, int nc, const double *M, const double *J, hn_
     return HN_OK;
 }
 
-// --- one solve with the factor -------------------------------------------------------------------------------
+// ---- one solve with the factor ----
 
-/// Equations (2) for scaled right-hand sides: fs (nv), gs (nc, in range of R J D) -> a_s in fs, lambda_1 in lam1 (rank).
+/// Equations (2) for scaled right-hand sides: fs (nv), gs (nc, in range of R J D) -> a_s in fs,
+/// lambda_1 in lam1 (rank).
 static void solve_scaled(hn_saddle_ws *ws) {
     int nv = ws->nv, rank = ws->qr.rank, rest = nv - rank;
     const double *T = ws->T;
@@ -251,6 +249,8 @@ static void solve_scaled(hn_saddle_ws *ws) {
 static double solve_once(hn_saddle_ws *ws, const double *f, const double *gamma, double *a,
                          double *lambda) {
     int nv = ws->nv, nc = ws->nc, rank = ws->qr.rank;
+
+    // scaled right-hand sides, gamma without what no acceleration can meet
     for (int j = 0; j < nv; j++) {
         ws->fs[j] = ws->d[j] * f[j];
     }
@@ -260,6 +260,7 @@ static double solve_once(hn_saddle_ws *ws, const double *f, const double *gamma,
     double outside = rank < nc ? hn_qr_remove_range(&ws->scaled_kernel, ws->gs) : 0;
     solve_scaled(ws);
 
+    // back to the user's units
     for (int j = 0; j < nv; j++) {
         a[j] = ws->d[j] * ws->fs[j];
     }
@@ -274,7 +275,8 @@ static double solve_once(hn_saddle_ws *ws, const double *f, const double *gamma,
     return outside;
 }
 
-/// The scale that decides whether rows contradict each other: gamma, J a and f in equilibrated units, which are all alike.
+/// The scale that decides whether rows contradict each other: gamma, J a and f in equilibrated
+/// units, which are all alike.
 static double consistency_scale(const hn_saddle_ws *ws, const double *f, const double *gamma) {
     double scale = 0, of_ja = 0;
     for (int j = 0; j < ws->nv; j++) {
@@ -287,9 +289,10 @@ static double consistency_scale(const hn_saddle_ws *ws, const double *f, const d
     return scale + of_ja;
 }
 
-// --- refinement ----------------------------------------------------------------------------------------------
+// ---- refinement ----
 
-/// Residual of the force rows: r1 = f - M a + J' lambda, and b1 its size, row by row, in twice the precision.
+/// Residual of the force rows: r1 = f - M a + J' lambda, and b1 its size, row by row, in twice the
+/// precision.
 static void force_residual(hn_saddle_ws *ws, const double *f) {
     int nv = ws->nv, nc = ws->nc;
     for (int i = 0; i < nv; i++) {
@@ -325,7 +328,8 @@ static void row_residual(hn_saddle_ws *ws, const double *gamma) {
     }
 }
 
-/// Largest residual of a row relative to its size. Rows that cannot be met (gamma's part outside range J) do not count.
+/// Largest residual of a row relative to its size. Rows that cannot be met (gamma's part outside
+/// range J) do not count.
 static double backward_error(hn_saddle_ws *ws) {
     double worst = 0;
     for (int i = 0; i < ws->nv; i++) {
@@ -342,6 +346,7 @@ static double backward_error(hn_saddle_ws *ws) {
         return worst;
     }
 
+    // dependent rows: only what lies in the range of J can be met
     double size = 0;
     for (int i = 0; i < ws->nc; i++) {
         ws->gs[i] = ws->r[i] * ws->r2[i];
@@ -358,7 +363,8 @@ static double measure(hn_saddle_ws *ws, const double *f, const double *gamma) {
     return backward_error(ws);
 }
 
-/// Largest entry of a scaled vector: accelerations by 1/d, multipliers by 1/r, which gives both the same unit.
+/// Largest entry of a scaled vector: accelerations by 1/d, multipliers by 1/r, which gives both the
+/// same unit.
 static double scaled_size(int n, const double *x, const double *scale) {
     double size = 0;
     for (int i = 0; i < n; i++) {
@@ -367,8 +373,9 @@ static double scaled_size(int n, const double *x, const double *scale) {
     return size;
 }
 
-/// Corrections while they pay. The residual is exact to working precision, so they converge to the solution itself, not
-/// only to a small backward error; one that is not half its predecessor is rounding, and is not applied.
+/// Corrections while they pay. The residual is exact to working precision, so they converge to the
+/// solution itself, not only to a small backward error; one that is not half its predecessor is
+/// rounding, and is not applied.
 static int refine(hn_saddle_ws *ws, const double *f, const double *gamma, double *error) {
     double tol = ws->opts.refine_tol, last_a = HUGE_VAL, last_l = HUGE_VAL;
     int kept = 0;
@@ -378,6 +385,8 @@ static int refine(hn_saddle_ws *ws, const double *f, const double *gamma, double
                step_a = scaled_size(ws->nv, ws->da, ws->d);
         double size_l = scaled_size(ws->nc, ws->lambda, ws->r),
                step_l = scaled_size(ws->nc, ws->dlambda, ws->r);
+
+        // a correction is worth applying, converges, and is small
         int moves = step_a > tol * size_a || step_l > tol * size_l;
         int shrinks = step_a < 0.5 * last_a || step_l < 0.5 * last_l;
         int sane = fmax(step_a, step_l) <= 0.5 * (size_a + size_l);
@@ -409,6 +418,7 @@ hn_status hn_saddle_apply(const double *f, const double *gamma, double *a, doubl
         return HN_ERR_INCONSISTENT;
     }
 
+    // outputs are written only now, when nothing can fail any more
     double error = measure(ws, f, gamma);
     int refinements = refine(ws, f, gamma, &error);
     memcpy(a, ws->a, (size_t)nv * sizeof *a);
@@ -437,9 +447,10 @@ hn_status hn_saddle_solve(int nv, int nc, const double *M, const double *J, cons
     return hn_saddle_apply(f, gamma, a, lambda, info, ws);
 }
 
-// --- condition -----------------------------------------------------------------------------------------------
+// ---- condition ----
 
-/// x <- K_s^-1 x for the equilibrated K on its kept rows (nv + rank entries), by one solve of the scaled equations.
+/// x <- K_s^-1 x for the equilibrated K on its kept rows (nv + rank entries), by one solve of the
+/// scaled equations.
 static void solve_equilibrated(hn_saddle_ws *ws, double *x1, double *x2) {
     int rank = ws->qr.rank;
     memcpy(ws->fs, x1, (size_t)ws->nv * sizeof *x1);
@@ -456,6 +467,8 @@ static void solve_equilibrated(hn_saddle_ws *ws, double *x1, double *x2) {
 static double norm_equilibrated(const hn_saddle_ws *ws) {
     int nv = ws->nv, rank = ws->qr.rank;
     double worst = 0;
+
+    // columns of M over those of J
     for (int j = 0; j < nv; j++) {
         double sum = 0;
         for (int i = 0; i < nv; i++) {
@@ -467,6 +480,8 @@ static double norm_equilibrated(const hn_saddle_ws *ws) {
         }
         worst = fmax(worst, sum);
     }
+
+    // columns of J'
     for (int i = 0; i < rank; i++) {
         int row = ws->qr.perm[i];
         double sum = 0;
@@ -486,7 +501,8 @@ static double sum_abs(int n, const double *x) {
     return sum;
 }
 
-/// |K_s|_1 times Hager's lower bound of |K_s^-1|_1 (Higham 1988, ACM TOMS 14, algorithm 674); K_s is symmetric.
+/// |K_s|_1 times Hager's lower bound of |K_s^-1|_1 (Higham 1988, ACM TOMS 14, algorithm 674); K_s
+/// is symmetric.
 static double estimate_condition(hn_saddle_ws *ws) {
     int nv = ws->nv, rank = ws->qr.rank, n = nv + rank;
     double *x1 = ws->a, *x2 = ws->lambda, bound = 0;
@@ -503,7 +519,8 @@ static double estimate_condition(hn_saddle_ws *ws) {
         }
         bound = size;
 
-        // gradient of the norm: the signs, solved once more; its largest entry names the next unit vector
+        // gradient of the norm: the signs, solved once more; its largest entry names the next unit
+        // vector
         for (int i = 0; i < n; i++) {
             double *x = i < nv ? x1 + i : x2 + (i - nv);
             *x = *x < 0 ? -1 : 1;

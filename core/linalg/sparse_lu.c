@@ -31,6 +31,8 @@ hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
     if (!lu) {
         return NULL;
     }
+
+    // full storage of the factors' pattern: the pattern is not known yet
     const size_t n = (size_t)n_max, m = (size_t)entries_max, half = n * (n + 1) / 2;
     *lu = (hn_sparse_lu){.n_max = n_max, .entries_max = entries_max};
     int **of_n[] = {&lu->a_start, &lu->p,       &lu->q,         &lu->row_at,   &lu->col_at,
@@ -38,6 +40,7 @@ hn_sparse_lu *hn_sparse_lu_create(hn_arena *arena, int n_max, int entries_max) {
     for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++) {
         *of_n[i] = hn_arena_ints(arena, n + 1);
     }
+
     lu->row = hn_arena_ints(arena, m);
     lu->col = hn_arena_ints(arena, m);
     lu->a_entry = hn_arena_ints(arena, m);
@@ -62,7 +65,7 @@ void hn_sparse_lu_set_pattern(hn_sparse_lu *lu, int n, int n_entries, const int 
     memcpy(lu->col, col, (size_t)n_entries * sizeof *col);
 }
 
-// --- choosing the order ---------------------------------------------------------------------------------------
+// ---- choosing the order ----
 
 static void spread(hn_sparse_lu *lu, const double *values) {
     const size_t n = (size_t)lu->n;
@@ -92,6 +95,8 @@ static int choose_row(const hn_sparse_lu *lu, int j) {
             largest = fmax(largest, fabs(lu->full[(size_t)i * n + j]));
         }
     }
+
+    // of those not much smaller, the sparsest row
     for (int i = 0; i < n && largest > 0; i++) {
         const double size = fabs(lu->full[(size_t)i * n + j]);
         if (lu->row_at[i] >= 0 || size < THRESHOLD * largest) {
@@ -162,6 +167,8 @@ static int eliminate(hn_sparse_lu *lu, int k) {
 static void list_pattern(hn_sparse_lu *lu) {
     const int n = lu->n;
     int n_l = 0, n_u = 0;
+
+    // left of the pivot L, right of it U
     for (int k = 0; k < n; k++) {
         const char *filled = lu->filled + (size_t)lu->p[k] * n;
         lu->l_start[k] = n_l;
@@ -179,6 +186,7 @@ static void list_pattern(hn_sparse_lu *lu) {
     }
     lu->l_start[n] = n_l;
     lu->u_start[n] = n_u;
+
     lu->refactor_ops = 0;
     for (int i = 0; i < n_l; i++) {
         const int m = lu->l_col[i];
@@ -231,11 +239,13 @@ static int choose_order(hn_sparse_lu *lu, const double *values) {
     return 1;
 }
 
-// --- factoring and solving --------------------------------------------------------------------------------------
+// ---- factoring and solving ----
 
 // row k of L and U; the largest entry of L
 static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
     double *w = lu->work, growth = 0;
+
+    // the row of A in the work array, zero where it fills in
     for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {
         w[lu->l_col[i]] = 0;
     }
@@ -247,6 +257,8 @@ static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
         const int e = lu->a_entry[i];
         w[lu->col_at[lu->col[e]]] = values[e];
     }
+
+    // rows above it, in order
     for (int i = lu->l_start[k]; i < lu->l_start[k + 1]; i++) {
         const int m = lu->l_col[i];
         const double factor = w[m] / lu->diag[m];
@@ -256,6 +268,7 @@ static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
             w[lu->u_col[j]] -= factor * lu->u[j];
         }
     }
+
     for (int i = lu->u_start[k]; i < lu->u_start[k + 1]; i++) {
         lu->u[i] = w[lu->u_col[i]];
     }

@@ -9,14 +9,15 @@ struct hn_sparse_spd {
     int *order, *at; ///< pivot k is unknown order[k]; at is the inverse
     // entries of A by rows of P A P': a_entry[a_start[k] ..], in columns a_col
     int *a_start, *a_entry, *a_col;
-    // L by rows (columns rising, for the order of elimination) and by columns (rows rising, for the values)
+    // L by rows (columns rising, for the order of elimination) and by columns (rows rising, for the
+    // values)
     int *row_start, *row_col, *col_start, *col_row;
     int *filled; ///< entries of each column that have their values by now
     double *L, *D, *work;
     double factor_ops;
 };
 
-// --- order and pattern ------------------------------------------------------------------------------------------
+// ---- order and pattern ----
 
 typedef struct graph {
     int n;
@@ -34,7 +35,8 @@ static int find_lowest(const graph *g) {
     return best;
 }
 
-// takes out unknown i; its neighbours (into list) all become neighbours of each other. Returns how many there are.
+// takes out unknown i; its neighbours (into list) all become neighbours of each other. Returns how
+// many there are.
 static int take_out(graph *g, int i, int *list) {
     const size_t n = (size_t)g->n;
     int count = 0;
@@ -77,7 +79,8 @@ static int graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const i
     return 1;
 }
 
-// the order, and the number of entries of each row of L in row_start[k + 1]; the entries themselves stay in the graph
+// the order, and the number of entries of each row of L in row_start[k + 1]; the entries themselves
+// stay in the graph
 static void choose_order(hn_sparse_spd *spd, graph *g, int *list) {
     for (int k = 0; k < spd->n; k++) {
         const int i = find_lowest(g);
@@ -85,7 +88,8 @@ static void choose_order(hn_sparse_spd *spd, graph *g, int *list) {
         spd->at[i] = k;
         const int count = take_out(g, i, list);
         spd->nnz += count;
-        // a row loses its entries of unknowns taken out later: what is left joined to i is its column of L
+        // a row loses its entries of unknowns taken out later: what is left joined to i is its
+        // column of L
         for (int j = 0; j < spd->n; j++) {
             g->joined[(size_t)i * (size_t)spd->n + (size_t)j] = 0;
         }
@@ -104,6 +108,8 @@ static int list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
     if (hn_arena_failed(arena)) {
         return 0;
     }
+
+    // joined unknowns: entries of L by rows and by columns
     int n_row = 0, n_col = 0;
     for (int k = 0; k < spd->n; k++) {
         spd->row_start[k] = n_row;
@@ -119,6 +125,7 @@ static int list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
             }
         }
     }
+
     spd->row_start[spd->n] = n_row;
     spd->col_start[spd->n] = n_col;
     return 1;
@@ -151,6 +158,7 @@ hn_sparse_spd *hn_sparse_spd_create(hn_arena *arena, int n, int n_entries, const
     int ok = 0;
     if (spd && scratch && graph_init(&g, scratch, n, n_entries, row, col)) {
         *spd = (hn_sparse_spd){.n = n, .n_entries = n_entries};
+
         int **of_n[] = {&spd->order,     &spd->at,        &spd->a_start,
                         &spd->row_start, &spd->col_start, &spd->filled};
         for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++) {
@@ -160,6 +168,8 @@ hn_sparse_spd *hn_sparse_spd_create(hn_arena *arena, int n, int n_entries, const
         spd->a_col = hn_arena_ints(arena, (size_t)n_entries);
         spd->D = hn_arena_doubles(arena, (size_t)n);
         spd->work = hn_arena_doubles(arena, (size_t)n);
+
+        // the order first: everything else follows it
         if (!hn_arena_failed(arena)) {
             choose_order(spd, &g, spd->filled);
             list_entries(spd, row, col);
@@ -170,11 +180,13 @@ hn_sparse_spd *hn_sparse_spd_create(hn_arena *arena, int n, int n_entries, const
     return ok ? spd : NULL;
 }
 
-// --- numbers ----------------------------------------------------------------------------------------------------
+// ---- numbers ----
 
 // row k of L from the rows before it: solves (L D)(rows before) l = a
 static void factor_row(hn_sparse_spd *spd, int k, const double *values) {
     double *w = spd->work, pivot = 0;
+
+    // the row of A in the work array, zero where it fills in
     for (int i = spd->row_start[k]; i < spd->row_start[k + 1]; i++) {
         w[spd->row_col[i]] = 0;
     }
@@ -185,6 +197,8 @@ static void factor_row(hn_sparse_spd *spd, int k, const double *values) {
             w[spd->a_col[i]] = values[spd->a_entry[i]];
         }
     }
+
+    // rows above it, in order; each adds one entry to its column of L
     for (int i = spd->row_start[k]; i < spd->row_start[k + 1]; i++) {
         const int m = spd->row_col[i], end = spd->col_start[m] + spd->filled[m];
         const double y = w[m], l = y / spd->D[m];
@@ -195,6 +209,7 @@ static void factor_row(hn_sparse_spd *spd, int k, const double *values) {
         spd->filled[m]++;
         pivot -= l * y;
     }
+
     spd->D[k] = pivot;
 }
 

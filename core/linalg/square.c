@@ -95,11 +95,14 @@ hn_status hn_square_factor(hn_square *s, int n) {
     if (!hn_all_finite(n * n, s->lu)) {
         return HN_ERR_DIVERGED;
     }
+
     equilibrate(s);
     double smallest = HUGE_VAL, largest = 0;
     for (int k = 0; k < n; k++) {
         s->perm[k] = k;
     }
+
+    // column by column; the ratio of pivots decides whether A is singular
     for (int k = 0; k < n; k++) {
         swap_rows(s, k, find_pivot(s, k));
         const double size = fabs(s->lu[(size_t)k * n + k]);

@@ -1,10 +1,13 @@
 #ifndef HN_LINALG_SQUARE_H
 #define HN_LINALG_SQUARE_H
-// Square systems without symmetry: Newton matrices of implicit integrators, saddle systems with the Jacobian of two poses.
+// Square systems without symmetry: Newton matrices of implicit integrators, saddle systems with the
+// Jacobian of two poses.
 //
-//     A x = b,    R A C = P' L U    with R, C powers of two that bring rows and columns to about unit size           (1)
+//     A x = b,  R A C = P' L U  with R, C powers of two that bring rows and columns to about
+//                               unit size                                                       (1)
 //
-// LU with partial pivoting of the equilibrated matrix, so that metres, radians and newtons weigh alike.
+// LU with partial pivoting of the equilibrated matrix, so that metres, radians and newtons weigh
+// alike.
 // Source: Higham 2002, Accuracy and Stability of Numerical Algorithms, chapter 9.
 
 #include "base/arena.h"
@@ -25,7 +28,8 @@ typedef struct hn_square {
 
 /// Memory for up to n_max x n_max; returns 0 when memory is out, else 1.
 HN_MUST_CHECK int hn_square_init(hn_square *s, hn_arena *arena, int n_max);
-/// Factors s->lu, filled by the caller as n x n. Fails: HN_ERR_DIVERGED (an entry is not finite), HN_ERR_SINGULAR.
+/// Factors s->lu, filled by the caller as n x n. Fails: HN_ERR_DIVERGED (an entry is not finite),
+/// HN_ERR_SINGULAR.
 /// Cost: 2 n^3 / 3 operations. Allocates nothing.
 HN_MUST_CHECK hn_status hn_square_factor(hn_square *s, int n);
 /// x <- A^-1 x, x (n). Cost: 2 n^2 operations.

@@ -5,7 +5,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
-/// Singular values of A (rows x cols, row-major), falling: sigma (min(rows, cols)). Scratch comes from `arena`.
+/// Singular values of A (rows x cols, row-major), falling: sigma (min(rows, cols)). Scratch comes
+/// from `arena`.
 /// Fails: HN_ERR_MEMORY, HN_ERR_DIVERGED (an entry is not finite), sigma untouched.
 HN_MUST_CHECK hn_status hn_singular_values(int rows, int cols, const double *A, double *sigma,
                                            hn_arena *arena);

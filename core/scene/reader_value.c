@@ -4,6 +4,8 @@
 
 #include "base/hash.h"
 #include "base/strbuf.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -2,6 +2,8 @@
 #include "grade/exam.h"
 
 #include "base/hash.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/parse.h"
 #include "grade/spelling.h"
 

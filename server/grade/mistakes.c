@@ -4,6 +4,9 @@
 // come first.
 #include "grade/mistakes.h"
 
+#include "expr/construct.h"
+#include "expr/diff.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 #include "support/balance.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "expr/construct.h"
 #include "expr/parse.h"
 #include "support/near.h"
 

@@ -2,6 +2,8 @@
 
 #include "dynamics/analyse/dyads_form.h"
 #include "dynamics/compile/system_impl.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <suitesparse/btf.h>
 

@@ -1,5 +1,8 @@
 #include "dynamics/analyse/dyads_form.h"
 
+#include "expr/construct.h"
+#include "expr/diff.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

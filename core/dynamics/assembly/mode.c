@@ -2,6 +2,7 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/system_impl.h"
+#include "expr/construct.h"
 #include "expr/tape.h"
 #include "linalg/dense.h"
 

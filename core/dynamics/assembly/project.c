@@ -4,6 +4,7 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "dynamics/evaluate/row_groups.h"
+#include "expr/construct.h"
 #include "expr/tape.h"
 #include "linalg/dense.h"
 #include "linalg/saddle.h"

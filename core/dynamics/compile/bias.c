@@ -11,6 +11,7 @@
 #include "dynamics/compile/bias.h"
 
 #include "dynamics/compile/formula.h"
+#include "expr/construct.h"
 
 static const double Z[3] = {0, 0, 1};
 

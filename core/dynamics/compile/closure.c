@@ -1,6 +1,7 @@
 #include "dynamics/compile/closure.h"
 
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
 
 #include <stdio.h>
 #include <string.h>

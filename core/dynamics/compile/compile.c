@@ -3,6 +3,7 @@
 #include "dynamics/compile/bodies.h"
 #include "dynamics/compile/lagrangian.h"
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
 
 #include <math.h>
 

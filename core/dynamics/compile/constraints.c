@@ -17,6 +17,8 @@
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/loops.h"
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <math.h>
 #include <string.h>

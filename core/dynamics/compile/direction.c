@@ -1,5 +1,7 @@
 #include "dynamics/compile/direction.h"
 
+#include "expr/construct.h"
+
 // Of a ball, the quaternion (w, u) turns with (w, u)' = 1/2 (-u . e, w e + u x e), e the axis of
 // the velocity.
 int hn_direction_of_speed(const hn_system *sys, int j, int symbols[HN_DIRECTION_MOST],

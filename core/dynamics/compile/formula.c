@@ -1,6 +1,7 @@
 #include "dynamics/compile/formula.h"
 
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
 #include "expr/parse.h"
 
 #include <stdio.h>

@@ -3,6 +3,8 @@
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/loads.h"
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <math.h>
 #include <stdio.h>

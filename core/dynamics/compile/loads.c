@@ -2,6 +2,8 @@
 
 #include "dynamics/compile/formula.h"
 #include "dynamics/compile/system_build.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 /// Kept to report the wrenches of loads.
 static void note_value(hn_system *sys, const hn_load *load, hn_vec3 value) {

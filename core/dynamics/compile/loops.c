@@ -14,6 +14,7 @@
 #include "dynamics/compile/loops.h"
 
 #include "dynamics/compile/closure.h"
+#include "expr/construct.h"
 
 #include <math.h>
 #include <string.h>

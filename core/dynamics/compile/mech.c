@@ -1,6 +1,7 @@
 #include "dynamics/compile/mech.h"
 
 #include "dynamics/compile/formula.h"
+#include "expr/construct.h"
 
 int hn_mech_is_planar(const hn_mech *m, int link) {
     return !m->tree->groups[m->tree->links[link].group].moving;

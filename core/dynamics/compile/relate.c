@@ -8,6 +8,8 @@
 // met, whose links then stand in it by their absolute angle alone.
 #include "dynamics/compile/relate.h"
 
+#include "expr/construct.h"
+
 static const double Z[3] = {0, 0, 1};
 
 typedef struct walk {

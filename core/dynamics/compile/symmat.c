@@ -1,5 +1,7 @@
 #include "dynamics/compile/symmat.h"
 
+#include "expr/construct.h"
+
 #include <stdlib.h>
 
 typedef struct slot {

@@ -1,5 +1,7 @@
 #include "dynamics/compile/system_build.h"
 
+#include "expr/construct.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

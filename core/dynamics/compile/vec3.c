@@ -1,5 +1,7 @@
 #include "dynamics/compile/vec3.h"
 
+#include "expr/construct.h"
+
 #include <math.h>
 
 hn_vec3 hn_vec3_zero(void) {

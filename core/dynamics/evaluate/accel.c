@@ -6,6 +6,7 @@
 #include "dynamics/evaluate/ldl.h"
 #include "dynamics/evaluate/pivot_noise.h"
 #include "dynamics/evaluate/row_groups.h"
+#include "expr/construct.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"
 

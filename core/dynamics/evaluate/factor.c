@@ -5,6 +5,7 @@
 #include "dynamics/evaluate/inputs.h"
 #include "dynamics/evaluate/ldl.h"
 #include "dynamics/evaluate/row_groups.h"
+#include "expr/construct.h"
 
 #include <math.h>
 #include <string.h>

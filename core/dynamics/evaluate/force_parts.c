@@ -2,6 +2,8 @@
 
 #include "dynamics/compile/direction.h"
 #include "dynamics/evaluate/inputs.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <stdlib.h>
 #include <string.h>

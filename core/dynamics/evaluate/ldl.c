@@ -3,6 +3,7 @@
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/compile/symmat.h"
+#include "expr/construct.h"
 
 #include <math.h>
 #include <string.h>

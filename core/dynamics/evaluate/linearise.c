@@ -4,6 +4,8 @@
 #include "dynamics/evaluate/linearise.h"
 
 #include "dynamics/compile/direction.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/tape.h"
 
 #include <math.h>

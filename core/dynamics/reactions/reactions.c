@@ -4,6 +4,7 @@
 #include "dynamics/compile/relate.h"
 #include "dynamics/reactions/reactions_balance.h"
 #include "dynamics/reactions/reactions_efforts.h"
+#include "expr/construct.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -11,6 +11,8 @@
 #include "dynamics/reactions/reactions_efforts.h"
 
 #include "dynamics/compile/formula.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,8 @@
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/compile/direction.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/tape.h"
 
 #include <math.h>

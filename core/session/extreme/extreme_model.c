@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scene of a point and where its runs start: settings filled in from the sweep, states off the loops by a stated amount.
 #include "dynamics/compile/coordinates.h"
+#include "expr/construct.h"
 #include "session/extreme/extreme_internal.h"
 
 #include "dynamics/evaluate/eval.h"

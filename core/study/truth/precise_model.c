@@ -1,5 +1,7 @@
 #include "study/truth/precise_model.h"
 
+#include "expr/tape_long.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,6 +5,7 @@
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
+#include "expr/diff.h"
 #include "support/mechanism.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #include "dynamics/analyse/dyads.h"
 
 #include "dynamics/evaluate/eval.h"
+#include "expr/diff.h"
 #include "support/model.h"
 #include "support/near.h"
 

@@ -2,6 +2,8 @@
 
 #include "base/arena.h"
 #include "dynamics/evaluate/ldl.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <math.h>
 #include <stdio.h>

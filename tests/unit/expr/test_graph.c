@@ -1,5 +1,7 @@
 #include "support/near.h"
 
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/graph.h"
 #include "support/alloc.h"
 

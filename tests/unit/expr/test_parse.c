@@ -1,6 +1,8 @@
 #include "support/near.h"
 
 #include "base/strbuf.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/parse.h"
 #include "expr/print.h"
 #include "support/alloc.h"

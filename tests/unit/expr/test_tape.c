@@ -1,8 +1,11 @@
 #include "support/near.h"
 
 #include "base/strbuf.h"
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "expr/parse.h"
 #include "expr/tape.h"
+#include "expr/tape_long.h"
 #include "support/alloc.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 // What the loader makes of sound scenes: the shipped ones, and small ones for each rule of the format.
+#include "expr/construct.h"
 #include "expr/parse.h"
 #include "scene/scene.h"
 
