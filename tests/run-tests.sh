@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: run-tests.sh PROGRAM...
 # Runs the programs from the project's root, TEST_JOBS at once (all processors), so the longest are best named first. Prints one
 # line for each as it ends and the failures in full, and closes with "N passed, N failed". A program speaks cmocka's text or TAP;

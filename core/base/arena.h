@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_ARENA_H
 #define HN_BASE_ARENA_H
 // A run of memory that is given out piece by piece and freed at once. Blocks grow on demand

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_CLOCK_H
 #define HN_BASE_CLOCK_H
 // The two clocks of the program. Only differences between two readings mean anything.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_DIAG_H
 #define HN_BASE_DIAG_H
 // What went wrong, told so that a person can mend it: where (a JSON pointer or a column),

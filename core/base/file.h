@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_FILE_H
 #define HN_BASE_FILE_H
 // Files read and written whole. Reading never blocks and never takes more than it was told to;

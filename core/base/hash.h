@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_HASH_H
 #define HN_BASE_HASH_H
 // A 64-bit hash (FNV-1a with a final mix) for ids and interning. Not for secrets.

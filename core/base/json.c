@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The JSON half of strbuf.h: where commas go, how numbers and texts are written.
 #include "base/strbuf.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_JSON_TEXT_H
 #define HN_BASE_JSON_TEXT_H
 // Is this text JSON (RFC 8259), and if not, where and why? Parsers in use here accept more than the

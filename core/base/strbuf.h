@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_STRBUF_H
 #define HN_BASE_STRBUF_H
 // A growing text with one sticky error flag, and on it a JSON writer: commas and nesting are kept

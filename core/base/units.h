@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_UNITS_H
 #define HN_BASE_UNITS_H
 // Numbers for people: SI prefixes so that one to three digits stand before the point.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/word_list.h"
 
 const char *hn_word_joint(int i, int n, const char *last) {

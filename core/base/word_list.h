@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_BASE_WORD_LIST_H
 #define HN_BASE_WORD_LIST_H
 // Lists in a sentence: "a", "a and b", "a, b and c".

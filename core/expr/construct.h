@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_CONSTRUCT_H
 #define HN_EXPR_CONSTRUCT_H
 // Builds expressions. Every constructor returns the canonical form that graph.h describes.

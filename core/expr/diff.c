@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exact derivatives, substitution and evaluation: sweeps over node ids, no recursion.
 
 #include "expr/diff.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_DIFF_H
 #define HN_EXPR_DIFF_H
 // Exact differentiation, substitution and evaluation of expressions, by sweeps over the graph.

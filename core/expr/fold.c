@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constructors of products and functions. Each returns the canonical form described in graph.h.
 
 #include "expr/construct.h"

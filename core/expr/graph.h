@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_GRAPH_H
 #define HN_EXPR_GRAPH_H
 // The expression graph: every quantity of a scene as a directed graph of interned nodes.

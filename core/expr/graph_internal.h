@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_GRAPH_INTERNAL_H
 #define HN_EXPR_GRAPH_INTERNAL_H
 // How the graph stores its nodes; for the files of expr/ alone.

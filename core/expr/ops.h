@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_OPS_H
 #define HN_EXPR_OPS_H
 // The one table of operators: name as typed, arity, cost, value, derivative, text and LaTeX form, C

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_PARSE_H
 #define HN_EXPR_PARSE_H
 // Formulas as people type them: l1*cos(th1) - d, -x^2 (= -(x^2)), 2^-3^2 (right associative), 1e-3,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_PRINT_H
 #define HN_EXPR_PRINT_H
 // Expressions as text that hn_parse() reads back to the same node, as LaTeX, and as C.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The constructor of sums: merge equal terms, c^2 + s^2 = 1, flatten nested sums where that is no
 // longer, leading coefficient 1.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tape at work: evaluation and what can be read from it.
 #define _GNU_SOURCE // sincos
 

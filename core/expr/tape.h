@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_H
 #define HN_EXPR_TAPE_H
 // A tape: straight-line code for chosen outputs of a graph. Dead code is gone, sin and cos of one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // IR to tape: which operations share an instruction, in what order they run, which slot holds what.
 
 #include "expr/tape_internal.h"

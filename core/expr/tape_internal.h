@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_INTERNAL_H
 #define HN_EXPR_TAPE_INTERNAL_H
 // Instructions of the tape. Each is 16 bytes: what to do, where the result goes (v[0]), and up to

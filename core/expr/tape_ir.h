@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_IR_H
 #define HN_EXPR_TAPE_IR_H
 // What lies between graph and tape: operations without coefficients, interned like the graph's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tape in extended precision: a plain loop, for what is computed once and kept.
 #define _GNU_SOURCE // sincosl
 

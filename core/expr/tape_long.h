@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_LONG_H
 #define HN_EXPR_TAPE_LONG_H
 // A tape evaluated in extended precision, for reference solutions.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Graph to IR: places coefficients, takes common factors out of sums, turns reciprocals into
 // divisions.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_TAPE_LOWER_H
 #define HN_EXPR_TAPE_LOWER_H
 // From a graph to the operations of tape_ir.h.

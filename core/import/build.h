@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_BUILD_H
 #define HN_IMPORT_BUILD_H
 // A mechanism on its way from a file to a scene: both readers fill it, write.c writes it as JSON.

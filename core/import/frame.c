@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/frame.h"
 
 #include "linalg/small3.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_FRAME_H
 #define HN_IMPORT_FRAME_H
 // Places and directions of rigid bodies in numbers, and what their mass amounts to. Columns of R

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_IMPORT_H
 #define HN_IMPORT_IMPORT_H
 // Mechanisms written for other programs, read into a scene of ours: MuJoCo's MJCF with the files it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The loop file: what closes the loops of a URDF, which is a tree. JSON of ours:
 //   {"holonom_loops": 1, "joints": [..], "constraints": [..], "gravity": [x, y, z]}
 // Joints and constraints are written as in a scene (scene.schema.json); bodies are links by name,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_LOOPS_H
 #define HN_IMPORT_LOOPS_H
 // The loop file: joints that close loops, constraints and gravity, as JSON beside a model that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_MJCF_H
 #define HN_IMPORT_MJCF_H
 // MuJoCo's MJCF: what the parts of its reader share. Semantics after the XML reference of MuJoCo 3.

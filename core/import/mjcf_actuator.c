@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drives of joints: force = gear (gain u + b0 + b1 gear q + b2 gear v), u the control, which
 // becomes a parameter.
 #include "import/mjcf.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Attributes of MJCF elements: defaults by class, angles, orientations in five spellings.
 #include "import/mjcf.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Equalities of MJCF close loops: connect is a ball joint, weld a fixed one, joint a gear or a
 // formula of two coordinates.
 #include "import/mjcf.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mass of bodies: an `inertial` element, or the geoms as homogeneous solids.
 #include "import/mjcf.h"
 

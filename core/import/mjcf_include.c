@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // <include file="..."/>: the elements of another file in the place of this one, anywhere in a
 // model, before anything is read. As in MuJoCo the file's root is left out, whatever it is called,
 // names are relative to the folder of the model's own file, and each file is included once at most.

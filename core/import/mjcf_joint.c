@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints of MJCF: they act one after the other, the first next to the parent, with a body without
 // mass between two of them.
 #include "import/mjcf.h"

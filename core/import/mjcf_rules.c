@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the reader of MJCF does with every attribute it knows. Attributes it does not know are named
 // as such.
 #include "import/mjcf.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // URDF: links and joints by name, a tree whose root is fixed to the ground. Semantics after the ROS
 // wiki (urdf/XML).
 #include "import/urdf.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_URDF_H
 #define HN_IMPORT_URDF_H
 // URDF, the robot description of ROS: a tree of links and joints fixed to the ground.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanism as scene JSON, a body, joint or load a line.
 #include "import/write.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_WRITE_H
 #define HN_IMPORT_WRITE_H
 // Writes the scene.

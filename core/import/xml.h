@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_IMPORT_XML_H
 #define HN_IMPORT_XML_H
 // XML as a tree, bounded in size and depth, without a document type, entities of its own or

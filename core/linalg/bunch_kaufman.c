@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linalg/bunch_kaufman.h"
 
 #include <math.h>

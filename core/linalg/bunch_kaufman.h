@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_BUNCH_KAUFMAN_H
 #define HN_LINALG_BUNCH_KAUFMAN_H
 // Dense P A P' = L D L' of a symmetric indefinite matrix, D with 1 x 1 and 2 x 2 blocks chosen by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_COMPRESSED_H
 #define HN_LINALG_COMPRESSED_H
 // A sparse matrix in compressed columns, filled entry by entry in a sequence that seldom changes:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_DENSE_H
 #define HN_LINALG_DENSE_H
 // Small dense kernels. Matrices are row-major; nothing here allocates, and every sum runs in one

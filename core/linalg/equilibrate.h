@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_EQUILIBRATE_H
 #define HN_LINALG_EQUILIBRATE_H
 // Sizes from which the solvers of the saddle-point system (saddle.h, kkt.h) choose their scales:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_KKT_H
 #define HN_LINALG_KKT_H
 // The ways to solve the saddle-point system of constrained motion densely, one beside the other:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_LU_H
 #define HN_LINALG_LU_H
 // LU factors with row exchanges, real and complex, for the matrices of Newton's method: neither

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linalg/newton_matrix.h"
 
 #include "linalg/compressed.h"

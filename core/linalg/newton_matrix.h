@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_NEWTON_MATRIX_H
 #define HN_LINALG_NEWTON_MATRIX_H
 // Matrices of Newton's method, real or complex, that are filled and factored again and again. They

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_QR_H
 #define HN_LINALG_QR_H
 // Householder QR with column pivoting that stops where the columns left over are negligible:

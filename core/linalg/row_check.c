@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "linalg/row_check.h"
 
 #include "linalg/newton_matrix.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_ROW_CHECK_H
 #define HN_LINALG_ROW_CHECK_H
 // Do the rows of a large sparse J stand on their own? With rows brought to length 1, pivot k of the

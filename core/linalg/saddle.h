@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SADDLE_H
 #define HN_LINALG_SADDLE_H
 // Solves the saddle-point system of constrained motion densely, for every case that the fast sparse

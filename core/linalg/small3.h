@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SMALL3_H
 #define HN_LINALG_SMALL3_H
 // Vectors of three numbers and 3 x 3 matrices (rows first). Outputs may be the same array as an

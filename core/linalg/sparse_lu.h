@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SPARSE_LU_H
 #define HN_LINALG_SPARSE_LU_H
 // Sparse LU of a square matrix that is factored again and again with new values in the same places:

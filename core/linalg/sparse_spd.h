@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SPARSE_SPD_H
 #define HN_LINALG_SPARSE_SPD_H
 // Sparse A = P' L D L' P of a symmetric positive definite matrix whose entries change and whose

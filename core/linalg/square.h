@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SQUARE_H
 #define HN_LINALG_SQUARE_H
 // Square systems without symmetry: Newton matrices of implicit integrators, saddle systems with the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_LINALG_SVD_H
 #define HN_LINALG_SVD_H
 // Singular values for reports (GSL). Not for use inside a step: cost about 10 m n^2 operations.

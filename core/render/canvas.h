@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_CANVAS_H
 #define HN_RENDER_CANVAS_H
 // A small drawing surface: shapes are recorded as triangles, then painted by OSMesa off the screen,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Painting what a canvas has recorded: OSMesa for the pixels, libpng for the file.
 #include "render/canvas.h"
 

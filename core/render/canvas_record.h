@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_CANVAS_RECORD_H
 #define HN_RENDER_CANVAS_RECORD_H
 // What a canvas has recorded; shared by the files of the canvas, not for others.

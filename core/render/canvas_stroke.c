@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Lines of the canvas, and what is made of lines: rings, arrows, hatching, markers, text.
 #include "render/canvas.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_FONT_H
 #define HN_RENDER_FONT_H
 // A stroke font in the manner of technical lettering (ISO 3098: even strokes, round ends), drawn by

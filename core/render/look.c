@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/look.h"
 
 // Found by random search with the hue of each row held, for the largest smallest distance: at least

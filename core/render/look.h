@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_LOOK_H
 #define HN_RENDER_LOOK_H
 // The one table of colours, dashes, markers and glyphs. The page (through its JSON), the snapshot,

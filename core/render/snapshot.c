@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The picture from its parts: the words around the drawing, the order of painting, and the
 // description.
 #include "render/snapshot.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_H
 #define HN_RENDER_SNAPSHOT_H
 // Draws a mechanism in the poses of several methods at one time, as one picture:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanism itself: one function per kind of shape, found through one table.
 #include "render/snapshot_shapes.h"
 

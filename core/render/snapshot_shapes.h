@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_SHAPES_H
 #define HN_RENDER_SNAPSHOT_SHAPES_H
 // The mechanism itself on a sheet. Inside render/ only.

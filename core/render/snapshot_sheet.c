@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The sheet: what is there, where it goes, and the colours of a pose.
 #include "render/snapshot_sheet.h"
 

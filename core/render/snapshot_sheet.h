@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_SHEET_H
 #define HN_RENDER_SNAPSHOT_SHEET_H
 // The sheet of a snapshot: where drawing, inset and legend go, and how metres become pixels. Inside

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tears at cut joints: red in place where they are wide enough to be seen, and the widest one
 // magnified.
 #include "render/snapshot_tear.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_SNAPSHOT_TEAR_H
 #define HN_RENDER_SNAPSHOT_TEAR_H
 // The gaps of cut joints on a sheet. Inside render/ only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_VIEW_H
 #define HN_RENDER_VIEW_H
 // The direction of view: a parallel projection of the world on a plane. Plane mechanisms are seen

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SCENE_READER_H
 #define HN_SCENE_READER_H
 // Inside scene/ only: what all parts of the loader share. A reader walks the JSON tree, knows where

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SCENE_SCENE_H
 #define HN_SCENE_SCENE_H
 // A scene is a mechanism as a person writes it down, checked. It is plain data, owned by its arena

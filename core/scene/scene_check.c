@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Facts about the scene as a whole: names that clash, inertia that no body has, bodies that hang in
 // the air.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constraints beside the joints of a scene of bodies. Each entry of "constraints" is an object with
 // one member that names the kind, and perhaps a name.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The coordinates of a joint: how many its type has, how they are called, which are driven, how far
 // they may go.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The drawing of a scene of bodies and joints that says nothing about it. Each part is made where
 // it was left out:
 // * a body that draws nothing itself gets bars through its joints and the ends of its rods (to its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Directions: axes, reference directions, normals.
 
 #include "scene/reader.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points and shapes: what to draw, as the scene says it. What it leaves open is made in
 // scene_default.c.
 

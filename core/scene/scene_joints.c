@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints as a plain list: what they join, where, along which axes, and the names of their
 // coordinates.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The loader: text -> checked tree -> scene. The order of the parts is the order in which names
 // become known: parameters, bodies, joints or Lagrangian (coordinates), points, loads, shapes,
 // start.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A Lagrangian scene: coordinates, energies, constraints and generalised forces as formulas. Beside
 // bodies each of its own coordinates is carried by a body without mass on a joint of its own, so
 // that everything knows it as any other.

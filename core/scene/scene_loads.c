@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Springs, dampers, torques and forces of a scene of bodies and joints. Each entry of "loads" is an
 // object with one member that names the kind, and perhaps a name.
 

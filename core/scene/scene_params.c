@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Parameters: a number or a formula of other parameters, a unit, a range.
 
 #include "scene/reader.h"

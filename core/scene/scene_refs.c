@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // References by name to what a scene holds: coordinates, the coordinate of a joint, points.
 
 #include "scene/scene_refs.h"

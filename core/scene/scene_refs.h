@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SCENE_SCENE_REFS_H
 #define HN_SCENE_SCENE_REFS_H
 // References by name that several parts of the reader follow: each fault says what is named and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The start of a run, of either kind of scene: values that are kept, guesses, the assembly mode
 // asked for.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One evaluation of accelerations and multipliers: the reference four-bar FB0 through its tape beside the same equations
 // written by hand for this one mechanism, and the ladder of N four-bars for its growth with N. Prints CSV.
 //

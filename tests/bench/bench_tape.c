@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tape against the compiler: one list of formulas, compiled by the C compiler into a function and typed into the
 // expression graph. They are the accelerations and multipliers of the reference four-bar FB0 (absolute angles,
 // uniform rods 1, 2 and 1.8 m of 1, 2 and 1.8 kg, span 2.2 m) with the saddle point factored by L D L' with pivots

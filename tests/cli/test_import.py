@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """holonom import: files of other programs become scenes that the schema allows, and what is not taken over is told."""
 
 import glob

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A work-precision study by GNU parallel: several parts at a time on one machine, and then the whole.
 #
 #     parallel.sh 2 8 results four-bar work-precision --time-limit 0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A Slurm of one machine that lives in a folder: its own key, ports and daemons, no systemd, and nothing left of it afterwards."""
 
 import contextlib

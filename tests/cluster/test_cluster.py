@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The recipes for a Slurm job array and for GNU parallel, run as they are: both merge to the file of one process."""
 
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The tables of methods in two README files are those that the program lists. `test_methods.py --write` puts them there. Speaks TAP."""
 
 import json

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `make run` does on a machine that lacks packages, tried with stand-ins for dpkg-query, apt-get, id and sudo.
 # Speaks TAP.
 set -u

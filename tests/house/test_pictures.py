@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every shipped scene has a picture, and its lesson shows it. Speaks TAP."""
 
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every shipped scene has its reference solution, current and shipped whole; three of them computed anew. Speaks TAP."""
 
 import glob

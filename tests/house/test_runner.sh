@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The counting of tests, tried on outputs made for it. Speaks TAP.
 set -u
 work=$(mktemp -d) || exit 1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The stored table of every scene by every method has no cell missing. Speaks TAP."""
 
 import csv

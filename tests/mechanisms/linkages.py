@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Plane linkages against compass-and-ruler geometry: the closed pose at the angle that the crank has reached."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Machines of few degrees of freedom whose motion, period or forces have a closed form."""
 import math
 

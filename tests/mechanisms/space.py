@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Mechanisms in space: overconstrained loops, joints between oblique axes, tops and governors."""
 import math
 

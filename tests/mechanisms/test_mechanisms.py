@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Mechanisms in the spirit of a textbook's end-of-chapter problems, by three methods each, against facts that are computed
 # without the program: compass-and-ruler geometry, closed forms, virtual work, conserved quantities. Speaks TAP.
 # usage: test_mechanisms.py [NAME...]; with --table it prints the largest deviation beside each tolerance.

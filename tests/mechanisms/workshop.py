@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pieces to write mechanisms with, and the run of one: nothing in here knows an equation of motion.
 
 A mechanism of the tests is a dict {name, scene, fact, time, at, methods}; its fact is a function of a Motion that yields

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: table.py PROGRAM [SCENE...] [--errors METHOD]
 # Measures the order of every pair of formulation and integrator with a fixed step: positions, speeds, multipliers
 # recomputed from the saddle system, and the scheme's own ("raw") multipliers, against what theory says.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: steps.py PROGRAM
 # What adaptive integrators take for the same accuracy: accepted steps, rejected ones and evaluations of the equations of
 # motion, ours beside the libraries' (GSL, SUNDIALS IDA), on three problems whose end state is trusted.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: table.py PROGRAM
 # Runs every problem of tests/reference/states/ by its methods through the command line and prints to how many
 # digits the states agree with the trusted ones, and with those that were published.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: pictures.py PROGRAM
 # A picture of every shipped scene at its start, into the folder `pictures` of its lesson.
 import glob

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The reference solution of every shipped scene, into lessons/NN-topic/references: `make references`.
 
     references.py PROGRAM

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Scenes that cannot be: each is told in words, at the place at fault, within a moment and little memory,
 # however large it is. Speaks TAP.
 import copy

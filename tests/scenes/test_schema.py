@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every shipped scene is what scene.schema.json says, and the schema says something: a scene with one field too
 # many, anywhere, or one that is needed taken away, is refused. Speaks TAP.
 import glob

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_ALLOC_H
 #define HN_SUPPORT_ALLOC_H
 // Counts and fails the allocations of the code under test. Every unit test is linked with

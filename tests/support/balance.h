@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_BALANCE_H
 #define HN_SUPPORT_BALANCE_H
 // Newton and Euler for every body of a scene with the wrenches of its joints, from poses alone: bodies are placed joint by joint

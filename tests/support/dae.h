@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_DAE_H
 #define HN_SUPPORT_DAE_H
 // Steppers of the differential-algebraic system driven straight through their table, step by step, without a run around them.

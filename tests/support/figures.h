@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_FIGURES_H
 #define HN_SUPPORT_FIGURES_H
 // Figures that programs written by hand for one mechanism at a time printed for these methods, each measured again. A figure

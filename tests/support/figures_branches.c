@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/figures_sets.h"
 
 #include "support/near.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/figures_sets.h"
 
 static const hn_figure_topic topics[] = {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_IMPORTED_H
 #define HN_SUPPORT_IMPORTED_H
 // Mechanisms of other programs as scenes, for tests. Failures stop the test with their message.

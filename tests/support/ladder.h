@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_LADDER_H
 #define HN_SUPPORT_LADDER_H
 // The ladder of N four-bars and its exact motion, for tests of what methods make of its flat poses. Twice a turn all bars

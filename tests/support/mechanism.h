@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_MECHANISM_H
 #define HN_SUPPORT_MECHANISM_H
 // Random mechanisms, and their motion worked out the plain way: every body in world axes, body by body, numbers only. What

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_MODEL_H
 #define HN_SUPPORT_MODEL_H
 // A scene loaded, compiled and assembled, for tests of dynamics and above. Failures stop the test with their message.

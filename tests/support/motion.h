@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_MOTION_H
 #define HN_SUPPORT_MOTION_H
 // A method run on a model, for tests of whole runs. Failures stop the test with the method and its reason.

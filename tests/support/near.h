@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_NEAR_H
 #define HN_SUPPORT_NEAR_H
 // Comparing doubles in cmocka tests so that a failure shows both values, and poisoning outputs so that a

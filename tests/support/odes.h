@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_ODES_H
 #define HN_SUPPORT_ODES_H
 // Motions known in closed form, as right-hand sides for steppers, and a plain fixed-step loop.

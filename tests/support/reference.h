@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_REFERENCE_H
 #define HN_SUPPORT_REFERENCE_H
 // Published problems with states that can be trusted, read from tests/reference/states/NAME.json: which scenes write the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_RING_H
 #define HN_SUPPORT_RING_H
 // Spatial linkages of one loop, as JSON. Every body's frame is the world's at the start, so that all joints stand at zero and the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Facts that hold for any mechanism, see shipped.h.
 #include "support/shipped.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_SHIPPED_H
 #define HN_SUPPORT_SHIPPED_H
 // Checks of a scene of the library that hold for any mechanism. Failures stop the test and name the scene.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_TRIAL_H
 #define HN_SUPPORT_TRIAL_H
 // A scene file loaded, compiled and assembled, and runs on it, for tests of methods and runs. A failure on the way stops the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: every_method.py PROGRAM [SCENE...]
 # Every shipped scene by every formulation and every integrator, 2 seconds each or as long as the scene says where that is less: what
 # came of it, and why. Prints CSV, one row per scene and method; none is left out: finished, stopped and refused all stand there,

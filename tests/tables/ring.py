@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: ring.py PROGRAM [N...]
 # The closed ring of n links, 10 seconds, by every formulation: gap and energy, or why it ended early. Fixed steps of 0.012 s / n,
 # the scene's own; radau5 chooses its own (rtol = 1e-6). The motion is chaotic, so positions are not compared.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: summary.py [FILE]
 # The table of every scene by every method, as one line for each method: how many scenes it finished, where it stopped or was refused.
 import csv

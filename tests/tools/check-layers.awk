@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Compares the #include lines with the table of layers and rooms: "include what is below you, nothing else".
 # usage: awk -v layers='base: linalg:base expr:base ...' -v rooms='study.run: study.cost:run ...' \
 #            -f check-layers.awk FILES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A concept is one .h and one .c of the same name. Finds sources without a header of their own name.
 
 usage: check-names.py EXCEPTIONS SOURCE...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Finds lines above 100 columns in C sources and headers, comments included; a column is a character, not a byte.
 # usage: awk -f check-width.awk FILES
 # Prints file:line for each; exit 1 if there is any.

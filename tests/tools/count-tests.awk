@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Counts the tests in the output of one program: cmocka's text or TAP (subtests are counted, their parents not).
 # usage: awk -v status=EXIT -v program=NAME -f count-tests.awk OUTPUT
 # First line: passed and failed. Then one line for each failure.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # usage: packages.sh STAMP ENTRY...
 # Installs the Debian packages that are missing, asking nothing, and says first in one line which ones.
 # An entry is a package name, or `command:package`: then the command, however it got here, is enough.

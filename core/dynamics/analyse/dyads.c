@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/dyads.h"
 
 #include "dynamics/analyse/dyads_form.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_DYADS_H
 #define HN_DYNAMICS_DYADS_H
 // Position analysis in closed form. Once the independent coordinates are fixed, the closure rows

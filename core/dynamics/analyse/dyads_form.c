@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/dyads_form.h"
 
 #include "expr/construct.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_DYADS_FORM_H
 #define HN_DYNAMICS_DYADS_FORM_H
 // One step of a position analysis: its recognition from phi, and its solution in closed form.

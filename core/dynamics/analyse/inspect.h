@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_INSPECT_H
 #define HN_DYNAMICS_INSPECT_H
 // A compiled scene as a JSON document: tree, loops and why they were cut, frames, coordinates,

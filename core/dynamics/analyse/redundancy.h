@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REDUNDANCY_H
 #define HN_DYNAMICS_REDUNDANCY_H
 // Redundant closure rows, by name: rows that vanish in every pose (the compiler dropped them), and

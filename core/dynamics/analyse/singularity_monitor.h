@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SINGULARITY_MONITOR_H
 #define HN_DYNAMICS_SINGULARITY_MONITOR_H
 // The singularity monitor: how far a motion is from a configuration where closure rows depend on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_H
 #define HN_DYNAMICS_ASSEMBLE_H
 // Consistent starting values: position, then velocity, then acceleration and multipliers.

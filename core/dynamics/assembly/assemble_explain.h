@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_EXPLAIN_H
 #define HN_DYNAMICS_ASSEMBLE_EXPLAIN_H
 // Why a loop stays open, in words: the gap, the pins, and a missing length. Where the joints of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_MODE_H
 #define HN_DYNAMICS_ASSEMBLE_MODE_H
 // The search for the assembly mode that a scene asks for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_POSE_H
 #define HN_DYNAMICS_ASSEMBLE_POSE_H
 // Poses of bodies as numbers, straight from the scene, for what the closure rows do not say: which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_POSITION_H
 #define HN_DYNAMICS_ASSEMBLE_POSITION_H
 // The search for a closed pose: Levenberg-Marquardt far away, least-norm Newton near the end, then

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ASSEMBLE_STATE_H
 #define HN_DYNAMICS_ASSEMBLE_STATE_H
 // The state of one assembly at work, and what all its stages do with it: evaluate, move, measure.

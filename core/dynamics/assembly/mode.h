@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_MODE_H
 #define HN_DYNAMICS_MODE_H
 // Assembly modes of loops: on which branch each loop is closed.

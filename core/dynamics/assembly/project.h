@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_PROJECT_H
 #define HN_DYNAMICS_PROJECT_H
 // Projection of a state onto phi = 0 and J v + phi_t = 0, mass-weighted or Euclidean.

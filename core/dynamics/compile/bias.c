@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bias forces h (what the joints must give at zero u-dot, gravity included) and energy, by
 // recursion.
 //

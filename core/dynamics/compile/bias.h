@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_BIAS_H
 #define HN_DYNAMICS_BIAS_H
 // Bias forces h (what the joints must give at zero u-dot, gravity included) and energy of a tree of

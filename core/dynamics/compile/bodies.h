@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_BODIES_H
 #define HN_DYNAMICS_BODIES_H
 // A scene of bodies and joints, compiled: symbols, terms, rows, loops, points, drawing.

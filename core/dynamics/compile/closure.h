@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_CLOSURE_H
 #define HN_DYNAMICS_CLOSURE_H
 // Building blocks of closure rows: two ends seen from their common ancestor, directions fixed to

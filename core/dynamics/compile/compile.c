@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/compile.h"
 
 #include "dynamics/compile/bodies.h"

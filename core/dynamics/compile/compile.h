@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_COMPILE_H
 #define HN_DYNAMICS_COMPILE_H
 // From a scene to a system of equations (system.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constraints beside the joints, as rows. D = p - q, seen from the common ancestor of the two
 // bodies; d, u, n fixed to q's body.
 //     distance  (D . D - L^2) / (2 L) [m].  Not |D| - L: its gradient D / |D| is undefined where

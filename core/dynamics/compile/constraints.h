@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_CONSTRAINTS_H
 #define HN_DYNAMICS_CONSTRAINTS_H
 // Constraints beside the joints (distances, lines, planes, gears, rolling, formulas) as rows; the

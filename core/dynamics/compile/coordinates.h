@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_COORDINATES_H
 #define HN_DYNAMICS_COORDINATES_H
 // Positions and velocities of a system: to and from the scene's coordinates, and along a velocity.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_DIRECTION_H
 #define HN_DYNAMICS_DIRECTION_H
 // Derivatives along velocities, for balls too, whose velocities are no rates of coordinates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/drawing.h"
 
 #include "dynamics/compile/system_impl.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_DRAWING_H
 #define HN_DYNAMICS_DRAWING_H
 // The drawing of a system: shapes between world points, each point an index into the points that

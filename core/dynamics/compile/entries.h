@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ENTRIES_H
 #define HN_DYNAMICS_ENTRIES_H
 // A sparse matrix of expressions as a list of entries that are not identically zero, in the order

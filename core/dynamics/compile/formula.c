@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/formula.h"
 
 #include "dynamics/compile/system_build.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_FORMULA_H
 #define HN_DYNAMICS_FORMULA_H
 // Formulas of a scene in its own names: parameters, t, coordinates and rates as the scene calls

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/lagrangian.h"
 
 #include "dynamics/compile/formula.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LAGRANGIAN_H
 #define HN_DYNAMICS_LAGRANGIAN_H
 // A scene of formulas, or formulas beside bodies, compiled by exact differentiation. With

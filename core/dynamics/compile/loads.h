@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LOADS_H
 #define HN_DYNAMICS_LOADS_H
 // Loads as generalised forces, by virtual work: the power of a load is force . rate, and the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loop closures. A cut joint is written as rows between its two halves, relative to the lowest
 // common ancestor of its bodies and in that loop's frame (relate.c):
 //

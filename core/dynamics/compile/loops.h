@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LOOPS_H
 #define HN_DYNAMICS_LOOPS_H
 // Loop closures: every cut joint as rows between its two halves; the derivation is in loops.c.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_MECH_H
 #define HN_DYNAMICS_MECH_H
 // Tracing a tree of bodies: the expressions that are known of each link, and the passes that make

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_QUATERNION_H
 #define HN_DYNAMICS_QUATERNION_H
 // Rotations of balls. A unit quaternion (w, x, y, z) = (cos a/2, sin a/2 n) stands for the turn R

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Motion of two points relative to a common ancestor of their links, in ONE frame of that
 // ancestor's: closure rows and loads are
 // written in the frame of their loop, never in the world by default.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_RELATE_H
 #define HN_DYNAMICS_RELATE_H
 // Motion of two points relative to a common ancestor of their links, in one frame of that

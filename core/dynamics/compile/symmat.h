@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SYMMAT_H
 #define HN_DYNAMICS_SYMMAT_H
 // A sparse symmetric matrix of expressions that fills in while it is eliminated: entries by hash,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SYSTEM_H
 #define HN_DYNAMICS_SYSTEM_H
 // A system: a scene compiled to equations. It keeps the expressions of every term; an evaluator

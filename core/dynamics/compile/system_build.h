@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SYSTEM_BUILD_H
 #define HN_DYNAMICS_SYSTEM_BUILD_H
 // What scenes of bodies and scenes of formulas are both compiled with: memory, symbols, rows.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_SYSTEM_IMPL_H
 #define HN_DYNAMICS_SYSTEM_IMPL_H
 // The inside of a system, for the files of dynamics/ only. system.h says what it means to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/tree.h"
 
 #include "dynamics/compile/vec3.h"

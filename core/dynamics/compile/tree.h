@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_TREE_H
 #define HN_DYNAMICS_TREE_H
 // The spanning tree of a scene, and the frames that its equations are written in, as numbers.

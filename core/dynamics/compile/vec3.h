@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_VEC3_H
 #define HN_DYNAMICS_VEC3_H
 // Vectors and 3 x 3 matrices of expressions. A component that is zero costs no node, so that a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ACCEL_H
 #define HN_DYNAMICS_ACCEL_H
 // Accelerations and multipliers at one state, from the saddle-point system

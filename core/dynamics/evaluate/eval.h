@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_EVAL_H
 #define HN_DYNAMICS_EVAL_H
 // Evaluators: one tape for exactly the terms asked for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_FACTOR_H
 #define HN_DYNAMICS_FACTOR_H
 // The factor of the saddle-point matrix as numbers, for methods that solve with it more than once:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_FORCE_PARTS_H
 #define HN_DYNAMICS_FORCE_PARTS_H
 // The forces of a system taken apart:

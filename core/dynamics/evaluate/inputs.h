@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_INPUTS_H
 #define HN_DYNAMICS_INPUTS_H
 // The inputs that every tape of a system takes: q, v, t, alpha, beta, and the parameters where they

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LDL_H
 #define HN_DYNAMICS_LDL_H
 // Sparse symbolic factorisation K = L D L' of the saddle-point matrix [W J'; J 0], written as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LIMITS_H
 #define HN_DYNAMICS_LIMITS_H
 // Values of the coordinates that have limits, those of cut joints among them.

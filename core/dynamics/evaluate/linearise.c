@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every derivative is a directional one, forward over the expressions of R, f, J v + phi_t and
 // gamma, a sweep per velocity: what does not depend on a coordinate is never visited. a and lambda
 // are symbols of the tape's own; their names hold a blank, which no formula can spell.

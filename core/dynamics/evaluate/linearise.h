@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_LINEARISE_H
 #define HN_DYNAMICS_LINEARISE_H
 // Exact derivatives of the equations of motion, for Newton's method in implicit integrators and for

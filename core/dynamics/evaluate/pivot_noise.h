@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_PIVOT_NOISE_H
 #define HN_DYNAMICS_PIVOT_NOISE_H
 // The noise floor of the pivots of J when the constraints are violated by a given gap.

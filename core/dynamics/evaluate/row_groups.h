@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_ROW_GROUPS_H
 #define HN_DYNAMICS_ROW_GROUPS_H
 // The length of the shortest row of J against the longest of its loop and unit.

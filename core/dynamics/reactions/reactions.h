@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REACTIONS_H
 #define HN_DYNAMICS_REACTIONS_H
 // What every joint carries: the force and moment that the joint's parent exerts on its child, at

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/reactions/reactions_balance.h"
 
 #include "dynamics/compile/constraints.h"

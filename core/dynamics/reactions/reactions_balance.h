@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REACTIONS_BALANCE_H
 #define HN_DYNAMICS_REACTIONS_BALANCE_H
 // The balance of every body, leaves first, which gives the wrenches of the joints.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Energies given as formulas beside bodies, as what they do along the scene's coordinates x; and
 // the list of efforts.
 //

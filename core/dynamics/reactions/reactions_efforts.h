@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REACTIONS_EFFORTS_H
 #define HN_DYNAMICS_REACTIONS_EFFORTS_H
 // What energies given as formulas and constraints on coordinates do along coordinates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/reactions/reactions_state.h"
 
 #include <string.h>

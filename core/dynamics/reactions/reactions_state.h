@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REACTIONS_STATE_H
 #define HN_DYNAMICS_REACTIONS_STATE_H
 // The state of the reactions, shared by their parts, with the small vectors and places that they

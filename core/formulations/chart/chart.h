@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_H
 #define HN_FORMULATIONS_CHART_H
 // A chart of the closed mechanism: speeds split into dependent and independent ones, J = [J_d J_i]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/chart/chart_choice.h"
 
 #include "formulations/chart/chart_dependent.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_CHOICE_H
 #define HN_FORMULATIONS_CHART_CHOICE_H
 // The choice of the dependent and independent columns of a chart, and whether it still serves.

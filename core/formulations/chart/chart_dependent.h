@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_DEPENDENT_H
 #define HN_FORMULATIONS_CHART_DEPENDENT_H
 // The dependent columns of a chart at one configuration: factor of J_d, basis and volume. A square

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_FOLLOW_H
 #define HN_FORMULATIONS_CHART_FOLLOW_H
 // Position solves that stay on their branch: the loops are closed from the tangent prediction at the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_JACOBIAN_H
 #define HN_FORMULATIONS_CHART_JACOBIAN_H
 // Exact derivatives on a chart (chart.h), by the chain rule over those of accel_jacobian.h: with v

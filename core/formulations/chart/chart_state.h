@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_CHART_STATE_H
 #define HN_FORMULATIONS_CHART_STATE_H
 // The data of a chart (chart.h) and the report of its failures.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_MINIMAL_STATE_H
 #define HN_FORMULATIONS_MINIMAL_STATE_H
 // What coordinate partitioning and reduced coordinates share: the state y = (q_i, v_i), as many

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ORTHONORMAL_STATE_H
 #define HN_FORMULATIONS_ORTHONORMAL_STATE_H
 // The state y = (q, u) with v = N u + s and an orthonormal basis N (tangent_space.h). Tracked, the

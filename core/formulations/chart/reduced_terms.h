@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_REDUCED_TERMS_H
 #define HN_FORMULATIONS_REDUCED_TERMS_H
 // The equations of motion left on the free motion, written out at one state:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_TANGENT_SPACE_H
 #define HN_FORMULATIONS_TANGENT_SPACE_H
 // The tangent space of the closed mechanism at one state, with an orthonormal basis, and what lies

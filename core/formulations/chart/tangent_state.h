@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_TANGENT_STATE_H
 #define HN_FORMULATIONS_TANGENT_STATE_H
 // What both null-space formulations share: the state y = (q, u) with v = N(q) u + s, so that J v +

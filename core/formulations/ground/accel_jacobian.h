@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ACCEL_JACOBIAN_H
 #define HN_FORMULATIONS_ACCEL_JACOBIAN_H
 // Exact derivatives of the accelerations that a formulation makes of the equations of motion, for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/accel_newton.h"
 
 #include "formulations/ground/slopes.h"

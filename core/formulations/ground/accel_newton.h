@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ACCEL_NEWTON_H
 #define HN_FORMULATIONS_ACCEL_NEWTON_H
 // Newton's systems (3) of accel_jacobian.h: filled, factored and solved.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ACCEL_ODE_H
 #define HN_FORMULATIONS_ACCEL_ODE_H
 // What index-1, Baumgarte and projection share: the state y = (q, v) in system coordinates and the

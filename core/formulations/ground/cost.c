@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/cost.h"
 
 void hn_cost_add(hn_cost *sum, const hn_cost *part) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_COST_H
 #define HN_FORMULATIONS_COST_H
 // Work and events of a formulation or an integrator, summed over a run: plain counters, reset by

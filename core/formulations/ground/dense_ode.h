@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_DENSE_ODE_H
 #define HN_FORMULATIONS_DENSE_ODE_H
 // What the formulations share that get their acceleration from M, f, J and gamma as dense arrays,

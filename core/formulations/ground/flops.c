@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/flops.h"
 
 double hn_flops_qr(int m, int n) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_FLOPS_H
 #define HN_FORMULATIONS_FLOPS_H
 // Arithmetic operations (additions and multiplications count one each) of the dense linear algebra

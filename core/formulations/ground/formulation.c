@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/formulation.h"
 
 const char *hn_form_name(hn_dae_form form) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_FORMULATION_H
 #define HN_FORMULATIONS_FORMULATION_H
 // A formulation: how the constraints enter the equations of motion. It turns a system into an

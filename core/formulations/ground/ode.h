@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_ODE_H
 #define HN_FORMULATIONS_ODE_H
 // The ordinary differential equation y' = F(t, y) that a formulation makes of a system, as

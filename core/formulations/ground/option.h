@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_OPTION_H
 #define HN_FORMULATIONS_OPTION_H
 // One option of a formulation or an integrator, as in "alpha=20". (A scene has parameters, a method

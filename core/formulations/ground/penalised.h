@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_PENALISED_H
 #define HN_FORMULATIONS_PENALISED_H
 // What penalty and augmented Lagrangian share: the matrix M + a J' J, which is positive definite

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_REDUCED_MASS_H
 #define HN_FORMULATIONS_REDUCED_MASS_H
 // The mass left on the free motion, N' M N, with M taken entry by entry.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_SLOPES_H
 #define HN_FORMULATIONS_SLOPES_H
 // The object behind accel_jacobian.h, and the products and matrix entries that its derivatives

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_STATE_ODE_H
 #define HN_FORMULATIONS_STATE_ODE_H
 // What the formulations share whose state is y = (q, v) in system coordinates:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_FORMULATIONS_FORMULATION_LIST_H
 #define HN_FORMULATIONS_FORMULATION_LIST_H
 // The list of all formulations. A new formulation is one file in formulations/rows and one line

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/formulation.h"
 
 // M a - f + J' lambda* = 0 with lambda* := lambda* + w phi until phi = 0; then speeds and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/formulation.h"
 
 // q' = G (v + M^-1 J' mu),   M v' = f + J' lambda,   phi = 0,   J v + phi_t = 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/formulation.h"
 
 // q' = G v,   M v' = f + J' lambda,   J v + phi_t = 0: the rows of the loop differentiated once.

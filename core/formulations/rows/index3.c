@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "formulations/ground/formulation.h"
 
 static const char *const projects[] = {"no", "yes"};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/assembly/project.h"
 #include "dynamics/evaluate/accel.h"
 #include "formulations/ground/accel_ode.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/constrained/half_explicit.h"
 
 #include "dynamics/assembly/project.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_HALF_EXPLICIT_H
 #define HN_INTEGRATORS_HALF_EXPLICIT_H
 // Half-explicit Runge-Kutta methods on the index-2 system: explicit in everything but the

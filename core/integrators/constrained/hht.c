@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/constrained/newmark.h"
 #include "integrators/step/options.h"
 

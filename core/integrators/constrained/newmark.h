@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_NEWMARK_H
 #define HN_INTEGRATORS_NEWMARK_H
 // What generalised-alpha and HHT share: Newmark's formulas for the motion and Newton's method on

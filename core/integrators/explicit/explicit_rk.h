@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_EXPLICIT_RK_H
 #define HN_INTEGRATORS_EXPLICIT_RK_H
 // One engine for every explicit Runge-Kutta tableau. The functions below fit the slots of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/explicit/tableau.h"
 
 static const double euler_c[1] = {0}, euler_A[1] = {0}, euler_b[1] = {1};

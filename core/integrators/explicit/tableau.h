@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_TABLEAU_H
 #define HN_INTEGRATORS_TABLEAU_H
 // Explicit Runge-Kutta methods as data. A tableau holds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/step/dae_base.h"
 #include "integrators/external/ida_jacobian.h"
 #include "integrators/external/ida_words.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IDA_JACOBIAN_H
 #define HN_INTEGRATORS_IDA_JACOBIAN_H
 // The matrix of IDA's Newton iteration, dF/dy + c dF/dy', for the residual of ida_problem.h, from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/external/ida_problem.h"
 
 #include "dynamics/compile/coordinates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IDA_PROBLEM_H
 #define HN_INTEGRATORS_IDA_PROBLEM_H
 // The equations as SUNDIALS IDA takes them: a residual F(t, y, y') = 0 in y = (q, v, lambda [,

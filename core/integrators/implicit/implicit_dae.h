@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_DAE_H
 #define HN_INTEGRATORS_IMPLICIT_DAE_H
 // Collocation methods on the differential-algebraic system. Unknowns of a stage are the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_LINEAR_H
 #define HN_INTEGRATORS_IMPLICIT_LINEAR_H
 // The linear systems of Newton's method on a differential-algebraic system (implicit_dae.h), with s

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_ODE_H
 #define HN_INTEGRATORS_IMPLICIT_ODE_H
 // Collocation methods on an ordinary differential equation y' = F(t, y): one engine, whose

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_STEPPERS_H
 #define HN_INTEGRATORS_IMPLICIT_STEPPERS_H
 // What the cards of collocation methods share: with the nodes of a method as data, its slots are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_IMPLICIT_TABLEAU_H
 #define HN_INTEGRATORS_IMPLICIT_TABLEAU_H
 // Collocation methods, given by their nodes: with l_j the Lagrange polynomials of the nodes,

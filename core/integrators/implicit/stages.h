@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_STAGES_H
 #define HN_INTEGRATORS_STAGES_H
 // The stages of a collocation method by simplified Newton iteration, whatever the equations are:

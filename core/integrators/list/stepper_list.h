@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_STEPPER_LIST_H
 #define HN_INTEGRATORS_STEPPER_LIST_H
 // The list of all integrators. A new integrator is one file in its room and one line here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/method/catalogue.h"
 
 #include "integrators/method/method_spec.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_CATALOGUE_H
 #define HN_INTEGRATORS_CATALOGUE_H
 // The catalogue of methods as JSON: the cards that the page, the terminal and `list methods` show.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_METHOD_SPEC_H
 #define HN_INTEGRATORS_METHOD_SPEC_H
 // The spelling of a method: FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_BALL_STEP_H
 #define HN_INTEGRATORS_BALL_STEP_H
 // Variational steps on the group of turns, for the balls of a system. A ball goes from R0 to R1 =

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_COMPENSATED_H
 #define HN_INTEGRATORS_COMPENSATED_H
 // The sum y_new = y + increment over many steps, with what rounding cuts off each time carried into

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_CONTROL_H
 #define HN_INTEGRATORS_CONTROL_H
 // Step size control of adaptive integrators: the error norm, the first step and the next one.

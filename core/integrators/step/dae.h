@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_DAE_H
 #define HN_INTEGRATORS_DAE_H
 // Integrators that take the differential-algebraic system itself instead of an ordinary

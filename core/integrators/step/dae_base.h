@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_DAE_BASE_H
 #define HN_INTEGRATORS_DAE_BASE_H
 // What integrators of the differential-algebraic system share: evaluators of its terms, consistent

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_LAGRANGE_TERMS_H
 #define HN_INTEGRATORS_LAGRANGE_TERMS_H
 // A system read as Lagrange's equations of the second kind, for variational integrators:

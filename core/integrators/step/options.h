@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_OPTIONS_H
 #define HN_INTEGRATORS_OPTIONS_H
 // Options that several integrators share. An integrator's table places them with an enum of its

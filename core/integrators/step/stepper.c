@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrators/step/stepper.h"
 
 bool hn_stepper_serves(const hn_stepper *stepper, hn_dae_form form) {

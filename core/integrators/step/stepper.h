@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_INTEGRATORS_STEPPER_H
 #define HN_INTEGRATORS_STEPPER_H
 // An integrator: how time advances. One file and one line in integrators/list each; explicit

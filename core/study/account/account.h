@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ACCOUNT_H
 #define HN_STUDY_ACCOUNT_H
 // Where the error of a run comes from, and the energy: an account of every step, that adds up.

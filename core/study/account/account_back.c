@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the end of a run back to its start: what each step's parts have become by then.
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_FLOW_H
 #define HN_STUDY_FLOW_H
 // The flow of an ordinary differential equation over a short time, to all digits that double precision gives: what a step

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CLASSING_H
 #define HN_STUDY_CLASSING_H
 // What a ladder of sizes says about a method: model error or discretisation error?

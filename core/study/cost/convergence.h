@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CONVERGENCE_H
 #define HN_STUDY_CONVERGENCE_H
 // Observed order: the same method over h, h/2, h/4, ... against a reference state.

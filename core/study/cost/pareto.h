@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PARETO_H
 #define HN_STUDY_PARETO_H
 // Which method for which accuracy: the cheapest finished point per band, the front over all points, and what each method

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SHARDS_H
 #define HN_STUDY_SHARDS_H
 // A study in parts that several processes or machines can take: every point belongs to one part, by a rule that knows the request

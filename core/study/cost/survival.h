@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SURVIVAL_H
 #define HN_STUDY_SURVIVAL_H
 // What becomes of a run that has to come through poses where the loops lose rank and could fold over: it stays with the exact motion, or

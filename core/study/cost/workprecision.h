@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WORKPRECISION_H
 #define HN_STUDY_WORKPRECISION_H
 // Error against cost: each method over a ladder of steps (fixed) or tolerances (adaptive), every finished point with six

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PACE_H
 #define HN_STUDY_PACE_H
 // When a loop of steps should look at its limits (time used, told to stop): after each step of a mechanism of hundreds of bodies,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_RUN_H
 #define HN_STUDY_RUN_H
 // A run: one method on one scene. It steps, keeps time as t0 + n h, samples, counts, and tells what it met. A run

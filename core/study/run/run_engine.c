@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An engine: a formulation and an integrator put together, for either kind of pair: an ordinary differential equation and a
 // stepper of it, or a differential-algebraic system and an integrator that takes it as it is (integrators/step/dae.h). What is
 // different between the two is here; the rest of a run knows engines only.

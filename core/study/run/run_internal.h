@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_RUN_INTERNAL_H
 #define HN_STUDY_RUN_INTERNAL_H
 // The inside of a run, shared by run.c (life and steps), run_sample.c (states at a time), run_watch.c

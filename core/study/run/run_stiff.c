@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness: an explicit method that chooses its own steps never fails where it is the wrong one. It stays accurate, with steps
 // pinned at |h lambda| on the edge of its stability region, however smooth the motion is: T c / (3.3 m) steps of dopri5
 // for a damper c on a mass m. Its own right-hand sides tell (hn_stepper.stiffness).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WALK_H
 #define HN_STUDY_WALK_H
 // A run taken to its end with a look at equal intervals, within a limit of computing time, and stopped on request.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SPECTRUM_H
 #define HN_STUDY_SPECTRUM_H
 // What an integrator will meet at a state, before a step is taken: the spectrum of the motion on the loops.

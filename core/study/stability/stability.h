@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_STABILITY_H
 #define HN_STUDY_STABILITY_H
 // What a fixed step does to a motion: predicted from the spectrum on the loops (study/stability/spectrum.h), and tried.

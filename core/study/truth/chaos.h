@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CHAOS_H
 #define HN_STUDY_CHAOS_H
 // How fast neighbouring motions of a mechanism part. Where they part exponentially no method can follow the motion for long, and errors beyond a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ERRORS_H
 #define HN_STUDY_ERRORS_H
 // How far a state is from the reference solution, in six numbers without units that are never mixed: closed is not

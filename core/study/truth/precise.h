@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_H
 #define HN_STUDY_PRECISE_H
 // A motion in extended precision (long double: 64 bits of mantissa on x86). Two computations are offered; they have the model's terms in

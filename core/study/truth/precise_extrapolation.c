@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gragg's midpoint rule with 2, 4, 6, ... substeps, extrapolated in h^2 (Aitken and Neville); the column that gives most for its cost is
 // aimed at. Only the increments over a step are extrapolated, so that rounding is relative to them. Source: Hairer, Norsett & Wanner 1993,
 // sec. II.9.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss collocation. The rates at the stages are iterated to rounding; their expansion in Legendre polynomials tells the error of the
 // step, and its continuation starts the next. Source: Hairer, Norsett & Wanner 1993, sec. II.7; Hairer, Lubich & Wanner 2006, sec. VIII.6.
 #include "study/truth/precise_stepper.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/truth/precise_model.h"
 
 #include "expr/tape_long.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_MODEL_H
 #define HN_STUDY_PRECISE_MODEL_H
 // The equations of a system in extended precision: its tapes run in long double. This, and nothing behind it, is what computations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The saddle system whole: rows of J that depend on others are left out at the start of a step, K is equilibrated and eliminated
 // with partial pivoting. Source: Golub & Van Loan 2013, sec. 3.4 (elimination), 5.2.8 (Gram-Schmidt).
 #include "study/truth/precise_solver.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_SOLVER_H
 #define HN_STUDY_PRECISE_SOLVER_H
 // Accelerations in extended precision, in two ways that share nothing but the model's terms: a table each.

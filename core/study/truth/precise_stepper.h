@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_STEPPER_H
 #define HN_STUDY_PRECISE_STEPPER_H
 // y' = f(t, y) in extended precision, in two ways that share nothing: a table each. Both choose their steps.

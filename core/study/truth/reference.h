@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_REFERENCE_H
 #define HN_STUDY_REFERENCE_H
 // A reference solution: what the motion of a scene is, by two computations that share nothing but the scene's equations,

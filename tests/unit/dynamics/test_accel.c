@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the multipliers of a state are worth: told from the rank and the condition of K.
 
 #include "dynamics/evaluate/accel.h"

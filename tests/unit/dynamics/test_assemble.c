@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Assembly: start values that close, pins that hold, modes that are kept, and closures that cannot
 // be reached and say why.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Terms of random spatial mechanisms against plain body-by-body mechanics, and against
 // differentiation.
 #include "support/near.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Constraints beside the joints: derivatives of every kind, and motions and multipliers that are
 // known without us.
 #include "support/near.h"

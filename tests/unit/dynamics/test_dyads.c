@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Position analysis in closed form: recognised where it exists, equal to what Newton's method
 // finds, on the branch of the start.
 #include "dynamics/analyse/dyads.h"

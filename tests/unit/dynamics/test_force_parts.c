@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of the forces against the whole, which comes from the bodies one by one and not from
 // the energies.
 #include "dynamics/compile/coordinates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The reference four-bar FB0 (uniform rods 1, 2, 1.8 m of 1, 2, 1.8 kg, ground 2.2 m): both kinds
 // of scenes, other planes and doubled closures against its formulas written out, and its
 // accelerations and multipliers against known numbers.

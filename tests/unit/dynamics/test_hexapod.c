@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The hexapod of Stewart and Gough, base joints 15 degrees off three axes, platform joints 45
 // degrees: sizes, freedoms, its singular pose (Fichter 1986: the platform turned by a right angle),
 // and what its equations cost. Every body's frame is the world's at the pose, so that the ring of

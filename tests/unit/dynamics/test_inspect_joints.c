@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is told of joints with several freedoms, of limits and of motors.
 #include "support/near.h"
 

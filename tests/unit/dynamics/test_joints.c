@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Joints of every type, in the tree and closing loops, against plain body-by-body mechanics and
 // against differentiation.
 #include "support/near.h"

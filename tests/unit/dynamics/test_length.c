@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The characteristic length, by which gaps are judged, is the mechanism's own, however the scene
 // was written.
 

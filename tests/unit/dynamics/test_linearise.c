@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exact derivatives of the equations of motion against differences along the motions of the
 // coordinates.
 #include "dynamics/compile/coordinates.h"

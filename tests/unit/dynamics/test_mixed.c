@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A Lagrangian's terms beside bodies: the same mechanism written in both ways, and closed forms.
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Assembly modes: those of all loops are told, and the one that a scene asks for is reached, or
 // missed with its reason.
 #include "support/near.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Projection: the nearest closed state, what it costs in energy, redundancy, lost rank, and its
 // cost on long ladders.
 

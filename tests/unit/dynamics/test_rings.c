@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Spatial linkages of one loop: whichever joint is cut, however the whole is turned in space, the
 // mechanism is the same.
 #include "support/near.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The radar of singular poses: closed forms of sigma, the time of the next pose, the freedoms and
 // branches there.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole scenes, compiled: what is refused and why, loads against their power, formulas, telling.
 #include "support/near.h"
 

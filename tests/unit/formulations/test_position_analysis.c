@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reduced coordinates with loops closed by dyads against the same by Newton's method.
 #include "formulations/ground/formulation.h"
 #include "formulations/list/formulation_list.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The equations left on the free motion, at random closed states of every shipped scene.
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files that are no mechanism: each is refused with a line and what is wrong, quickly and in bounded memory.
 #include "support/near.h"
 

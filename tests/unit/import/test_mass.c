@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mass, centre and inertia of what is read against numbers worked out by hand.
 #include "support/near.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What MJCF says and how it stands in the scene.
 #include "support/near.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files that include files: the same scene as with their text in place, and every way in which it cannot be.
 #include "support/near.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Collocation coefficients against the published ones, and the basis in which Newton's systems fall
 // apart.
 #include "integrators/implicit/implicit_tableau.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/alloc.h"
 #include "integrators/list/stepper_list.h"
 #include "support/near.h"

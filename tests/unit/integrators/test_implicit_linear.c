@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The linear systems of Newton's method on differential-algebraic forms: they are solved, and their
 // condition does not depend on the step in the unknowns that are used.
 #include "integrators/implicit/implicit_linear.h"

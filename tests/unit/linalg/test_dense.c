@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Dense kernels against closed forms and against sums done another way.
 
 #include "linalg/dense.h"

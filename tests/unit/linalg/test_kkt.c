@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dense ways to solve the saddle-point system, one beside the other: extreme masses, a massless link, rows that repeat and
 // rows that contradict each other. The reference is an elimination in quadruple precision.
 

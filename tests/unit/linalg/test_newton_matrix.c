@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Newton matrices solve what they were filled with, dense or sparse, real or complex, at a cost that follows the entries.
 #include "linalg/newton_matrix.h"
 

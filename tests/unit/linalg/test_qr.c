@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pivoted QR: reconstruction, rank, least-norm solutions; and singular values against closed forms.
 
 #include "linalg/dense.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The dense saddle-point solve: redundancy, mass ratios, massless coordinates, contradictions, against quadruple precision.
 
 #include "linalg/dense.h"

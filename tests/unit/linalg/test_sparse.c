@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse factors of matrices that keep their pattern: against matrices built from known solutions, by their cost in entries,
 // and where they have to refuse.
 

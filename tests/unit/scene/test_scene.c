@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the loader makes of sound scenes: the shipped ones, and small ones for each rule of the format.
 #include "expr/construct.h"
 #include "expr/parse.h"

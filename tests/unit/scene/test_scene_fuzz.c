@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Text that was cut off or damaged, and memory that runs out: an error, never a crash, a leak or a hang.
 #include "scene/scene.h"
 

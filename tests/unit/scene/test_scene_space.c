@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the loader makes of joints with several coordinates, of constraints beside joints, and of actuators.
 #include "scene/scene.h"
 

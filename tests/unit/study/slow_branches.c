@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // No run ends on another branch of the motion without a word: many methods over many steps and tolerances, on mechanisms whose
 // branches cross or come close. Where the run stands is judged by closed forms.
 

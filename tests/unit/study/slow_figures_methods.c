@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of an independent program for the classical formulations, reproduced: the tables of Baumgarte's alpha and of
 // projection on the reference four-bar, where alpha tied to the step costs the order, the end of an unstabilised pendulum; and
 // the null-space forms with their bases. Errors are of all coordinates at the end, the largest, against projection@dop853.

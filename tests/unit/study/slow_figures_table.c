@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The figures that take seconds, each topic a test: tests/support/figures.h says what a figure is.
 #include "support/figures.h"
 

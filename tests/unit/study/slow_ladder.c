@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder of N four-bars: what a step costs as N grows, and who comes through its flat poses.
 
 #include "support/ladder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder of N four-bars by integrators with Newton matrices: what a step costs for each loop as N grows.
 
 #include "support/model.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Benchmark problems whose motion is known in closed form, run by methods of different families.
 
 #include "support/reference.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Example mechanisms of other programs, with their published figures and with states that were found by two independent
 // computations: Drake, the Modelica Standard Library, Exudyn.
 

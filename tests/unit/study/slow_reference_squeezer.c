@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two problems of the test set for initial value problems: Andrews' seven-body squeezer, as bodies and joints and as a
 // Lagrangian, and the car axis, whose road moves. Hairer & Wanner 1996, VII.7; Mazzia & Magherini 2008.
 

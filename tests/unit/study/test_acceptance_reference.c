@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole runs against trusted numbers: the reference four-bar at t = 1 and 2, found by two independent computations that share
 // 13 digits, and the N-four-bar, whose motion is known in closed form.
 

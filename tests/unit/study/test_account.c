@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The account of a run adds up, and puts errors and energy where they are known to come from.
 
 #include "study/account/account.h"

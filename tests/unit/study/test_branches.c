@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Other branches and other frames: jumps between assembly modes with a ball in the loop, links that stay folded, rows that part
 // where loops stand open, a platform carried through its singular pose; the same motion whatever the units and wherever it is.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Regular motions are told from chaotic ones, and by how much these part.
 
 #include "study/truth/chaos.h"

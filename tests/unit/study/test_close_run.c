@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Index 2 with rows that depend on each other: Bennett's loop, five rows of rank two, keeps closed and keeps its energy.
 
 #include "support/model.h"

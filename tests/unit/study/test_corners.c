@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loads with corners: the run stops at them and starts anew; limits of coordinates are told.
 #include "support/near.h"
 

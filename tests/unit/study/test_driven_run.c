@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanisms that are moved from outside: where every freedom is prescribed nothing but the drive says how large a step may be.
 
 #include "support/model.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What must hold whatever the speed of a mechanism, and how explicit Euler gains energy: closed forms.
 
 #include "support/motion.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Flows against motions in closed form, and derivatives that are carried back along them.
 
 #include "dynamics/compile/coordinates.h"

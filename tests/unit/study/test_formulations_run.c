@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
 #include "formulations/list/formulation_list.h"
 #include "support/trial.h"

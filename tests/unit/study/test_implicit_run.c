@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit methods in runs: orders of q, v and multipliers on every form they serve, what stays closed, redundant rows, stiffness.
 #include "study/cost/convergence.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The null-space forms as whole runs: with the basis by partition, orthonormal and carried along, in tangent-space coordinates,
 // and with a basis that nobody tracks.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs with orientations: bodies that turn freely or about a point, against what theory says of them.
 #include "support/near.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Penalty, augmented Lagrangian and Udwadia-Kalaba against figures of an independent program and against exact statements.
 
 #include "dynamics/compile/coordinates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Spatial linkages run by every formulation whose state is (q, v): they agree, keep closed what they say they keep, and without
 // motors or dampers the energy.
 #include "support/near.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A run tells when it comes close to a pose where the closure rows depend on each other, and only then.
 
 #include "support/motion.h"

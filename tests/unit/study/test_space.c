@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanisms in space, drives and published problems, as shipped: what closed forms and other people's figures say of them.
 #include "support/near.h"
 #include "support/trial.h"

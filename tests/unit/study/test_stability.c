@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stiff mechanisms at steps below and beyond the predicted limit, and what trials are classed as.
 #include "study/stability/stability.h"
 

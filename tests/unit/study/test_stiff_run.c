@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Explicit methods with a step control on a stiff part: they arrive, with steps that stability holds, and say so.
 
 #include "support/motion.h"
