@@ -435,7 +435,7 @@ class CommandLine(unittest.TestCase):
             self.assert_exit(done, DONE)
             said = done.stderr.decode().splitlines()
             self.assertEqual(len(said), 1, said)  # flat at 0.345 s and next at 0.679 s
-            self.assertRegex(said[0], r"^holonom: t = 0\.34\d* s: one step of .* 2 freedoms there instead of 1")
+            self.assertRegex(said[0], r"^holonom: t = 0\.34\d* s: one step of .* 2 degrees of freedom there instead of 1")
 
     def test_malformed_scenes_never_crash_it(self):
         for text in ("{", "[]", "null", '{"a": 1}', "\x00", "[" * 10000, '{"bodies": 1}', "é", '{"title": "\\ud800"}'):

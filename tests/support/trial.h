@@ -4,6 +4,7 @@
 // A scene file loaded, compiled and assembled, and runs on it, for tests of methods and runs. A failure on the way stops the
 // test with its message.
 
+#include "dynamics/assembly/assemble.h"
 #include "study/run/run.h"
 
 typedef struct hn_trial {

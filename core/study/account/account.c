@@ -100,7 +100,7 @@ static int is_ode(const hn_books *b) {
 }
 
 /// The flow B over one step, into b->owned, from the engine's own unknowns.
-static hn_status follow_own(hn_books *b, hn_run_engine *e, double t, double h, const double *y) {
+static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const double *y) {
     if (!b->own_flow) {
         const hn_status status = hn_flow_create(e->ode.n_pos, e->ode.n_vel, b->arena, &b->own_flow);
         if (status != HN_OK) {
@@ -113,14 +113,14 @@ static hn_status follow_own(hn_books *b, hn_run_engine *e, double t, double h, c
     }
     const hn_status status = hn_flow_run(b->own_flow, &e->ode, FLOW_TOL, t, h, y, b->y_own);
     return status == HN_OK
-               ? hn_engine_read(b->run, e, t + h, b->y_own, b->owned, b->owned + b->info.nq)
+               ? hn_engine_read(e, t + h, b->y_own, b->owned, b->owned + b->info.nq)
                : status;
 }
 
 /// B for a step that has been made: of a copy of the formulation started at its beginning.
 static hn_status follow_aside(hn_books *b, double t, double h, const double *y) {
-    hn_run_engine *side = &b->run->side;
-    const hn_status status = hn_engine_start(b->run, side, t, y, y + b->info.nq);
+    hn_engine *side = hn_run_side_engine(b->run);
+    const hn_status status = hn_engine_start(side, t, y, y + b->info.nq);
     return status == HN_OK ? follow_own(b, side, t, h, side->y) : status;
 }
 
@@ -153,29 +153,29 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
 }
 
 void hn_books_present(const hn_books *b, double *y) {
-    memcpy(y, b->run->now.q, (size_t)b->info.nq * sizeof *y);
-    memcpy(y + b->info.nq, b->run->now.v, (size_t)b->info.nv * sizeof *y);
+    memcpy(y, b->steps->now.q, (size_t)b->info.nq * sizeof *y);
+    memcpy(y + b->info.nq, b->steps->now.v, (size_t)b->info.nv * sizeof *y);
 }
 
 /// Books one step: the run's, the two flows beside it, their differences and energies.
 static hn_status book_step(hn_books *b, hn_diag *diag) {
-    hn_run *run = b->run;
+    hn_stepping *steps = b->steps;
     hn_account *out = b->out;
     hn_status status = make_room(b, diag);
     if (status != HN_OK) {
         return status;
     }
     double *r = hn_books_record(b, b->kept), *y = r + 2, *part = y + b->ny, work = 0;
-    const double t = run->now.t, planned = run->adaptive ? 0 : run->h_next;
+    const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
     hn_books_present(b, y);
     // with a fixed step the formulation's own chart or basis is still the one the step will be made in
     int owned =
-        is_ode(b) && planned > 0 && follow_own(b, &run->main, t, planned, run->main.y) == HN_OK;
-    status = hn_run_step(run);
+        is_ode(b) && planned > 0 && follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
+    status = hn_run_step(b->run);
     if (status != HN_OK) {
         return status;
     }
-    const double h = run->now.t - t;
+    const double h = steps->now.t - t;
     status = follow(b, t, h, y, &work);
     if (status == HN_OK && is_ode(b) && (!owned || fabs(h - planned) > 1e-9 * h)) {
         status = follow_aside(b, t, h, y);
@@ -185,7 +185,7 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
         return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
                            "the equations of motion could not be followed beside the step from t = "
                            "%.4g to %.4g s: %s",
-                           t, run->now.t, hn_status_text(status));
+                           t, steps->now.t, hn_status_text(status));
     }
     const double *after_own = is_ode(b) ? b->owned : b->flowed;
     double *unmended = b->unmended.q; // q and v stand together
@@ -218,17 +218,17 @@ int hn_books_asked_to_stop(const hn_books *b, double share) {
 static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
     const long long most = b->opts->max_steps > 0 ? b->opts->max_steps : MOST_STEPS;
     hn_status status = HN_OK;
-    while (status == HN_OK && b->run->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
+    while (status == HN_OK && b->steps->now.t < T * (1 - HN_BOOKS_ARRIVED)) {
         if ((long long)b->kept >= most) {
             return hn_diag_set(diag, HN_ERR_LIMIT, "/time", "a larger step, or a shorter time",
                                "the account is for %lld steps at most", most);
         }
         if (b->kept % HN_BOOKS_BETWEEN_QUESTIONS == 0 &&
-            hn_books_asked_to_stop(b, 0.3 * b->run->now.t / T)) {
+            hn_books_asked_to_stop(b, 0.3 * b->steps->now.t / T)) {
             return hn_diag_set(diag, HN_ERR_BUDGET, NULL, NULL, "stopped on request");
         }
-        if (b->run->adaptive && b->run->h_next > T - b->run->now.t) {
-            b->run->h_next = T - b->run->now.t; // the last step ends at T
+        if (b->steps->adaptive && b->steps->h_next > T - b->steps->now.t) {
+            b->steps->h_next = T - b->steps->now.t; // the last step ends at T
         }
         status = book_step(b, diag);
     }
@@ -305,15 +305,15 @@ static void explain(const hn_books *b, hn_diag *diag) {
 static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     hn_account *out = b->out;
     hn_books_present(b, b->y);
-    const double start = energy_at(b, b->run->now.t, b->y);
-    out->conservative = b->run->watch.conservative;
-    b->run->main.unmended = &b->unmended;
+    const double start = energy_at(b, b->steps->now.t, b->y);
+    out->conservative = hn_run_is_conservative(b->run);
+    b->steps->engine.uncorrected = &b->unmended;
     hn_status status = book_steps(b, T, diag);
     const hn_run_summary s = hn_run_get_summary(b->run);
     const int failed = s.state == HN_RUN_FAILED;
     out->state = failed ? HN_RUN_FAILED : HN_RUN_FINISHED;
     snprintf(out->reason, sizeof out->reason, "%s", s.reason);
-    out->t = b->run->now.t;
+    out->t = b->steps->now.t;
     out->steps = (long long)b->kept;
     hn_books_present(b, b->y);
     out->energy = energy_at(b, out->t, b->y) - start;
@@ -352,6 +352,7 @@ hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, cons
     hn_status status = hn_run_create(sys, spec, q, v, &run_opts, &b.run, diag);
     if (status == HN_OK) {
         out->has_equations = is_ode(&b);
+        b.steps = hn_run_stepping(b.run);
         b.arena = hn_arena_create(1 << 16);
         status = b.arena ? create_parts(&b) : HN_ERR_MEMORY;
         status = status == HN_OK

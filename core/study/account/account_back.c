@@ -112,9 +112,9 @@ static int end_of(const hn_books *b, const hn_method_spec *spec, double T, doubl
     const hn_run_opts opts = hn_run_opts_default();
     int arrived = 0;
     *t = 0;
-    if (hn_run_create(b->sys, spec, b->run->start.q, b->run->start.v, &opts, &run, NULL) == HN_OK) {
+    if (hn_run_create(b->sys, spec, b->steps->start.q, b->steps->start.v, &opts, &run, NULL) == HN_OK) {
         hn_run_watch(run, 0);
-        const double early = hn_method_is_adaptive(spec) ? 0 : 1e-9 * run->h_next;
+        const double early = hn_method_is_adaptive(spec) ? 0 : 1e-9 * hn_run_stepping(run)->h_next;
         arrived =
             hn_run_advance(run, T - early) == HN_OK && hn_run_sample(run, T, &sample) == HN_OK;
         if (arrived) {
@@ -133,7 +133,7 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
     const hn_scene *scene = hn_system_scene(b->sys);
     double worst = -1;
     hn_system_from_user(b->sys, reference, q);
-    hn_system_difference(b->sys, q, b->run->now.q, delta);
+    hn_system_difference(b->sys, q, b->steps->now.q, delta);
     hn_system_rates_to_user(b->sys, delta, user);
     for (int i = 0; i < n; i++) {
         const int length =
@@ -164,7 +164,7 @@ static double told_by(const hn_books *b, const char *key, double value, double T
     hn_method_spec spec = *hn_run_spec(b->run);
     double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;
     double *setting = hn_method_find_option(&spec, key, NULL);
-    if (!setting || *setting == value || b->run->adaptive) {
+    if (!setting || *setting == value || b->steps->adaptive) {
         return (double)NAN;
     }
     *setting = value;
@@ -172,7 +172,7 @@ static double told_by(const hn_books *b, const char *key, double value, double T
         return (double)NAN;
     }
     hn_system_from_user(b->sys, end, q);
-    hn_system_difference(b->sys, q, b->run->now.q, delta);
+    hn_system_difference(b->sys, q, b->steps->now.q, delta);
     hn_system_rates_to_user(b->sys, delta, user);
     return user[b->out->coordinate];
 }

@@ -9,7 +9,7 @@
 #include "formulations/ground/accel_jacobian.h"
 #include "study/account/account.h"
 #include "study/account/flow.h"
-#include "study/run/run_internal.h"
+#include "study/run/run.h"
 
 enum { HN_BOOKS_BETWEEN_QUESTIONS = 16 }; ///< steps
 
@@ -24,6 +24,7 @@ typedef struct hn_books {
     hn_system_info info;
     int ny, nd; ///< nq + nv, 2 nv
     hn_run *run;
+    hn_stepping *steps; ///< of the run
     const hn_account_opts *opts;
     hn_account *out;
     double asked; ///< end [s]
@@ -36,7 +37,7 @@ typedef struct hn_books {
     hn_accel_jacobian *slopes; ///< of `plain`
     hn_flow_carrier *carrier;
     int own_size;
-    hn_run_state_at unmended;
+    hn_state_at unmended;
     double *record; ///< per step: t, h, y (ny), the parts (HN_PARTS x nd)
     size_t kept, room, width;
     double *y, *y_own, *flowed, *owned, *was_y; ///< ny each

@@ -16,7 +16,7 @@
 #include "session/model/lists.h"
 #include "session/model/model.h"
 #include "session/references/references.h"
-#include "study/incidents/incident.h"
+#include "study/incidents/kinds.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -146,7 +146,7 @@ static void a_platform_carried_through_its_singular_yaw_is_warned_before(void **
     assert_non_null(near);
     assert_true(near->t > 1.3);
     assert_non_null(strstr(near->message, "length ")); // the legs are alike: rounding decides which
-    assert_non_null(strstr(near->message, "1 freedoms there instead of 0"));
+    assert_non_null(strstr(near->message, "1 degree of freedom there instead of 0"));
     hn_run_free(run);
     hn_model_close(&m);
 }

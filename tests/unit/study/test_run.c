@@ -255,11 +255,12 @@ static void an_open_gap_is_told_once_with_a_remedy_that_closes_it(void **state) 
 
 static void every_kind_of_incident_has_a_spelling_a_name_and_a_rule(void **state) {
     (void)state;
-    const hn_incident_kind *kinds = hn_incident_kinds();
+    const hn_incident_kind *const *kinds = hn_incident_kinds();
     for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
-        assert_true(kinds[i].spelling && kinds[i].name && kinds[i].rule);
+        assert_int_equal(kinds[i]->code, i);
+        assert_true(kinds[i]->spelling && kinds[i]->name && kinds[i]->rule);
         for (int k = 0; k < i; k++) {
-            assert_string_not_equal(kinds[i].spelling, kinds[k].spelling);
+            assert_string_not_equal(kinds[i]->spelling, kinds[k]->spelling);
         }
     }
 }

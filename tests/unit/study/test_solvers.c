@@ -170,7 +170,7 @@ static void what_waits_at_the_flat_pose_is_told(void **state) {
     assert_non_null(near);
     assert_non_null(strstr(near->message, "B1: x"));
     assert_non_null(strstr(near->message, "between coupler 1 and vertical 1"));
-    assert_non_null(strstr(near->message, "2 freedoms there instead of 1"));
+    assert_non_null(strstr(near->message, "2 degrees of freedom there instead of 1"));
     assert_non_null(strstr(near->message, "two branches of motion cross"));
     assert_non_null(strstr(near->message, "went straight on"));
     const hn_incident *ahead = find(run, HN_INCIDENT_RANK_AHEAD);

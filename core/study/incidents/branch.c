@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/branch.h"
+
+#include "linalg/dense.h"
+#include "study/incidents/heading.h"
+#include "study/incidents/motion.h"
+#include "study/incidents/remedies.h"
+#include "study/incidents/report.h"
+
+#include <math.h>
+
+/// Of the largest sigma_min so far: a singular configuration has been passed.
+static const double RANGE = 0.35;
+
+// ---- the assembly mode ------------------------------------------------------------------------------------------
+
+/// The loop whose mode changed its sign by most since the last check, -1: none changed it by more than is reported.
+static int find_flipped_loop(const hn_watch *w) {
+    double most = HN_RUN_WARN_MODE;
+    int loop = -1;
+    for (int k = 0; k < hn_mode_watch_count(w->mode); k++) {
+        const double jump = fabs(w->modes[k] - w->last_modes[k]);
+        if (w->modes[k] * w->last_modes[k] < 0 && jump > most) {
+            most = jump;
+            loop = k;
+        }
+    }
+    return loop;
+}
+
+// A change of sign in smooth motion is a dead point that was passed; with a jump it is the other branch.
+static void check_mode(hn_watch *w) {
+    const hn_system *sys = w->run->sys;
+    hn_mode_watch_values(w->mode, w->run->now.t, w->run->now.q, w->modes);
+    const int loop = find_flipped_loop(w);
+    const bool named = !hn_system_scene(sys)->is_lagrangian; // formulas share their loops
+    if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP) {
+        hn_incident_report(
+            w, &hn_incident_branch_flip, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
+            "the loop%s%s went from one assembly mode to the other in one step (%.2g to %.2g)",
+            named ? " " : "", named ? hn_system_loop_name(sys, loop) : "", w->last_modes[loop],
+            w->modes[loop]);
+    } else {
+        hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
+    }
+    double *const seen = w->last_modes;
+    w->last_modes = w->modes;
+    w->modes = seen;
+}
+
+// ---- velocities that turn round -----------------------------------------------------------------------------------
+
+// A motion turns back where its velocities are small, and there its accelerations explain it.
+static void check_turn(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    const int n = s->info.nv;
+    double back = 0;
+    if (!s->has_step || w->accel_status != HN_OK || s->info.nc == 0) {
+        return;
+    }
+    for (int i = 0; i < n; i++) {
+        back = hypot(back, s->now.v[i] + s->before.v[i]);
+    }
+    const double speed = fmin(hn_norm2(n, s->now.v), hn_norm2(n, s->before.v));
+    const double change = (s->now.t - s->before.t) * hn_norm2(n, w->a);
+    if (back < HN_RUN_WARN_BACK * speed && change < HN_RUN_WARN_BACK * 2 * speed) {
+        hn_incident_report(w, &hn_incident_branch_flip, "change of speed", 2 * speed, change,
+                           "the velocities turned round within one step of %.3g s: by the "
+                           "accelerations they could change by %.2g of their size, and they "
+                           "changed by 2",
+                           s->now.t - s->before.t, change / speed);
+    }
+}
+
+// ---- the direction of motion ----------------------------------------------------------------------------------------
+
+/// Completes the report on the configuration that has been passed. `angle` HUGE_VAL: the headings cannot be compared.
+static void finish_passing(hn_watch *w, double angle) {
+    const int passing = w->singular.passing;
+    w->singular.passing = 0;
+    if (passing == 0 || passing > w->log.n) {
+        return;
+    }
+    hn_incident *i = &w->log.list[passing - 1];
+    if (angle == HUGE_VAL) {
+        hn_incident_append(&w->log, i, "; the steps are too long to say which way the run went on");
+    } else if (angle > HN_RUN_WARN_TURN) {
+        hn_incident_append(&w->log, i, "; the run turned off there by %.2g rad", angle);
+    } else {
+        hn_incident_append(&w->log, i, "; the run went straight on");
+    }
+}
+
+static void check_direction(hn_watch *w) {
+    const hn_singular_record *s = &w->singular;
+    const bool passed = s->passing || s->info.sigma_min < RANGE * s->largest;
+    const double angle = hn_heading_check(w);
+    if (angle < 0) {
+        return;
+    }
+    if (angle < HUGE_VAL && angle > HN_RUN_WARN_TURN) {
+        hn_incident_report(
+            w, &hn_incident_branch_flip, "turn", angle, HN_RUN_WARN_TURN,
+            passed ? "the run came out of a singular configuration on another branch: its "
+                     "direction turned by %.2g rad from the smooth continuation"
+                   : "the last step jumped to another branch: its direction turned by %.2g rad "
+                     "from the smooth continuation, and its velocities do not explain how far it "
+                     "went",
+            angle);
+    } else {
+        hn_incident_over(&w->log, HN_INCIDENT_BRANCH_FLIP);
+    }
+    finish_passing(w, angle);
+}
+
+static void check_stay(hn_watch *w) {
+    double way = 0;
+    if (hn_heading_stays_singular(w, &way)) {
+        hn_incident_report(w, &hn_incident_branch_flip, "way", way, w->length,
+                           "the run moves on and J stays rank deficient (sigma_min is %.2g of "
+                           "%.2g at most): it turned off at a singular configuration into a "
+                           "motion that has some links folded onto each other",
+                           w->singular.info.sigma_min, w->singular.largest);
+    }
+}
+
+static void check(hn_watch *w) {
+    check_mode(w);
+    check_turn(w);
+    if (w->run->info.nc > 0) {
+        check_direction(w);
+        check_stay(w);
+    }
+}
+
+const hn_incident_kind hn_incident_branch_flip = {
+    .code = HN_INCIDENT_BRANCH_FLIP,
+    .spelling = "branch-flip",
+    .name = "jumped to another branch",
+    .rule = "The same lengths close in more than one way. A step that is too long can land on "
+            "another of these branches.",
+    .check = check,
+    .remedies = {{hn_remedy_right_model, 0}, {hn_remedy_robust, 0}, {hn_remedy_finer, 0.25}},
+};

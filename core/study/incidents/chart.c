@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/chart.h"
+
+#include "study/incidents/report.h"
+
+void hn_chart_check(hn_watch *w, long long changes) {
+    if (changes == 0) {
+        return;
+    }
+    hn_incident_over(&w->log, HN_INCIDENT_CHART_CHANGE);
+    hn_incident_report(w, &hn_incident_chart_change, "chart changes", (double)changes, 0,
+                       "other coordinates became the independent ones; the motion goes on "
+                       "unchanged");
+}
+
+const hn_incident_kind hn_incident_chart_change = {
+    .code = HN_INCIDENT_CHART_CHANGE,
+    .spelling = "chart-change",
+    .name = "changed its independent coordinates",
+    .rule = "A set of independent coordinates serves one part of the motion. At a turning point of "
+            "one of them another coordinate must take its place.",
+};

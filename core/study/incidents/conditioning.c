@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/conditioning.h"
+
+#include "linalg/dense.h"
+#include "study/incidents/report.h"
+
+#include <float.h>
+#include <math.h>
+
+/// sigma_min / sigma_max above which multipliers are those of a regular configuration.
+static const double FAR = 0.1;
+
+static void check_multipliers(hn_watch *w) {
+    hn_singular_record *s = &w->singular;
+    if (w->run->info.nc == 0) {
+        return;
+    }
+    const double size = w->accel_status == HN_OK ? hn_norm_max(w->run->info.nc, w->lambda) : 0;
+    if (s->info.ratio > FAR || s->multiplier == 0) {
+        s->multiplier = fmax(s->multiplier, size);
+        hn_incident_over(&w->log, HN_INCIDENT_MULTIPLIERS);
+        return;
+    }
+    const double limit = HN_RUN_WARN_MULTIPLIERS * s->multiplier;
+    if (size > limit) {
+        hn_incident_report(w, &hn_incident_multipliers, "|lambda|", size, limit,
+                           "the multipliers grew to %.3g, %.2g times what they were away from "
+                           "singular configurations",
+                           size, size / s->multiplier);
+    }
+}
+
+// the condition of K grows as the square of what sigma loses; it is estimated only where it can matter
+static void check_condition(hn_watch *w) {
+    const hn_stepping *run = w->run;
+    const double ratio = w->singular.info.ratio;
+    double kappa = 0;
+    if (run->info.nc == 0 || ratio * ratio * HN_RUN_WARN_CONDITION > 1) {
+        hn_incident_over(&w->log, HN_INCIDENT_ILL_CONDITIONED);
+        return;
+    }
+    if (hn_incident_holds(&w->log, HN_INCIDENT_ILL_CONDITIONED) ||
+        hn_accel_condition(run->accel, run->now.t, run->now.q, run->now.v, &kappa) != HN_OK ||
+        !(kappa > HN_RUN_WARN_CONDITION)) {
+        return;
+    }
+    const double digits = fmax(0, -log10(DBL_EPSILON) - log10(kappa));
+    hn_incident_report(
+        w, &hn_incident_ill_conditioned, "condition", kappa, HN_RUN_WARN_CONDITION,
+        kappa > HN_CONDITION_LOST
+            ? "the condition number is %.2g: no digit of the multipliers is left (%.0f)"
+            : "the condition number is %.2g: about %.0f digits of the multipliers are left",
+        kappa, digits);
+}
+
+static void check_solver(hn_watch *w) {
+    hn_singular_record *s = &w->singular;
+    const long long now = w->cost->fallbacks, more = now - s->fallbacks;
+    s->fallbacks = now;
+    // constraints that always depend on others have been reported as such
+    if (more == 0 || w->start_rank < w->run->info.nc || w->run->info.nc == 0) {
+        hn_incident_over(&w->log, HN_INCIDENT_SOLVER);
+        return;
+    }
+    hn_incident_report(w, &hn_incident_solver, "dense solves", (double)more, 0,
+                       "the sparse LDL' factorisation lost a pivot; the dense least-norm solver "
+                       "gave the answer, %lld times so far",
+                       now);
+}
+
+const hn_incident_kind hn_incident_multipliers = {
+    .code = HN_INCIDENT_MULTIPLIERS,
+    .spelling = "multipliers-grow",
+    .name = "the multipliers grow",
+    .rule = "Where the rows of J become dependent ever larger multipliers balance the same loads. "
+            "They cancel each other; the joints do not carry forces of that size.",
+    .check = check_multipliers,
+};
+
+const hn_incident_kind hn_incident_ill_conditioned = {
+    .code = HN_INCIDENT_ILL_CONDITIONED,
+    .spelling = "ill-conditioned",
+    .name = "few digits of the multipliers are left",
+    .rule = "Accelerations and multipliers lose as many of their sixteen digits as the condition "
+            "number of K has. Near a singular configuration it has no bound.",
+    .check = check_condition,
+};
+
+const hn_incident_kind hn_incident_solver = {
+    .code = HN_INCIDENT_SOLVER,
+    .spelling = "solver-fallback",
+    .name = "the dense solver took over",
+    .rule = "The sparse solver keeps one order of pivots. Where one of them vanishes a dense "
+            "least-norm solver gives the answer: slower, and as accurate.",
+    .check = check_solver,
+};

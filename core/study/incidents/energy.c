@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/energy.h"
+
+#include "study/incidents/remedies.h"
+#include "study/incidents/report.h"
+
+#include <math.h>
+
+bool hn_energy_is_conservative(const hn_system *sys) {
+    const hn_scene *scene = hn_system_scene(sys);
+    for (int i = 0; i < scene->n_loads; i++) {
+        const hn_load *load = &scene->loads[i];
+        const bool spring = load->kind == HN_LOAD_SPRING || load->kind == HN_LOAD_JOINT_SPRING;
+        if (!spring || load->damping.value != 0 || load->damping.varies) {
+            return false;
+        }
+    }
+    return !hn_system_get_info(sys).has_time;
+}
+
+void hn_energy_start(hn_watch *w) {
+    hn_energy_record *e = &w->energy;
+    e->v_min = e->v_max = w->measure.potential;
+    e->t_max = w->measure.kinetic;
+    e->start = e->last = w->measure.kinetic + w->measure.potential;
+    e->change = 0;
+}
+
+void hn_energy_record_state(hn_watch *w) {
+    hn_energy_record *e = &w->energy;
+    const double energy = w->measure.kinetic + w->measure.potential;
+    e->v_min = fmin(e->v_min, w->measure.potential);
+    e->v_max = fmax(e->v_max, w->measure.potential);
+    e->t_max = fmax(e->t_max, w->measure.kinetic);
+    e->change = energy - e->last;
+    e->last = energy;
+}
+
+/// Says whether a change of energy is worth a report.
+static bool is_large(const hn_watch *w, double change, double limit) {
+    return w->energy.conservative && limit != 0 && fabs(change) > limit;
+}
+
+// little by little, a method can lose all the energy there is without a jump
+static void check_drift(hn_watch *w) {
+    const hn_energy_record *e = &w->energy;
+    const double change = e->last - e->start;
+    const double limit = HN_RUN_WARN_DRIFT * (e->t_max + (e->v_max - e->v_min));
+    if (!is_large(w, change, limit)) {
+        hn_incident_over(&w->log, HN_INCIDENT_ENERGY_DRIFT);
+        return;
+    }
+    hn_incident_report(w, &hn_incident_energy_drift, "energy change", change, limit,
+                       "the energy has changed by %.3g J since the start, more than %.3g J, and no "
+                       "load does work",
+                       change, limit);
+}
+
+static void check_jump(hn_watch *w) {
+    const hn_energy_record *e = &w->energy;
+    const double size = w->measure.kinetic + (e->v_max - e->v_min);
+    const double limit = HN_RUN_WARN_ENERGY * size * w->every;
+    if (!is_large(w, e->change, limit)) {
+        hn_incident_over(&w->log, HN_INCIDENT_ENERGY_JUMP);
+        return;
+    }
+    hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
+                       "the energy changed by %.3g J in one step, more than %.3g J", e->change,
+                       limit);
+}
+
+const hn_incident_kind hn_incident_energy_drift = {
+    .code = HN_INCIDENT_ENERGY_DRIFT,
+    .spelling = "energy-drift",
+    .name = "the energy drifted",
+    .rule = "A mechanism without loads that do work keeps its energy. A slow gain or loss is the "
+            "error of the method, and the motion becomes faster or slower with it.",
+    .check = check_drift,
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}},
+};
+
+const hn_incident_kind hn_incident_energy_jump = {
+    .code = HN_INCIDENT_ENERGY_JUMP,
+    .spelling = "energy-jump",
+    .name = "the energy jumped",
+    .rule = "A mechanism without loads that do work keeps its energy. A jump within one step means "
+            "that the step misses the motion, whether or not the loops are closed.",
+    .check = check_jump,
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}},
+};

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_ENERGY_INCIDENTS
+#define HN_STUDY_ENERGY_INCIDENTS
+// Incidents of the energy of conservative scenes.
+
+#include "study/incidents/watch.h"
+
+extern const hn_incident_kind hn_incident_energy_drift, hn_incident_energy_jump;
+/// Whether no load does work that the energy of the scene does not contain.
+bool hn_energy_is_conservative(const hn_system *sys);
+/// Begins the record with the state measured last.
+void hn_energy_start(hn_watch *w);
+/// Adds the state measured last to the record.
+void hn_energy_record_state(hn_watch *w);
+
+#endif

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/failure.h"
+
+#include "study/incidents/rank.h"
+#include "study/incidents/remedies.h"
+#include "study/incidents/report.h"
+
+/// Whose iteration did not converge: where the integrator gives the reason it was its own, else the formulation's projection.
+static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
+    const hn_method_spec *spec = &w->run->spec;
+    const bool is_ode = hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;
+    return is_ode && !hn_engine_stepper_says_why(&w->run->engine) ? &hn_incident_projection_failed
+                                                                  : &hn_incident_newton_failed;
+}
+
+static const hn_incident_kind *kind_of(const hn_watch *w, hn_status status) {
+    switch (status) {
+    case HN_ERR_CHART:
+    case HN_ERR_UNSUPPORTED: // no choice of coordinates serves: at the start, or where another was to take over
+        return &hn_incident_chart_lost;
+    case HN_ERR_NO_CONVERGENCE:
+        return kind_of_iteration(w);
+    case HN_ERR_STEP_UNDERFLOW:
+        return &hn_incident_step_underflow;
+    case HN_ERR_BUDGET:
+        return &hn_incident_budget;
+    case HN_ERR_MASS:
+        return &hn_incident_mass;
+    case HN_ERR_SINGULAR:
+    case HN_ERR_NOT_SPD:
+    case HN_ERR_INCONSISTENT:
+        return &hn_incident_rank_loss;
+    default:
+        return &hn_incident_diverged;
+    }
+}
+
+void hn_failure_report(hn_watch *w, hn_status status, const char *reason) {
+    const hn_incident_kind *kind = kind_of(w, status);
+    hn_incident_make_room(&w->log, kind->code);
+    w->failure = status;
+    hn_incident_report(w, kind, "t", w->run->now.t, 0, "%s", reason);
+}
+
+const hn_incident_kind hn_incident_chart_lost = {
+    .code = HN_INCIDENT_CHART_LOST,
+    .spelling = "chart-lost",
+    .name = "the independent coordinates no longer determine the configuration",
+    .rule = "A set of independent coordinates serves one part of the motion. At a turning point of "
+            "one of them the dependent coordinates cannot be solved for.",
+    .remedies = {{hn_remedy_robust_near, 0}, {hn_remedy_other_chart, 0}, {hn_remedy_finer, 0.25}},
+};
+
+const hn_incident_kind hn_incident_projection_failed = {
+    .code = HN_INCIDENT_PROJECTION_FAILED,
+    .spelling = "projection-failed",
+    .name = "the projection did not close the loop",
+    .rule = "Projection searches for the nearest closed configuration. From too far away, or where "
+            "none exists, the iteration does not converge.",
+    .remedies = {{hn_remedy_robust_near, 0}, {hn_remedy_finer, 0.25}},
+};
+
+const hn_incident_kind hn_incident_newton_failed = {
+    .code = HN_INCIDENT_NEWTON_FAILED,
+    .spelling = "newton-failed",
+    .name = "Newton's method did not converge",
+    .rule = "An implicit step is found by iteration. The iteration does not converge from a step "
+            "that is too long, or near a configuration where J loses rank.",
+    .remedies = {{hn_remedy_robust_near, 0}, {hn_remedy_finer, 0.25}},
+};
+
+const hn_incident_kind hn_incident_step_underflow = {
+    .code = HN_INCIDENT_STEP_UNDERFLOW,
+    .spelling = "step-underflow",
+    .name = "the step became too small",
+    .rule = "The tolerance cannot be met with any step that the arithmetic can resolve.",
+    .remedies = {{hn_remedy_robust, 0}, {hn_remedy_finer, 100}},
+};
+
+const hn_incident_kind hn_incident_diverged = {
+    .code = HN_INCIDENT_DIVERGED,
+    .spelling = "diverged",
+    .name = "diverged",
+    .rule = "An explicit step beyond its stability limit multiplies the error at every step.",
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_close, 0}},
+};
+
+const hn_incident_kind hn_incident_mass = {
+    .code = HN_INCIDENT_MASS,
+    .spelling = "mass-singular",
+    .name = "the mass matrix has no inverse",
+    .rule = "A link without mass makes M singular. The constraints may still determine the motion, "
+            "but only for methods that never form the inverse of M.",
+    .remedies = {{hn_remedy_singular_mass, 0}},
+};
+
+const hn_incident_kind hn_incident_budget = {
+    .code = HN_INCIDENT_BUDGET,
+    .spelling = "budget",
+    .name = "the time limit was reached",
+    .rule = "Each method may use a limited number of steps and a limited computing time, so that "
+            "the other methods do not wait for it.",
+    .remedies = {{hn_remedy_finer, 10}},
+};

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/gap.h"
+
+#include "study/incidents/remedies.h"
+#include "study/incidents/report.h"
+
+#include <stdio.h>
+
+static void check(hn_watch *w) {
+    const double gap = w->measure.gap, limit = w->warn_gap * w->length;
+    if (w->at_start || !(gap > limit)) {
+        hn_incident_over(&w->log, HN_INCIDENT_GAP_OPEN);
+        return;
+    }
+    hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
+                       "the loop has opened: the constraint violation of %.3g m exceeds the limit "
+                       "of %.3g m",
+                       gap, limit);
+}
+
+const hn_incident_kind hn_incident_gap_open = {
+    .code = HN_INCIDENT_GAP_OPEN,
+    .spelling = "gap-open",
+    .name = "the loop has opened",
+    .rule = "A constraint that is imposed only on accelerations leaves the errors of two "
+            "integrations uncorrected: the gap grows with the square of time.",
+    .check = check,
+    .remedies = {{hn_remedy_close, 0}, {hn_remedy_finer, 0.5}, {hn_remedy_feedback, 0}},
+};
+
+hn_status hn_gap_judge(const hn_watch *w, char why[256]) {
+    const double gap = w->measure.gap;
+    if (!(gap > HN_RUN_LOST_GAP * w->length)) {
+        return HN_OK;
+    }
+    snprintf(why, 256,
+             "at t = %.6g s the loops stand open by %.3g m, more than half the characteristic "
+             "length of %.3g m: what moves there is no longer this mechanism",
+             w->run->now.t, gap, w->length);
+    return HN_ERR_DIVERGED;
+}

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/heading.h"
+
+#include "linalg/dense.h"
+#include "study/incidents/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+// With one degree of freedom the direction of motion is a line, since a motion may turn back. A mechanism without degrees of
+// freedom that is driven has its velocities by configuration and time, whose direction belongs to it: there the heading has time
+// as one more entry, as long as the fastest velocities seen, and it is an arrow.
+
+static const double CLOSE =
+    0.1; // of the largest sigma_min so far: headings are not taken from here
+static const double RANGE = 0.35; // and from here on they are compared
+static const double CHANGE = 0.5; // a continuation that changes the heading by more says nothing
+static const double INSIDE =
+    0.02; // of the largest sigma_min: an isolated configuration is left at once
+static const double WANDER = 0.3; // of the length, in the loops' own displacement
+
+hn_status hn_heading_create(hn_watch *w) {
+    hn_heading_record *r = &w->heading;
+    hn_arena *arena = w->run->arena;
+    hn_heading *headings[] = {&r->older, &r->last, &r->now};
+    for (int i = 0; i < 3; i++) {
+        headings[i]->e = hn_arena_doubles(arena, (size_t)w->run->info.nv + 1);
+    }
+    r->entered = hn_arena_doubles(arena, (size_t)w->run->info.nq);
+    r->smooth = hn_arena_doubles(arena, (size_t)w->run->info.nv + 1);
+    return hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
+}
+
+void hn_heading_start(hn_watch *w) {
+    hn_heading_record *r = &w->heading;
+    r->n = r->inside = 0;
+    r->driven = false;
+    r->fastest = 0;
+}
+
+static bool has_heading(hn_watch *w) {
+    hn_heading_record *r = &w->heading;
+    r->driven |= hn_norm_max(w->run->info.nc, hn_eval_get(w->eval, HN_TERM_PHI_T)) > 0;
+    return hn_motion_dof(w) == (r->driven ? 0 : 1);
+}
+
+static double angle_between(int n, const double *x, const double *y) {
+    const double c = hn_dot(n, x, y) / (hn_norm2(n, x) * hn_norm2(n, y));
+    return acos(fmin(1, fmax(-1, c)));
+}
+
+/// Returns false when nothing moves.
+static bool take_heading(hn_watch *w, hn_heading *h) {
+    hn_heading_record *r = &w->heading;
+    const int n = w->run->info.nv;
+    const double *scale = hn_singularity_scale(w->singular.monitor);
+    h->t = w->run->now.t;
+    for (int i = 0; i < n; i++) {
+        h->e[i] = w->run->now.v[i] / scale[i];
+    }
+    r->fastest = fmax(r->fastest, hn_norm2(n, h->e));
+    h->e[n] = hn_motion_dof(w) == 0 ? r->fastest : 0;
+
+    const double size = hn_norm2(n + 1, h->e);
+    for (int i = 0; i <= n && size > 0; i++) {
+        h->e[i] /= size;
+    }
+    return size > 0;
+}
+
+static void align(int n, const double *with, double *e) {
+    const double sign = hn_dot(n, with, e) < 0 ? -1 : 1;
+    for (int i = 0; i < n; i++) {
+        e[i] *= sign;
+    }
+}
+
+/// The heading that continues the last two smoothly to the present time, in `smooth`; returns how far it moved from the last.
+static double continue_heading(hn_heading_record *r, int n) {
+    const double share = (r->now.t - r->last.t) / (r->last.t - r->older.t);
+    double change = 0;
+    for (int i = 0; i < n; i++) {
+        const double step = share * (r->last.e[i] - r->older.e[i]);
+        r->smooth[i] = r->last.e[i] + step;
+        change = hypot(change, step);
+    }
+    return change;
+}
+
+/// Whether the heading is to be compared: past a singular configuration, or when the step itself looks like a jump.
+static bool is_suspect(const hn_watch *w) {
+    const hn_singular_record *s = &w->singular;
+    // where a motion turns back it hardly moves, and half of that is no jump: one goes as far as a step does elsewhere
+    const double way = w->swiftest * (w->run->now.t - w->run->before.t);
+    return s->passing || s->info.sigma_min < RANGE * s->largest ||
+           hn_motion_unexplained(w, way) > HN_RUN_WARN_JUMP;
+}
+
+double hn_heading_check(hn_watch *w) {
+    hn_heading_record *r = &w->heading;
+    const int n = w->run->info.nv + 1;
+    const bool is_line = hn_motion_dof(w) == 1;
+    double angle = -1;
+    if (!has_heading(w) || w->singular.info.sigma_min < CLOSE * w->singular.largest ||
+        !take_heading(w, &r->now)) {
+        return angle;
+    }
+    if (r->n > 0 && is_line) {
+        align(n, r->last.e, r->now.e);
+    }
+    if (r->n == 2 && is_suspect(w)) {
+        const double change = continue_heading(r, n);
+        if (is_line) {
+            align(n, r->now.e, r->smooth);
+        }
+        angle = change < CHANGE ? angle_between(n, r->smooth, r->now.e) : HUGE_VAL;
+    }
+
+    // the present one becomes the last
+    const hn_heading spare = r->older;
+    r->older = r->last;
+    r->last = r->now;
+    r->now = spare;
+    r->n += r->n < 2;
+    return angle;
+}
+
+// Configurations where J loses rank lie apart on the way of a mechanism of one degree of freedom. One that moves on and stays
+// singular has turned off into a motion that consists of them: some of its links folded onto each other.
+bool hn_heading_stays_singular(hn_watch *w, double *way) {
+    hn_heading_record *r = &w->heading;
+    if (r->driven || hn_motion_dof(w) != 1 ||
+        !(w->singular.info.sigma_min < INSIDE * w->singular.largest)) {
+        r->inside = 0;
+        return false;
+    }
+    if (!r->inside) {
+        r->inside = 1;
+        memcpy(r->entered, w->run->now.q, (size_t)w->run->info.nq * sizeof *r->entered);
+        return false;
+    }
+    *way = r->inside == 1 ? hn_motion_way(w, r->entered, w->scratch) : 0;
+    if (!(*way > WANDER)) {
+        return false;
+    }
+    r->inside = 2;
+    return true;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_INCIDENT_LOG_H
+#define HN_STUDY_INCIDENT_LOG_H
+// The reports of one run. A condition is reported when it begins to hold, not at every step while it does.
+
+#include "base/status.h"
+#include "study/incidents/incident.h"
+
+typedef struct hn_incident_log {
+    hn_incident list[HN_RUN_MAX_INCIDENTS];
+    int n;
+    int reported[HN_INCIDENT_COUNT]; ///< so far, by kind
+    unsigned active;                 ///< a bit per kind whose condition holds at present
+    unsigned revision;               ///< of the report written or completed last; never set back
+} hn_incident_log;
+
+/// Forgets all reports; revisions go on.
+void hn_incident_log_clear(hn_incident_log *log);
+/// Says whether the condition has been reported and still holds.
+bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
+/// The condition has ceased: the next time it begins it is reported again.
+void hn_incident_over(hn_incident_log *log, hn_incident_code code);
+/// Adds a report without remedies. Returns NULL where the condition is known already or no room is left.
+hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);
+/// Makes room for a report of this kind whatever has been reported before: the end of a run is always reported.
+void hn_incident_make_room(hn_incident_log *log, hn_incident_code code);
+/// Appends to a message; the report counts as new from then on.
+void hn_incident_append(hn_incident_log *log, hn_incident *i, const char *format, ...)
+    HN_PRINTF(3, 4);
+
+#endif

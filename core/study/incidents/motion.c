@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/motion.h"
+
+#include "dynamics/compile/coordinates.h"
+
+#include "linalg/dense.h"
+
+#include <math.h>
+
+double hn_motion_unexplained(const hn_watch *w, double least) {
+    const hn_stepping *s = w->run;
+    const double half = 0.5 * (s->now.t - s->before.t);
+    double moved = least, rest = 0, *step = w->scratch;
+    hn_system_difference(s->sys, s->before.q, s->now.q, step);
+    for (int i = 0; i < s->info.nv; i++) {
+        moved = fmax(moved, fabs(step[i]));
+        rest = fmax(rest, fabs(step[i] - half * (s->now.v[i] + s->before.v[i])));
+    }
+    return moved > 0 ? rest / moved : 0;
+}
+
+double hn_motion_way(const hn_watch *w, const double *from, double *step) {
+    const hn_stepping *s = w->run;
+    const double *J = hn_eval_get(w->eval, HN_TERM_J);
+    double most = 0;
+    hn_system_difference(s->sys, from, s->now.q, step);
+    for (int i = 0; i < s->info.nc; i++) {
+        const double unit = hn_system_row_is_length(s->sys, i) ? w->length : 1;
+        const double *row = J + (size_t)i * (size_t)s->info.nv;
+        for (int j = 0; j < s->info.nv; j++) {
+            most = fmax(most, fabs(row[j] * step[j]) / unit);
+        }
+    }
+    return most;
+}
+
+// Where all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured against its own row, do not
+// see that.
+double hn_motion_shortest_row(const hn_watch *w) {
+    const size_t nv = (size_t)w->run->info.nv;
+    const double *J = hn_eval_get(w->eval, HN_TERM_J);
+    double least = 1;
+    for (int i = 0; i < w->run->info.nc; i++) {
+        const double size = hn_norm2((int)nv, J + (size_t)i * nv);
+        const double largest = fmax(w->row_size[i], size);
+        least = fmin(least, largest > 0 ? size / largest : 1);
+    }
+    return least;
+}
+
+int hn_motion_dof(const hn_watch *w) {
+    return w->run->info.nv - w->start_rank;
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/pose.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/// Of the largest sigma_min: the reason of a failure names the configuration from here on.
+static const double SINGULAR = 0.02;
+
+static const char *body_name(const hn_watch *w, int body) {
+    return body >= 0 ? hn_system_scene(w->run->sys)->bodies[body].name : "ground";
+}
+
+static void append_rows(hn_watch *w, hn_incident *i, const hn_singularity_pose *pose) {
+    const hn_system *sys = w->run->sys;
+    for (int k = 0; k < pose->n_rows; k++) {
+        hn_incident_append(&w->log, i, "%s%s", k ? ", " : "; rows ",
+                           hn_system_row_name(sys, pose->rows[k]));
+    }
+    if (pose->n_rows == 0) {
+        return;
+    }
+
+    // the joint whose loop they close
+    const int loop = hn_system_row_loop(sys, pose->rows[0]);
+    const int joint = loop >= 0 ? hn_system_loop_joint(sys, loop) : -1;
+    if (joint >= 0) {
+        const hn_joint *j = &hn_system_scene(sys)->joints[joint];
+        hn_incident_append(&w->log, i, " (between %s and %s)", body_name(w, j->parent),
+                           body_name(w, j->child));
+    }
+}
+
+void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, double sigma_min) {
+    static const char *const branches[] = {
+        [HN_BRANCHES_CROSS] = "; two branches of motion cross",
+        [HN_BRANCHES_NONE] = "; no motion leads through: it locks",
+        [HN_BRANCHES_CUSP] = "; two branches touch",
+        [HN_BRANCHES_UNKNOWN] = "",
+    };
+    hn_singularity_pose pose;
+    hn_singularity_pose_at(w->singular.monitor, t, q, sigma_min, &pose);
+    append_rows(w, i, &pose);
+    if (pose.mobility > pose.mobility_before) {
+        hn_incident_append(&w->log, i, "; %d degree%s of freedom there instead of %d",
+                           pose.mobility, pose.mobility == 1 ? "" : "s", pose.mobility_before);
+    }
+    hn_incident_append(&w->log, i, "%s", branches[pose.branches]);
+    w->singular.passing = 1 + (int)(i - w->log.list);
+}
+
+void hn_pose_explain(const hn_watch *w, char why[256]) {
+    const hn_singular_record *s = &w->singular;
+    const size_t used = strlen(why);
+    if (w->run->info.nc > 0 && s->info.sigma_min < SINGULAR * s->largest) {
+        snprintf(why + used, 256 - used,
+                 "; J all but loses rank there (sigma_min %.2g of %.2g), and the step has to solve "
+                 "with it",
+                 s->info.sigma_min, s->largest);
+    }
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_POSE_INCIDENTS
+#define HN_STUDY_POSE_INCIDENTS
+// What waits at a singular configuration, in words.
+
+#include "study/incidents/watch.h"
+
+/// Appends to report i what is there: constraints, bodies, degrees of freedom, branches. The report will be completed with the way
+/// on which the run leaves.
+void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, double sigma_min);
+/// Appends to the reason of a failure that the configuration is singular, where it is.
+void hn_pose_explain(const hn_watch *w, char why[256]);
+
+#endif

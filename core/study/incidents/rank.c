@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/rank.h"
+
+#include "study/incidents/motion.h"
+#include "study/incidents/pose.h"
+#include "study/incidents/remedies.h"
+#include "study/incidents/report.h"
+
+/// Constraints that always depend on others do no harm: the report of the start has no remedy.
+static void report_redundant(hn_watch *w) {
+    const int nc = w->run->info.nc, rank = w->accel_info.rank;
+    hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
+                                        "%d of %d constraint equations depend on the others: the "
+                                        "motion is unique, single multipliers are not",
+                                        nc - rank, nc);
+    if (i) {
+        i->remedy[0][0] = '\0';
+    }
+}
+
+static void check_rank(hn_watch *w) {
+    const int nc = w->run->info.nc, rank = w->accel_info.rank;
+    if (nc == 0 || w->accel_status != HN_OK) {
+        return;
+    }
+    if (w->at_start) {
+        if (rank < nc) {
+            report_redundant(w);
+        }
+        return;
+    }
+    if (rank >= w->start_rank) {
+        hn_incident_over(&w->log, HN_INCIDENT_RANK_LOSS);
+        return;
+    }
+    hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
+                                        "%d of %d constraint equations depend on the others in "
+                                        "this configuration: branches may cross here",
+                                        nc - rank, nc);
+    if (i) {
+        hn_pose_describe(w, i, w->run->now.t, w->run->now.q, w->singular.info.sigma_min);
+    }
+}
+
+static void check_near(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    if (s->info.nc == 0) {
+        return;
+    }
+
+    // J M^-1 J' has singular values squared. A pivot that is lost where J is not says only that the order of elimination does
+    // not suit the configuration
+    const double row = hn_motion_shortest_row(w), ratio = w->singular.info.ratio;
+    const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
+                             ? ratio * ratio
+                             : row * row * w->accel_info.pivot_ratio;
+    const bool near = w->accel_status != HN_OK || pivot < HN_RUN_WARN_PIVOT;
+    if (!near || w->accel_info.rank < s->info.nc) {
+        hn_incident_over(&w->log, HN_INCIDENT_NEAR_SINGULAR);
+        return;
+    }
+    hn_incident *i = hn_incident_report(
+        w, &hn_incident_near_singular, "pivot ratio", pivot, HN_RUN_WARN_PIVOT,
+        "the constraint equations are nearly dependent: pivot ratio %.2g, reported below %.0e",
+        pivot, HN_RUN_WARN_PIVOT);
+    if (i) {
+        hn_pose_describe(w, i, s->now.t, s->now.q, w->singular.info.sigma_min);
+    }
+}
+
+const hn_incident_kind hn_incident_rank_loss = {
+    .code = HN_INCIDENT_RANK_LOSS,
+    .spelling = "rank-loss",
+    .name = "constraint equations are dependent",
+    .rule = "Where rows of J depend on each other only the sum of their forces is determined. The "
+            "motion is unique; the least-norm multipliers are shown.",
+    .check = check_rank,
+    .remedies = {{hn_remedy_plain, 0}, {hn_remedy_robust, 0}, {hn_remedy_finer, 0.5}},
+};
+
+const hn_incident_kind hn_incident_near_singular = {
+    .code = HN_INCIDENT_NEAR_SINGULAR,
+    .spelling = "near-singular",
+    .name = "close to a singular configuration",
+    .rule = "Near a configuration where constraint equations become dependent the multipliers grow "
+            "without bound, and small errors grow with them.",
+    .check = check_near,
+    .remedies = {{hn_remedy_robust, 0}, {hn_remedy_finer, 0.25}},
+};

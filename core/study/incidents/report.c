@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/report.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void offer_remedies(const hn_watch *w, const hn_incident_kind *kind, hn_incident *i) {
+    const int n = (int)(sizeof kind->remedies / sizeof *kind->remedies);
+    int offered = 0;
+    for (int k = 0; k < n && kind->remedies[k].write && offered < HN_REMEDIES; k++) {
+        hn_remedy text;
+        if (kind->remedies[k].write(w, kind->remedies[k].factor, text)) {
+            memcpy(i->remedy[offered++], text, sizeof text);
+        }
+    }
+}
+
+hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
+                                double value, double limit, const char *format, ...) {
+    hn_incident *i = hn_incident_add(&w->log, &(hn_incident){.code = kind->code,
+                                                             .t = w->run->now.t,
+                                                             .quantity = quantity,
+                                                             .value = value,
+                                                             .limit = limit});
+    if (!i) {
+        return NULL;
+    }
+    va_list args;
+    va_start(args, format);
+    vsnprintf(i->message, sizeof i->message, format, args);
+    va_end(args);
+    offer_remedies(w, kind, i);
+    return i;
+}

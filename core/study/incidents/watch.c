@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/watch.h"
+
+#include "linalg/dense.h"
+#include "study/incidents/crossing.h"
+#include "study/incidents/energy.h"
+#include "study/incidents/gap.h"
+#include "study/incidents/heading.h"
+#include "study/incidents/kinds.h"
+#include "study/incidents/stiffness.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- memory -----------------------------------------------------------------------------------------------------
+
+static hn_status create_memory(hn_watch *w) {
+    hn_arena *arena = w->run->arena;
+    const size_t nq = (size_t)w->run->info.nq, nv = (size_t)w->run->info.nv,
+                 nc = (size_t)w->run->info.nc;
+    double **const velocities[] = {&w->a, &w->scratch, &w->singular.inside, &w->singular.whole};
+    double **const rows[] = {&w->lambda, &w->velocity_gap, &w->row_size};
+    for (size_t i = 0; i < sizeof velocities / sizeof *velocities; i++) {
+        *velocities[i] = hn_arena_doubles(arena, nv);
+    }
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        *rows[i] = hn_arena_doubles(arena, nc);
+    }
+    w->singular.inside_q = hn_arena_doubles(arena, nq);
+
+    const size_t limits = (size_t)hn_system_scene(w->run->sys)->n_coordinates + 1;
+    w->beyond = hn_arena_get(arena, limits);
+    w->limited = hn_arena_doubles(arena, limits);
+    return hn_arena_failed(arena) ? HN_ERR_MEMORY : hn_heading_create(w);
+}
+
+static hn_status create_evaluators(hn_watch *w) {
+    const unsigned terms = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
+    const hn_system *sys = w->run->sys;
+    hn_arena *arena = w->run->arena;
+    HN_TRY(hn_eval_create(sys, terms, arena, &w->eval));
+    HN_TRY(hn_limits_create(sys, arena, &w->limits));
+    HN_TRY(hn_mode_watch_create(sys, arena, &w->mode));
+    const size_t loops = (size_t)hn_mode_watch_count(w->mode);
+    w->modes = hn_arena_doubles(arena, loops);
+    w->last_modes = hn_arena_doubles(arena, loops);
+    return hn_arena_failed(arena) ? HN_ERR_MEMORY
+                                  : hn_singularity_create(sys, arena, &w->singular.monitor);
+}
+
+hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost, double warn_gap,
+                          hn_watch *w) {
+    *w = (hn_watch){.run = run, .cost = cost, .warn_gap = warn_gap, .every = 1};
+    w->length = hn_system_length(run->sys);
+    w->energy.conservative = hn_energy_is_conservative(run->sys);
+    HN_TRY(create_memory(w));
+    return create_evaluators(w);
+}
+
+void hn_watch_free(hn_watch *w) {
+    hn_eval_free(w->eval);
+    hn_mode_watch_free(w->mode);
+    hn_limits_free(w->limits);
+    hn_singularity_free(w->singular.monitor);
+}
+
+// ---- measuring --------------------------------------------------------------------------------------------------
+
+hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v) {
+    const int nv = w->run->info.nv, nc = w->run->info.nc;
+    hn_eval_run(w->eval, t, q, v);
+    hn_mat_vec(nc, nv, hn_eval_get(w->eval, HN_TERM_J), v, w->velocity_gap);
+    hn_axpy(nc, 1, hn_eval_get(w->eval, HN_TERM_PHI_T), w->velocity_gap);
+    return (hn_measure){.gap = hn_norm2(nc, hn_eval_get(w->eval, HN_TERM_PHI)),
+                        .velocity_gap = hn_norm2(nc, w->velocity_gap),
+                        .kinetic = hn_eval_get(w->eval, HN_TERM_ENERGY)[0],
+                        .potential = hn_eval_get(w->eval, HN_TERM_ENERGY)[1]};
+}
+
+static void measure_rows(hn_watch *w) {
+    const double *J = hn_eval_get(w->eval, HN_TERM_J);
+    const size_t nv = (size_t)w->run->info.nv;
+    for (int i = 0; i < w->run->info.nc; i++) {
+        w->row_size[i] = fmax(w->row_size[i], hn_norm2((int)nv, J + (size_t)i * nv));
+    }
+}
+
+/// Accelerations, multipliers, singular values at the present state.
+static void measure_solution(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    w->accel_info = (hn_accel_info){0};
+    w->accel_status = hn_accel_eval(s->accel, s->now.t, s->now.q, s->now.v, 0, 0, w->a, w->lambda,
+                                    &w->accel_info);
+    if (w->at_start) {
+        w->start_rank = w->accel_status == HN_OK ? w->accel_info.rank : s->info.nc;
+    }
+    hn_singularity_check(w->singular.monitor, s->now.t, s->now.q, &w->singular.info);
+    w->singular.largest = fmax(w->singular.largest, w->singular.info.sigma_min);
+    measure_rows(w);
+}
+
+static void measure_present(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    w->measure = hn_watch_measure(w, s->now.t, s->now.q, s->now.v);
+    if (w->at_start) {
+        hn_energy_start(w);
+    } else {
+        hn_energy_record_state(w);
+        hn_crossing_check(w); // before the monitor sees the end of the step
+    }
+    if (s->info.nc > 0) {
+        measure_solution(w);
+    }
+    const double change = fabs(w->energy.last - w->energy.start);
+    w->worst_gap = fmax(w->worst_gap, w->measure.gap);
+    w->worst_velocity_gap = fmax(w->worst_velocity_gap, w->measure.velocity_gap);
+    w->worst_energy_change = fmax(w->worst_energy_change, change);
+}
+
+// ---- checking ---------------------------------------------------------------------------------------------------
+
+static void check_present(hn_watch *w) {
+    measure_present(w);
+    for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
+        const hn_incident_kind *kind = hn_incident_kinds()[i];
+        if (kind->check) {
+            kind->check(w);
+        }
+    }
+    w->swiftest = fmax(w->swiftest, hn_norm_max(w->run->info.nv, w->run->now.v));
+}
+
+static void forget(hn_watch *w) {
+    hn_singular_record *s = &w->singular;
+    hn_incident_log_clear(&w->log);
+    hn_heading_start(w);
+    hn_singularity_reset(s->monitor);
+    s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL};
+    s->largest = s->multiplier = 0;
+    s->fallbacks = 0;
+    s->passing = 0;
+    memset(w->row_size, 0, (size_t)w->run->info.nc * sizeof *w->row_size);
+    memset(w->beyond, 0, (size_t)hn_limits_count(w->limits));
+    w->worst_gap = w->worst_velocity_gap = w->worst_energy_change = w->swiftest = 0;
+    w->held = w->released = 0;
+    w->restarts = 0;
+    w->failure = HN_OK;
+    w->start_rank = 0;
+}
+
+void hn_watch_start(hn_watch *w) {
+    forget(w);
+    hn_mode_watch_values(w->mode, w->run->now.t, w->run->now.q, w->last_modes);
+    w->at_start = true;
+    check_present(w);
+    w->at_start = false;
+    hn_step_limit_check(w);
+}
+
+void hn_watch_step(hn_watch *w) {
+    hn_stiffness_check_step(w);
+}
+
+hn_status hn_watch_check(hn_watch *w, char why[256]) {
+    check_present(w);
+    return hn_gap_judge(w, why);
+}

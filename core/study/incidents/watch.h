@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_WATCH_H
+#define HN_STUDY_WATCH_H
+// The watching half of a run: after a step it measures the state that has been reached and checks it against the table of
+// incidents. It reads the stepping half and never changes it.
+
+#include "dynamics/analyse/singularity_monitor.h"
+#include "dynamics/assembly/mode.h"
+#include "dynamics/evaluate/eval.h"
+#include "dynamics/evaluate/limits.h"
+#include "study/incidents/log.h"
+#include "study/stepping/stepping.h"
+
+#define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is reported
+/// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so with pins half of it apart
+/// they point up to 30 degrees away from where they should; what is computed with them is no motion of this mechanism.
+#define HN_RUN_LOST_GAP 0.5
+#define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is reported as near-singular
+/// Energy change in one step / (T + range of V), conservative scenes only.
+#define HN_RUN_WARN_ENERGY 1e-2
+/// Energy change since the start / (largest T + range of V), conservative scenes only.
+#define HN_RUN_WARN_DRIFT 1e-2
+/// Condition number of the equilibrated K: half the digits of the multipliers are lost.
+#define HN_RUN_WARN_CONDITION 1e8
+/// Growth of the multipliers against the largest seen away from singular configurations.
+#define HN_RUN_WARN_MULTIPLIERS 1e3
+/// [rad] between the direction of motion and its smooth continuation.
+#define HN_RUN_WARN_TURN 0.5
+/// Share of a step's motion that its velocities do not explain.
+#define HN_RUN_WARN_JUMP 0.5
+/// Velocities reversed within one step: reported where they are reversed this closely, and the accelerations explain less than
+/// this share of the change.
+#define HN_RUN_WARN_BACK 0.3
+/// Change of the assembly-mode value that a jump to the other branch makes at least.
+#define HN_RUN_WARN_MODE 0.1
+
+/// What was measured of one state.
+typedef struct hn_measure {
+    double gap, velocity_gap;  ///< ||phi||, ||J v + phi_t||
+    double kinetic, potential; ///< [J]
+} hn_measure;
+
+/// Energy so far.
+typedef struct hn_energy_record {
+    double start, last,
+        change; ///< total energy at the start and now, and its change in the last step
+    double v_min, v_max, t_max; ///< range of the potential, largest kinetic energy
+    bool conservative;          ///< no load does work that the energy does not contain
+} hn_energy_record;
+
+/// The direction of motion, in velocities scaled by the masses and of unit length.
+typedef struct hn_heading {
+    double t;
+    double *
+        e; ///< nv, and time where the mechanism is driven and has no degree of freedom of its own, else 0
+} hn_heading;
+
+/// Directions of motion on the way, and where the run entered a configuration with J all but rank deficient.
+typedef struct hn_heading_record {
+    hn_heading older, last, now; ///< the first two away from singular configurations
+    int n;
+    double fastest;  ///< largest scaled velocities so far
+    double *smooth;  ///< nv + 1: a heading continued
+    bool driven;     ///< the constraints move with time
+    double *entered; ///< nq: where J all but lost rank, as long as it stays so
+    int inside;      ///< it does: 1, 2 once that has been reported
+} hn_heading_record;
+
+/// Singular configurations on the way.
+typedef struct hn_singular_record {
+    hn_singularity *monitor;
+    hn_singularity_info info; ///< at the last check
+    double largest;           ///< sigma_min so far
+    double multiplier;        ///< largest |lambda| away from singular configurations
+    long long fallbacks;      ///< of the method, as reported so far
+    int passing; ///< 1 + number of the report on the configuration being passed, 0: none
+    // a state inside the last step
+    double *inside_q;       ///< nq
+    double *inside, *whole; ///< nv: from the start of the step to that state, and to its end
+} hn_singular_record;
+
+struct hn_watch {
+    const hn_stepping *run;
+    const hn_cost *cost; ///< of the run so far
+    double warn_gap;     ///< times the characteristic length
+    double length;       ///< characteristic length [m]
+    hn_incident_log log;
+    int every;     ///< a check every so many steps
+    bool at_start; ///< the start is being checked, no step has been made
+
+    // of the state checked last
+    hn_measure measure;
+    hn_status accel_status;
+    hn_accel_info accel_info;
+    double *a, *lambda; ///< nv, nc
+    double *scratch;    ///< nv
+    int start_rank;     ///< rank of J at the start
+    hn_status failure;  ///< why the run ended, HN_OK while it goes on
+
+    double worst_gap, worst_velocity_gap, worst_energy_change;
+    double swiftest;  ///< largest velocity so far
+    double *row_size; ///< nc: largest length of each row of J so far
+    hn_energy_record energy;
+    hn_heading_record heading;
+    hn_singular_record singular;
+    double *modes, *last_modes; ///< per loop: assembly modes now and at the last check
+    int held, released; ///< steps at the stability limit lately, and since then others in a row
+    long long restarts; ///< steps after which a multistep integrator had to start again
+    char *beyond;       ///< per limit: it is passed at present
+    double *limited;    ///< values of the coordinates with limits
+
+    hn_eval *eval; ///< phi, phi_t, J, energy
+    hn_mode_watch *mode;
+    hn_limits *limits;
+    double *velocity_gap; ///< nc
+};
+
+/// Makes the watching half of a run; memory from its arena. `cost` is borrowed. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+HN_MUST_CHECK hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost,
+                                        double warn_gap, hn_watch *w);
+void hn_watch_free(hn_watch *w);
+/// Forgets the past and checks the start.
+void hn_watch_start(hn_watch *w);
+/// Counts an accepted step: what is known without measuring its end.
+void hn_watch_step(hn_watch *w);
+/// Checks the state that the run has reached. Fails with HN_ERR_DIVERGED and the reason in `why` when that is no state of the
+/// mechanism any more (HN_RUN_LOST_GAP).
+HN_MUST_CHECK hn_status hn_watch_check(hn_watch *w, char why[256]);
+/// Measures any state.
+hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v);
+
+#endif
