@@ -89,7 +89,7 @@ static double rods_sigma(const char *settings) {
     double sigma[6], v[8] = {0};
     hn_model m;
     hn_eval *e = NULL;
-    hn_model_open(&m, "stewart-rods", settings);
+    hn_model_begin(&m, "stewart-rods", settings);
     assert_int_equal(hn_eval_create(m.sys, HN_TERM_J, m.arena, &e), HN_OK);
     hn_eval_run(e, 0, m.q, v);
     assert_int_equal(hn_singular_values(6, 6, hn_eval_get(e, HN_TERM_J), sigma, m.arena), HN_OK);

@@ -54,7 +54,7 @@ static void compile_and_assemble(hn_model *m) {
     hn_system_rates_to_user(m->sys, m->v, m->user_v);
 }
 
-void hn_model_open(hn_model *m, const char *name, const char *settings) {
+void hn_model_begin(hn_model *m, const char *name, const char *settings) {
     static const char *const folders[] = {"lessons/01-closed-loops/scenes", "tests/scenes",
                                           "tests/reference", "lessons/02-mechanisms/scenes",
                                           "lessons/03-space-and-drives/scenes"};
@@ -88,7 +88,7 @@ void hn_model_open_text(hn_model *m, const char *json, const char *settings) {
 }
 
 void hn_model_open_closed(hn_model *m, const char *name, const char *settings) {
-    hn_model_open(m, name, settings);
+    hn_model_begin(m, name, settings);
     if (m->status != HN_OK) {
         fail_with("assemble", &m->diags);
     }

@@ -21,7 +21,7 @@ typedef struct hn_model {
 
 /// Scenes of the lessons ("fb0"), of the tests ("fb0-redundant") and of published problems ("andrews"), by name.
 /// `settings` is NULL or "l1=1.2 m2=3". The assembly may fail: see status.
-void hn_model_open(hn_model *m, const char *name, const char *settings);
+void hn_model_begin(hn_model *m, const char *name, const char *settings);
 /// From JSON text.
 void hn_model_open_text(hn_model *m, const char *json, const char *settings);
 /// The same, and the assembly has to succeed.

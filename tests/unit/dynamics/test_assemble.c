@@ -211,7 +211,7 @@ static void a_ring_that_never_closes_says_so_without_pins(void **state) {
 static void formulas_that_cannot_be_met_are_named(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open(&m, "fb0-lagrangian", "d=4.9 l3=1.7");
+    hn_model_begin(&m, "fb0-lagrangian", "d=4.9 l3=1.7");
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     assert_near(m.assembly.gap, hypot(4.9 - cos(1), sin(1)) - 3.7, 1e-6);
     diag_must_hold(&m, "'loop x' is off by 0.72");
@@ -379,7 +379,7 @@ static void the_mode_watch_sees_a_dead_point_pass(void **state) {
 static void a_tilted_mechanism_out_of_reach_is_explained_in_its_own_plane(void **state) {
     (void)state;
     hn_model m;
-    hn_model_open(&m, "fb0-tilted", "d=4.9 l3=1.7");
+    hn_model_begin(&m, "fb0-tilted", "d=4.9 l3=1.7");
     assert_int_equal(m.status, HN_ERR_UNREACHABLE);
     double span = hypot(4.9 - cos(1), sin(1));
     char expected[64];

@@ -27,7 +27,7 @@ static double noise(probe *p) {
 static void open_probe(probe *p, const char *name) {
     memset(p, 0, sizeof *p);
     p->seed = 3;
-    hn_model_open(&p->model, name, NULL);
+    hn_model_begin(&p->model, name, NULL);
     hn_arena *arena = p->model.arena;
     assert_int_equal(hn_eval_create(p->model.sys, HN_TERM_F | HN_TERM_ENERGY, arena, &p->eval),
                      HN_OK);

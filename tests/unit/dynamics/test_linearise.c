@@ -36,7 +36,7 @@ static double next_random(unsigned *seed) {
 // any state will do: derivatives hold off the constraints too
 static void open_bench(bench *b, const char *scene) {
     unsigned seed = 7;
-    hn_model_open(&b->model, scene, NULL);
+    hn_model_begin(&b->model, scene, NULL);
     b->nv = b->model.info.nv;
     b->nc = b->model.info.nc;
     assert_in_range(b->nv, 1, MAX);

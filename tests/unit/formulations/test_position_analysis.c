@@ -106,7 +106,7 @@ static void compare_costs(const char *name, double either, double newton, tally 
 
 static void compare(const char *name, tally *n) {
     hn_model m;
-    hn_model_open(&m, name, NULL);
+    hn_model_begin(&m, name, NULL);
     reduction newton, dyads, either;
     const int has = m.info.nc > 0 && begin(&newton, &m, NEWTON) == HN_OK;
     if (has) {

@@ -33,7 +33,7 @@ static void open_probe(probe *p, const char *name) {
     memset(p, 0, sizeof *p);
     snprintf(p->name, sizeof p->name, "%s", name);
     p->seed = 7;
-    hn_model_open(&p->model, name, NULL);
+    hn_model_begin(&p->model, name, NULL);
     p->arena = hn_arena_create(0);
     const hn_accel_opts opts = {0};
     hn_diag diag = {0};

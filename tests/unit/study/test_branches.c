@@ -111,7 +111,7 @@ static double rods_sigma(double degrees) {
     hn_model m;
     hn_eval *eval;
     snprintf(setting, sizeof setting, "rp=0.6 yaw=%.17g", degrees * PI / 180);
-    hn_model_open(&m, "stewart-rods", setting);
+    hn_model_begin(&m, "stewart-rods", setting);
     assert_int_equal(hn_eval_create(m.sys, HN_TERM_J, m.arena, &eval), HN_OK);
     hn_eval_run(eval, 0, m.q, v);
     assert_int_equal(hn_singular_values(6, 6, hn_eval_get(eval, HN_TERM_J), sigma, m.arena), HN_OK);
