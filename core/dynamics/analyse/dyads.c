@@ -6,6 +6,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 
+#include <stdbool.h>
 #include <suitesparse/btf.h>
 
 #include <math.h>
@@ -63,7 +64,7 @@ typedef struct builder {
     int *solved, *symbols;
 } builder;
 
-static int allocate(builder *b) {
+static bool allocate(builder *b) {
     const size_t n = (size_t)b->d->n_dep, nv = (size_t)b->sys->nv;
     const size_t n_symbols = (size_t)hn_graph_n_symbols(b->sys->g) + n;
     b->dep_at = malloc((nv + 1) * sizeof *b->dep_at);
@@ -134,22 +135,22 @@ static void name_block(builder *b, int first, int end, const char *format) {
 }
 
 /// What keeps the whole from a closed form before a block is looked at.
-static int refuse_whole(builder *b) {
+static bool refuse_whole(builder *b) {
     hn_dyads *d = b->d;
     if (d->n_dep != b->sys->nc) {
         snprintf(d->refusal, sizeof d->refusal,
                  "closure rows are redundant: %d rows for %d dependent coordinates", b->sys->nc,
                  d->n_dep);
-        return 1;
+        return true;
     }
     for (int k = 0; k < d->n_dep; k++) {
         if (hn_system_position_of(b->sys, d->dep[k]) < 0) {
             snprintf(d->refusal, sizeof d->refusal, "the orientation of a ball, %.60s, is unknown",
                      name_of(b->sys, d->dep[k]));
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// The blocks from the last one on: rows of the block triangular form hold the unknowns of their
@@ -325,7 +326,7 @@ const char *hn_dyads_refusal(const hn_dyads *d) {
     return d->refusal[0] ? d->refusal : NULL;
 }
 
-int hn_dyads_serve(const hn_dyads *d, const int *dep, int n) {
+bool hn_dyads_serve(const hn_dyads *d, const int *dep, int n) {
     return d->n_dep == n && memcmp(d->dep, dep, (size_t)n * sizeof *dep) == 0;
 }
 
@@ -370,7 +371,7 @@ hn_dyad_part hn_dyads_part(const hn_dyads *d, int k, int i) {
     return (hn_dyad_part){d->steps[k].part[i], d->steps[k].part_is[i]};
 }
 
-static int has_sign(const hn_dyads *d, int k) {
+static bool has_sign(const hn_dyads *d, int k) {
     const hn_dyad_kind kind = d->steps[k].dyad.kind;
     return kind != HN_DYAD_SINGLE && kind != HN_DYAD_PRP;
 }

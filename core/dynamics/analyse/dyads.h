@@ -24,6 +24,8 @@
 #include "dynamics/compile/system.h"
 #include "expr/tape.h"
 
+#include <stdbool.h>
+
 typedef struct hn_dyads hn_dyads;
 
 #define HN_DYAD_KIND_LIST(X)                            \
@@ -59,8 +61,8 @@ HN_MUST_CHECK hn_status hn_dyads_create(const hn_system *sys, const int *dep, in
 void hn_dyads_free(hn_dyads *d); ///< NULL is legal
 /// NULL where there is a closed form, else the reason, as a clause to follow "Newton, because".
 const char *hn_dyads_refusal(const hn_dyads *d);
-int hn_dyads_serve(const hn_dyads *d, const int *dep, int n); ///< 1: made for these columns
-int hn_dyads_count(const hn_dyads *d);                        ///< steps
+bool hn_dyads_serve(const hn_dyads *d, const int *dep, int n); ///< made for these columns
+int hn_dyads_count(const hn_dyads *d);                         ///< steps
 int hn_dyads_proper(const hn_dyads *d); ///< those of them with two unknowns: dyads
 hn_dyad hn_dyads_at(const hn_dyads *d, int k);
 hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve

@@ -5,6 +5,7 @@
 #include "expr/diff.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -38,13 +39,13 @@ static hn_ex phi_of(const reader *r, int i) {
     return hn_system_get_exprs(r->sys).phi[r->step->dyad.row[i]];
 }
 
-static int slides(const reader *r, int unknown) {
+static bool slides(const reader *r, int unknown) {
     for (int i = 0; i < r->step->dyad.n; i++) {
         if (!hn_is_zero(diff(r, diff(r, phi_of(r, i), unknown), unknown))) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 /// Row i with x the turning unknown, if any turns (the unknowns are in that order).
@@ -115,7 +116,7 @@ static void evaluate(const reader *r, double *x, unsigned *seed, values *out) {
 }
 
 /// phi made from the form is phi.
-static int is_form_of_phi(const values *v, int n, int n_turn) {
+static bool is_form_of_phi(const values *v, int n, int n_turn) {
     const double cx = cos(v->x), sx = sin(v->x), cy = cos(v->y), sy = sin(v->y);
     for (int i = 0; i < n; i++) {
         const double of_x = n_turn > 0 ? v->A[i] * cx + v->B[i] * sx : v->A[i] * v->x;
@@ -124,10 +125,10 @@ static int is_form_of_phi(const values *v, int n, int n_turn) {
         const double sum = of_x + of_y + along + v->E[i];
         const double size = fabs(of_x) + fabs(of_y) + fabs(along) + fabs(v->E[i]) + fabs(v->phi[i]);
         if (!(fabs(sum - v->phi[i]) <= SAME * size)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static double dot(const double a[2], const double b[2]) {
@@ -135,12 +136,12 @@ static double dot(const double a[2], const double b[2]) {
 }
 
 /// a cos x + b sin x keeps its length: b is a turned by a right angle.
-static int is_rigid(const double a[2], const double b[2]) {
+static bool is_rigid(const double a[2], const double b[2]) {
     const double size = dot(a, a) + dot(b, b);
     return fabs(dot(a, a) - dot(b, b)) <= SAME * size && fabs(dot(a, b)) <= SAME * size;
 }
 
-static int is_null(const double a[2], double size) {
+static bool is_null(const double a[2], double size) {
     return hypot(a[0], a[1]) <= SAME * size;
 }
 
@@ -171,7 +172,7 @@ static hn_dyad_kind kind_of(const values *v, int n, int n_turn) {
     return n_turn ? kind_of_slide(v) : HN_DYAD_PRP;
 }
 
-int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsigned *seed) {
+bool hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsigned *seed) {
     const hn_system_exprs exprs = hn_system_get_exprs(sys);
     reader r = {.sys = sys, .g = hn_system_graph(sys), .step = step};
     hn_dyad *d = &step->dyad;
@@ -205,11 +206,11 @@ int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsig
         evaluate(&r, x, seed, &v);
         const hn_dyad_kind kind = kind_of(&v, d->n, n_turn);
         if (kind == HN_DYAD_KIND_COUNT || (trial > 0 && kind != d->kind)) {
-            return 0;
+            return false;
         }
         d->kind = kind;
     }
-    return 1;
+    return true;
 }
 
 // ---- solving ----

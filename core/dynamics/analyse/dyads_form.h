@@ -5,6 +5,8 @@
 
 #include "dynamics/analyse/dyads.h"
 
+#include <stdbool.h>
+
 /// A vector of the rows of a block; one entry where it has one row.
 typedef struct hn_pair {
     hn_ex e[2];
@@ -35,7 +37,7 @@ typedef struct hn_dyad_step {
 /// Recognises the block whose row, unknown and n are set in step->dyad, and fills kind and form.
 /// Random poses are made from `seed`; `x` has room for all of the graph's symbols.
 /// Returns 0 when it has none of the forms in dyads.h.
-int hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsigned *seed);
+bool hn_dyad_recognise(const hn_system *sys, hn_dyad_step *step, double *x, unsigned *seed);
 /// Fills the expressions of the solution from the form; `k` is the number of the step.
 void hn_dyad_solve_form(const hn_system *sys, hn_dyad_step *step, int k);
 #endif

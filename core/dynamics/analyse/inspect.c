@@ -9,6 +9,7 @@
 #include "linalg/newton_matrix.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -381,16 +382,16 @@ static void put_absence(hn_strbuf *b, const char *what, long long count, int ope
     hn_json_end_object(b);
 }
 
-static int all_zero(const hn_ex *e, int n) {
+static bool all_zero(const hn_ex *e, int n) {
     for (int i = 0; i < n; i++) {
         if (!hn_is_zero(e[i])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int has_gravity(const hn_scene *scene) {
+static bool has_gravity(const hn_scene *scene) {
     return scene->gravity[0].value != 0 || scene->gravity[1].value != 0 ||
            scene->gravity[2].value != 0;
 }

@@ -7,6 +7,7 @@
 #include "linalg/qr.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static const double LOST = 1e-8;     // ratio below which rows count as lost
@@ -222,9 +223,9 @@ static void look_sparsely(hn_singularity *r, int sweeps, hn_singularity_info *in
 
 /// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it
 /// does not fall to a lowest value.
-static int fit(const hn_singularity *r, double *slope, double *curve) {
+static bool fit(const hn_singularity *r, double *slope, double *curve) {
     if (r->n_anchors < ANCHORS) {
-        return 0;
+        return false;
     }
     const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
     const double s1 = (r->square[1] - r->square[0]) / a, s2 = (r->square[2] - r->square[1]) / b;

@@ -7,6 +7,7 @@
 #include "linalg/small3.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -266,13 +267,13 @@ static const char *first_pin_pointer(const hn_assembler *s) {
     return NULL;
 }
 
-static int loop_has_lengths(const hn_assembler *s, int loop) {
+static bool loop_has_lengths(const hn_assembler *s, int loop) {
     for (int i = 0; i < s->nc; i++) {
         if (hn_system_row_loop(s->sys, i) == loop && hn_system_row_is_length(s->sys, i)) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 void hn_assemble_explain(hn_assembler *s, int loop) {

@@ -6,6 +6,7 @@
 #include "dynamics/assembly/mode.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -60,13 +61,13 @@ static int first_wrong(const mode_search *m) {
     return k;
 }
 
-static int is_free(const hn_assembler *s, int user) {
+static bool is_free(const hn_assembler *s, int user) {
     for (int k = 0; k < s->n_free; k++) {
         if (s->free[k] == user) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// Puts the loop's dependent coordinates anywhere: any angle, two reaches either way.

@@ -8,6 +8,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -224,11 +225,11 @@ static double damped_step(search *w, double size, double *mu) {
 
 /// Minimises |r| from s->x. Returns 1 when it went below `tol`; then goes on as long as Newton
 /// gains.
-static int descend(search *w, double tol, int max_iterations) {
+static bool descend(search *w, double tol, int max_iterations) {
     double size = evaluate(w), mu = 0, floor_size = ROUNDING * sqrt(w->nc);
 
     if (!isfinite(size)) {
-        return 0;
+        return false;
     }
 
     // Newton near the end, damped steps elsewhere, until neither gains
@@ -254,7 +255,7 @@ static int descend(search *w, double tol, int max_iterations) {
 
 /// Follows phi(z) = (1 - s) phi(z_guess) from s = 0, where the guess solves it, to s = 1. Returns 1
 /// when it arrived.
-static int follow_homotopy(search *w) {
+static bool follow_homotopy(search *w) {
     hn_assembler *s = w->s;
     double at = 0, stride = 0.1;
 
@@ -266,7 +267,7 @@ static int follow_homotopy(search *w) {
     double *from = hn_arena_doubles(s->arena, (size_t)w->nc),
            *last = hn_arena_doubles(s->arena, (size_t)s->n);
     if (!from || !last) {
-        return 0;
+        return false;
     }
     memcpy(from, s->residual, (size_t)w->nc * sizeof *from);
 
@@ -304,7 +305,7 @@ double hn_assemble_random(uint64_t *seed) {
 }
 
 /// Descends from random places around the guess, further and further away.
-static int try_random_starts(search *w) {
+static bool try_random_starts(search *w) {
     hn_assembler *s = w->s;
     uint64_t seed = 20;
     int starts = RANDOM_STARTS;
@@ -323,11 +324,11 @@ static int try_random_starts(search *w) {
         int closed = descend(w, CLOSED, MAX_ITERATIONS);
         keep_best(w);
         if (closed && hn_assemble_flipped(s) < 0) {
-            return 1;
+            return true;
         }
         starts = closed ? FLIPPED_STARTS : starts;
     }
-    return 0;
+    return false;
 }
 
 hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out) {

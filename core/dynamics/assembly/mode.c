@@ -8,6 +8,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_ROWS = 6 }; // a spatial loop has at most six
@@ -57,7 +58,7 @@ static hn_ex row_times(const finder *f, int row, int user) {
     return sum;
 }
 
-static int row_moves_with(const finder *f, int row, int user) {
+static bool row_moves_with(const finder *f, int row, int user) {
     return !hn_is_zero(row_times(f, row, user));
 }
 
@@ -171,13 +172,13 @@ static hn_status finder_init(finder *f, const hn_system *sys, hn_arena *arena) {
 
 /// A scene of formulas does not say which rows make up one loop: there, these are the rows that
 /// depend on the same coordinates as the first that is left (its set stands in f->moves).
-static int is_in_loop(const finder *f, int row, int loop) {
+static bool is_in_loop(const finder *f, int row, int loop) {
     if (!f->sys->scene->is_lagrangian) {
         return hn_system_row_loop(f->sys, row) == loop;
     }
     for (int k = 0; k < f->n_user && !f->taken[row]; k++) {
         if (row_moves_with(f, row, k) != f->moves[k]) {
-            return 0;
+            return false;
         }
     }
     return !f->taken[row];
@@ -185,7 +186,7 @@ static int is_in_loop(const finder *f, int row, int loop) {
 
 /// Rows of the loop into parts; f->moves[k] becomes 1 for each user coordinate that moves one. 0
 /// when it has none, or too many.
-static int find_rows(finder *f, int loop, loop_parts *parts) {
+static bool find_rows(finder *f, int loop, loop_parts *parts) {
     int left = 0;
     while (left < f->sys->nc && f->taken[left]) {
         left++;
@@ -204,7 +205,7 @@ static int find_rows(finder *f, int loop, loop_parts *parts) {
         }
         f->taken[i] = 1;
         if (parts->n_rows == MAX_ROWS) {
-            return 0;
+            return false;
         }
         parts->rows[parts->n_rows++] = i;
     }

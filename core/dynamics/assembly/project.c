@@ -12,6 +12,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_ITERATIONS = 8, MAX_VELOCITY_ITERATIONS = 5 };
@@ -391,16 +392,16 @@ static double eval_velocity_gap(hn_projector *p, double t, const double *q, cons
     return hn_norm2(p->nc, p->gap);
 }
 
-static int factor_is_near(const hn_projector *p, double t, const double *q) {
+static bool factor_is_near(const hn_projector *p, double t, const double *q) {
     if (!p->have_factor || p->factor_t != t) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < p->nq; i++) {
         if (fabs(q[i] - p->factor_q[i]) > NEAR) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 /// One correction of v; the sums for the energy follow. 1/2 dv' M dv = 1/2 (J dv)' y, as M dv = J'

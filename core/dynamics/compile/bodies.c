@@ -11,21 +11,22 @@
 #include "expr/construct.h"
 
 #include <ctype.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 // ---- symbols ----
 
 /// 1 if the system coordinate is the scene's own.
-static int is_own(const hn_link *l) {
+static bool is_own(const hn_link *l) {
     return l->type != HN_JOINT_REVOLUTE || (l->angle_ref < 0 && l->sign > 0 && l->offset == 0);
 }
 
-static int scene_knows(const hn_scene *scene, const char *name) {
+static bool scene_knows(const hn_scene *scene, const char *name) {
     for (int i = 0; i < scene->n_coordinates; i++) {
         if (!strcmp(scene->coordinates[i].name, name) ||
             !strcmp(scene->coordinates[i].rate, name)) {
-            return 1;
+            return true;
         }
     }
     return hn_scene_find_param(scene, name) >= 0;

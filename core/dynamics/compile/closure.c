@@ -4,6 +4,7 @@
 #include "dynamics/compile/system_build.h"
 #include "expr/construct.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -107,13 +108,13 @@ hn_status hn_closure_position_row(hn_closure *c, int i) {
     return hn_closure_add_row(c, axis_name(c, i), 1, c->delta.x[i], c->delta_acc.x[i], n);
 }
 
-static int is_open(const hn_reach *end, int coordinate) {
+static bool is_open(const hn_reach *end, int coordinate) {
     for (int k = 0; k < end->n; k++) {
         if (end->levers[k].open && end->levers[k].coordinate == coordinate) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 int hn_closure_add_entry(hn_closure *c, int n, int coordinate, hn_ex e) {

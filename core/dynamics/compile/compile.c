@@ -7,6 +7,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /// A coordinate that no mass and no closure touches has no equation.
 static hn_status check_freedoms(hn_system *sys) {
@@ -35,18 +36,18 @@ static hn_status check_freedoms(hn_system *sys) {
     return HN_OK;
 }
 
-static int depends_on_time(const hn_system *sys) {
+static bool depends_on_time(const hn_system *sys) {
     for (int i = 0; i < sys->nv; i++) {
         if (hn_depends_on(sys->g, sys->f[i], sys->t_symbol)) {
-            return 1;
+            return true;
         }
     }
     for (int i = 0; i < sys->nc; i++) {
         if (hn_depends_on(sys->g, sys->phi[i], sys->t_symbol)) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static hn_status finish(hn_system *sys) {

@@ -22,6 +22,7 @@
 #include "expr/diff.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // ---- between points ----
@@ -277,7 +278,7 @@ static hn_status add_gear(hn_system *sys, int index, const hn_constraint *k) {
 
 // ---- all ----
 
-int hn_constraint_has_points(const hn_constraint *k) {
+bool hn_constraint_has_points(const hn_constraint *k) {
     return k->kind != HN_CONSTRAINT_GEAR && k->kind != HN_CONSTRAINT_FORMULA;
 }
 

@@ -6,8 +6,10 @@
 
 #include "dynamics/compile/mech.h"
 
+#include <stdbool.h>
+
 /// Whether the constraint acts between two points (gears and formulas act on coordinates).
-int hn_constraint_has_points(const hn_constraint *k);
+bool hn_constraint_has_points(const hn_constraint *k);
 /// Names the loops of constraints, which follow those of the cut joints.
 void hn_constraints_name_loops(hn_system *sys);
 /// Adds the rows of every constraint.

@@ -165,8 +165,8 @@ void hn_system_difference(const hn_system *sys, const double *from, const double
     }
 }
 
-int hn_system_normalise(const hn_system *sys, double *q) {
-    int changed = 0;
+bool hn_system_normalise(const hn_system *sys, double *q) {
+    bool changed = false;
     for (int k = 0; k < sys->n_balls; k++) {
         changed |= hn_quat_normalise(q + sys->balls[k].position);
     }

@@ -6,6 +6,8 @@
 
 #include "dynamics/compile/system.h"
 
+#include <stdbool.h>
+
 // ---- user <-> system: constant linear maps but for orientations ----
 
 /// Positions: q (nq) to user_q (nv) and back.
@@ -30,7 +32,7 @@ void hn_system_move(const hn_system *sys, double *q, const double *delta);
 void hn_system_difference(const hn_system *sys, const double *from, const double *to,
                           double *delta);
 /// Brings quaternions back to length 1: a step of an integrator leaves it by its local error.
-/// Returns 1 when q changed.
-int hn_system_normalise(const hn_system *sys, double *q);
+/// Returns whether q changed.
+bool hn_system_normalise(const hn_system *sys, double *q);
 
 #endif

@@ -5,6 +5,7 @@
 #include "expr/construct.h"
 #include "expr/parse.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -17,11 +18,11 @@ typedef struct scope {
     int refused_ball;    ///< because it is an entry of an orientation
 } scope;
 
-static int find_state(scope *s, const char *name, hn_ex *out) {
+static bool find_state(scope *s, const char *name, hn_ex *out) {
     const hn_system *sys = s->sys;
     if (!strcmp(name, "t")) {
         *out = sys->t;
-        return 1;
+        return true;
     }
 
     // a coordinate or its rate
@@ -38,13 +39,13 @@ static int find_state(scope *s, const char *name, hn_ex *out) {
             s->refused = c->name;
             s->refused_ball = sys->user_known[i] == HN_KNOWN_RATE;
             *out = hn_num(0);
-            return 1;
+            return true;
         }
 
         *out = is_position ? s->positions[i] : s->rates[i];
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
 static int find_name(void *user, const char *name, hn_ex *out) {

@@ -8,6 +8,7 @@
 #include "expr/diff.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static hn_status make_symbols(hn_system *sys) {
@@ -31,13 +32,13 @@ static hn_status make_symbols(hn_system *sys) {
     return HN_OK;
 }
 
-static int depends_on_any(const hn_system *sys, hn_ex e, const int *symbols) {
+static bool depends_on_any(const hn_system *sys, hn_ex e, const int *symbols) {
     for (int i = 0; i < sys->nv; i++) {
         if (hn_depends_on(sys->g, e, symbols[i])) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// Values of a formula with every rate zero.

@@ -18,6 +18,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 typedef struct loop {
@@ -125,13 +126,13 @@ static hn_status close_joint(loop *l) {
 
 /// Constant part of a link's orientation in a group's frame, if the link belongs to it or does not
 /// rotate in its base.
-static int constant_in_group(const hn_tree *tree, int link, int group, double C[3][3]) {
+static bool constant_in_group(const hn_tree *tree, int link, int group, double C[3][3]) {
     const hn_link *l = &tree->links[link];
     double back[3][3], own[3][3];
     memcpy(own, l->C, sizeof own);
     if (l->group == group) {
         memcpy(C, own, sizeof own);
-        return 1;
+        return true;
     }
     double X[3][3];
     memcpy(X, tree->groups[group].X, sizeof X);
@@ -143,13 +144,13 @@ static int constant_in_group(const hn_tree *tree, int link, int group, double C[
 /// Between links of one group: Rz(angle) = D Rz(theta_B - theta_A + delta_B - delta_A) D with D the
 /// identity or a half turn, so the angle is the difference of two absolute angles, up to a sign and
 /// a constant.
-int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
-                          const double ref_b[3], hn_turn *out) {
+bool hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
+                           const double ref_b[3], hn_turn *out) {
     const hn_tree *tree = m->tree;
     int group = tree->links[tree->links[a].angle >= 0 ? a : b].group;
     double Ca[3][3], Cb[3][3], za[3], xa[3], xb[3];
     if (!constant_in_group(tree, a, group, Ca) || !constant_in_group(tree, b, group, Cb)) {
-        return 0;
+        return false;
     }
 
     // both references seen in the group's frame
@@ -161,7 +162,7 @@ int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double 
 
     // the axis is the group's, and no reference lies along it
     if (fabs(fabs(za[2]) - 1) > 1e-12 || hypot(xa[0], xa[1]) < 1e-6 || hypot(xb[0], xb[1]) < 1e-6) {
-        return 0;
+        return false;
     }
 
     double offset = remainder(atan2(xb[1], xb[0]) - atan2(xa[1], xa[0]), 2 * M_PI);
@@ -179,19 +180,19 @@ int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double 
     out->speed[1] = ib;
     out->angle = hn_scale(out->sign, hn_add(m->g, angle, hn_num(offset)));
     out->rate = hn_scale(out->sign, rate);
-    return 1;
+    return true;
 }
 
-static int revolute_coordinate(hn_mech *m, const hn_joint *joint, int index) {
+static bool revolute_coordinate(hn_mech *m, const hn_joint *joint, int index) {
     hn_turn turn;
     if (!hn_mech_relative_turn(m, hn_tree_link(m->tree, joint->parent), joint->parent_axis,
                                joint->parent_ref, hn_tree_link(m->tree, joint->child),
                                joint->child_ref, &turn)) {
-        return 0;
+        return false;
     }
     m->sys->user_q[index] = turn.angle;
     m->sys->user_v[index] = turn.rate;
-    return 1;
+    return true;
 }
 
 static hn_status prismatic_coordinate(hn_mech *m, int loop_index, const hn_joint *joint,

@@ -5,6 +5,8 @@
 
 #include "dynamics/compile/mech.h"
 
+#include <stdbool.h>
+
 /// Adds the closure rows of every cut joint.
 HN_MUST_CHECK hn_status hn_mech_trace_loops(hn_mech *m);
 /// Writes the scene coordinates of cut joints as expressions, where they have one.
@@ -19,7 +21,7 @@ typedef struct hn_turn {
 /// Writes the angle of link b against link a. Directions are in body axes; the angle is 0 where
 /// ref_b lies on ref_a, seen along the axis.
 /// Returns 0 if the links do not turn about parallel axes along this one, or a ref lies along it.
-int hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
-                          const double ref_b[3], hn_turn *out);
+bool hn_mech_relative_turn(hn_mech *m, int a, const double axis[3], const double ref_a[3], int b,
+                           const double ref_b[3], hn_turn *out);
 
 #endif

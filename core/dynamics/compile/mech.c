@@ -4,7 +4,9 @@
 #include "dynamics/compile/formula.h"
 #include "expr/construct.h"
 
-int hn_mech_is_planar(const hn_mech *m, int link) {
+#include <stdbool.h>
+
+bool hn_mech_is_planar(const hn_mech *m, int link) {
     return !m->tree->groups[m->tree->links[link].group].moving;
 }
 

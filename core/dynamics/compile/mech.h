@@ -14,6 +14,8 @@
 
 #include "dynamics/compile/system_impl.h"
 
+#include <stdbool.h>
+
 typedef struct hn_link_trace {
     hn_ex c, s; ///< of theta; 1, 0 where the link never rotates
     /// from the parent's joint point to this one's, in E(parent), with the slide of a prismatic
@@ -63,7 +65,7 @@ typedef struct hn_mech {
 } hn_mech;
 
 /// Whether the link's work frame is F.
-int hn_mech_is_planar(const hn_mech *m, int link);
+bool hn_mech_is_planar(const hn_mech *m, int link);
 hn_vec3 hn_mech_E_to_work(const hn_mech *m, int link, hn_vec3 v);
 hn_vec3 hn_mech_work_to_E(const hn_mech *m, int link, hn_vec3 v);
 /// Work frame of a link to that of its parent, and back.

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // |q|^2 this close to 1 is the rounding of a product of quaternions
@@ -58,14 +59,14 @@ void hn_quat_rate(const double q[4], const double omega[3], double rate[4]) {
     hn_quat_mul(q, half, rate);
 }
 
-int hn_quat_normalise(double q[4]) {
+bool hn_quat_normalise(double q[4]) {
     const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     if (!(fabs(square - 1) > UNIT_ROUNDING) || !isfinite(square) || square == 0) {
-        return 0;
+        return false;
     }
     const double k = 1 / sqrt(square);
     for (int i = 0; i < 4; i++) {
         q[i] *= k;
     }
-    return 1;
+    return true;
 }

@@ -8,6 +8,8 @@
 //
 // Source: Hairer, Lubich & Wanner 2006, sec. VII.5; Shoemake 1985.
 
+#include <stdbool.h>
+
 /// Of a rotation vector (axis times angle [rad]).
 void hn_quat_exp(const double r[3], double q[4]);
 /// The rotation vector, no longer than pi; q need not have length 1. Zero quaternions give zero.
@@ -20,6 +22,6 @@ void hn_quat_move(double q[4], const double delta[3]);
 void hn_quat_difference(const double from[4], const double to[4], double delta[3]);
 /// q' of (1).
 void hn_quat_rate(const double q[4], const double omega[3], double rate[4]);
-/// Brings the length back to 1; 1 when it was off by more than rounding, else q is left alone.
-int hn_quat_normalise(double q[4]);
+/// Brings the length back to 1 where it is off by more than rounding. Returns whether q changed.
+bool hn_quat_normalise(double q[4]);
 #endif

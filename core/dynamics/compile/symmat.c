@@ -3,6 +3,7 @@
 
 #include "expr/construct.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 typedef struct slot {
@@ -71,10 +72,10 @@ hn_ex hn_symmat_get(const hn_symmat *m, int i, int j) {
     return s->key ? s->e : hn_num(0);
 }
 
-static int grow(hn_symmat *m) {
+static bool grow(hn_symmat *m) {
     slot *bigger = calloc(2 * m->cap, sizeof *bigger);
     if (!bigger) {
-        return 0;
+        return false;
     }
     for (size_t k = 0; k < m->cap; k++) {
         if (m->slots[k].key) {
@@ -84,7 +85,7 @@ static int grow(hn_symmat *m) {
     free(m->slots);
     m->slots = bigger;
     m->cap *= 2;
-    return 1;
+    return true;
 }
 
 static void add_neighbour(hn_symmat *m, int i, int j) {

@@ -4,6 +4,7 @@
 #include "dynamics/compile/system_impl.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 const hn_scene *hn_system_scene(const hn_system *sys) {
     return sys->scene;
@@ -58,7 +59,7 @@ int hn_system_tree_joint(const hn_system *sys, int body) {
     return sys->scene->is_lagrangian ? -1 : sys->tree.links[body].joint;
 }
 
-int hn_system_joint_is_cut(const hn_system *sys, int joint) {
+bool hn_system_joint_is_cut(const hn_system *sys, int joint) {
     HN_ASSERT(joint >= 0 && joint < sys->scene->n_joints);
     return !sys->scene->is_lagrangian && sys->tree.joint_cut[joint] >= 0;
 }

@@ -25,6 +25,8 @@
 #include "expr/graph.h"
 #include "scene/scene.h"
 
+#include <stdbool.h>
+
 typedef struct hn_system hn_system;
 
 const hn_scene *hn_system_scene(const hn_system *sys);
@@ -62,8 +64,8 @@ double hn_system_length(const hn_system *sys);
 
 /// The joint by which a body hangs in the spanning tree; -1 in a scene of formulas.
 int hn_system_tree_joint(const hn_system *sys, int body);
-/// 1 if the joint was cut to close a loop.
-int hn_system_joint_is_cut(const hn_system *sys, int joint);
+/// Whether the joint was cut to close a loop.
+bool hn_system_joint_is_cut(const hn_system *sys, int joint);
 
 /// The entry of q whose rate entry i of v is; -1 for the angular velocity of a ball.
 int hn_system_position_of(const hn_system *sys, int i);

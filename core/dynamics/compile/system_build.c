@@ -4,6 +4,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,9 +12,9 @@
 /// mechanism (or 1 for angles) [-].
 static const double CLOSED = 1e-9;
 
-static int name_is_taken(const hn_system *sys, const char *name) {
+static bool name_is_taken(const hn_system *sys, const char *name) {
     if (hn_graph_find_symbol(sys->g, name) >= 0) {
-        return 1;
+        return true;
     }
     return sys->opts.symbolic_params && hn_scene_find_param(sys->scene, name) >= 0;
 }

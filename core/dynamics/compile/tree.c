@@ -4,6 +4,7 @@
 #include "dynamics/compile/vec3.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /// |sin| of the angle between axes that count as parallel [-]
@@ -46,7 +47,7 @@ int hn_joint_primitives(hn_joint_type type, const hn_primitive **out) {
     return CHAINS[type].n;
 }
 
-int hn_tree_is_still(const hn_tree *tree, int link) {
+bool hn_tree_is_still(const hn_tree *tree, int link) {
     return tree->links[link].angle < 0 && !tree->groups[tree->links[link].group].moving;
 }
 
@@ -148,12 +149,12 @@ static void hang(const hn_scene *scene, hn_tree *tree, int body, int parent, int
 }
 
 /// Joints that touch each link, in scene order: list[start[l]] .. list[start[l + 1] - 1].
-static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena *arena,
-                            int **start, int **list) {
+static bool collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena *arena,
+                             int **start, int **list) {
     *start = hn_arena_ints(arena, (size_t)tree->ground + 3);
     *list = hn_arena_ints(arena, 2 * (size_t)scene->n_joints + 1);
     if (!*start || !*list) {
-        return 0;
+        return false;
     }
 
     // count the joints of each link, then list them
@@ -176,7 +177,7 @@ static int collect_incident(const hn_scene *scene, const hn_tree *tree, hn_arena
             }
         }
     }
-    return 1;
+    return true;
 }
 
 static hn_status span(const hn_scene *scene, hn_arena *arena, hn_tree *tree, hn_diags *diags) {
@@ -332,7 +333,7 @@ static void frame_about(const double axis[3], const double *prefer, double R[3][
     hn_num3_snap(R, HN_NUM3_SNAP);
 }
 
-static int parallel(const double a[3], const double b[3]) {
+static bool parallel(const double a[3], const double b[3]) {
     double c[3];
     hn_num3_cross(a, b, c);
     return hn_num3_dot(c, c) < PARALLEL * PARALLEL;
@@ -370,8 +371,8 @@ static int find_group(const hn_scene *scene, hn_tree *tree, int base, const doub
 
 /// The first arm of the body across the axis, in the frame that D gives: other joints first, then
 /// the centre of mass.
-static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
-                    const hn_quantity *own, double arm[2]) {
+static bool main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
+                     const hn_quantity *own, double arm[2]) {
     for (int j = -1; j < scene->n_joints; j++) {
         int k = j + 1 < scene->n_joints ? j + 1 : -1; // the joints, and the centre of mass last
 
@@ -393,13 +394,13 @@ static int main_arm(const hn_scene *scene, int body, int joint, double D[3][3],
         if (hypot(v[0], v[1]) > 1e-9) {
             arm[0] = v[0];
             arm[1] = v[1];
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
-static int is_aligned(const double arm[2], double turned) {
+static bool is_aligned(const double arm[2], double turned) {
     double x = fabs(cos(turned) * arm[0] - sin(turned) * arm[1]);
     double y = fabs(sin(turned) * arm[0] + cos(turned) * arm[1]);
     return fmin(x, y) < ALIGNED * fmax(x, y);

@@ -34,6 +34,8 @@
 #include "base/diag.h"
 #include "scene/scene.h"
 
+#include <stdbool.h>
+
 /// How a link's rotation hangs on its parent's.
 typedef enum hn_carry {
     /// revolute, in its parent's group: an absolute angle, so the parent's rotation does not carry
@@ -115,7 +117,7 @@ int hn_tree_common(const hn_tree *tree, int a, int b);
 /// Link of a scene body (HN_GROUND: the ground).
 int hn_tree_link(const hn_tree *tree, int body);
 /// Whether the link never rotates against the ground.
-int hn_tree_is_still(const hn_tree *tree, int link);
+bool hn_tree_is_still(const hn_tree *tree, int link);
 /// The number of bodies between a body and the ground along the tree, itself included.
 int hn_tree_depth(const hn_tree *tree, int body);
 /// One link of the chain that a joint type stands for.

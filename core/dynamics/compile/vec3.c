@@ -4,6 +4,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 hn_vec3 hn_vec3_zero(void) {
     return (hn_vec3){{hn_num(0), hn_num(0), hn_num(0)}};
@@ -13,7 +14,7 @@ hn_vec3 hn_vec3_num(const double v[3]) {
     return (hn_vec3){{hn_num(v[0]), hn_num(v[1]), hn_num(v[2])}};
 }
 
-int hn_vec3_is_zero(hn_vec3 a) {
+bool hn_vec3_is_zero(hn_vec3 a) {
     return hn_is_zero(a.x[0]) && hn_is_zero(a.x[1]) && hn_is_zero(a.x[2]);
 }
 

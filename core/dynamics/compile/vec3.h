@@ -7,6 +7,8 @@
 #include "expr/graph.h"
 #include "linalg/small3.h"
 
+#include <stdbool.h>
+
 typedef struct hn_vec3 {
     hn_ex x[3];
 } hn_vec3;
@@ -22,7 +24,7 @@ typedef struct hn_sym3 {
 
 hn_vec3 hn_vec3_zero(void);
 hn_vec3 hn_vec3_num(const double v[3]);
-int hn_vec3_is_zero(hn_vec3 a);
+bool hn_vec3_is_zero(hn_vec3 a);
 hn_vec3 hn_vec3_add(hn_graph *g, hn_vec3 a, hn_vec3 b);
 hn_vec3 hn_vec3_sub(hn_graph *g, hn_vec3 a, hn_vec3 b);
 hn_vec3 hn_vec3_scale(hn_graph *g, hn_ex k, hn_vec3 a);

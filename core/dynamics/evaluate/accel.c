@@ -13,6 +13,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -217,7 +218,7 @@ static double worst_pivot(const hn_accel *s) {
 }
 
 /// Takes the tape's answer if all of it is finite.
-static int take_answer(const hn_accel *s, double *a, double *lambda) {
+static bool take_answer(const hn_accel *s, double *a, double *lambda) {
     const double *x = s->in.x;
     const uint16_t *slots = s->in.slots;
     int n = s->n_out - s->n_rows - 2 * s->n_guards;
@@ -226,7 +227,7 @@ static int take_answer(const hn_accel *s, double *a, double *lambda) {
         zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
     }
     if (!(zero == 0)) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < s->nv; i++) {
         a[i] = x[slots[i]];
@@ -234,10 +235,10 @@ static int take_answer(const hn_accel *s, double *a, double *lambda) {
     for (int i = 0; lambda && i < s->nc; i++) {
         lambda[i] = x[slots[s->nv + i]];
     }
-    return 1;
+    return true;
 }
 
-static int all_finite(const double *x, int n) {
+static bool all_finite(const double *x, int n) {
     double zero = 0;
     for (int i = 0; i < n; i++) {
         zero += x[i] * 0; // a value that is not finite leaves NaN

@@ -6,6 +6,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +25,7 @@ typedef struct builder {
 } builder;
 
 /// A zeroed expression is the number 0.
-static int allocate(builder *b) {
+static bool allocate(builder *b) {
     const size_t nq = (size_t)b->sys->nq, nv = (size_t)b->sys->nv;
     b->T_q = calloc(nq + 1, sizeof *b->T_q);
     b->V_q = calloc(nq + 1, sizeof *b->V_q);

@@ -7,6 +7,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 typedef struct work {
@@ -59,13 +60,13 @@ static void fill(work *w, const hn_ldl_input *in) {
     }
 }
 
-static int same_pattern(const hn_entries *J, int first, int second, int n) {
+static bool same_pattern(const hn_entries *J, int first, int second, int n) {
     for (int k = 0; k < n; k++) {
         if (J->at[first + k].col != J->at[second + k].col) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 /// Multipliers next to each other that touch the same coordinates.
@@ -156,18 +157,18 @@ static int choose(const work *w) {
 
 /// Keeps a pivot and its reference for the run, or checks them at once when both are numbers.
 /// Returns 0 if the pivot is lost.
-static int guard(work *w, hn_ex pivot, hn_ex ref) {
+static bool guard(work *w, hn_ex pivot, hn_ex ref) {
     double p, r;
     if (hn_is_number(pivot, &p)) {
         return p != 0 && (!hn_is_number(ref, &r) || fabs(p) >= HN_PIVOT_GUARD * fabs(r));
     }
     if (pivot.n == ref.n && ref.c != 0 && fabs(pivot.c) >= HN_PIVOT_GUARD * fabs(ref.c)) {
-        return 1; // the same value: nothing was subtracted from it
+        return true; // the same value: nothing was subtracted from it
     }
     w->out->guard[w->out->n_guards][0] = pivot;
     w->out->guard[w->out->n_guards][1] = ref;
     w->out->n_guards++;
-    return 1;
+    return true;
 }
 
 static hn_ex reciprocal(work *w, hn_ex e) {
@@ -175,7 +176,7 @@ static hn_ex reciprocal(work *w, hn_ex e) {
 }
 
 /// Inverse of the pivot block. Returns 0 if it is singular by structure.
-static int invert(work *w, const int pair[2], hn_ex inverse[3]) {
+static bool invert(work *w, const int pair[2], hn_ex inverse[3]) {
     hn_graph *g = w->g;
 
     // 1 x 1
@@ -183,36 +184,36 @@ static int invert(work *w, const int pair[2], hn_ex inverse[3]) {
     inverse[1] = inverse[2] = hn_num(0);
     if (pair[1] < 0) {
         if (!guard(w, a, w->ref[pair[0]])) {
-            return 0;
+            return false;
         }
         inverse[0] = reciprocal(w, a);
-        return 1;
+        return true;
     }
 
     // 2 x 2
     hn_ex b = hn_symmat_get(w->K, pair[0], pair[1]), c = hn_symmat_get(w->K, pair[1], pair[1]);
     hn_ex det = hn_sub(g, hn_mul(g, a, c), hn_mul(g, b, b));
     if (hn_is_zero(det) || !guard(w, det, hn_mul(g, w->ref[pair[0]], w->ref[pair[1]]))) {
-        return 0;
+        return false;
     }
 
     hn_ex t = reciprocal(w, det);
     inverse[0] = hn_mul(g, c, t);
     inverse[1] = hn_neg(hn_mul(g, b, t));
     inverse[2] = hn_mul(g, a, t);
-    return 1;
+    return true;
 }
 
-static int reserve_rows(work *w, int more) {
+static bool reserve_rows(work *w, int more) {
     hn_ldl *out = w->out;
     if (out->nnz + more <= w->cap_rows) {
-        return 1;
+        return true;
     }
     int cap = 2 * (out->nnz + more) + 64;
     int *row = hn_arena_ints(w->arena, (size_t)cap);
     hn_ex(*L)[2] = hn_arena_get(w->arena, (size_t)cap * sizeof *L);
     if (!row || !L) {
-        return 0;
+        return false;
     }
     if (out->nnz) {
         memcpy(row, out->row, (size_t)out->nnz * sizeof *row);
@@ -221,7 +222,7 @@ static int reserve_rows(work *w, int more) {
     out->row = row;
     out->L = L;
     w->cap_rows = cap;
-    return 1;
+    return true;
 }
 
 static hn_ex two_products(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {

@@ -4,6 +4,7 @@
 #include "dynamics/evaluate/inputs.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 struct hn_limits {
@@ -11,7 +12,7 @@ struct hn_limits {
     int n, *coordinate;
 };
 
-static int is_limited(const hn_system *sys, int i) {
+static bool is_limited(const hn_system *sys, int i) {
     const hn_coordinate *c = &sys->scene->coordinates[i];
     return (c->min > -HUGE_VAL || c->max < HUGE_VAL) && sys->user_known[i] == HN_KNOWN_BOTH;
 }

@@ -10,6 +10,7 @@
 #include "expr/tape.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -446,15 +447,15 @@ void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const d
     add_product(l, term, 1, x, out);
 }
 
-int hn_linear_is_finite(const hn_linear *l, hn_linear_term term) {
+bool hn_linear_is_finite(const hn_linear *l, hn_linear_term term) {
     const term_values *of = &l->terms[index_of(term)];
     const size_t cols = (size_t)count_cols(l, index_of(term));
     for (int k = 0; k < of->n_entries; k++) {
         if (!isfinite(of->values[(size_t)of->rows[k] * cols + (size_t)of->cols[k]])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 double hn_linear_ops(const hn_linear *l) {

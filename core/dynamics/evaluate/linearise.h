@@ -13,6 +13,8 @@
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
 
+#include <stdbool.h>
+
 typedef enum hn_linear_term {
     HN_LINEAR_RESIDUAL = 1 << 0,  ///< nv: R
     HN_LINEAR_M = 1 << 1,         ///< nv x nv
@@ -47,8 +49,8 @@ int hn_linear_entries(const hn_linear *l, hn_linear_term term); ///< their numbe
 void hn_linear_apply(const hn_linear *l, hn_linear_term term, const double *x, double *out);
 void hn_linear_apply_transposed(const hn_linear *l, hn_linear_term term, const double *x,
                                 double *out);
-/// 1 when all entries of a term as last evaluated are finite.
-int hn_linear_is_finite(const hn_linear *l, hn_linear_term term);
+/// Whether all entries of a term as last evaluated are finite.
+bool hn_linear_is_finite(const hn_linear *l, hn_linear_term term);
 double hn_linear_ops(const hn_linear *l); ///< arithmetic operations of one run
 long long hn_linear_count(const hn_linear *l);
 #endif

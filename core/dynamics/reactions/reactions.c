@@ -8,6 +8,7 @@
 #include "expr/construct.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -324,7 +325,7 @@ static void free_combination(hn_reactions *r, int k) {
     r->lambda[qr->perm[k]] = 1;
 }
 
-static int touches(const hn_reaction_wrench *w, double scale) {
+static bool touches(const hn_reaction_wrench *w, double scale) {
     double largest = 0;
     for (int i = 0; i < 3; i++) {
         largest = fmax(largest, fmax(fabs(w->f[i]), fabs(w->n[i])));
@@ -487,16 +488,16 @@ hn_effort hn_reactions_effort(const hn_reactions *r, int k) {
     return r->efforts[k];
 }
 
-int hn_reactions_has_place(const hn_reactions *r, int constraint) {
+bool hn_reactions_has_place(const hn_reactions *r, int constraint) {
     if (hn_constraint_has_points(&r->scene->constraints[constraint])) {
-        return 1;
+        return true;
     }
     for (int k = 0; k < r->n_efforts; k++) {
         const int row = r->efforts[k].row;
         if (row >= 0 && r->sys->loops[r->sys->rows[row].loop].constraint == constraint &&
             !hn_reaction_is_formal(r, r->efforts[k].coordinate)) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }

@@ -21,6 +21,8 @@
 #include "base/diag.h"
 #include "dynamics/compile/system.h"
 
+#include <stdbool.h>
+
 typedef struct hn_wrench {
     double force[3];  ///< [N], world axes, on the child
     double moment[3]; ///< [N m], world axes, about the joint's place on the child
@@ -55,9 +57,9 @@ HN_MUST_CHECK hn_status hn_reactions_eval(hn_reactions *r, double t, const doubl
 /// Efforts of the last eval: constraints in the order of their rows, then the energies.
 int hn_reactions_effort_count(const hn_reactions *r);
 hn_effort hn_reactions_effort(const hn_reactions *r, int k);
-/// 1 if a constraint beside the joints acts at a place, between points or along a coordinate of a
-/// joint of bodies; 0: it has efforts only.
-int hn_reactions_has_place(const hn_reactions *r, int constraint);
+/// Whether a constraint beside the joints acts at a place: between points, or along a coordinate of
+/// a joint of bodies. If not, it has efforts only.
+bool hn_reactions_has_place(const hn_reactions *r, int constraint);
 /// After an eval: largest residual of m a = sum of forces and of the moments about the centre of
 /// mass over all bodies, relative to the largest force [-] and moment. The tree joints are found
 /// from it; what it tells is that bodies whose wrenches all came from elsewhere (closing joints,

@@ -4,6 +4,7 @@
 #include "dynamics/compile/constraints.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // ---- what acts ----
@@ -30,7 +31,7 @@ static void act(hn_reactions *r, int body, double k, const double force[3], cons
 
 /// The part of a joint's hn_reaction_wrench that works along one of its coordinates: a unit force
 /// or moment on the child, in the world.
-int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
+bool hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]) {
     const hn_primitive *chain;
     const int n = hn_joint_primitives(joint->type, &chain);
 
@@ -58,7 +59,7 @@ int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, 
         return chain[k].type == HN_JOINT_PRISMATIC;
     }
     HN_ASSERT(0);
-    return 0;
+    return false;
 }
 
 /// Efforts along coordinates of cut joints act on both bodies, and are part of the joint's wrench;
@@ -133,20 +134,20 @@ typedef struct row_ends {
 } row_ends;
 
 /// End a and end b of a row between bodies; 0 for gears and formulas.
-static int find_ends(const hn_reactions *r, int row, row_ends *out) {
+static bool find_ends(const hn_reactions *r, int row, row_ends *out) {
     const hn_loop *loop = &r->sys->loops[r->sys->rows[row].loop];
     if (loop->constraint >= 0) {
         const hn_constraint *k = &r->scene->constraints[loop->constraint];
         if (!hn_constraint_has_points(k)) {
-            return 0;
+            return false;
         }
         const hn_point *p = &r->scene->points[k->p], *q = &r->scene->points[k->q];
         *out = (row_ends){{p->body, q->body}, {p->at, q->at}};
-        return 1;
+        return true;
     }
     const hn_joint *joint = &r->scene->joints[loop->joint];
     *out = (row_ends){{joint->parent, joint->child}, {joint->parent_at, joint->child_at}};
-    return 1;
+    return true;
 }
 
 /// Three outputs in E of end b, in the world.

@@ -5,6 +5,8 @@
 
 #include "dynamics/reactions/reactions_state.h"
 
+#include <stdbool.h>
+
 /// Wrenches of all joints for these multipliers, and of constraints between points; of a scene
 /// without mass or loads if `bare`.
 void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
@@ -14,6 +16,6 @@ void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
 double hn_reaction_calc_defect(const hn_reactions *r);
 /// The part of a joint's wrench that works along one of its coordinates: the unit force (returns 1)
 /// or moment (0) on the child, in the world.
-int hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
+bool hn_reaction_freedom(const hn_reactions *r, const hn_joint *joint, int part, double axis[3]);
 
 #endif

@@ -16,6 +16,7 @@
 #include "expr/diff.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -154,7 +155,7 @@ void hn_reaction_read_energies(hn_reactions *r, const double *a) {
 
 // ---- the list ----
 
-int hn_reaction_is_formal(const hn_reactions *r, int coordinate) {
+bool hn_reaction_is_formal(const hn_reactions *r, int coordinate) {
     const int joint = r->scene->coordinates[coordinate].joint;
     return joint < 0 || r->scene->joints[joint].is_formal;
 }

@@ -5,6 +5,8 @@
 
 #include "dynamics/reactions/reactions_state.h"
 
+#include <stdbool.h>
+
 /// Which coordinates the energies move, what they do there at zero accelerations (one expression
 /// each, in the arena), and per acceleration.
 HN_MUST_CHECK hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *arena,
@@ -12,6 +14,6 @@ HN_MUST_CHECK hn_status hn_reaction_derive_energies(hn_reactions *r, hn_arena *a
 void hn_reaction_read_energies(hn_reactions *r, const double *a); ///< of the last run of the tape
 HN_MUST_CHECK hn_status hn_reaction_list_efforts(hn_reactions *r, hn_arena *arena);
 void hn_reaction_read_efforts(hn_reactions *r, const double *lambda);
-int hn_reaction_is_formal(const hn_reactions *r, int coordinate); ///< no joint of bodies has it
+bool hn_reaction_is_formal(const hn_reactions *r, int coordinate); ///< no joint of bodies has it
 
 #endif
