@@ -279,6 +279,8 @@ static hn_status solve_by_saddle(hn_kkt *k, const double *M, const double *J, co
     hn_saddle_info saddle = {0};
     opts.rank_tol = k->opts.rank_tol;
     opts.residual_tol = k->opts.residual_tol;
+    opts.noise = k->opts.noise;
+    opts.motion = k->opts.motion;
     opts.row_floor = k->opts.row_floor;
     opts.row_unit = k->opts.row_unit;
     opts.max_refine = k->opts.max_refine;

@@ -17,9 +17,10 @@ struct hn_saddle_ws {
     int nv_max, nc_max;
     int nv, nc;
     hn_saddle_opts opts;
-    double *M, *J; // copies, M with both triangles: refinement needs the unscaled system
-    double *d, *r; // equilibration: D of the coordinates, R of the rows
-    hn_qr qr;      // of (R J D)', nv x nc
+    double *M, *J;  // copies, M with both triangles: refinement needs the unscaled system
+    double *d, *r;  // equilibration: D of the coordinates, R of the rows
+    double stretch; // how much longer R makes the shortest row, against the longest
+    hn_qr qr;       // of (R J D)', nv x nc
     double *
         // Q' D M D Q, nv x nv; the lower triangle of its last block is replaced by its Cholesky
         // factor
@@ -112,9 +113,11 @@ static void scale_rows(hn_saddle_ws *ws) {
         ws->r[i] = hn_norm2(nv, col);
         longest = fmax(longest, ws->r[i] / row_unit(ws, i));
     }
+    ws->stretch = 1;
     for (int i = 0; i < ws->nc; i++) {
         double norm = fmax(ws->r[i], ws->opts.row_floor * longest * row_unit(ws, i));
         ws->r[i] = norm > 0 ? 1 / norm : 1;
+        ws->stretch = fmax(ws->stretch, longest * row_unit(ws, i) * ws->r[i]);
         for (int j = 0; j < nv; j++) {
             ws->qr.a[(size_t)i * nv + j] *= ws->r[i];
         }
@@ -279,7 +282,7 @@ static double solve_once(hn_saddle_ws *ws, const double *f, const double *gamma,
 /// The scale that decides whether rows contradict each other: gamma, J a and f in equilibrated
 /// units, which are all alike.
 static double consistency_scale(const hn_saddle_ws *ws, const double *f, const double *gamma) {
-    double scale = 0, of_ja = 0;
+    double scale = ws->opts.motion, of_ja = 0;
     for (int j = 0; j < ws->nv; j++) {
         scale = fmax(scale, fabs(ws->d[j] * f[j]));
         of_ja = fmax(of_ja, fabs(ws->a[j] / ws->d[j]));
@@ -415,7 +418,8 @@ hn_status hn_saddle_apply(const double *f, const double *gamma, double *a, doubl
     if (!hn_all_finite(nv, ws->a) || !hn_all_finite(nc, ws->lambda)) {
         return HN_ERR_SINGULAR;
     }
-    if (outside > ws->opts.residual_tol * consistency_scale(ws, f, gamma)) {
+    double noise = ws->opts.noise * ws->stretch / hn_qr_pivot_ratio(&ws->qr);
+    if (outside > fmax(ws->opts.residual_tol, noise) * consistency_scale(ws, f, gamma)) {
         return HN_ERR_INCONSISTENT;
     }
 

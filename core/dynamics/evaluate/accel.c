@@ -39,7 +39,8 @@ struct hn_accel {
     const int *M_row, *M_col, *J_row, *J_col;
     hn_kkt *kkt;
     double *gamma, *dense_a, *dense_lambda;
-    double *row_unit; ///< nc: the characteristic length for rows in metres, else 1
+    double *row_unit;   ///< nc: the characteristic length for rows in metres, else 1
+    double *speed_unit; ///< nv: the same for velocities of lengths
     // refinement of the tape's answer
     hn_factor *factor;
     double *rest, *step; ///< nv + nc each
@@ -140,6 +141,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     s->dense_a = hn_arena_doubles(arena, (size_t)s->nv);
     s->dense_lambda = hn_arena_doubles(arena, (size_t)s->nc);
     s->row_unit = hn_arena_doubles(arena, (size_t)s->nc);
+    s->speed_unit = hn_arena_doubles(arena, (size_t)s->nv);
     if (!s->kkt || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
@@ -147,6 +149,10 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     // the terms by themselves, and their patterns
     for (int i = 0; i < s->nc; i++) {
         s->row_unit[i] = hn_system_row_unit(sys, i);
+    }
+    for (int i = 0; i < s->nv; i++) {
+        const hn_coordinate *c = &sys->scene->coordinates[hn_system_user_coordinate(sys, i)];
+        s->speed_unit[i] = c->kind == HN_LENGTH ? hn_system_length(sys) : 1;
     }
     HN_TRY(hn_eval_create(sys, terms, arena, &s->terms));
     s->n_M = hn_eval_pattern(s->terms, HN_TERM_M, &s->M_row, &s->M_col);
@@ -433,6 +439,18 @@ static double dense_ops(const hn_accel *s) {
     return 2 * n * c * c + 4 * n * n * c + n * n * n / 3 + 4 * (n * n + 2 * n * c);
 }
 
+/// The accelerations that the present velocities alone can make, in the units of the equilibrated
+/// system: the largest sqrt(M_jj) v_j times the largest rate, a length counting by the mechanism's.
+static double accelerations_of_motion(const hn_accel *s) {
+    const double *M = hn_eval_get(s->terms, HN_TERM_M), *v = s->in.x + s->in.nq;
+    double momentum = 0, rate = 0;
+    for (int i = 0; i < s->nv; i++) {
+        momentum = fmax(momentum, sqrt(fmax(M[(size_t)i * s->nv + i], 0)) * fabs(v[i]));
+        rate = fmax(rate, fabs(v[i]) / s->speed_unit[i]);
+    }
+    return momentum * rate;
+}
+
 /// Tolerances of the dense solve. A row that is short at a pose is not stretched to unit length:
 /// that would amplify its rounding. A row below HN_ROW_LOST holds nothing but rounding and the
 /// error of the step, so it is compared with rows as long as they are.
@@ -441,7 +459,8 @@ static hn_kkt_opts dense_opts(const hn_accel *s, double gap, double row_ratio, i
     opts.row_floor = HN_PIVOT_NOISE_ROW_FLOOR;
     opts.row_unit = s->row_unit;
     opts.rank_tol = fmax(opts.rank_tol, hn_pivot_noise_of(gap));
-    opts.residual_tol = fmax(opts.residual_tol, hn_pivot_noise_of_sides(gap));
+    opts.noise = hn_pivot_noise_of_sides(gap);
+    opts.motion = accelerations_of_motion(s);
     opts.want_cond = want_cond;
     if (row_ratio < HN_ROW_LOST) {
         opts.row_floor = 1;
