@@ -328,6 +328,34 @@ static void a_short_row_of_noise_is_kept_short_by_a_floor(void **state) {
     assert_near(f->a[1], 5, 1e-6);
 }
 
+static void a_disagreement_that_the_error_of_the_state_explains_is_no_contradiction(void **state) {
+    fixture *f = *state;
+    hn_saddle_opts opts = hn_saddle_opts_default();
+    // the second row is the first, 20 times shorter, and asks for 1 + 2e-5 in place of 1
+    f->p = (problem){.nv = 2,
+                     .nc = 2,
+                     .M = {1, 0, 0, 1},
+                     .J = {1, 0, 0.05, 0},
+                     .f = {0, 5},
+                     .gamma = {-1, -0.05 * (1 + 2e-5)}};
+    assert_int_equal(solve(f, &opts), HN_ERR_INCONSISTENT);
+    opts.noise = 2e-6; // stretched 20 times
+    assert_int_equal(solve(f, &opts), HN_OK);
+    assert_int_equal(f->info.rank, 1);
+    assert_near(f->a[0], 1, 2e-5);
+    f->p.gamma[1] = -0.05 * (1 + 2e-3);
+    assert_int_equal(solve(f, &opts), HN_ERR_INCONSISTENT);
+
+    // where all accelerations vanish, those that the velocities could make are the measure
+    opts.noise = 2e-6;
+    f->p.f[1] = 0;
+    f->p.gamma[0] = 0;
+    f->p.gamma[1] = -0.05 * 2e-5;
+    assert_int_equal(solve(f, &opts), HN_ERR_INCONSISTENT);
+    opts.motion = 1;
+    assert_int_equal(solve(f, &opts), HN_OK);
+}
+
 static void a_row_of_zeros_needs_a_gamma_of_zero(void **state) {
     fixture *f = *state;
     f->p = (problem){.nv = 1, .nc = 2, .M = {1}, .J = {0, 1}, .f = {3}, .gamma = {0, -4}};
@@ -496,6 +524,7 @@ int main(void) {
         with_fixture(rows_that_contradict_each_other_are_refused_or_met_by_least_squares),
         with_fixture(rounding_in_a_redundant_row_is_no_contradiction),
         with_fixture(a_short_row_of_noise_is_kept_short_by_a_floor),
+        with_fixture(a_disagreement_that_the_error_of_the_state_explains_is_no_contradiction),
         with_fixture(a_row_of_zeros_needs_a_gamma_of_zero),
         with_fixture(without_constraints_it_is_newtons_law),
         with_fixture(inputs_that_are_not_finite_leave_the_outputs_alone),
