@@ -17,10 +17,11 @@ enum {
     HN_RD_MAX_POINTS = 10000,
     HN_RD_MAX_SHAPES = 10000,
     HN_RD_MAX_LOADS = 4000,
-    HN_RD_MAX_TABLE = 10000, ///< times of a table
-    HN_RD_MAX_NAME = 60,     ///< characters of a name
-    HN_RD_MAX_FAULTS = 64,   ///< then reading stops
-    HN_RD_MAX_DEPTH = 24     ///< levels of JSON
+    HN_RD_MAX_TABLE = 10000,  ///< times of a table
+    HN_RD_MAX_NAME = 60,      ///< characters of a name
+    HN_RD_MAX_TEXT = 4 << 20, ///< characters of all formulas, repetitions counted
+    HN_RD_MAX_FAULTS = 64,    ///< then reading stops
+    HN_RD_MAX_DEPTH = 24      ///< levels of JSON
 };
 
 /// Which names a formula may use, each including those before it.
@@ -55,6 +56,7 @@ typedef struct hn_reader {
     hn_diags *diags;
     hn_status status; ///< of the first fault
     int n_faults;
+    size_t n_text; ///< characters of formulas so far
     bool oom;
     char path[512]; ///< JSON pointer of the place
     // the repetition that is being read

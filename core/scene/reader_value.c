@@ -282,6 +282,13 @@ bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_sco
         return hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
                            hn_rd_kind(node));
     }
+    r->n_text += strlen(node->valuestring);
+    if (r->n_text > HN_RD_MAX_TEXT) {
+        hn_rd_limit(r, "the formulas of the scene have more than %d characters in all",
+                    HN_RD_MAX_TEXT);
+        r->n_faults = HN_RD_MAX_FAULTS;
+        return false;
+    }
     const char *filled =
         strchr(node->valuestring, '{') ? hn_rd_fill(r, node->valuestring) : node->valuestring;
     const char *text = filled ? settle_loop(r, filled) : NULL;

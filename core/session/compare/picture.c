@@ -58,7 +58,9 @@ static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     opts.duration = fmax(r->time, 1e-6);
     status = hn_comparison_create(p->model, r->methods, r->n_methods, &opts, &p->comparison, diags);
     for (int k = 0; k < frames && status == HN_OK; k++) {
-        hn_comparison_next(p->comparison);
+        if (!hn_comparison_work(p->comparison, r->stop, r->user)) {
+            return hn_diags_add(diags, HN_ERR_LIMIT, "/time", NULL, "stopped on request");
+        }
         if (r->cpu_budget > 0 && cpu_used(p->comparison) > r->cpu_budget) {
             status = hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a larger step or less time",
                                   "%g s of computing were used up at t = %g s", r->cpu_budget,

@@ -19,6 +19,8 @@ typedef struct hn_picture_request {
     const char *
         view; ///< hn_view_parse() spelling; NULL: the front, or for a mechanism in space from the side and above
     double cpu_budget; ///< seconds of stepping allowed in all: HN_ERR_LIMIT beyond; 0: not bounded
+    int (*stop)(void *user); ///< asked every few milliseconds; 1: HN_ERR_LIMIT. May be NULL
+    void *user;
 } hn_picture_request;
 
 /// Appends the bytes of a PNG file. `describe` (may be NULL) receives in words and numbers what the picture shows, as JSON:

@@ -68,13 +68,19 @@ static int choose_methods(const hn_session *session, const cJSON *asked, char (*
     return n;
 }
 
+/// What the change asks for; new methods run on the model that is there (then fresh->model is NULL).
 static hn_status build(hn_session *session, const change *c, hn_subject *fresh, hn_diags *diags) {
     char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     const char *methods[HN_COMPARISON_MAX_METHODS];
     int n = choose_methods(session, c->methods, kept, methods);
+    if (!c->settings) {
+        return hn_subject_compare(session, session->bench.model, methods, n, &fresh->comparison,
+                                  diags);
+    }
+
     hn_scene_request scene = {0};
     hn_status status = hn_scene_request_copy(&scene, &session->bench.scene);
-    if (status == HN_OK && c->settings) {
+    if (status == HN_OK) {
         status = hn_scene_request_read_settings(&scene, c->settings, diags);
     }
     if (status == HN_OK) {
@@ -82,6 +88,20 @@ static hn_status build(hn_session *session, const change *c, hn_subject *fresh, 
     }
     hn_scene_request_reset(&scene);
     return status;
+}
+
+/// Puts what was built in the place of what is there.
+static void replace(hn_session *session, hn_subject *fresh) {
+    if (fresh->model) {
+        session->published = NULL; // a new model may lie where the old one did
+        hn_subject_reset(&session->bench);
+        session->bench = *fresh;
+    } else {
+        hn_comparison_free(session->bench.comparison);
+        session->bench.comparison = fresh->comparison;
+        memset(session->bench.published, 0, sizeof session->bench.published);
+    }
+    *fresh = (hn_subject){0};
 }
 
 /// {"method":1,"key":"alpha","value":20}
@@ -149,9 +169,7 @@ static hn_status publish_set(hn_session *session, const cJSON *set) {
 static hn_status carry_out(hn_session *session, const change *c, hn_subject *fresh) {
     hn_status status = HN_OK;
     if (fresh->comparison) {
-        hn_subject_reset(&session->bench);
-        session->bench = *fresh;
-        *fresh = (hn_subject){0};
+        replace(session, fresh);
     } else if (c->reset) {
         hn_comparison_reset(session->bench.comparison);
     }

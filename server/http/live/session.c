@@ -23,6 +23,16 @@ void hn_subject_reset(hn_subject *bench) {
     *bench = (hn_subject){0};
 }
 
+hn_status hn_subject_compare(const hn_session *session, const hn_model *model,
+                             const char *const *methods, int n_methods, hn_comparison **out,
+                             hn_diags *diags) {
+    hn_comparison_opts opts = hn_comparison_opts_default();
+    opts.frame_dt = session->asked_frame_dt;
+    opts.duration = session->asked_duration;
+    opts.cpu_budget = session->opts->frame_cpu;
+    return hn_comparison_create(model, methods, n_methods, &opts, out, diags);
+}
+
 hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
                             const char *const *methods, int n_methods, hn_subject *bench,
                             hn_diags *diags) {
@@ -32,12 +42,8 @@ hn_status hn_subject_create(const hn_session *session, const hn_scene_request *s
         status = hn_scene_request_load(scene, session->lib, 0, &bench->model, diags);
     }
     if (status == HN_OK) {
-        hn_comparison_opts opts = hn_comparison_opts_default();
-        opts.frame_dt = session->asked_frame_dt;
-        opts.duration = session->asked_duration;
-        opts.cpu_budget = session->opts->frame_cpu;
-        status = hn_comparison_create(bench->model, methods, n_methods, &opts, &bench->comparison,
-                                      diags);
+        status = hn_subject_compare(session, bench->model, methods, n_methods, &bench->comparison,
+                                    diags);
     }
     if (status != HN_OK) {
         hn_subject_reset(bench);
@@ -100,27 +106,44 @@ static void swap_text(hn_strbuf *a, hn_strbuf *b) {
     *b = t;
 }
 
-hn_status hn_session_publish_setup(hn_session *session) {
-    hn_strbuf scene, comparison, settings;
+/// Writes the scene and its parameters, unless they stand there already: drawing one costs seconds
+/// for a mechanism of many bodies.
+static hn_status publish_scene(hn_session *session) {
+    if (session->published == session->bench.model) {
+        return HN_OK;
+    }
+    hn_strbuf scene, settings;
     hn_strbuf_init(&scene);
-    hn_strbuf_init(&comparison);
     hn_strbuf_init(&settings);
     hn_model_json(&scene, session->bench.model);
-    hn_comparison_json(&comparison, session->bench.comparison);
     hn_scene_request_settings_json(&settings, &session->bench.scene);
-    hn_status status = scene.failed || comparison.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
+    const hn_status status = scene.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
     if (status == HN_OK) {
         pthread_mutex_lock(&session->lock);
         swap_text(&session->scene_json, &scene);
-        swap_text(&session->comparison_json, &comparison);
         swap_text(&session->settings_json, &settings);
+        pthread_mutex_unlock(&session->lock);
+        session->published = session->bench.model;
+    }
+    hn_strbuf_reset(&scene);
+    hn_strbuf_reset(&settings);
+    return status;
+}
+
+hn_status hn_session_publish_setup(hn_session *session) {
+    HN_TRY(publish_scene(session));
+    hn_strbuf comparison;
+    hn_strbuf_init(&comparison);
+    hn_comparison_json(&comparison, session->bench.comparison);
+    const hn_status status = comparison.failed ? HN_ERR_MEMORY : HN_OK;
+    if (status == HN_OK) {
+        pthread_mutex_lock(&session->lock);
+        swap_text(&session->comparison_json, &comparison);
         session->frame_dt = hn_comparison_frame_dt(session->bench.comparison);
         session->duration = hn_comparison_duration(session->bench.comparison);
         pthread_mutex_unlock(&session->lock);
     }
-    hn_strbuf_reset(&scene);
     hn_strbuf_reset(&comparison);
-    hn_strbuf_reset(&settings);
     return status;
 }
 

@@ -33,6 +33,7 @@ struct hn_session {
 
     // the thread's own
     hn_subject bench;
+    const hn_model *published; ///< whose description scene_json is
     double asked_frame_dt, asked_duration;
     double undisturbed; ///< until then no request interrupts [s, wall clock]
 
@@ -61,6 +62,10 @@ struct hn_session {
 HN_MUST_CHECK hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
                                           const char *const *methods, int n_methods,
                                           hn_subject *bench, hn_diags *diags);
+/// The runs alone, on a model that is there.
+HN_MUST_CHECK hn_status hn_subject_compare(const hn_session *session, const hn_model *model,
+                                           const char *const *methods, int n_methods,
+                                           hn_comparison **out, hn_diags *diags);
 void hn_subject_reset(hn_subject *bench);
 
 // for the thread; none may be called with the lock held

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // POLLRDHUP
 #include "http/live/stream.h"
 
 #include "base/clock.h"
@@ -6,6 +7,7 @@
 #include "http/live/session_internal.h"
 #include "http/request/context.h"
 
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,6 +16,8 @@ enum { CHUNK = 1 << 16, SCHEMA = 1 };
 struct hn_stream {
     hn_session *session;
     struct MHD_Connection *connection;
+    int fd;            ///< of the connection, to notice that the reader has gone
+    int gone;          ///< 1: it has
     hn_shares *places; ///< its own is given back at the end
     hn_client client;
     hn_stream *next;
@@ -37,8 +41,15 @@ void hn_stream_wake(hn_stream *s) {
     }
 }
 
+/// 1 when the reader has closed the connection. A suspended one is not looked at by the HTTP library.
+static int has_gone(const hn_stream *s) {
+    struct pollfd look = {.fd = s->fd, .events = POLLRDHUP};
+    return s->waiting && poll(&look, 1, 0) > 0 && look.revents;
+}
+
 void hn_stream_tick(hn_stream *s, double now) {
-    if (now - s->last_sent >= s->session->opts->keep_alive) {
+    s->gone |= has_gone(s);
+    if (s->gone || now - s->last_sent >= s->session->opts->keep_alive) {
         hn_stream_wake(s);
     }
 }
@@ -125,6 +136,10 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
     if (s->at == s->text.n) {
         hn_session *session = s->session;
         pthread_mutex_lock(&session->lock);
+        if (s->gone) {
+            pthread_mutex_unlock(&session->lock);
+            return MHD_CONTENT_READER_END_WITH_ERROR;
+        }
         fill(s);
         int ended = s->text.n == 0 && is_at_end(s);
         if (s->text.n == 0 && !ended) {
@@ -250,6 +265,7 @@ static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
     }
     *s = (hn_stream){.session = session,
                      .connection = r->connection,
+                     .fd = hn_request_socket(r),
                      .places = places,
                      .client = r->client,
                      .skips = skips,

@@ -55,6 +55,7 @@ typedef struct hn_request {
 
 /// The query argument, or NULL. Light routes and heavy ones alike.
 const char *hn_request_query(const hn_request *r, const char *name);
+int hn_request_socket(const hn_request *r); ///< descriptor of the connection, -1 if unknown
 const char *hn_request_header(const hn_request *r, const char *name);
 /// Calls `see` for each argument `name=value` of the query in turn; stops when it returns not
 /// HN_OK, and returns that.

@@ -248,6 +248,7 @@ static hn_request *begin_request(hn_dispatch *d, struct MHD_Connection *connecti
         const union MHD_ConnectionInfo *info =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
         r->context = d->context;
+        atomic_fetch_add(&d->context->open_requests, 1);
         r->connection = connection;
         r->client = find_client(connection);
         r->watch = info ? info->socket_context : NULL;
@@ -295,6 +296,7 @@ void hn_dispatch_completed(void *cls, struct MHD_Connection *connection, void **
     if (r) {
         hn_connection_is_idle(d->connections, r->watch);
         atomic_fetch_sub(&d->context->unread, r->n_unread);
+        atomic_fetch_sub(&d->context->open_requests, 1);
     }
     hn_request_free(r);
     *req_cls = NULL;

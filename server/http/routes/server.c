@@ -12,10 +12,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 /// Connections of one event loop; with its own descriptors fewer than the 128 events of one look.
 enum { LOOP_CONNECTIONS = 100 };
+enum { DRAIN_LOOKS = 30, DRAIN_NS = 10000000 }; // 0.3 s in all
 
 struct hn_server {
     hn_context context;
@@ -129,6 +131,11 @@ void hn_server_stop(hn_server *s) {
     hn_studies_stop(c->studies);
     hn_jobs_stop(s->dispatch.quick);
     hn_jobs_stop(s->dispatch.heavy);
+
+    // answers that are there go out, to whoever reads them
+    for (int i = 0; i < DRAIN_LOOKS && atomic_load(&c->open_requests) > 0; i++) {
+        nanosleep(&(struct timespec){.tv_nsec = DRAIN_NS}, NULL);
+    }
     if (s->daemon) {
         MHD_stop_daemon(s->daemon);
     }

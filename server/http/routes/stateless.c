@@ -162,6 +162,11 @@ void hn_handle_run(hn_request *r) {
     conclude(r, model, status, &b, &diags);
 }
 
+static int is_stopping(void *user) {
+    const hn_context *context = user;
+    return atomic_load(&context->stopping);
+}
+
 void hn_handle_snapshot(hn_request *r) {
     hn_model *model = load_model(r, 0);
     if (!model) {
@@ -182,7 +187,9 @@ void hn_handle_snapshot(hn_request *r) {
                                   .theme = theme && strcmp(theme, "dark") == 0 ? HN_THEME_DARK
                                                                                : HN_THEME_LIGHT,
                                   .view = hn_fields_text(r->json, "view"),
-                                  .cpu_budget = r->context->opts.max_run_cpu};
+                                  .cpu_budget = r->context->opts.max_run_cpu,
+                                  .stop = is_stopping,
+                                  .user = r->context};
     hn_strbuf png;
     hn_diags diags = {0};
     hn_strbuf_init(&png);
