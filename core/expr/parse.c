@@ -204,6 +204,20 @@ static int parse_arguments(parser *p, hn_ex *args, int max) {
     }
 }
 
+/// sqrt(x^2 + y^2); a square that no double holds is refused.
+static hn_ex hypotenuse(parser *p, const hn_ex args[2], size_t at) {
+    hn_ex square[2];
+    for (int i = 1; i >= 0; i--) {
+        square[i] = hn_mul(p->g, args[i], args[i]);
+        if (!isfinite(args[i].c * args[i].c)) {
+            return fail(p, at, "divide both by a common factor",
+                        "hypot: the square of a number near %g is too large for a double",
+                        args[i].c);
+        }
+    }
+    return hn_sqrt(p->g, hn_add(p->g, square[0], square[1]));
+}
+
 static hn_ex parse_call(parser *p, size_t at, const char *name) {
     const int is_hypot = strcmp(name, "hypot") == 0;
     const hn_op op = hn_op_find(name);
@@ -224,8 +238,7 @@ static hn_ex parse_call(parser *p, size_t at, const char *name) {
 
     // hypot is no operator: sqrt(a^2 + b^2)
     if (is_hypot) {
-        return hn_sqrt(
-            p->g, hn_add(p->g, hn_mul(p->g, args[0], args[0]), hn_mul(p->g, args[1], args[1])));
+        return hypotenuse(p, args, at);
     }
     return apply_checked(p, op, args, at);
 }

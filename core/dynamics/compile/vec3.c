@@ -34,7 +34,11 @@ static hn_ex mul(hn_graph *g, hn_ex a, hn_ex b) {
 
 /// a b + c d + e f
 static hn_ex sum_of_products(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d, hn_ex e, hn_ex f) {
-    hn_ex terms[3] = {mul(g, a, b), mul(g, c, d), mul(g, e, f)};
+    // made one after the other: nodes are numbered as they are made, and sums are sorted by number
+    hn_ex terms[3];
+    terms[0] = mul(g, a, b);
+    terms[1] = mul(g, c, d);
+    terms[2] = mul(g, e, f);
     int n = 0;
     for (int i = 0; i < 3; i++) {
         if (!hn_is_zero(terms[i])) {
@@ -65,17 +69,32 @@ hn_vec3 hn_vec3_scale(hn_graph *g, hn_ex k, hn_vec3 a) {
     return a;
 }
 
+/// a b - c d, the second product made first. The order of arguments of a call is the compiler's, and
+/// with it the numbers of the nodes; a temporary settles it.
+static hn_ex difference(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
+    const hn_ex second = hn_neg(mul(g, c, d));
+    const hn_ex first = mul(g, a, b);
+    return add(g, first, second);
+}
+
+/// a b + c d, likewise.
+static hn_ex sum_of_two(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
+    const hn_ex second = mul(g, c, d);
+    const hn_ex first = mul(g, a, b);
+    return add(g, first, second);
+}
+
 hn_vec3 hn_vec3_cross(hn_graph *g, hn_vec3 a, hn_vec3 b) {
     hn_vec3 out;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        out.x[i] = add(g, mul(g, a.x[j], b.x[k]), hn_neg(mul(g, a.x[k], b.x[j])));
+        out.x[i] = difference(g, a.x[j], b.x[k], a.x[k], b.x[j]);
     }
     return out;
 }
 
 hn_ex hn_vec3_cross_z(hn_graph *g, hn_vec3 a, hn_vec3 b) {
-    return add(g, mul(g, a.x[0], b.x[1]), hn_neg(mul(g, a.x[1], b.x[0])));
+    return difference(g, a.x[0], b.x[1], a.x[1], b.x[0]);
 }
 
 hn_ex hn_vec3_dot(hn_graph *g, hn_vec3 a, hn_vec3 b) {
@@ -182,21 +201,24 @@ hn_sym3 hn_sym3_rotate(hn_graph *g, const hn_mat3 *R, const hn_sym3 *m) {
 
 hn_sym3 hn_sym3_turn_z(hn_graph *g, hn_ex c, hn_ex s, const hn_sym3 *m) {
     // with k = c (xx - yy) - 2 s xy:  xx' = yy + c k,  xy' = xy + s k,  yy' = xx - c k
-    hn_ex k = add(g, mul(g, c, add(g, m->x[0], hn_neg(m->x[1]))), mul(g, s, hn_scale(-2, m->x[3])));
+    const hn_ex twice = mul(g, s, hn_scale(-2, m->x[3]));
+    const hn_ex apart = add(g, m->x[0], hn_neg(m->x[1]));
+    const hn_ex k = add(g, mul(g, c, apart), twice);
     hn_ex ck = mul(g, c, k);
     hn_sym3 out;
     out.x[0] = add(g, m->x[1], ck);
     out.x[1] = add(g, m->x[0], hn_neg(ck));
     out.x[2] = m->x[2];
     out.x[3] = add(g, m->x[3], mul(g, s, k));
-    out.x[4] = add(g, mul(g, c, m->x[4]), hn_neg(mul(g, s, m->x[5])));
-    out.x[5] = add(g, mul(g, s, m->x[4]), mul(g, c, m->x[5]));
+    out.x[4] = difference(g, c, m->x[4], s, m->x[5]);
+    out.x[5] = sum_of_two(g, s, m->x[4], c, m->x[5]);
     return out;
 }
 
 hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz) {
     // with t = 2 s + m r: diagonal entries are sums of r_j t_j, the others -(r_i t_j + t_i r_j) / 2
-    hn_vec3 t = hn_vec3_add(g, hn_vec3_scale(g, hn_num(2), s), hn_vec3_scale(g, m, r));
+    const hn_vec3 mr = hn_vec3_scale(g, m, r);
+    const hn_vec3 t = hn_vec3_add(g, hn_vec3_scale(g, hn_num(2), s), mr);
     hn_ex rt[3];
     for (int i = 0; i < 3; i++) {
         rt[i] = mul(g, r.x[i], t.x[i]);
@@ -214,7 +236,7 @@ hn_sym3 hn_sym3_shift(hn_graph *g, hn_ex m, hn_vec3 s, hn_vec3 r, int only_zz) {
     static const int first[3] = {0, 0, 1}, second[3] = {1, 2, 2};
     for (int k = 0; k < 3; k++) {
         int i = first[k], j = second[k];
-        hn_ex both = add(g, mul(g, r.x[i], t.x[j]), mul(g, t.x[i], r.x[j]));
+        hn_ex both = sum_of_two(g, r.x[i], t.x[j], t.x[i], r.x[j]);
         out.x[3 + k] = hn_scale(-0.5, both);
     }
     return out;
