@@ -51,8 +51,8 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
 ROOMS_server       := grade: \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
-                      http/studies:http/ground,http/request \
-                      http/routes:grade,http/ground,http/request,http/live,http/studies \
+                      http/studies:http/ground,http/request http/runs:http/ground,http/request \
+                      http/routes:grade,http/ground,http/request,http/live,http/studies,http/runs \
                       terminal: cli/shell:terminal tui:terminal,cli/shell \
                       cli/commands:grade,cli/shell,http/ground,http/routes,terminal,tui \
                       cli/study:cli/shell cli:cli/shell :cli

@@ -31,6 +31,7 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     if (args->host) {
         opts->host = args->host;
     }
+    opts->runs_folder = args->runs;
     choose_int(&opts->port, args->port);
     choose_int(&opts->max_events, args->history);
     choose_int(&opts->max_comparisons, args->max_comparisons);

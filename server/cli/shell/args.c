@@ -84,6 +84,7 @@ static const option OPTIONS[] = {
     {"--max-comparisons", "N", OPTION_COUNT, AT(max_comparisons), "comparisons at once"},
     {"--max-streams", "N", OPTION_COUNT, AT(max_streams), "open event streams at once"},
     {"--max-connections", "N", OPTION_COUNT, AT(max_connections), "connections at once"},
+    {"--runs", "DIR", OPTION_TEXT, AT(runs), "a folder in which finished runs are kept"},
     {"--run-cpu", "S", OPTION_NUMBER, AT(run_cpu), "computing time of one long request [s]"},
     {"--idle-pause", "S", OPTION_NUMBER, AT(idle_pause),
      "a comparison without a reader pauses after this long [s]"},

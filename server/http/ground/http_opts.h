@@ -16,6 +16,8 @@ typedef struct hn_http_opts {
     const char *const *allow_hosts;
     int n_allow_hosts;
 
+    const char *runs_folder; ///< where finished runs are kept; NULL: in memory alone
+
     // places
     int max_connections, max_comparisons, max_streams, max_events;
     int max_studies;     ///< at once

@@ -25,6 +25,7 @@ typedef struct hn_context {
     struct hn_static_files *files;
     struct hn_comparisons *comparisons;
     struct hn_studies *studies;
+    struct hn_runs *runs;
     hn_kept_text scenes;       ///< the list of shipped scenes, as JSON
     struct hn_shares *streams; ///< places of open streams
     atomic_int open_requests;  ///< begun and not completed

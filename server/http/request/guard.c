@@ -8,6 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
+enum { MAX_QUERY = 16 };
+
 /// Length of an authority without a port that its scheme implies.
 static size_t trim_port(const char *authority) {
     const size_t n = strlen(authority);
@@ -103,11 +105,62 @@ int hn_accepts(const char *accept, const char *media_type) {
 
 int hn_guard_accept(hn_request *r) {
     const char *accept = hn_request_header(r, "Accept");
-    if (!r->route->schema || hn_accepts(accept, r->route->media_type)) {
+    char type[64];
+    for (int i = 0; r->route->schema && hn_route_media_type(r->route, i, type); i++) {
+        if (hn_accepts(accept, type)) {
+            return 1;
+        }
+    }
+    if (!r->route->schema) {
         return 1;
     }
     hn_reply_problem(r, HN_PROBLEM_NOT_ACCEPTABLE, NULL, "this address offers %s",
                      r->route->media_type);
+    return 0;
+}
+
+/// What a route knows of a query, while it is walked through.
+typedef struct query_check {
+    const hn_route *route;
+    char unknown[64];
+} query_check;
+
+static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const char *key,
+                                   const char *value) {
+    query_check *check = cls;
+    const hn_route_query *q = check->route->query;
+    (void)kind;
+    (void)value;
+    while (q && q->name && strcmp(q->name, key) != 0) {
+        q++;
+    }
+    if (q && q->name) {
+        return MHD_YES;
+    }
+    snprintf(check->unknown, sizeof check->unknown, "%s", key);
+    return MHD_NO;
+}
+
+int hn_guard_query(hn_request *r) {
+    query_check check = {.route = r->route};
+    MHD_get_connection_values(r->connection, MHD_GET_ARGUMENT_KIND, check_query, &check);
+    if (!check.unknown[0]) {
+        return 1;
+    }
+    char hint[HN_DIAG_HINT] = "this address takes no parameters";
+    const char *names[MAX_QUERY];
+    int n = 0;
+    for (const hn_route_query *q = r->route->query; q && q->name && n < MAX_QUERY; q++) {
+        const size_t used = n ? strlen(hint) : 0;
+        snprintf(hint + used, sizeof hint - used, "%s%s", n ? ", " : "parameters: ", q->name);
+        names[n++] = q->name;
+    }
+    const char *near = hn_nearest_name(check.unknown, names, n);
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, hint, "the query parameter '%s' is unknown here",
+                     check.unknown);
     return 0;
 }
 

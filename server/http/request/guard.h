@@ -16,7 +16,8 @@ int hn_is_same_origin(const char *origin, const char *host);
 
 /// Each returns 1 when all is well; otherwise the reply is a problem.
 int hn_guard_host(hn_request *r, const hn_hosts *hosts);
-int hn_guard_site(hn_request *r); ///< pages of other sites get no computing
+int hn_guard_site(hn_request *r);  ///< pages of other sites get no computing
+int hn_guard_query(hn_request *r); ///< parameters that the route does not take are refused
 int hn_guard_accept(hn_request *r);
 int hn_guard_body_type(hn_request *r);
 #endif

@@ -42,6 +42,8 @@ typedef struct hn_request {
     size_t n_body, body_cap, body_dropped;
     cJSON *json;             ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue
+    double wait_until;       ///< in a queue of those who wait for a run [s, wall clock]
+    int is_new;              ///< 1: it has begun what it asks for
 
     // the reply
     long long n_unread; ///< bytes handed to the HTTP library, until the request is completed

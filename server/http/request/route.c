@@ -59,3 +59,16 @@ const char *hn_route_nearest(const hn_route_table *table, const char *path) {
     }
     return hn_nearest_name(path, paths, table->n);
 }
+
+int hn_route_media_type(const hn_route *route, int i, char out[64]) {
+    const char *at = route->media_type;
+    for (; at && *at && i > 0; i--) {
+        at += strcspn(at, " ");
+        at += *at == ' ';
+    }
+    if (!at || !*at) {
+        return 0;
+    }
+    snprintf(out, 64, "%.*s", (int)strcspn(at, " "), at);
+    return 1;
+}

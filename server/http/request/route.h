@@ -11,9 +11,10 @@ struct hn_request;
 
 typedef enum hn_work {
     HN_WORK_LIGHT, ///< answered at once on the connection's thread: lookups and copies only, no body
-    HN_WORK_QUICK, ///< done by the quick pool: reads a shipped scene, opens a comparison
-    HN_WORK_HEAVY, ///< done by the pool, for as long as run_cpu_s; a full pool: 429
-    HN_WORK_OWN    ///< asynchronous: the handler replies now or arranges a later reply
+    HN_WORK_QUICK,     ///< done by the quick pool: reads a shipped scene, opens a comparison
+    HN_WORK_HEAVY,     ///< done by the pool, for as long as run_cpu_s; a full pool: 429
+    HN_WORK_QUICK_OWN, ///< the same, asynchronous: the handler finishes the request, or has it finished
+    HN_WORK_OWN        ///< asynchronous: the handler replies now or arranges a later reply
 } hn_work;
 
 typedef struct hn_route_query {
@@ -25,13 +26,16 @@ typedef struct hn_route {
     hn_work work;
     void (*handle)(struct hn_request *r);
     const hn_field *fields; ///< of the JSON body; NULL: no body
-    const char *media_type; ///< of the answer
-    const char *status;     ///< of the answer when all is well
+    const char *media_type; ///< of the answer; several are separated by blanks
+    const char *status;     ///< of the answer when all is well; several are separated by blanks
     const char
         *schema; ///< name of the answer's schema in the OpenAPI document, NULL when it has no body
     const char *summary;
     const hn_route_query *query; ///< ends with a row without a name; may be NULL
 } hn_route;
+
+/// Copies the i-th media type of a route; returns 0 when there are not so many.
+int hn_route_media_type(const hn_route *route, int i, char out[64]);
 
 /// All rows.
 typedef struct hn_route_table {

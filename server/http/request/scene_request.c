@@ -64,8 +64,8 @@ hn_status hn_scene_request_read(hn_scene_request *order, const cJSON *body, hn_d
     if (!order->name && !order->text) {
         return HN_ERR_MEMORY;
     }
-    return hn_scene_request_read_settings(order, cJSON_GetObjectItemCaseSensitive(body, "parameters"),
-                                          diags);
+    return hn_scene_request_read_settings(
+        order, cJSON_GetObjectItemCaseSensitive(body, "parameters"), diags);
 }
 
 hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *from) {

@@ -71,8 +71,9 @@ static void check_head(hn_request *r, const char *method) {
         reply_off_routes(r, method, &match);
     } else if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
-    } else if (hn_guard_site(r) && hn_guard_accept(r) && hn_guard_body_type(r) && text &&
-               sscanf(text, "%lld", &length) == 1 && length > r->context->opts.max_body) {
+    } else if (hn_guard_site(r) && hn_guard_query(r) && hn_guard_accept(r) &&
+               hn_guard_body_type(r) && text && sscanf(text, "%lld", &length) == 1 &&
+               length > r->context->opts.max_body) {
         hn_reply_problem(r, HN_PROBLEM_TOO_LARGE, NULL,
                          "the body has %lld bytes; at most %lld are read", length,
                          r->context->opts.max_body);
@@ -125,7 +126,11 @@ void hn_dispatch_job(void *job) {
     if (atomic_load(&r->context->stopping)) {
         hn_reply_problem(r, HN_PROBLEM_STOPPING, NULL, "the server is going down");
     } else if (hn_request_read_body(r)) {
+        const int own = r->route->work == HN_WORK_QUICK_OWN;
         r->route->handle(r);
+        if (own) {
+            return; // the handler has it finished
+        }
     }
     hn_request_finish(r);
 }
@@ -152,7 +157,7 @@ static void push(hn_request *r, hn_jobs *jobs) {
 /// A GET computes nothing, unless it says so.
 static int is_quick(const hn_request *r) {
     const char *compute = hn_request_query(r, "compute");
-    return r->route->work == HN_WORK_QUICK ||
+    return r->route->work == HN_WORK_QUICK || r->route->work == HN_WORK_QUICK_OWN ||
            (strcmp(r->route->method, "GET") == 0 && (!compute || strcmp(compute, "true") != 0));
 }
 
@@ -168,6 +173,7 @@ static int start_work(hn_dispatch *d, hn_request *r) {
         r->route->handle(r);
         return 0;
     case HN_WORK_QUICK:
+    case HN_WORK_QUICK_OWN:
     case HN_WORK_HEAVY:
         push(r, is_quick(r) ? d->quick : d->heavy);
         return 0;

@@ -127,6 +127,13 @@ void hn_fields_schema_json(hn_strbuf *b, const hn_field *fields) {
 static const struct {
     const char *name, *schema;
 } SCHEMAS[] = {
+    {"Text", "{\"type\":\"string\"}"},
+    {"RunList",
+     "{\"type\":\"object\",\"required\":[\"runs\"],\"properties\":{\"runs\":" TEXTS "}}"},
+    {"Samples",
+     "{\"type\":\"object\",\"required\":[\"fields\",\"rows\",\"next_cursor\"],\"properties\":{"
+     "\"fields\":" TEXTS ",\"rows\":{\"type\":\"array\",\"items\":{\"type\":\"array\"}},"
+     "\"next_cursor\":{\"type\":[\"integer\",\"null\"]}}}"},
     {"Document", "{\"type\":\"object\"}"},
     {"Health",
      "{\"type\":\"object\",\"required\":[\"status\"],\"properties\":{\"status\":{\"const\":\"ok\"},"
@@ -162,9 +169,10 @@ static const struct {
      "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS
      ",\"motion\":{\"type\":\"object\"}}}"},
     {"Run",
-     "{\"type\":\"object\",\"required\":[\"scene\",\"method\",\"status\",\"reason\",\"t_"
-     "reached\",\"coordinates\",\"samples\","
-     "\"incidents\",\"cost\"],\"properties\":{\"scene\":{\"type\":[\"string\",\"null\"]},"
+     "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"progress\",\"links\"],\"properties\":{"
+     "\"id\":" TEXT ",\"state\":{\"enum\":[\"waiting\",\"running\",\"finished\"]},"
+     "\"progress\":{\"type\":\"number\"},\"links\":{\"type\":\"object\"},\"runs\":" OBJECTS ","
+     "\"scene\":{\"type\":[\"string\",\"null\"]},"
      "\"method\":" TEXT ",\"status\":" STATUS ",\"reason\":" TEXT
      ",\"t_reached\":{\"type\":\"number\"},\"coordinates\":" TEXTS ",\"lambda_marks\":" TEXTS ","
      "\"samples\":{\"type\":\"object\",\"properties\":{\"t\":" NUMBERS
@@ -222,7 +230,8 @@ static const struct {
      "{\"type\":\"object\",\"description\":\"document is that of the command line's --json, null "
      "until "
      "there is one\",\"required\":[\"id\",\"kind\",\"state\",\"reason\",\"progress\",\"elapsed_s\","
-     "\"time_left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"],"
+     "\"time_left_s\",\"time_limit_s\",\"scene\",\"parameters\",\"methods\",\"document\",\"links\"]"
+     ","
      "\"properties\":{\"id\":" TEXT ",\"kind\":" TEXT
      ",\"state\":{\"enum\":[\"running\",\"finished\",\"stopped\",\"failed\"]},\"reason\":" TEXT
      ",\"hint\":" TEXT ",\"progress\":{\"type\":\"number\"},\"elapsed_s\":{\"type\":\"number\"},"
@@ -304,23 +313,37 @@ static void put_reference(hn_strbuf *b, const char *schema) {
     hn_json_end_object(b);
 }
 
-static void put_answers(hn_strbuf *b, const hn_route *route) {
-    hn_json_key(b, "responses");
-    hn_json_object(b);
-    hn_json_key(b, route->status);
+/// One answer that is no problem document.
+static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) {
+    hn_json_key(b, status);
     hn_json_object(b);
     hn_json_put_string(b, "description", route->summary);
     if (route->schema) {
+        char type[64];
         hn_json_key(b, "content");
         hn_json_object(b);
-        hn_json_key(b, route->media_type);
-        hn_json_object(b);
-        hn_json_key(b, "schema");
-        put_reference(b, route->schema);
-        hn_json_end_object(b);
+        for (int i = 0; hn_route_media_type(route, i, type); i++) {
+            hn_json_key(b, type);
+            hn_json_object(b);
+            hn_json_key(b, "schema");
+            put_reference(b, i == 0 ? route->schema : "Text");
+            hn_json_end_object(b);
+        }
         hn_json_end_object(b);
     }
     hn_json_end_object(b);
+}
+
+static void put_answers(hn_strbuf *b, const hn_route *route) {
+    hn_json_key(b, "responses");
+    hn_json_object(b);
+    for (const char *at = route->status; *at; at += strspn(at, " ")) {
+        char status[8];
+        const size_t n = strcspn(at, " ");
+        snprintf(status, sizeof status, "%.*s", (int)n, at);
+        put_answer(b, route, status);
+        at += n;
+    }
     hn_json_key(b, "default");
     hn_json_raw(b, "{\"$ref\":\"#/components/responses/Problem\"}");
     hn_json_end_object(b);

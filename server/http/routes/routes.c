@@ -6,6 +6,7 @@
 #include "http/routes/catalogue.h"
 #include "http/routes/openapi.h"
 #include "http/routes/stateless.h"
+#include "http/runs/runs.h"
 #include "http/studies/studies.h"
 #include "http/studies/study_fields.h"
 #include "render/canvas.h"
@@ -56,8 +57,12 @@ static const hn_field EQUATIONS[] = {SCENE_FIELDS,
 static const hn_field RUN[] = {SCENE_FIELDS,
                                {.name = "method",
                                 .type = HN_FIELD_TEXT,
-                                .required = 1,
                                 .about = "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
+                               {.name = "methods",
+                                .type = HN_FIELD_TEXTS,
+                                .min = 1,
+                                .max = HN_COMPARISON_MAX_METHODS,
+                                .about = "several of them, in place of method"},
                                {.name = "time",
                                 .type = HN_FIELD_NUMBER,
                                 .required = 1,
@@ -214,6 +219,18 @@ static const hn_route_query REFERENCE_QUERY[] = {
     {"compute", "boolean",
      "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
     {NULL, NULL, NULL}};
+static const hn_route_query RUN_QUERY[] = {
+    {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
+    {NULL, NULL, NULL}};
+static const hn_route_query SAMPLES_QUERY[] = {
+    {"fields", "string", "columns, separated by commas: t,q,gap; all when left out"},
+    {"stride", "integer", "every so many samples"},
+    {"from", "number", "first time [s]"},
+    {"to", "number", "last time [s]"},
+    {"cursor", "integer", "index of the first sample, from next_cursor or the Link header"},
+    {"limit", "integer", "most rows of a page, at most 100000"},
+    {"method", "integer", "index of the method in a run by several; 0 when left out"},
+    {NULL, NULL, NULL}};
 static const hn_route_query EVENTS_QUERY[] = {
     {"mode", "string",
      "complete (every frame) or live (a slow reader skips frames, never incidents)"},
@@ -258,8 +275,20 @@ static const hn_route ROUTES[] = {
      "Document", "Sizes, tree, loops, rank, operations kept and left out", NULL},
     {"POST", "/api/v1/equations", HN_WORK_HEAVY, hn_handle_equations, EQUATIONS, JSON, "200",
      "Equations", "The equations of motion with parameters as symbols", NULL},
-    {"POST", "/api/v1/runs", HN_WORK_HEAVY, hn_handle_run, RUN, JSON, "200", "Run",
-     "One run with its samples as columns", NULL},
+    {"GET", "/api/v1/runs", HN_WORK_LIGHT, hn_handle_runs_list, NULL, JSON, "200", "RunList",
+     "Ids of the runs that are kept", NULL},
+    {"POST", "/api/v1/runs", HN_WORK_QUICK_OWN, hn_handle_runs_create, RUN, JSON, "201 200 202",
+     "Run",
+     "Runs a scene by one method or several; the same question has the same id and is computed "
+     "once",
+     RUN_QUERY},
+    {"GET", "/api/v1/runs/{id}", HN_WORK_OWN, hn_handle_run_get, NULL, JSON, "200", "Run",
+     "State, progress and summary of a run; waits for its end when asked to", RUN_QUERY},
+    {"GET", "/api/v1/runs/{id}/samples", HN_WORK_QUICK, hn_handle_run_samples, NULL,
+     JSON " application/x-ndjson text/csv", "200", "Samples", "Rows of a run, a page at a time",
+     SAMPLES_QUERY},
+    {"DELETE", "/api/v1/runs/{id}", HN_WORK_LIGHT, hn_handle_run_delete, NULL, JSON, "204", NULL,
+     "Stops a run and forgets it", NULL},
     {"POST", "/api/v1/snapshots", HN_WORK_HEAVY, hn_handle_snapshot, SNAPSHOT, "image/png", "200",
      "Picture", "A picture of where the methods have taken a scene", NULL},
     {"GET", "/api/v1/problems/{id}", HN_WORK_LIGHT, hn_handle_problem, NULL, JSON, "200",
@@ -282,9 +311,9 @@ static const hn_route ROUTES[] = {
      EVENTS_QUERY},
     {"GET", "/api/v1/studies", HN_WORK_LIGHT, hn_handle_studies_list, NULL, JSON, "200",
      "StudyList", "The studies there are", NULL},
-    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON, "202",
-     "Study", "Starts a study; its Location tells the progress, and the document when it is done",
-     NULL},
+    {"POST", "/api/v1/studies", HN_WORK_HEAVY, hn_handle_studies_create, hn_study_fields, JSON,
+     "202", "Study",
+     "Starts a study; its Location tells the progress, and the document when it is done", NULL},
     {"GET", "/api/v1/studies/{id}", HN_WORK_LIGHT, hn_handle_study_get, NULL, JSON, "200", "Study",
      "State, progress, time left, and the document when it is done", NULL},
     {"GET", "/api/v1/studies/{id}/report", HN_WORK_LIGHT, hn_handle_study_report, NULL, "text/html",

@@ -7,6 +7,7 @@
 #include "http/routes/dispatch.h"
 #include "http/routes/routes.h"
 #include "http/routes/static_files.h"
+#include "http/runs/run_store.h"
 #include "http/studies/studies.h"
 
 #include <stdio.h>
@@ -75,8 +76,9 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));
     c->comparisons = hn_comparisons_create(o, c->lib);
     c->studies = hn_studies_create(o, c->lib);
+    c->runs = hn_runs_create(o, c->lib);
     if (!s->dispatch.heavy || !s->dispatch.quick || !s->dispatch.connections || !c->streams ||
-        !c->comparisons || !c->studies) {
+        !c->comparisons || !c->studies || !c->runs) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
     }
     return HN_OK;
@@ -131,6 +133,7 @@ void hn_server_stop(hn_server *s) {
     hn_studies_stop(c->studies);
     hn_jobs_stop(s->dispatch.quick);
     hn_jobs_stop(s->dispatch.heavy);
+    hn_runs_stop(c->runs);
 
     // answers that are there go out, to whoever reads them
     for (int i = 0; i < DRAIN_LOOKS && atomic_load(&c->open_requests) > 0; i++) {
@@ -149,6 +152,7 @@ void hn_server_stop(hn_server *s) {
     hn_connections_free(s->dispatch.connections);
     hn_comparisons_free(c->comparisons);
     hn_studies_free(c->studies);
+    hn_runs_free(c->runs);
     hn_shares_free(c->streams);
     hn_static_files_free(c->files);
     pthread_mutex_destroy(&c->scenes.lock);

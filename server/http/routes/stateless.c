@@ -115,53 +115,6 @@ void hn_handle_equations(hn_request *r) {
     conclude(r, model, status, &b, &diags);
 }
 
-typedef struct allowance {
-    const hn_context *context;
-    double cpu_end;
-} allowance;
-
-/// A run goes on while it has computing time left and the server is up.
-static int may_go_on(void *user, double share) {
-    const allowance *a = user;
-    (void)share;
-    return hn_clock_thread() < a->cpu_end && !atomic_load(&a->context->stopping);
-}
-
-void hn_handle_run(hn_request *r) {
-    hn_model *model = load_model(r, 0);
-    if (!model) {
-        return;
-    }
-    allowance a = {.context = r->context,
-                   .cpu_end = hn_clock_thread() + r->context->opts.max_run_cpu};
-    const cJSON *at = cJSON_GetObjectItemCaseSensitive(r->json, "at"), *item;
-    double *times = calloc((size_t)cJSON_GetArraySize(at) + 1, sizeof *times);
-    hn_run_request request = {
-        .method = hn_fields_text(r->json, "method"),
-        .time = hn_fields_number(r->json, "time", 0),
-        .at = at ? times : NULL,
-        .every = hn_fields_number(r->json, "every", 0),
-        .max_samples = r->context->opts.max_samples,
-        .max_numbers = r->context->opts.max_numbers,
-        .reactions = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions")),
-        .raw_lambda = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "raw_lambda")),
-        .progress = may_go_on,
-        .stop_reason = "the computing time of one request is used up",
-        .user = &a};
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_diags diags = {0};
-    hn_status ended = HN_OK, status = HN_ERR_MEMORY;
-    if (times) {
-        cJSON_ArrayForEach(item, at) {
-            times[request.n_at++] = item->valuedouble;
-        }
-        status = hn_model_run_json(&b, model, &request, &ended, &diags);
-    }
-    free(times);
-    conclude(r, model, status, &b, &diags);
-}
-
 static int is_stopping(void *user) {
     const hn_context *context = user;
     return atomic_load(&context->stopping);
@@ -229,10 +182,10 @@ void hn_handle_grade(hn_request *r) {
     hn_verdict *v = calloc(1, sizeof *v);
     char *submission =
         cJSON_PrintUnformatted(cJSON_GetObjectItemCaseSensitive(r->json, "submission"));
-    hn_status status =
-        v && submission ? hn_shelf_exercise_load(r->context->lib, hn_fields_text(r->json, "problem"),
-                                                 &problem, &diags)
-                        : HN_ERR_MEMORY;
+    hn_status status = v && submission ? hn_shelf_exercise_load(r->context->lib,
+                                                                hn_fields_text(r->json, "problem"),
+                                                                &problem, &diags)
+                                       : HN_ERR_MEMORY;
     if (status == HN_OK) {
         status = hn_grade_json(problem, submission, strlen(submission),
                                (uint64_t)hn_fields_number(r->json, "seed", 0), v);

@@ -9,7 +9,6 @@ void hn_handle_terms(struct hn_request *r);
 void hn_handle_assemble(struct hn_request *r);
 void hn_handle_inspect(struct hn_request *r);
 void hn_handle_equations(struct hn_request *r);
-void hn_handle_run(struct hn_request *r);
 void hn_handle_snapshot(struct hn_request *r);
 void hn_handle_grade(struct hn_request *r);
 void hn_handle_problem(struct hn_request *r);

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/runs/run_samples.h"
+
+#include "http/runs/json_scan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_COLUMNS = 16, NAME = 40 };
+
+/// A column of the document, and how far it has been read.
+typedef struct column {
+    char name[NAME];
+    const char *at;
+} column;
+
+typedef struct reader {
+    const char *document;
+    int n;
+    column columns[MAX_COLUMNS];
+    const char *time; ///< likewise, of the column t
+} reader;
+
+// ---- columns ----
+
+static void add_column(reader *r, const char *name, size_t n, const char *at) {
+    if (r->n < MAX_COLUMNS && n < NAME) {
+        column *c = &r->columns[r->n++];
+        memcpy(c->name, name, n);
+        c->name[n] = 0;
+        c->at = at;
+    }
+}
+
+/// Every column of the document, in its order.
+static void add_all(reader *r, const char *samples) {
+    for (const char *at = samples + 1; *at == '"';) {
+        const size_t n = strcspn(at + 1, "\"");
+        const char *value = at + n + 3;
+        add_column(r, at + 1, n, value);
+        at = hn_json_skip(value);
+        at += *at == ',';
+    }
+}
+
+static hn_status refuse_column(const char *name, const char *samples, hn_diags *diags) {
+    reader all = {0};
+    const char *names[MAX_COLUMNS];
+    char hint[HN_DIAG_HINT] = "";
+    add_all(&all, samples);
+    for (int i = 0; i < all.n; i++) {
+        const size_t used = strlen(hint);
+        names[i] = all.columns[i].name;
+        snprintf(hint + used, sizeof hint - used, "%s%s", i ? ", " : "columns: ", names[i]);
+    }
+    const char *near = hn_nearest_name(name, names, all.n);
+    if (near) {
+        snprintf(hint, sizeof hint, "did you mean '%s'?", near);
+    }
+    return hn_diags_add(diags, HN_ERR_INPUT, "/fields", hint, "the run has no column '%s'", name);
+}
+
+static hn_status choose_columns(reader *r, const char *fields, const char *samples,
+                                hn_diags *diags) {
+    if (!fields) {
+        add_all(r, samples);
+        return HN_OK;
+    }
+    for (const char *at = fields; *at;) {
+        const size_t n = strcspn(at, ",");
+        char name[NAME];
+        snprintf(name, sizeof name, "%.*s", (int)(n < NAME ? n : NAME - 1), at);
+        const char *value = hn_json_member(samples, name);
+        if (!value || *value != '[') {
+            return refuse_column(name, samples, diags);
+        }
+        add_column(r, name, strlen(name), value);
+        at += n + (at[n] == ',');
+    }
+    return HN_OK;
+}
+
+// ---- rows ----
+
+/// Heads of a column of vectors: the names of what its numbers belong to.
+static const char *head_list(const char *name) {
+    static const char *const lists[][2] = {{"q", "coordinates"},
+                                           {"v", "rates"},
+                                           {"lambda", "rows"},
+                                           {"raw_lambda", "rows"},
+                                           {"effort", "efforts"}};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        if (strcmp(name, lists[i][0]) == 0) {
+            return lists[i][1];
+        }
+    }
+    return NULL;
+}
+
+/// "th1,a2,th3" for q, "reaction_force[0],..." where numbers have no names of their own.
+static void put_heads(hn_strbuf *b, const reader *r, int i) {
+    const column *c = &r->columns[i];
+    const char *list = head_list(c->name), *first = c->at;
+    const char *names = list ? hn_json_member(r->document, list) : NULL;
+    const char *row = hn_json_next(&first);
+    hn_strbuf_add(b, i ? "," : "");
+    if (!row || *row != '[') {
+        hn_strbuf_add(b, c->name);
+        return;
+    }
+    int k = 0;
+    for (const char *item = hn_json_next(&row); item; item = hn_json_next(&row), k++) {
+        const char *name = names ? hn_json_next(&names) : NULL;
+        hn_strbuf_add(b, k ? "," : "");
+        if (name) {
+            hn_strbuf_add(b, strcmp(c->name, "raw_lambda") == 0 ? "raw " : "");
+            hn_strbuf_add_n(b, name, (size_t)(hn_json_skip(name) - name));
+        } else {
+            hn_strbuf_printf(b, "%s[%d]", c->name, k);
+        }
+    }
+}
+
+/// A value of a row; in CSV without brackets, and nothing for null.
+static void put_value(hn_strbuf *b, const char *value, const char *end, int csv) {
+    if (!csv) {
+        hn_strbuf_add_n(b, value, (size_t)(end - value));
+    } else if (*value == '[') {
+        for (const char *item = hn_json_next(&value), *first = item; item;
+             item = hn_json_next(&value)) {
+            hn_strbuf_add(b, item == first ? "" : ",");
+            put_value(b, item, hn_json_skip(item), 1);
+        }
+    } else if (*value != 'n') {
+        hn_strbuf_add_n(b, value, (size_t)(end - value));
+    }
+}
+
+static void put_row(hn_strbuf *b, const reader *r, const char *const *values,
+                    hn_samples_form form) {
+    const int csv = form == HN_SAMPLES_CSV;
+    hn_strbuf_add(b, csv ? "" : form == HN_SAMPLES_JSON ? "[" : "{");
+    for (int i = 0; i < r->n; i++) {
+        hn_strbuf_add(b, i ? "," : "");
+        if (form == HN_SAMPLES_NDJSON) {
+            hn_strbuf_printf(b, "\"%s\":", r->columns[i].name);
+        }
+        put_value(b, values[i], hn_json_skip(values[i]), csv);
+    }
+    hn_strbuf_add(b, csv ? "\n" : form == HN_SAMPLES_JSON ? "]" : "}\n");
+}
+
+/// Steps all columns to their next row; 0 at the end.
+static int next_row(reader *r, const char **values, double *t) {
+    const char *time = hn_json_next(&r->time);
+    for (int i = 0; i < r->n; i++) {
+        values[i] = hn_json_next(&r->columns[i].at);
+        if (!values[i]) {
+            return 0;
+        }
+    }
+    *t = time ? strtod(time, NULL) : 0;
+    return time != NULL;
+}
+
+static long long put_rows(hn_strbuf *b, reader *r, const hn_samples_request *q) {
+    const char *values[MAX_COLUMNS];
+    double t;
+    long long written = 0;
+    for (long long k = 0; next_row(r, values, &t); k++) {
+        const int wanted = k >= q->cursor && t >= q->from && t <= q->to && k % q->stride == 0;
+        if (wanted && written == q->limit) {
+            return k;
+        }
+        if (wanted) {
+            hn_strbuf_add(b, q->form == HN_SAMPLES_JSON && written ? "," : "");
+            put_row(b, r, values, q->form);
+            written++;
+        }
+    }
+    return -1;
+}
+
+hn_status hn_run_samples_write(hn_strbuf *b, const char *document,
+                               const hn_samples_request *request, long long *next,
+                               hn_diags *diags) {
+    const char *samples = hn_json_member(document, "samples");
+    reader r = {.document = document, .time = samples ? hn_json_member(samples, "t") : NULL};
+    if (!r.time) {
+        return HN_ERR_INTERNAL;
+    }
+    HN_TRY(choose_columns(&r, request->fields, samples, diags));
+
+    // heads, rows, and what closes them
+    if (request->form == HN_SAMPLES_CSV) {
+        for (int i = 0; i < r.n; i++) {
+            put_heads(b, &r, i);
+        }
+        hn_strbuf_add(b, "\n");
+    } else if (request->form == HN_SAMPLES_JSON) {
+        hn_strbuf_add(b, "{\"fields\":[");
+        for (int i = 0; i < r.n; i++) {
+            hn_strbuf_printf(b, "%s\"%s\"", i ? "," : "", r.columns[i].name);
+        }
+        hn_strbuf_add(b, "],\"rows\":[");
+    }
+    *next = put_rows(b, &r, request);
+    if (request->form == HN_SAMPLES_JSON) {
+        hn_strbuf_add(b, "],\"next_cursor\":");
+        if (*next >= 0) {
+            hn_strbuf_printf(b, "%lld}", *next);
+        } else {
+            hn_strbuf_add(b, "null}");
+        }
+    }
+    return HN_OK;
+}

@@ -1,0 +1,547 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/runs/run_store.h"
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "http/ground/jobs.h"
+#include "http/ground/sha256.h"
+#include "http/request/request.h"
+#include "http/runs/json_scan.h"
+#include "http/runs/runs.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MAX_RUNS = 20000, LOOK_MS = 100 };
+static const size_t MAX_BYTES = (size_t)256 << 20; // of documents in memory
+static const size_t MAX_FILE = (size_t)1 << 30;    // of one file in the folder
+
+struct hn_runs {
+    pthread_mutex_t lock;
+    pthread_cond_t wake; ///< of the thread that looks at those who wait
+    const hn_http_opts *opts;
+    const hn_library *lib;
+    hn_jobs *jobs;
+    hn_kept_run *first;
+    int n, stop, n_waiting;
+    size_t bytes;
+    pthread_t thread;
+    int has_thread;
+};
+
+static void compute(void *arg);
+
+// ---- one run ----
+
+static void free_run(hn_kept_run *run) {
+    for (int i = 0; i < run->n; i++) {
+        free(run->documents[i]);
+    }
+    hn_run_question_reset(&run->question);
+    free(run);
+}
+
+/// With the lock held: gives up a reference; returns the run when it was the last.
+static hn_kept_run *drop(hn_kept_run *run) {
+    return --run->refs == 0 ? run : NULL;
+}
+
+void hn_runs_release(hn_runs *all, hn_kept_run *run) {
+    pthread_mutex_lock(&all->lock);
+    hn_kept_run *dead = drop(run);
+    pthread_mutex_unlock(&all->lock);
+    if (dead) {
+        free_run(dead);
+    }
+}
+
+static hn_kept_run *new_run(const char *id, hn_client client) {
+    hn_kept_run *run = calloc(1, sizeof *run);
+    if (run) {
+        snprintf(run->id, sizeof run->id, "%s", id);
+        run->refs = 1;
+        run->client = client;
+        run->touched = hn_clock_wall();
+    }
+    return run;
+}
+
+/// Takes a document, as text.
+static int add_document(hn_kept_run *run, hn_strbuf *text) {
+    const size_t n = text->n;
+    char *taken = hn_strbuf_take(text);
+    if (!taken) {
+        return 0;
+    }
+    run->documents[run->n++] = taken;
+    run->bytes += n;
+    return 1;
+}
+
+// ---- the folder ----
+
+static int is_id(const char *id) {
+    return strlen(id) == HN_RUN_ID - 1 &&
+           strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_") ==
+               HN_RUN_ID - 1;
+}
+
+static int file_path(const hn_runs *all, const char *id, char out[1024]) {
+    return all->opts->runs_folder && is_id(id) &&
+           snprintf(out, 1024, "%s/%s.json", all->opts->runs_folder, id) < 1024;
+}
+
+/// Documents as an array, behind a line with their hash: a file is believed only when it is whole.
+static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
+    char path[1024], hash[HN_SHA256_BASE64];
+    hn_strbuf body, file;
+    if (!file_path(all, run->id, path)) {
+        return;
+    }
+    hn_strbuf_init(&body);
+    hn_strbuf_init(&file);
+    for (int i = 0; i < run->n; i++) {
+        hn_strbuf_add(&body, i ? "," : "[");
+        hn_strbuf_add(&body, run->documents[i]);
+    }
+    hn_strbuf_add(&body, "]\n");
+    hn_sha256_base64(hn_strbuf_text(&body), body.n, hash);
+    hn_strbuf_printf(&file, "%s\n", hash);
+    hn_strbuf_add_n(&file, hn_strbuf_text(&body), body.n);
+
+    // a folder that is full costs the next server the time of computing, no more
+    hn_diag diag = {0};
+    if (body.failed || file.failed ||
+        hn_file_write(path, hn_strbuf_text(&file), file.n, &diag) != HN_OK) {
+        fprintf(stderr, "holonom: a run could not be kept: %s\n", diag.message);
+    }
+    hn_strbuf_reset(&body);
+    hn_strbuf_reset(&file);
+}
+
+/// The documents of a file; 0 when it is not whole.
+static int split_file(hn_kept_run *run, const char *text, size_t n) {
+    char hash[HN_SHA256_BASE64];
+    const size_t head = HN_SHA256_BASE64; // the hash and the end of its line
+    if (n < head + 2 || text[head - 1] != '\n' || text[head] != '[') {
+        return 0;
+    }
+    hn_sha256_base64(text + head, n - head, hash);
+    if (memcmp(hash, text, head - 1) != 0) {
+        return 0;
+    }
+    const char *at = text + head;
+    for (const char *item = hn_json_next(&at); item && run->n < HN_COMPARISON_MAX_METHODS;
+         item = hn_json_next(&at)) {
+        hn_strbuf document;
+        hn_strbuf_init(&document);
+        hn_strbuf_add_n(&document, item, (size_t)(at - item));
+        if (!add_document(run, &document)) {
+            return 0;
+        }
+    }
+    return run->n > 0;
+}
+
+static hn_kept_run *read_from_folder(const hn_runs *all, const char *id) {
+    char path[1024];
+    hn_strbuf text;
+    hn_kept_run *run = NULL;
+    hn_strbuf_init(&text);
+    if (file_path(all, id, path) && hn_file_read(path, MAX_FILE, &text, NULL) == HN_OK) {
+        run = new_run(id, 0);
+    }
+    if (run && split_file(run, hn_strbuf_text(&text), text.n)) {
+        run->phase = HN_RUN_DONE;
+    } else if (run) {
+        free_run(run);
+        run = NULL;
+    }
+    hn_strbuf_reset(&text);
+    return run;
+}
+
+// ---- the table, with the lock held ----
+
+static hn_kept_run **find_place(hn_runs *all, const char *id) {
+    hn_kept_run **place = &all->first;
+    while (*place && strcmp((*place)->id, id) != 0) {
+        place = &(*place)->next;
+    }
+    return place;
+}
+
+static hn_kept_run *take_out(hn_runs *all, hn_kept_run **place) {
+    hn_kept_run *run = *place;
+    *place = run->next;
+    all->n--;
+    all->bytes -= run->phase == HN_RUN_DONE ? run->bytes : 0;
+    return run;
+}
+
+/// Lets go of the finished run that was longest untouched; 0 when there is none.
+static int forget_oldest(hn_runs *all) {
+    hn_kept_run **oldest = NULL;
+    for (hn_kept_run **place = &all->first; *place; place = &(*place)->next) {
+        if ((*place)->phase == HN_RUN_DONE && (!oldest || (*place)->touched < (*oldest)->touched)) {
+            oldest = place;
+        }
+    }
+    if (!oldest) {
+        return 0;
+    }
+    hn_kept_run *dead = drop(take_out(all, oldest));
+    if (dead) {
+        free_run(dead);
+    }
+    return 1;
+}
+
+static void put_in(hn_runs *all, hn_kept_run *run) {
+    while ((all->n >= MAX_RUNS || all->bytes > MAX_BYTES) && forget_oldest(all)) {}
+    run->next = all->first;
+    all->first = run;
+    all->n++;
+    all->bytes += run->bytes;
+}
+
+// ---- those who wait ----
+
+/// Takes the requests that wait for a run and are due. With the lock held.
+static hn_request *take_waiting(hn_runs *all, hn_kept_run *run, double now, int every_one) {
+    hn_request *due = NULL, **place = &run->waiting;
+    while (*place) {
+        hn_request *r = *place;
+        if (every_one || now >= r->wait_until) {
+            *place = r->next;
+            r->next = due;
+            due = r;
+            run->refs++; // for the answer
+            all->n_waiting--;
+        } else {
+            place = &r->next;
+        }
+    }
+    return due;
+}
+
+/// Answers a list of requests, and gives up a reference for each.
+static void answer_all(hn_runs *all, hn_kept_run *run, hn_request *due) {
+    while (due) {
+        hn_request *next = due->next;
+        hn_run_reply(due, run);
+        hn_request_finish(due);
+        hn_runs_release(all, run);
+        due = next;
+    }
+}
+
+void hn_runs_await(hn_runs *all, hn_kept_run *run, hn_request *r, double seconds) {
+    pthread_mutex_lock(&all->lock);
+    const int waits = run->phase < HN_RUN_DONE && seconds > 0 && !all->stop;
+    if (waits) {
+        r->wait_until = hn_clock_wall() + seconds;
+        r->next = run->waiting;
+        run->waiting = r;
+        all->n_waiting++;
+        pthread_cond_signal(&all->wake);
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (!waits) {
+        hn_run_reply(r, run);
+        hn_request_finish(r);
+    }
+}
+
+/// One run whose waiting requests are due; its reference is held. With the lock held.
+static hn_kept_run *find_due(hn_runs *all, double now, hn_request **due) {
+    for (hn_kept_run *run = all->first; run; run = run->next) {
+        *due = run->waiting ? take_waiting(all, run, now, 0) : NULL;
+        if (*due) {
+            return run;
+        }
+    }
+    return NULL;
+}
+
+static void *look(void *arg) {
+    hn_runs *all = arg;
+    pthread_mutex_lock(&all->lock);
+    while (!all->stop) {
+        if (all->n_waiting == 0) {
+            pthread_cond_wait(&all->wake, &all->lock);
+            continue;
+        }
+        hn_request *due;
+        hn_kept_run *run = find_due(all, hn_clock_wall(), &due);
+        pthread_mutex_unlock(&all->lock);
+        if (run) {
+            answer_all(all, run, due);
+        } else {
+            nanosleep(&(struct timespec){.tv_nsec = LOOK_MS * 1000000L}, NULL);
+        }
+        pthread_mutex_lock(&all->lock);
+    }
+    pthread_mutex_unlock(&all->lock);
+    return NULL;
+}
+
+// ---- computing ----
+
+typedef struct allowance {
+    hn_kept_run *run;
+    double cpu_end;
+    int method;
+} allowance;
+
+static int may_go_on(void *user, double share) {
+    const allowance *a = user;
+    atomic_store(&a->run->share, (a->method + share) / a->run->question.n_methods);
+    return !atomic_load(&a->run->stop) && hn_clock_thread() < a->cpu_end;
+}
+
+/// The document of one method.
+static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model *model,
+                            int method) {
+    const hn_run_question *q = &run->question;
+    allowance a = {.run = run,
+                   .method = method,
+                   .cpu_end = hn_clock_thread() + all->opts->max_run_cpu / q->n_methods};
+    const hn_run_request request = {.method = q->methods[method],
+                                    .time = q->time,
+                                    .at = q->at,
+                                    .n_at = q->n_at,
+                                    .every = q->every,
+                                    .max_samples = all->opts->max_samples,
+                                    .max_numbers = all->opts->max_numbers / q->n_methods,
+                                    .reactions = q->reactions,
+                                    .raw_lambda = q->raw_lambda,
+                                    .progress = may_go_on,
+                                    .stop_reason = "the computing time of one request is used up",
+                                    .user = &a};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status ended = HN_OK;
+    hn_status status = hn_model_run_json(&b, model, &request, &ended, &run->diags);
+    if (status == HN_OK && !add_document(run, &b)) {
+        status = HN_ERR_MEMORY;
+    }
+    run->is_cut |= ended == HN_ERR_BUDGET;
+    hn_strbuf_reset(&b);
+    return status;
+}
+
+static hn_status run_all(const hn_runs *all, hn_kept_run *run) {
+    hn_model *model = NULL;
+    hn_status status =
+        hn_scene_request_load(&run->question.scene, all->lib, 0, &model, &run->diags);
+    for (int i = 0; i < run->question.n_methods && status == HN_OK; i++) {
+        status = run_method(all, run, model, i);
+    }
+    hn_model_free(model);
+    return status;
+}
+
+/// On a thread of the pool.
+static void compute(void *arg) {
+    hn_kept_run *run = arg;
+    hn_runs *all = run->question.store;
+    pthread_mutex_lock(&all->lock);
+    run->phase = HN_RUN_COMPUTES;
+    pthread_mutex_unlock(&all->lock);
+    run->refused = atomic_load(&run->stop) ? HN_ERR_BUDGET : run_all(all, run);
+
+    // a run that was stopped is not the answer to its question
+    const int stopped = atomic_load(&run->stop);
+    if (run->refused == HN_OK && !stopped && !run->is_cut) {
+        keep_in_folder(all, run);
+    }
+    pthread_mutex_lock(&all->lock);
+    run->phase = run->refused == HN_OK ? HN_RUN_DONE : HN_RUN_REFUSED;
+    hn_kept_run **place = find_place(all, run->id);
+    const int known = *place == run;
+    if (known && run->phase == HN_RUN_DONE && !stopped) {
+        all->bytes += run->bytes;
+    } else if (known) {
+        run->bytes = 0;
+        drop(take_out(all, place));
+    }
+    hn_request *due = take_waiting(all, run, 0, 1);
+    pthread_mutex_unlock(&all->lock);
+    answer_all(all, run, due);
+    hn_runs_release(all, run);
+}
+
+// ---- the store ----
+
+hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib) {
+    hn_runs *all = calloc(1, sizeof *all);
+    if (!all) {
+        return NULL;
+    }
+    pthread_mutex_init(&all->lock, NULL);
+    pthread_cond_init(&all->wake, NULL);
+    all->opts = opts;
+    all->lib = lib;
+    all->jobs =
+        hn_jobs_create(opts->pool, opts->queue, hn_http_opts_share(opts, opts->queue), compute);
+    all->has_thread = all->jobs && pthread_create(&all->thread, NULL, look, all) == 0;
+    if (!all->has_thread) {
+        hn_runs_free(all);
+        return NULL;
+    }
+    return all;
+}
+
+void hn_runs_stop(hn_runs *all) {
+    if (!all) {
+        return;
+    }
+    pthread_mutex_lock(&all->lock);
+    all->stop = 1;
+    for (hn_kept_run *run = all->first; run; run = run->next) {
+        atomic_store(&run->stop, 1);
+    }
+    pthread_cond_signal(&all->wake);
+    pthread_mutex_unlock(&all->lock);
+
+    // the threads answer those who wait
+    hn_jobs_stop(all->jobs);
+    if (all->has_thread) {
+        pthread_join(all->thread, NULL);
+        all->has_thread = 0;
+    }
+}
+
+void hn_runs_free(hn_runs *all) {
+    if (all) {
+        hn_runs_stop(all);
+        while (all->first) {
+            hn_kept_run *dead = drop(take_out(all, &all->first));
+            if (dead) {
+                free_run(dead);
+            }
+        }
+        hn_jobs_free(all->jobs);
+        pthread_cond_destroy(&all->wake);
+        pthread_mutex_destroy(&all->lock);
+        free(all);
+    }
+}
+
+/// In memory. With the lock held; returns a reference.
+static hn_kept_run *find_here(hn_runs *all, const char *id) {
+    hn_kept_run *run = *find_place(all, id);
+    if (run) {
+        run->refs++;
+        run->touched = hn_clock_wall();
+    }
+    return run;
+}
+
+hn_kept_run *hn_runs_find(hn_runs *all, const char *id) {
+    pthread_mutex_lock(&all->lock);
+    hn_kept_run *run = find_here(all, id);
+    pthread_mutex_unlock(&all->lock);
+    if (run || !all->opts->runs_folder) {
+        return run;
+    }
+
+    // another thread may have read the same file meanwhile
+    hn_kept_run *read = read_from_folder(all, id);
+    pthread_mutex_lock(&all->lock);
+    run = find_here(all, id);
+    if (!run && read) {
+        put_in(all, read);
+        run = find_here(all, id);
+        read = NULL;
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (read) {
+        free_run(read);
+    }
+    return run;
+}
+
+/// Puts a new run into the table and the queue. With the lock held.
+static hn_status begin_new(hn_runs *all, hn_run_question *question, hn_client client,
+                           hn_kept_run **out) {
+    hn_kept_run *run = new_run(question->id, client);
+    if (!run) {
+        return HN_ERR_MEMORY;
+    }
+    run->question = *question;
+    run->question.store = all;
+    run->refs = 3; // the table, the thread, the caller
+    if (!hn_jobs_push(all->jobs, run, client)) {
+        free(run);
+        return HN_ERR_LIMIT;
+    }
+    *question = (hn_run_question){0};
+    put_in(all, run);
+    *out = run;
+    return HN_OK;
+}
+
+hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client client,
+                        hn_kept_run **out, int *begun) {
+    *begun = 0;
+    *out = hn_runs_find(all, question->id);
+    if (*out && hn_runs_phase(all, *out) == HN_RUN_DONE && (*out)->is_cut) {
+        hn_runs_release(all, *out);
+        hn_runs_delete(all, question->id);
+    } else if (*out) {
+        return HN_OK;
+    }
+    pthread_mutex_lock(&all->lock);
+    *out = find_here(all, question->id);
+    hn_status status = HN_OK;
+    if (!*out) {
+        status = begin_new(all, question, client, out);
+        *begun = status == HN_OK;
+    }
+    pthread_mutex_unlock(&all->lock);
+    return status;
+}
+
+int hn_runs_delete(hn_runs *all, const char *id) {
+    char path[1024];
+    pthread_mutex_lock(&all->lock);
+    hn_kept_run **place = find_place(all, id), *dead = NULL;
+    const int found = *place != NULL;
+    if (found) {
+        atomic_store(&(*place)->stop, 1);
+        dead = drop(take_out(all, place));
+    }
+    pthread_mutex_unlock(&all->lock);
+    if (dead) {
+        free_run(dead);
+    }
+    const int unlinked = file_path(all, id, path) && unlink(path) == 0;
+    return found || unlinked;
+}
+
+hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run) {
+    pthread_mutex_lock(&all->lock);
+    const hn_run_phase phase = run->phase;
+    pthread_mutex_unlock(&all->lock);
+    return phase;
+}
+
+int hn_runs_wait(hn_runs *all) {
+    return hn_jobs_wait(all->jobs);
+}
+
+void hn_runs_list_json(hn_strbuf *b, hn_runs *all) {
+    hn_json_array(b);
+    pthread_mutex_lock(&all->lock);
+    for (const hn_kept_run *run = all->first; run; run = run->next) {
+        hn_json_string(b, run->id);
+    }
+    pthread_mutex_unlock(&all->lock);
+    hn_json_end_array(b);
+}

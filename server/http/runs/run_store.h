@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_HTTP_RUN_STORE_H
+#define HN_HTTP_RUN_STORE_H
+// Runs as resources: found by the id of their question, computed once, by a pool of threads. Kept in
+// memory as long as there is room, and in a folder where the server was given one.
+
+#include "http/ground/http_opts.h"
+#include "http/ground/shares.h"
+#include "http/runs/run_question.h"
+
+#include <stdatomic.h>
+
+struct hn_request;
+
+typedef enum hn_run_phase {
+    HN_RUN_WAITS,
+    HN_RUN_COMPUTES,
+    HN_RUN_DONE,
+    HN_RUN_REFUSED
+} hn_run_phase;
+
+typedef struct hn_runs hn_runs;
+
+/// One run. What follows `phase` belongs to the thread that computes until the phase is DONE or
+/// REFUSED, and never changes afterwards.
+typedef struct hn_kept_run {
+    char id[HN_RUN_ID];
+    int refs; ///< under the lock of the store, as are the next three
+    hn_run_phase phase;
+    double touched;             ///< [s, wall clock]
+    struct hn_request *waiting; ///< requests that wait for the end
+    _Atomic double share;       ///< done of the whole
+    atomic_int stop;
+    hn_client client;
+    hn_run_question question;
+    int n;                                      ///< documents: one for each method
+    char *documents[HN_COMPARISON_MAX_METHODS]; ///< hn_model_run_json()
+    size_t bytes;
+    int is_cut;        ///< 1: the computing time was used up; asked again it is computed again
+    hn_status refused; ///< why there is none
+    hn_diags diags;
+    struct hn_kept_run *next;
+} hn_kept_run;
+
+/// NULL when memory or threads are out. `opts` and `lib` must outlive it.
+hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib);
+/// Stops what computes, answers who waits, and joins the threads. NULL is legal.
+void hn_runs_stop(hn_runs *all);
+void hn_runs_free(hn_runs *all);
+
+/// Finds a run by its id, in memory or in the folder. Returns a reference, or NULL.
+hn_kept_run *hn_runs_find(hn_runs *all, const char *id);
+/// Finds the run of a question or begins it; takes what the question holds. Returns a reference in
+/// *out; `begun` says whether it is new. Fails: HN_ERR_LIMIT (the queue is full), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_runs_begin(hn_runs *all, hn_run_question *question, hn_client client,
+                                      hn_kept_run **out, int *begun);
+void hn_runs_release(hn_runs *all, hn_kept_run *run);
+/// Stops it if it computes, and forgets it, in the folder too. Returns 0 when there is none.
+int hn_runs_delete(hn_runs *all, const char *id);
+/// Returns the phase.
+hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run);
+/// Answers a suspended request when the run has ended or `seconds` are over, at once if it has ended.
+void hn_runs_await(hn_runs *all, hn_kept_run *run, struct hn_request *r, double seconds);
+/// Seconds after which a refused question may be asked again.
+int hn_runs_wait(hn_runs *all);
+/// Ids of the runs in memory, as a JSON array.
+void hn_runs_list_json(hn_strbuf *b, hn_runs *all);
+#endif
