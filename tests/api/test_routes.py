@@ -87,6 +87,37 @@ class Catalogue(driver.ServerCase):
             self.assertEqual(self.get("/api/v1/errors/" + error["code"])["status"], error["status"])
 
 
+class Examples(driver.ServerCase):
+    def test_every_body_has_an_example_that_is_served(self):
+        document = self.server.ask("GET", "/api/v1/openapi.json").json()
+        comparison, study, sent = self.server.compare()["id"], None, 0
+        for path, operations in document["paths"].items():
+            for verb in ("post", "patch"):
+                if verb not in operations:
+                    continue
+                content = operations[verb]["requestBody"]["content"]["application/json"]
+                address = path.replace("{id}", comparison if "comparisons" in path else study or "")
+                answer = self.server.ask(verb.upper(), address, content["example"])
+                self.assertIn(str(answer.status), operations[verb]["responses"], (path, answer.body[:300]))
+                self.assertLess(answer.status, 300, (path, answer.body[:300]))
+                study = answer.json()["id"] if path == "/api/v1/studies" else study
+                sent += 1
+        self.assertGreaterEqual(sent, 11)
+
+    def test_every_operation_is_described_and_may_fail_by_name(self):
+        document = self.server.ask("GET", "/api/v1/openapi.json").json()
+        tags = {t["name"] for t in document["tags"]}
+        self.assertEqual((document["servers"][0]["url"], document["security"]), ("/", [{}]))
+        for path, operations in document["paths"].items():
+            self.assertFalse(path.endswith("/"), path)
+            for verb, operation in operations.items():
+                self.assertTrue(operation["description"] and set(operation["tags"]) <= tags, path)
+                failures = [s for s in operation["responses"] if s.startswith("4")]
+                self.assertIn("400", failures)
+                self.assertEqual("404" in failures, "{" in path, path)
+                self.assertEqual("422" in failures, "requestBody" in operation or any(p["in"] == "query" for p in operation["parameters"]), (verb, path))
+
+
 class Stateless(driver.ServerCase):
     def post(self, path, body, status=200):
         answer = self.server.ask("POST", "/api/v1/" + path, body)
@@ -283,7 +314,7 @@ class Document(driver.ServerCase):
 
     def test_it_names_every_route_of_the_index(self):
         for route in self.server.ask("GET", "/api/v1/").json()["routes"]:
-            self.assertIn(route["method"].lower(), self.document["paths"][route["path"]])
+            self.assertIn(route["method"].lower(), self.document["paths"][route["path"].rstrip("/")])
 
     def test_schemas_are_json_schema_2020_12(self):
         for schema in self.document["components"]["schemas"].values():

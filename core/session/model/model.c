@@ -136,7 +136,7 @@ const hn_assembly *hn_model_assembly(const hn_model *model) {
     return &model->assembly;
 }
 
-const hn_diag *hn_model_open(const hn_model *model) {
+const hn_diag *hn_model_why_open(const hn_model *model) {
     return model->open.message[0] ? &model->open : NULL;
 }
 

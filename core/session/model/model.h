@@ -34,7 +34,7 @@ const char *hn_model_reference_path(const hn_model *model);
 const hn_system *hn_model_system(const hn_model *model);
 const hn_assembly *hn_model_assembly(const hn_model *model);
 /// What keeps the loops of the start from closing, told as assembly tells it; NULL: they are closed (always unless allow_open).
-const hn_diag *hn_model_open(const hn_model *model);
+const hn_diag *hn_model_why_open(const hn_model *model);
 const double *hn_model_q(const hn_model *model); ///< assembled start, system coordinates
 const double *hn_model_v(const hn_model *model);
 

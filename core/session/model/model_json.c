@@ -137,7 +137,7 @@ static void put_sizes(hn_strbuf *b, const hn_model *model) {
 }
 
 void hn_model_closed_put(hn_strbuf *b, const hn_model *model) {
-    const hn_diag *open = hn_model_open(model);
+    const hn_diag *open = hn_model_why_open(model);
     hn_json_put_bool(b, "ok", hn_model_assembly(model)->ok);
     if (open) {
         hn_json_put_string(b, "reason", open->message);

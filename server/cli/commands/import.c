@@ -183,7 +183,7 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
         return;
     }
     const hn_assembly *a = hn_model_assembly(model);
-    const hn_diag *open = hn_model_open(model);
+    const hn_diag *open = hn_model_why_open(model);
     if (open) {
         fprintf(stderr,
                 "holonom: the scene was written, but cannot be assembled: %s\n         %s\n",

@@ -16,6 +16,8 @@ typedef struct hn_http_opts {
     const char *const *allow_hosts;
     int n_allow_hosts;
 
+    const char *token;       ///< that every client must show; NULL: none
+    int guests;              ///< 1: who has no token may read
     const char *runs_folder; ///< where finished runs are kept; NULL: in memory alone
 
     // places

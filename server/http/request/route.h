@@ -32,6 +32,7 @@ typedef struct hn_route {
         *schema; ///< name of the answer's schema in the OpenAPI document, NULL when it has no body
     const char *summary;
     const hn_route_query *query; ///< ends with a row without a name; may be NULL
+    const char *example; ///< a body that is served, for the OpenAPI document; the tests send it
 } hn_route;
 
 /// Copies the i-th media type of a route; returns 0 when there are not so many.

@@ -179,7 +179,8 @@ static const struct {
      ",\"lambda_mark\":{\"type\":\"array\",\"items\":{\"type\":\"integer\"},"
      "\"description\":\"what the multipliers of each sample, and reactions that rest on them, "
      "are worth: an index into lambda_marks\"}"
-     "}},\"incidents\":" OBJECTS ",\"cost\":{\"type\":\"object\"}}}"},
+     "}},\"incidents\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/"
+     "Incident\"}},\"cost\":{\"type\":\"object\"}}}"},
     {"ComparisonList",
      "{\"type\":\"object\",\"required\":[\"comparisons\"],\"properties\":{\"comparisons\":" TEXTS
      "}}"},
@@ -254,21 +255,52 @@ static const struct {
      ",\"column\":{\"type\":\"integer\"}}}}}}"},
 };
 
-static void put_components(hn_strbuf *b) {
-    hn_json_key(b, "components");
-    hn_json_object(b);
-    hn_json_key(b, "schemas");
-    hn_json_object(b);
-    for (size_t i = 0; i < sizeof SCHEMAS / sizeof *SCHEMAS; i++) {
-        hn_json_key(b, SCHEMAS[i].name);
-        hn_json_raw(b, SCHEMAS[i].schema);
+// ---- tags ----
+
+static const struct {
+    const char *name, *about;
+} TAGS[] = {
+    {"server", "The server itself: links, limits, health, this description."},
+    {"scenes", "Shipped mechanisms, and their reference solutions."},
+    {"methods", "Formulations and integrators, with their options."},
+    {"look", "Colours, dashes and markers of methods."},
+    {"lessons", "Lessons with their scenes."},
+    {"problems", "Exercises that can be graded."},
+    {"grade", "Grading of submissions."},
+    {"errors", "The kinds of problem documents."},
+    {"terms", "M, f, J, gamma at one state."},
+    {"assemble", "Consistent starting values."},
+    {"inspect", "Sizes, tree, loops, rank."},
+    {"equations", "The equations of motion."},
+    {"runs", "Runs: the same question has the same id."},
+    {"snapshots", "Pictures."},
+    {"comparisons", "Several methods on one clock, streamed."},
+    {"studies", "Long jobs: work-precision, stability, error budget."},
+};
+enum { N_TAGS = sizeof TAGS / sizeof *TAGS };
+
+/// The tag of a path: its first word behind /api/v1/, or that of the server itself.
+static const char *find_tag(const char *path) {
+    const char *word = strncmp(path, "/api/v1/", 8) == 0 ? path + 8 : "";
+    const size_t n = strcspn(word, "/");
+    for (int i = 0; i < N_TAGS; i++) {
+        if (strlen(TAGS[i].name) == n && memcmp(TAGS[i].name, word, n) == 0) {
+            return TAGS[i].name;
+        }
     }
-    hn_json_end_object(b);
-    hn_json_key(b, "responses");
-    hn_json_raw(b, "{\"Problem\":{\"description\":\"A problem "
-                   "document\",\"content\":{\"application/problem+json\":{\"schema\":"
-                   "{\"$ref\":\"#/components/schemas/Problem\"}}}}}");
-    hn_json_end_object(b);
+    return TAGS[0].name;
+}
+
+static void put_tags(hn_strbuf *b) {
+    hn_json_key(b, "tags");
+    hn_json_array(b);
+    for (int i = 0; i < N_TAGS; i++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "name", TAGS[i].name);
+        hn_json_put_string(b, "description", TAGS[i].about);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
 }
 
 // ---- paths ----
@@ -334,6 +366,61 @@ static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) 
     hn_json_end_object(b);
 }
 
+/// 1 when a request to this route may be answered so.
+static int may_answer(const hn_route *route, hn_http_problem kind) {
+    switch (kind) {
+    case HN_PROBLEM_NOT_FOUND:
+        return strchr(route->path, '{') != NULL;
+    case HN_PROBLEM_BAD_JSON:
+    case HN_PROBLEM_TOO_LARGE:
+    case HN_PROBLEM_MEDIA_TYPE:
+        return route->fields != NULL;
+    case HN_PROBLEM_INPUT:
+        return route->fields != NULL || route->query != NULL;
+    case HN_PROBLEM_NOT_ACCEPTABLE:
+        return route->schema != NULL;
+    case HN_PROBLEM_CONFLICT:
+        return route->work == HN_WORK_OWN || strstr(route->path, "/samples") != NULL;
+    case HN_PROBLEM_BUSY:
+        return route->work != HN_WORK_LIGHT || strstr(route->path, "/events") != NULL;
+    case HN_PROBLEM_STUDIES_BUSY:
+        return strcmp(route->path, "/api/v1/studies") == 0 && route->fields;
+    case HN_PROBLEM_METHOD:
+        return 0; // no operation of this document
+    default:
+        return 1;
+    }
+}
+
+/// Kinds that share a status share the answer of the first.
+static int is_answer(const hn_route *route, int kind) {
+    const unsigned status = hn_http_problem_get_info((hn_http_problem)kind)->status;
+    for (int k = 0; k < kind; k++) {
+        if (hn_http_problem_get_info((hn_http_problem)k)->status == status &&
+            may_answer(route, (hn_http_problem)k)) {
+            return 0;
+        }
+    }
+    return may_answer(route, (hn_http_problem)kind);
+}
+
+/// Problem documents by status.
+static void put_problems(hn_strbuf *b, const hn_route *route) {
+    for (int k = 0; k < HN_PROBLEM_COUNT; k++) {
+        const hn_http_problem_info *info = hn_http_problem_get_info((hn_http_problem)k);
+        if (!is_answer(route, k)) {
+            continue;
+        }
+        char status[8], place[96];
+        snprintf(status, sizeof status, "%u", info->status);
+        snprintf(place, sizeof place, "#/components/responses/%s", info->code);
+        hn_json_key(b, status);
+        hn_json_object(b);
+        hn_json_put_string(b, "$ref", place);
+        hn_json_end_object(b);
+    }
+}
+
 static void put_answers(hn_strbuf *b, const hn_route *route) {
     hn_json_key(b, "responses");
     hn_json_object(b);
@@ -344,6 +431,7 @@ static void put_answers(hn_strbuf *b, const hn_route *route) {
         put_answer(b, route, status);
         at += n;
     }
+    put_problems(b, route);
     hn_json_key(b, "default");
     hn_json_raw(b, "{\"$ref\":\"#/components/responses/Problem\"}");
     hn_json_end_object(b);
@@ -367,6 +455,25 @@ static void put_operation_id(hn_strbuf *b, const hn_route *route) {
     hn_json_put_string(b, "operationId", id);
 }
 
+static void put_request_body(hn_strbuf *b, const hn_route *route) {
+    hn_json_key(b, "requestBody");
+    hn_json_object(b);
+    hn_json_put_bool(b, "required", 1);
+    hn_json_key(b, "content");
+    hn_json_object(b);
+    hn_json_key(b, "application/json");
+    hn_json_object(b);
+    hn_json_key(b, "schema");
+    hn_fields_schema_json(b, route->fields);
+    if (route->example) {
+        hn_json_key(b, "example");
+        hn_json_raw(b, route->example);
+    }
+    hn_json_end_object(b);
+    hn_json_end_object(b);
+    hn_json_end_object(b);
+}
+
 static void put_operation(hn_strbuf *b, const hn_route *route) {
     char verb[8] = "";
     for (size_t i = 0; route->method[i] && i < sizeof verb - 1; i++) {
@@ -375,21 +482,15 @@ static void put_operation(hn_strbuf *b, const hn_route *route) {
     hn_json_key(b, verb);
     hn_json_object(b);
     hn_json_put_string(b, "summary", route->summary);
+    hn_json_put_string(b, "description", route->summary);
+    hn_json_key(b, "tags");
+    hn_json_array(b);
+    hn_json_string(b, find_tag(route->path));
+    hn_json_end_array(b);
     put_operation_id(b, route);
     put_parameters(b, route);
     if (route->fields) {
-        hn_json_key(b, "requestBody");
-        hn_json_object(b);
-        hn_json_put_bool(b, "required", 1);
-        hn_json_key(b, "content");
-        hn_json_object(b);
-        hn_json_key(b, "application/json");
-        hn_json_object(b);
-        hn_json_key(b, "schema");
-        hn_fields_schema_json(b, route->fields);
-        hn_json_end_object(b);
-        hn_json_end_object(b);
-        hn_json_end_object(b);
+        put_request_body(b, route);
     }
     put_answers(b, route);
     hn_json_end_object(b);
@@ -405,6 +506,14 @@ static int is_written(const hn_route_table *table, int i) {
     return 0;
 }
 
+/// A path without a slash at its end; such an address is redirected to the one with it.
+static void put_path(hn_strbuf *b, const char *path) {
+    char trimmed[HN_HEADER_TEXT];
+    const size_t n = strlen(path);
+    snprintf(trimmed, sizeof trimmed, "%.*s", (int)(n - (n > 1 && path[n - 1] == '/')), path);
+    hn_json_key(b, trimmed);
+}
+
 static void put_paths(hn_strbuf *b, const hn_route_table *table) {
     hn_json_key(b, "paths");
     hn_json_object(b);
@@ -412,7 +521,7 @@ static void put_paths(hn_strbuf *b, const hn_route_table *table) {
         if (is_written(table, i)) {
             continue;
         }
-        hn_json_key(b, table->row[i].path);
+        put_path(b, table->row[i].path);
         hn_json_object(b);
         for (int k = i; k < table->n; k++) {
             if (strcmp(table->row[k].path, table->row[i].path) == 0) {
@@ -424,6 +533,49 @@ static void put_paths(hn_strbuf *b, const hn_route_table *table) {
     hn_json_end_object(b);
 }
 
+/// One answer for each kind of problem document, and one for any.
+static void put_problem_answers(hn_strbuf *b, const hn_route_table *table) {
+    static const char content[] = "{\"application/problem+json\":{\"schema\":"
+                                  "{\"$ref\":\"#/components/schemas/Problem\"}}}";
+    hn_json_key(b, "responses");
+    hn_json_object(b);
+    for (int k = -1; k < HN_PROBLEM_COUNT; k++) {
+        const hn_http_problem_info *info =
+            k < 0 ? NULL : hn_http_problem_get_info((hn_http_problem)k);
+        int used = k < 0;
+        for (int i = 0; i < table->n && !used; i++) {
+            used = is_answer(&table->row[i], k);
+        }
+        if (!used) {
+            continue;
+        }
+        hn_json_key(b, info ? info->code : "Problem");
+        hn_json_object(b);
+        hn_json_put_string(b, "description", info ? info->about : "A problem document.");
+        hn_json_key(b, "content");
+        hn_json_raw(b, content);
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
+}
+
+static void put_components(hn_strbuf *b, const hn_route_table *table) {
+    hn_json_key(b, "components");
+    hn_json_object(b);
+    hn_json_key(b, "schemas");
+    hn_json_object(b);
+    for (size_t i = 0; i < sizeof SCHEMAS / sizeof *SCHEMAS; i++) {
+        hn_json_key(b, SCHEMAS[i].name);
+        hn_json_raw(b, SCHEMAS[i].schema);
+    }
+    hn_json_end_object(b);
+    put_problem_answers(b, table);
+    hn_json_key(b, "securitySchemes");
+    hn_json_raw(b, "{\"token\":{\"type\":\"http\",\"scheme\":\"bearer\",\"description\":"
+                   "\"The token that the server printed at its start, if it was given one.\"}}");
+    hn_json_end_object(b);
+}
+
 void hn_handle_openapi(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
@@ -432,11 +584,27 @@ void hn_handle_openapi(hn_request *r) {
     hn_json_key(&b, "info");
     hn_json_object(&b);
     hn_json_put_string(&b, "title", "holonom");
-    hn_json_put_string(&b, "version", HN_VERSION);
+    hn_json_put_string(&b, "version", HN_BUILD);
     hn_json_put_string(&b, "summary", "Mechanisms with closed loops, many methods on one clock");
+    hn_json_put_string(
+        &b, "description",
+        "Simulates mechanisms with closed loops by several methods at once. Errors are "
+        "problem documents (RFC 9457); JSON never holds NaN or Infinity; limits are in "
+        "the index, /api/v1/.");
+    hn_json_key(&b, "license");
+    hn_json_raw(&b, "{\"name\":\"GPL-3.0-or-later\",\"identifier\":\"GPL-3.0-or-later\"}");
+    hn_json_key(&b, "contact");
+    hn_json_raw(&b, "{\"name\":\"whoever runs this server\",\"url\":\"/\"}");
     hn_json_end_object(&b);
+
+    // addresses are relative, so that a prefix of a proxy holds; nothing is asked of who calls
+    hn_json_key(&b, "servers");
+    hn_json_raw(&b, "[{\"url\":\"/\",\"description\":\"this server\"}]");
+    hn_json_key(&b, "security");
+    hn_json_raw(&b, r->context->opts.token ? "[{\"token\":[]}]" : "[{}]");
+    put_tags(&b);
     put_paths(&b, &r->context->routes);
-    put_components(&b);
+    put_components(&b, &r->context->routes);
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }
