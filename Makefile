@@ -54,7 +54,7 @@ ROOMS_server       := grade: \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,http/ground,http/request,http/live,http/studies,http/runs \
                       terminal: cli/shell:terminal tui:terminal,cli/shell \
-                      cli/commands:grade,cli/shell,http/ground,http/routes,terminal,tui \
+                      cli/commands:grade,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:cli/shell cli:cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------

@@ -23,7 +23,7 @@ static hn_exit print_version(const hn_library *lib, const hn_args *args);
 static const hn_command COMMANDS[] = {
     {"serve", "", "the page, the API and the stream, on this machine alone",
      "--host --port --allow-host --open --history --max-comparisons --max-streams "
-     "--max-connections --runs --run-cpu "
+     "--max-connections --runs --token --guests --run-cpu "
      "--idle-pause "
      "--expiry --keep-alive",
      0, 0, hn_command_serve},

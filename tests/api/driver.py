@@ -47,7 +47,8 @@ class Server:
         line = self.process.stdout.readline()
         if not line:
             raise RuntimeError("the server did not start: " + self.process.stderr.read().decode())
-        self.port = json.loads(line)["port"]
+        self.started = json.loads(line)
+        self.port = self.started["port"]
         self.errors = []
         self.reader = threading.Thread(target=self._read_errors, daemon=True)
         self.reader.start()

@@ -2,6 +2,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
+#include "http/request/token.h"
 #include "http/routes/server.h"
 
 #include <math.h>
@@ -65,6 +66,37 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     return HN_OK;
 }
 
+static int is_this_machine(const char *host) {
+    static const char *const names[] = {"127.0.0.1", "localhost", "::1"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(host, names[i]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/// The token that was given, one that is made where others can reach the server, or none.
+static hn_status choose_token(const hn_args *args, hn_http_opts *opts, char made[HN_TOKEN],
+                              hn_diag *diag) {
+    const int wanted =
+        args->token ? strcmp(args->token, "none") != 0 : !is_this_machine(opts->host);
+    opts->guests = args->guests;
+    opts->token = !wanted                                           ? NULL
+                  : args->token && strcmp(args->token, "auto") != 0 ? args->token
+                                                                    : made;
+    if (opts->token == made && !hn_token_make(made)) {
+        return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, "take --token TEXT",
+                           "no token could be made: the system has no randomness");
+    }
+    if (opts->token && strspn(opts->token, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                           "0123456789-_.~") != strlen(opts->token)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
+                           "--token takes letters, digits and -_.~: it stands in a link");
+    }
+    return HN_OK;
+}
+
 static void announce(const hn_server *server, const hn_args *args, const hn_http_opts *opts) {
     int port = hn_server_port(server);
     if (opts->port != 0 && port != opts->port) {
@@ -77,11 +109,15 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
         hn_json_put_string(&b, "address", hn_server_address(server));
         hn_json_put_int(&b, "port", port);
         hn_json_put_int(&b, "process", getpid());
+        if (opts->token) {
+            hn_json_put_string(&b, "token", opts->token);
+        }
         hn_json_end_object(&b);
         hn_cli_print(&b);
         return;
     }
-    printf("holonom is at %s/\n", hn_server_address(server));
+    printf("holonom is at %s/%s%s\n", hn_server_address(server), opts->token ? "?token=" : "",
+           opts->token ? opts->token : "");
     printf(
         "Space play and pause   arrows step   - = speed   Backspace reset   Ctrl+C here ends it\n");
     fflush(stdout);
@@ -134,7 +170,9 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     hn_server *server = NULL;
     hn_diag diag = {0};
     sigset_t stop;
-    if (read_opts(args, &opts, &diag) != HN_OK) {
+    char token[HN_TOKEN];
+    if (read_opts(args, &opts, &diag) != HN_OK ||
+        choose_token(args, &opts, token, &diag) != HN_OK) {
         return hn_report_diag(args, &diag);
     }
 
@@ -153,7 +191,10 @@ hn_exit hn_command_serve(const hn_library *lib, const hn_args *args) {
     }
     announce(server, args, &opts);
     if (args->open) {
-        open_browser(hn_server_address(server));
+        char link[512];
+        snprintf(link, sizeof link, "%s/%s%s", hn_server_address(server),
+                 opts.token ? "?token=" : "", opts.token ? opts.token : "");
+        open_browser(link);
     }
     int which;
     sigwait(&stop, &which);

@@ -30,10 +30,11 @@ typedef struct hn_args {
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
     const char *method, *format, *out, *host, *theme, *view, *loops, *key, *grid, *plots, *size,
-        *runs;
+        *runs, *token;
     double time, every, t, port, width, height, seed, frame_dt, frames;
     double history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause, expiry,
         keep_alive;
+    int guests;
     int json, csv, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given

@@ -13,6 +13,8 @@
       "Something in the request line, a header or the query is not as HTTP or this API has it.")   \
     X(HN_PROBLEM_BAD_JSON, 400, "bad-json", "The body is not JSON",                                \
       "The text stops being JSON at the byte that the detail and the member `offset` name.")       \
+    X(HN_PROBLEM_TOKEN, 401, "token", "This server asks for a token",                              \
+      "Open the link that the server printed at its start, or send Authorization: Bearer TOKEN.")  \
     X(HN_PROBLEM_FOREIGN_ORIGIN, 403, "foreign-origin", "Another site may not call this server",   \
       "The Origin header names a host that this server does not serve.")                           \
     X(HN_PROBLEM_NOT_FOUND, 404, "not-found", "There is nothing here",                             \

@@ -122,6 +122,7 @@ int hn_guard_accept(hn_request *r) {
 /// What a route knows of a query, while it is walked through.
 typedef struct query_check {
     const hn_route *route;
+    int takes_token;
     char unknown[64];
 } query_check;
 
@@ -134,7 +135,7 @@ static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const cha
     while (q && q->name && strcmp(q->name, key) != 0) {
         q++;
     }
-    if (q && q->name) {
+    if ((q && q->name) || (check->takes_token && strcmp(key, "token") == 0)) {
         return MHD_YES;
     }
     snprintf(check->unknown, sizeof check->unknown, "%s", key);
@@ -142,7 +143,7 @@ static enum MHD_Result check_query(void *cls, enum MHD_ValueKind kind, const cha
 }
 
 int hn_guard_query(hn_request *r) {
-    query_check check = {.route = r->route};
+    query_check check = {.route = r->route, .takes_token = r->context->opts.token != NULL};
     MHD_get_connection_values(r->connection, MHD_GET_ARGUMENT_KIND, check_query, &check);
     if (!check.unknown[0]) {
         return 1;

@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "http/request/guard.h"
 #include "http/request/request.h"
+#include "http/request/token.h"
 #include "http/routes/static_files.h"
 
 #include <arpa/inet.h>
@@ -67,6 +68,9 @@ static void check_head(hn_request *r, const char *method) {
     // an address that can be served, by a request that may ask for it
     hn_route_match match = hn_route_find(&r->context->routes, method, r->path, r->parts);
     r->route = match.route;
+    if (!hn_token_check(r, method)) {
+        return;
+    }
     if (!r->route) {
         reply_off_routes(r, method, &match);
     } else if (atomic_load(&r->context->stopping)) {

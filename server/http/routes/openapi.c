@@ -385,6 +385,8 @@ static int may_answer(const hn_route *route, hn_http_problem kind) {
         return route->work != HN_WORK_LIGHT || strstr(route->path, "/events") != NULL;
     case HN_PROBLEM_STUDIES_BUSY:
         return strcmp(route->path, "/api/v1/studies") == 0 && route->fields;
+    case HN_PROBLEM_TOKEN:
+        return strcmp(route->path, "/healthz") != 0;
     case HN_PROBLEM_METHOD:
         return 0; // no operation of this document
     default:

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A server for other machines: a token in its link, then in a cookie, or in a header; guests read."""
+
+import unittest
+
+import driver
+
+BODY = {"scene": "four-bar", "methods": ["index1@rk4:h=1e-3"]}
+
+
+class Token(unittest.TestCase):
+    def serve(self, *options):
+        server = driver.Server("--token", "secret-1", *options)
+        self.addCleanup(lambda: self.assertEqual(server.stop(), 0, server.errors))
+        return server
+
+    def test_nothing_is_served_without_the_token_or_with_a_wrong_one(self):
+        server = self.serve()
+        for headers in ({}, {"Authorization": "Bearer secret-2"}, {"Authorization": "Bearer secret-11"}, {"Authorization": "Bearer "},
+                        {"Cookie": "holonom_token=secret"}):
+            for method, path in (("GET", "/"), ("GET", "/api/v1/"), ("POST", "/api/v1/comparisons"), ("GET", "/?token=secret-2"), ("GET", "/nowhere")):
+                answer = server.ask(method, path, BODY if method == "POST" else None, headers)
+                self.assertEqual((answer.status, answer.headers.get("www-authenticate")), (401, 'Bearer realm="holonom"'), (path, headers))
+                self.assertEqual(answer.type, "application/problem+json")
+                self.assertNotIn(b"secret-1", answer.body)
+        self.assertEqual(server.ask("GET", "/healthz").status, 200)
+
+    def test_the_link_becomes_a_cookie(self):
+        server = self.serve()
+        first = server.ask("GET", "/?token=secret-1")
+        self.assertEqual((first.status, first.headers["location"]), (303, "/"))
+        cookie = first.headers["set-cookie"]
+        self.assertIn("HttpOnly; SameSite=Strict", cookie)
+        headers = {"Cookie": cookie.split(";")[0]}
+        self.assertEqual(server.ask("GET", "/", headers=headers).status, 200)
+        self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, headers).status, 201)
+
+    def test_a_script_sends_a_header_or_the_query(self):
+        server = self.serve()
+        self.assertEqual(server.ask("POST", "/api/v1/comparisons", BODY, {"Authorization": "Bearer secret-1"}).status, 201)
+        self.assertEqual(server.ask("GET", "/api/v1/scenes?token=secret-1").status, 200)
+        self.assertEqual(server.ask("GET", "/api/v1/openapi.json?token=secret-1").json()["security"], [{"token": []}])
+
+    def test_guests_read_and_change_nothing(self):
+        server = self.serve("--guests")
+        bearer = {"Authorization": "Bearer secret-1"}
+        made = server.ask("POST", "/api/v1/comparisons", BODY, bearer).json()
+        for path in ("/", "/api/v1/", "/api/v1/scenes/four-bar", made["links"]["self"]):
+            self.assertEqual(server.ask("GET", path).status, 200, path)
+        for method, path, body in (("POST", "/api/v1/comparisons", BODY), ("PATCH", made["links"]["self"], {"step": 1}), ("DELETE", made["links"]["self"], None),
+                                   ("POST", "/api/v1/runs", {}), ("GET", "/api/v1/scenes/four-bar/reference?compute=true", None)):
+            self.assertEqual(server.ask(method, path, body).status, 401, (method, path))
+        events = driver.Events(server, made["id"])
+        self.assertEqual(events.status, 200)
+        events.close()
+
+    def test_a_server_for_others_makes_a_token_of_its_own(self):
+        server = driver.Server("--host", "0.0.0.0")
+        self.addCleanup(server.stop)
+        self.assertGreaterEqual(len(server.started["token"]), 22)
+        self.assertEqual(server.ask("GET", "/").status, 401)
+        self.assertEqual(server.ask("GET", "/", headers={"Authorization": "Bearer " + server.started["token"]}).status, 200)
+        alone = driver.Server()
+        self.addCleanup(alone.stop)
+        self.assertNotIn("token", alone.started)
+
+
+if __name__ == "__main__":
+    driver.main()
