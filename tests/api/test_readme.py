@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The examples of server/README.md, as they stand there."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import driver
+
+
+def block(language):
+    with open("server/README.md") as f:
+        return re.search(rf"```{language}\n(.*?)```", f.read(), re.S).group(1)
+
+
+class Examples(driver.ServerCase):
+    def run_example(self, words, text):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = {**os.environ, "HOLONOM_URL": f"http://127.0.0.1:{self.server.port}"}
+            done = subprocess.run(words, input=text.encode(), capture_output=True, env=environment, cwd=folder, timeout=60 * driver.SLOW)
+            self.assertEqual(done.returncode, 0, done.stderr.decode())
+            files = {}
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name)) as f:
+                    files[name] = f.read()
+            return done.stdout.decode(), files
+
+    @unittest.skipUnless(shutil.which("curl"), "no curl here")
+    def test_the_shell(self):
+        _, files = self.run_example(["sh", "-e"], block("sh"))
+        self.assertIn('"state":"finished"', files["summary.json"])
+        lines = files["samples.csv"].splitlines()
+        self.assertEqual((lines[0], len(lines)), ('t,"th1","a2","th3",gap', 1 + 21))
+
+    def test_python(self):
+        out, _ = self.run_example([sys.executable, "-"], block("python"))
+        self.assertEqual([line.split()[0] for line in out.splitlines()], ["index1@rk4:h=0.01", "projection@rk4:h=0.01"])
+        self.assertGreater(*(float(line.split()[1]) for line in out.splitlines()))
+
+    @unittest.skipUnless(shutil.which("node"), "no node here")
+    def test_javascript(self):
+        out, _ = self.run_example(["node", "--input-type=module", "-"], block("javascript"))
+        self.assertRegex(out, r"^ok 201 [0-9.e-]+\n$")
+
+
+if __name__ == "__main__":
+    driver.main()
