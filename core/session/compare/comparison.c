@@ -65,6 +65,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
         // a spelling may be right and still deserve a word: a negative alpha, for one
         snprintf(c->entries[c->n].warning, sizeof c->entries[c->n].warning, "%s", diag.message);
         hn_run_opts run_opts = hn_run_opts_default();
+        run_opts.t_end = opts->duration > 0 ? opts->duration : hn_model_scene(c->model)->duration;
         if (opts->max_steps > 0) {
             run_opts.max_steps = opts->max_steps;
         }

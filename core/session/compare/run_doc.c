@@ -241,7 +241,7 @@ static hn_status record(hn_run *run, const schedule *s, table *tab) {
     }
     hn_sample last;
     double t = hn_run_time(run);
-    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
+    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) && t <= s->request->time &&
         hn_run_sample(run, t, &last) == HN_OK) {
         table_add(tab, &last, run);
     }
@@ -368,6 +368,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     status = make_schedule(request, &times, diags);
     if (status == HN_OK) {
         hn_run_opts opts = hn_run_opts_default();
+        opts.t_end = request->time;
         if (request->max_steps > 0) {
             opts.max_steps = request->max_steps;
         }

@@ -27,6 +27,7 @@ static const hn_incident_kind *const kinds[HN_INCIDENT_COUNT] = {
     [HN_INCIDENT_STIFF] = &hn_incident_stiff,
     [HN_INCIDENT_RESTARTS] = &hn_incident_restarts,
     [HN_INCIDENT_STEP_LIMIT] = &hn_incident_step_limit,
+    [HN_INCIDENT_STEP_LONG] = &hn_incident_step_long,
     [HN_INCIDENT_CHART_CHANGE] = &hn_incident_chart_change,
     [HN_INCIDENT_CHART_LOST] = &hn_incident_chart_lost,
     [HN_INCIDENT_PROJECTION_FAILED] = &hn_incident_projection_failed,

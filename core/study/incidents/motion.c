@@ -7,16 +7,21 @@
 
 #include <math.h>
 
-double hn_motion_unexplained(const hn_watch *w, double least) {
+double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
+                                     const hn_state_at *to, double least) {
     const hn_stepping *s = w->run;
-    const double half = 0.5 * (s->now.t - s->before.t);
+    const double half = 0.5 * (to->t - from->t);
     double moved = least, rest = 0, *step = w->scratch;
-    hn_system_difference(s->sys, s->before.q, s->now.q, step);
+    hn_system_difference(s->sys, from->q, to->q, step);
     for (int i = 0; i < s->info.nv; i++) {
         moved = fmax(moved, fabs(step[i]));
-        rest = fmax(rest, fabs(step[i] - half * (s->now.v[i] + s->before.v[i])));
+        rest = fmax(rest, fabs(step[i] - half * (to->v[i] + from->v[i])));
     }
     return moved > 0 ? rest / moved : 0;
+}
+
+double hn_motion_unexplained(const hn_watch *w, double least) {
+    return hn_motion_unexplained_between(w, &w->run->before, &w->run->now, least);
 }
 
 double hn_motion_way(const hn_watch *w, const double *from, double *step) {

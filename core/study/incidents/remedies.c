@@ -168,6 +168,11 @@ bool hn_remedy_step_for_feedback(const hn_watch *w, double factor, hn_remedy out
     return true;
 }
 
+bool hn_remedy_step_of_run(const hn_watch *w, double factor, hn_remedy out) {
+    snprintf(out, sizeof(hn_remedy), "h=%.3g", factor * (w->t_end - w->run->t0));
+    return true;
+}
+
 // ---- other integrators --------------------------------------------------------------------------------------------
 
 bool hn_remedy_stiff_closed(const hn_watch *w, double factor, hn_remedy out) {

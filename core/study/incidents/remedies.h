@@ -27,6 +27,8 @@ bool hn_remedy_singular_mass(const hn_watch *w, double factor, hn_remedy out);
 /// Slower feedback that the step can follow; a step that can follow the feedback.
 bool hn_remedy_slower_feedback(const hn_watch *w, double factor, hn_remedy out);
 bool hn_remedy_step_for_feedback(const hn_watch *w, double factor, hn_remedy out);
+/// The same method with this share of the run as its step.
+bool hn_remedy_step_of_run(const hn_watch *w, double factor, hn_remedy out);
 /// Implicit methods for stiff scenes: with closed loops, in the present formulation, with steps of any order.
 bool hn_remedy_stiff_closed(const hn_watch *w, double factor, hn_remedy out);
 bool hn_remedy_stiff_same(const hn_watch *w, double factor, hn_remedy out);

@@ -76,6 +76,16 @@ void hn_step_limit_check(hn_watch *w) {
     }
 }
 
+void hn_step_long_check(hn_watch *w) {
+    const double h = hn_method_option(&w->run->spec, "h", 0), whole = w->t_end - w->run->t0;
+    if (!w->run->adaptive && w->t_end > 0 && h > whole * (1 + HN_STEPPING_LANDING)) {
+        hn_incident_report(w, &hn_incident_step_long, "h", h, whole,
+                           "the step of %.4g s is longer than the run of %.4g s: no whole step is "
+                           "made, and the output is that of one shorter step",
+                           h, whole);
+    }
+}
+
 const hn_incident_kind hn_incident_stiff = {
     .code = HN_INCIDENT_STIFF,
     .spelling = "stiff",
@@ -104,4 +114,13 @@ const hn_incident_kind hn_incident_step_limit = {
     .rule = "The step times the fastest rate must stay within the stability region of the "
             "integrator.",
     .remedies = {{hn_remedy_slower_feedback, 0.1}, {hn_remedy_step_for_feedback, 0.1}},
+};
+
+const hn_incident_kind hn_incident_step_long = {
+    .code = HN_INCIDENT_STEP_LONG,
+    .spelling = "step-long",
+    .name = "the step is longer than the run",
+    .rule = "The error of a method is known for steps that are short against the motion. One step "
+            "across a whole run says nothing about the motion.",
+    .remedies = {{hn_remedy_step_of_run, 0.01}},
 };

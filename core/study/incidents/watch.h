@@ -83,6 +83,7 @@ struct hn_watch {
     const hn_stepping *run;
     const hn_cost *cost; ///< of the run so far
     double warn_gap;     ///< times the characteristic length
+    double t_end;        ///< end that the run is for [s]; 0: not known
     double length;       ///< characteristic length [m]
     hn_incident_log log;
     int every;     ///< a check every so many steps

@@ -172,6 +172,8 @@ static void clear(hn_run *run) {
     run->clock.seconds = 0;
     hn_stepping_clear(&run->stepping);
     hn_watch_start(&run->watch);
+    run->sampling.inside = 0;
+    hn_step_long_check(&run->watch);
 }
 
 static hn_status create_parts(hn_run *run, const hn_system *sys, const hn_method_spec *spec,
@@ -183,6 +185,7 @@ static hn_status create_parts(hn_run *run, const hn_system *sys, const hn_method
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
     }
+    run->watch.t_end = run->opts.t_end;
     HN_TRY(hn_sampling_create(s, &run->watch, run->opts.raw_lambda, &run->sampling, diag));
 
     // a formulation that cannot start here gives a run that has failed already
@@ -263,7 +266,8 @@ hn_run_summary hn_run_get_summary(const hn_run *run) {
                           .worst_gap = run->watch.worst_gap,
                           .worst_velocity_gap = run->watch.worst_velocity_gap,
                           .worst_energy_change = run->watch.worst_energy_change,
-                          .watched_every = run->watch.every};
+                          .watched_every = run->watch.every,
+                          .samples_inside = run->sampling.inside};
     memcpy(out.reason, run->reason, sizeof out.reason);
     return out;
 }

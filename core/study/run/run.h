@@ -17,6 +17,7 @@ typedef enum hn_run_state {
 
 typedef struct hn_run_opts {
     double t0;
+    double t_end;        ///< end that the run is for: a longer step is reported; 0: not known
     long long max_steps; ///< HN_ERR_BUDGET beyond; 0: 50,000,000
     double warn_gap;     ///< times the characteristic length; 0: HN_RUN_WARN_GAP
     int raw_lambda;      ///< samples carry the scheme's own multipliers too, where it has some
@@ -32,9 +33,10 @@ typedef struct hn_run_summary {
     double h_last;
     hn_cost cost;
     double cpu_seconds; ///< thread CPU time spent stepping (sampling and output excluded)
-    /// over all accepted steps that were checked
+    /// over all accepted steps that were checked, and all samples between steps
     double worst_gap, worst_velocity_gap, worst_energy_change;
-    int watched_every; ///< 1: every step
+    int watched_every;        ///< 1: every step
+    long long samples_inside; ///< samples between steps that were checked
 } hn_run_summary;
 
 typedef struct hn_run hn_run;

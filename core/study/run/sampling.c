@@ -2,6 +2,7 @@
 #include "study/run/sampling.h"
 
 #include "dynamics/compile/coordinates.h"
+#include "study/incidents/inside.h"
 #include "study/incidents/motion.h"
 
 #include <math.h>
@@ -138,6 +139,10 @@ static void fill_measures(hn_sampling *s, double t, hn_sample *out) {
     out->energy = m.kinetic + m.potential;
     out->energy_change = out->energy - s->watch->energy.start;
     out->pivot_ratio *= row * row;
+    if (s->watch->every > 0 && !is_present(s->run, t)) {
+        s->inside++;
+        hn_inside_check(s->watch, &(hn_state_at){t, s->q, s->v}, &m);
+    }
 }
 
 hn_status hn_sampling_at(hn_sampling *s, double t, bool failed, hn_sample *out) {

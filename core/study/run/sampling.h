@@ -30,6 +30,7 @@ typedef struct hn_sampling {
     bool raw_lambda; ///< samples carry the scheme's own multipliers too, where it has some
     hn_engine side;
     hn_eval *points_eval;
+    long long inside; ///< samples between steps that were checked
     // the state of the last sample, what the solve there said, and the scheme's own multipliers there
     double t, *q, *v, *a;
     hn_accel_info info;

@@ -204,23 +204,24 @@ int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_ei
 
 // why the spectrum on the loops is not what this method meets; NULL when it is
 static const char *why_not(const hn_method_spec *spec) {
-    const char *const name = spec->formulation->name;
+    const unsigned traits = spec->formulation->traits;
     if (hn_method_form(spec->formulation, spec->stepper) != HN_FORM_ODE) {
         return "the integrator takes the differential-algebraic system: its limit is where "
                "Newton's "
                "method ends, not an instability";
     }
-    if (strcmp(name, "penalty") == 0 || strcmp(name, "augmented-lagrangian") == 0) {
+    if (traits & HN_TRAIT_ADDS_VIBRATIONS) {
         return "the penalty adds vibrations of its own, which the loops do not have";
     }
-    if (strcmp(name, "baumgarte") == 0 && hn_method_option(spec, "rule", 0) != 0) {
+    if ((traits & HN_TRAIT_PULLS_GAP) && hn_method_option(spec, "rule", 0) != 0) {
         return "alpha and beta follow the motion";
     }
     return hn_stability_why_not(spec->stepper);
 }
 
-static int baumgarte_roots(const hn_method_spec *spec, hn_eigenvalue out[2]) {
-    if (strcmp(spec->formulation->name, "baumgarte") != 0) {
+/// The roots of the feedback on the gap, where the formulation has one; returns their number.
+static int feedback_roots(const hn_method_spec *spec, hn_eigenvalue out[2]) {
+    if (!(spec->formulation->traits & HN_TRAIT_PULLS_GAP)) {
         return 0;
     }
     hn_stability_baumgarte(hn_method_option(spec, "alpha", 0), hn_method_option(spec, "beta", 0),
@@ -262,7 +263,7 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
         return f;
     }
     hn_eigenvalue roots[2];
-    const int n_roots = baumgarte_roots(spec, roots);
+    const int n_roots = feedback_roots(spec, roots);
     // a root to the right makes the gap itself grow, at any step
     const double gap = n_roots == 0 ? HUGE_VAL
                        : roots[0].re > 0 || roots[1].re > 0

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/incidents/inside.h"
+
+#include "study/incidents/branch.h"
+#include "study/incidents/energy.h"
+#include "study/incidents/gap.h"
+#include "study/incidents/motion.h"
+#include "study/incidents/report.h"
+
+#include <math.h>
+
+/// The report happened at the sample, not at the end of the last step.
+static void set_time(hn_incident *i, double t) {
+    if (i) {
+        i->t = t;
+    }
+}
+
+static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
+    const double limit = w->warn_gap * w->length;
+    if (gap > limit) {
+        set_time(hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
+                                    "the output between two steps is open: the constraint "
+                                    "violation of %.3g m at t = %.6g s exceeds the limit of %.3g m",
+                                    gap, at->t, limit),
+                 at->t);
+    }
+}
+
+static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m) {
+    const hn_energy_record *e = &w->energy;
+    const double energy = m->kinetic + m->potential, change = energy - e->last;
+    const double range = fmax(e->v_max, m->potential) - fmin(e->v_min, m->potential);
+    // against the energies of the steps: a state that is wrong may hold any amount itself
+    const double limit = HN_RUN_WARN_ENERGY * (e->t_max + range);
+    if (e->conservative && limit > 0 && fabs(change) > limit && fabs(energy - e->start) > limit) {
+        set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
+                                    "the output between two steps has another energy: it changes "
+                                    "by %.3g J up to t = %.6g s, more than %.3g J",
+                                    change, at->t, limit),
+                 at->t);
+    }
+}
+
+static void check_branch(hn_watch *w, const hn_state_at *at) {
+    const hn_stepping *s = w->run;
+    const hn_state_at *from = at->t < s->now.t ? &s->before : &s->now;
+    hn_mode_watch_values(w->mode, at->t, at->q, w->modes);
+    for (int k = 0; k < hn_mode_watch_count(w->mode); k++) {
+        const double jump = fabs(w->modes[k] - w->last_modes[k]);
+        if (w->modes[k] * w->last_modes[k] < 0 && jump > HN_RUN_WARN_MODE &&
+            hn_motion_unexplained_between(w, from, at, 0) > HN_RUN_WARN_JUMP) {
+            set_time(hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[k],
+                                        HN_RUN_WARN_MODE,
+                                        "the output at t = %.6g s, inside a step, is on another "
+                                        "branch (assembly mode %.2g to %.2g)",
+                                        at->t, w->last_modes[k], w->modes[k]),
+                     at->t);
+            return;
+        }
+    }
+}
+
+void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m) {
+    const double change = fabs(m->kinetic + m->potential - w->energy.start);
+    w->worst_gap = fmax(w->worst_gap, m->gap);
+    w->worst_velocity_gap = fmax(w->worst_velocity_gap, m->velocity_gap);
+    w->worst_energy_change = fmax(w->worst_energy_change, change);
+    check_gap(w, at, m->gap);
+    check_energy(w, at, m);
+    check_branch(w, at);
+}

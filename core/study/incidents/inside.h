@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_INSIDE_INCIDENTS_H
+#define HN_STUDY_INSIDE_INCIDENTS_H
+// Checks of states between steps: what is put out is checked like what is stepped to.
+
+#include "study/incidents/watch.h"
+
+/// Checks a sample that lies inside a step or ahead of the last one: gap, energy and assembly mode. Its gap and energy count
+/// in the worst of the run.
+void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m);
+
+#endif
