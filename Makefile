@@ -77,7 +77,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
 CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -isystem /usr/include/suitesparse -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
-LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lOSMesa -lpng -lxml2 -lncursesw -lm
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lOSMesa -lpng -lz -lxml2 -lncursesw -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)
@@ -169,7 +169,7 @@ $(OUT)/%.o: %.c
 programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
-RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev libncurses-dev \
+RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
                  libxml2-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every route answers, in the shape that the OpenAPI document promises."""
 
+import gzip
 import json
 import re
 import unittest
@@ -85,6 +86,23 @@ class Catalogue(driver.ServerCase):
     def test_every_kind_of_error_has_a_page(self):
         for error in self.get("/api/v1/errors")["errors"]:
             self.assertEqual(self.get("/api/v1/errors/" + error["code"])["status"], error["status"])
+
+
+class Compressed(driver.ServerCase):
+    def test_text_is_zipped_for_who_takes_it(self):
+        for path in ("/", "/main.js", "/api/v1/methods", "/api/v1/scenes/four-bar", "/api/v1/openapi.json"):
+            plain = self.server.ask("GET", path)
+            zipped = self.server.ask("GET", path, headers={"Accept-Encoding": "br, gzip;q=0.8"})
+            self.assertNotIn("content-encoding", plain.headers, path)
+            self.assertEqual(zipped.headers["content-encoding"], "gzip", path)
+            self.assertIn("accept-encoding", zipped.headers["vary"].lower())
+            self.assertEqual(gzip.decompress(zipped.body), plain.body, path)
+            self.assertLess(len(zipped.body), len(plain.body) / 2 if len(plain.body) > 4000 else len(plain.body))
+            refused = self.server.ask("GET", path, headers={"Accept-Encoding": "gzip;q=0"})
+            self.assertEqual(refused.body, plain.body, path)
+        run = {"scene": "four-bar", "method": "index1@rk4:h=1e-3", "time": 1}
+        zipped = self.server.ask("POST", "/api/v1/runs", run, {"Content-Type": "application/json", "Accept-Encoding": "gzip"})
+        self.assertEqual(len(json.loads(gzip.decompress(zipped.body))["samples"]["t"]), 201)
 
 
 class Examples(driver.ServerCase):
@@ -239,6 +257,19 @@ class Stateless(driver.ServerCase):
         self.assertNotEqual(run["status"], "ok")
         self.assertTrue(run["reason"])
         self.assertLess(run["t_reached"], 500)
+        failure = run["failure"]
+        self.assertEqual(set(failure), {"code", "quantity", "value", "limit", "t", "message", "remedies"})
+        self.assertEqual((failure["message"], failure["t"]), (run["reason"], run["t_reached"]))
+        # the figures are those of the incident, and the comparison says the same
+        incident = next(i for i in run["incidents"] if i["code"] == failure["code"])
+        self.assertEqual([failure[k] for k in ("quantity", "value", "limit", "remedies")], [incident[k] for k in ("quantity", "value", "limit", "remedies")])
+        self.assertGreater(failure["value"], failure["limit"])
+        c = self.server.compare(methods=["index1@euler:h=0.5", "projection@rk4:h=0.01"], frame_dt=0.5)
+        for _ in range(5):
+            latest = self.server.ask("PATCH", c["links"]["self"], {"step": 1}).json()["latest"]["methods"]
+        self.assertEqual((latest[0]["failure"]["code"], latest[1]["failure"]), (failure["code"], None))
+        cut = self.post("runs", {"scene": "four-bar", "method": "index1@rk4:h=1e-3", "time": 1}).json()
+        self.assertIsNone(cut["failure"])
 
     def test_a_scene_may_be_given_whole(self):
         text = open("lessons/01-closed-loops/scenes/pendulum.json").read()

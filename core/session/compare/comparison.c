@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
+#include "session/compare/failure.h"
 #include "formulations/list/formulation_list.h"
 
 #include "render/look.h"
@@ -316,9 +317,11 @@ static void put_reason(hn_strbuf *b, const hn_comparison *c, const entry *e,
                  c->frame_dt, c->cpu_budget, e->slowness);
         hn_json_put_string(b, "status", hn_status_name(HN_ERR_BUDGET));
         hn_json_put_string(b, "reason", text);
+        hn_failure_put_json(b, e->run, HN_ERR_BUDGET, text, s->t);
     } else {
         hn_json_put_string(b, "status", hn_status_name(s->status));
         hn_json_put_string(b, "reason", s->reason);
+        hn_failure_put_json(b, e->run, s->status, s->reason, s->t);
     }
 }
 

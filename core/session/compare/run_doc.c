@@ -4,6 +4,7 @@
 #include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
 #include "session/compare/comparison.h"
+#include "session/compare/failure.h"
 #include "session/model/reactions_json.h"
 #include "study/run/pace.h"
 
@@ -337,6 +338,8 @@ static void put_run(hn_strbuf *b, const hn_model *model, const hn_run *run,
     }
     hn_json_put_string(b, "status", hn_status_name(ended));
     hn_json_put_string(b, "reason", reason_of(run, request, &s, ended));
+    hn_failure_put_json(b, run, ended, reason_of(run, request, &s, ended),
+                        fmin(s.t, request->time));
     // an adaptive step may end beyond the time asked for
     hn_json_put_number(b, "t_reached", fmin(s.t, request->time));
     put_names(b, model);

@@ -13,7 +13,7 @@
 #include <cjson/cJSON.h>
 #include <microhttpd.h>
 
-enum { HN_MAX_REPLY_HEADERS = 6 };
+enum { HN_MAX_REPLY_HEADERS = 10 };
 
 struct hn_context;
 

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "http/request/guard.h"
+#include "http/request/gzip.h"
 #include "http/request/request.h"
 #include "http/request/token.h"
 #include "http/routes/static_files.h"
@@ -14,6 +15,8 @@
 
 /// Beyond this much of an unwanted body the connection is closed rather than drained.
 enum { MAX_DRAINED = 8 << 20 };
+/// Longer texts are sent as they are: by a pool, and by an event loop.
+enum { MOST_ZIPPED = 32 << 20, MOST_ZIPPED_AT_ONCE = 256 << 10 };
 
 // ---- the head ----
 
@@ -136,6 +139,7 @@ void hn_dispatch_job(void *job) {
             return; // the handler has it finished
         }
     }
+    hn_reply_compress(r, MOST_ZIPPED);
     hn_request_finish(r);
 }
 
@@ -171,6 +175,7 @@ static int start_work(hn_dispatch *d, hn_request *r) {
     switch (r->route->work) {
     case HN_WORK_LIGHT:
         r->route->handle(r);
+        hn_reply_compress(r, MOST_ZIPPED_AT_ONCE);
         return 1;
     case HN_WORK_OWN:
         hn_request_suspend(r);

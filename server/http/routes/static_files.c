@@ -4,20 +4,30 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "http/ground/sha256.h"
+#include "http/request/gzip.h"
 #include "http/request/request.h"
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_FILES = 4000, MAX_PATH_CHARS = 4096, MAX_NESTING = 8, MAX_HTML = 1 << 20 };
+enum {
+    MAX_FILES = 4000,
+    MAX_PATH_CHARS = 4096,
+    MAX_NESTING = 8,
+    MAX_HTML = 1 << 20,
+    MAX_ZIPPED = 4 << 20
+};
 
 typedef struct file {
     const char *address, *path, *media_type;
+    hn_strbuf zipped;          ///< made on the first request; empty until then
+    struct timespec zipped_of; ///< when the file was changed that it was made of
 } file;
 
 struct hn_static_files {
@@ -26,6 +36,7 @@ struct hn_static_files {
     file *files; ///< sorted by address
     const char **addresses;
     hn_strbuf policy;
+    pthread_mutex_t lock; ///< of what is zipped
 };
 
 static const char *find_media_type(const char *name) {
@@ -102,7 +113,7 @@ static int compare_files(const void *a, const void *b) {
     return strcmp(((const file *)a)->address, ((const file *)b)->address);
 }
 
-static const file *find_file(const hn_static_files *s, const char *address) {
+static file *find_file(const hn_static_files *s, const char *address) {
     file key = {.address = address};
     return bsearch(&key, s->files, (size_t)s->n, sizeof key, compare_files);
 }
@@ -150,6 +161,7 @@ hn_status hn_static_files_create(const char *folder, hn_static_files **out, hn_d
     hn_static_files *s = calloc(1, sizeof *s);
     hn_status status = s ? HN_OK : HN_ERR_MEMORY;
     if (s) {
+        pthread_mutex_init(&s->lock, NULL);
         s->arena = hn_arena_create(1 << 16);
         s->files = calloc(MAX_FILES, sizeof *s->files);
         s->addresses = calloc(MAX_FILES, sizeof *s->addresses);
@@ -175,6 +187,10 @@ hn_status hn_static_files_create(const char *folder, hn_static_files **out, hn_d
 
 void hn_static_files_free(hn_static_files *s) {
     if (s) {
+        for (int i = 0; i < s->n; i++) {
+            hn_strbuf_reset(&s->files[i].zipped);
+        }
+        pthread_mutex_destroy(&s->lock);
         hn_arena_free(s->arena);
         hn_strbuf_reset(&s->policy);
         free(s->files);
@@ -201,9 +217,60 @@ static int is_known(const hn_request *r, const char *tag) {
     return known && (strcmp(known, "*") == 0 || strstr(known, tag));
 }
 
-int hn_static_files_reply(const hn_static_files *s, hn_request *r, const char *address) {
-    const file *f = find_file(s, strcmp(address, "/") == 0 ? "/index.html" : address);
-    int fd = f ? open(f->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW) : -1;
+/// Zips the file once for each of its versions. With the lock held; 0 when that cannot be had.
+static int zip(file *f, const struct stat *st) {
+    if (f->zipped.n > 0 && f->zipped_of.tv_sec == st->st_mtim.tv_sec &&
+        f->zipped_of.tv_nsec == st->st_mtim.tv_nsec) {
+        return 1;
+    }
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_strbuf_reset(&f->zipped);
+    const int zipped = hn_file_read(f->path, MAX_ZIPPED, &text, NULL) == HN_OK &&
+                       text.n == (size_t)st->st_size &&
+                       hn_gzip(&f->zipped, hn_strbuf_text(&text), text.n);
+    f->zipped_of = st->st_mtim;
+    hn_strbuf_reset(&text);
+    return zipped;
+}
+
+/// The zipped file as a reply; 0 when the client does not take it, or it is not worth it.
+static int reply_zipped(hn_static_files *s, hn_request *r, file *f, const struct stat *st) {
+    if (!hn_gzip_is_worth(f->media_type, (size_t)st->st_size) || !hn_gzip_accepted(r)) {
+        return 0;
+    }
+    hn_strbuf copy;
+    hn_strbuf_init(&copy);
+    pthread_mutex_lock(&s->lock);
+    const int zipped = zip(f, st);
+    if (zipped) {
+        hn_strbuf_add_n(&copy, hn_strbuf_text(&f->zipped), f->zipped.n);
+    }
+    pthread_mutex_unlock(&s->lock);
+    if (!zipped || copy.failed) {
+        hn_strbuf_reset(&copy);
+        return 0;
+    }
+    hn_reply_bytes(r, MHD_HTTP_OK, f->media_type, &copy);
+    hn_reply_header_add(r, "Content-Encoding", "gzip");
+    return 1;
+}
+
+/// The file as it lies there; takes the descriptor.
+static void reply_plain(hn_request *r, const file *f, int fd, const struct stat *st) {
+    struct MHD_Response *response = MHD_create_response_from_fd((size_t)st->st_size, fd);
+    if (!response) {
+        close(fd);
+        hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
+        return;
+    }
+    hn_reply_response(r, MHD_HTTP_OK, response);
+    hn_reply_header_add(r, "Content-Type", "%s", f->media_type);
+}
+
+int hn_static_files_reply(hn_static_files *s, hn_request *r, const char *address) {
+    file *f = find_file(s, strcmp(address, "/") == 0 ? "/index.html" : address);
+    int fd = f ? open(f->path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK) : -1;
     struct stat st;
     if (fd < 0 || fstat(fd, &st) != 0) {
         if (fd >= 0) {
@@ -211,23 +278,21 @@ int hn_static_files_reply(const hn_static_files *s, hn_request *r, const char *a
         }
         return 0;
     }
+
+    // one tag for both forms: they have one content
     char tag[64];
     snprintf(tag, sizeof tag, "\"%llx-%llx-%lx\"", (long long)st.st_size,
              (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
     if (is_known(r, tag)) {
         close(fd);
         hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
+    } else if (reply_zipped(s, r, f, &st)) {
+        close(fd);
     } else {
-        struct MHD_Response *response = MHD_create_response_from_fd((size_t)st.st_size, fd);
-        if (!response) {
-            close(fd);
-            hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
-            return 1;
-        }
-        hn_reply_response(r, MHD_HTTP_OK, response);
-        hn_reply_header_add(r, "Content-Type", "%s", f->media_type);
+        reply_plain(r, f, fd, &st);
     }
     hn_reply_header_add(r, "ETag", "%s", tag);
+    hn_reply_header_add(r, "Vary", "Accept-Encoding");
     hn_reply_header_add(r, "Cache-Control", "no-cache");
     return 1;
 }

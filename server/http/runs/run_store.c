@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "http/ground/jobs.h"
 #include "http/ground/sha256.h"
+#include "http/request/gzip.h"
 #include "http/request/request.h"
 #include "http/runs/json_scan.h"
 #include "http/runs/runs.h"
@@ -16,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MAX_RUNS = 20000, LOOK_MS = 100 };
+enum { MAX_RUNS = 20000, LOOK_MS = 100, MOST_ZIPPED = 8 << 20 };
 static const size_t MAX_BYTES = (size_t)256 << 20; // of documents in memory
 static const size_t MAX_FILE = (size_t)1 << 30;    // of one file in the folder
 
@@ -234,6 +235,7 @@ static void answer_all(hn_runs *all, hn_kept_run *run, hn_request *due) {
     while (due) {
         hn_request *next = due->next;
         hn_run_reply(due, run);
+        hn_reply_compress(due, MOST_ZIPPED);
         hn_request_finish(due);
         hn_runs_release(all, run);
         due = next;
@@ -253,6 +255,7 @@ void hn_runs_await(hn_runs *all, hn_kept_run *run, hn_request *r, double seconds
     pthread_mutex_unlock(&all->lock);
     if (!waits) {
         hn_run_reply(r, run);
+        hn_reply_compress(r, MOST_ZIPPED);
         hn_request_finish(r);
     }
 }
