@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/singularity_monitor.h"
 
+#include "dynamics/analyse/pilot.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "linalg/dense.h"
@@ -15,21 +16,15 @@ static const double RANK_TOL = 1e-8; // of the QR that answers where the factor 
 static const double PARTED = 0.05;   // pivot, of the largest, of a row that has become independent
 // operations a look may cost on average where only the QR answers
 static const double DENSE_BUDGET = 2e5;
-// prediction: a look becomes an anchor when sigma has fallen this much since the last; the lowest
-// value of the parabola must be this small against the present one; nothing is said from farther
-// than NEAR of the largest sigma_min so far
-static const double ANCHOR = 0.85;
-static const double TOUCHES = 0.04;
-// a sigma that is bent on its way to zero leaves the parabola's lowest value above zero, but less
-// of it with the cube of sigma; where the pose is only passed near, the lowest value stays. It has
-// to fall like the square at least, so many times running
-static const double BENT = 0.25;
-enum { FALLING = 2 };
-static const double NEAR = 0.35;
+// prediction: a pilot run starts when sigma_min falls below this share of the largest so far, and
+// reports what it finds below the second share
+static const double FALLEN = 0.9;
+static const double REACHED = 2e-3;
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
+static const double WEAK = 0.02; // and none above this of the largest pivot is
 static const double CUSP = 1e-6; // discriminant against the squares of the form's entries
-enum { ANCHORS = 3, SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8 };
+enum { SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8, PILOT_STEPS = 48, NARROWINGS = 24 };
 
 struct hn_singularity {
     const hn_system *sys;
@@ -47,10 +42,9 @@ struct hn_singularity {
     double *no_speed;
     int first, start_rank, wait;
     double largest, strongest; // sigma_min and sigma_max so far
-    double t[ANCHORS], square[ANCHORS];
-    int n_anchors;
-    double lowest; ///< of the parabola through the last anchors
-    int falling;   ///< anchors in a row by which it has fallen so
+    hn_pilot *pilot;
+    double *ahead_q;   // nq: a state of the pilot run
+    double next_pilot; // [s] no pilot run before
     hn_singularity_info last;
 };
 
@@ -74,6 +68,7 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         *of_nc[i] = hn_arena_doubles(arena, nc);
     }
     r->basis = hn_arena_doubles(arena, 2 * nv);
+    r->ahead_q = hn_arena_doubles(arena, (size_t)info.nq);
     if (!hn_qr_init(&r->qr, arena, info.nv, info.nc) || hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
@@ -86,6 +81,9 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
     }
     if (status == HN_OK) {
         status = hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor);
+    }
+    if (status == HN_OK) {
+        status = hn_pilot_create(sys, arena, &r->pilot);
     }
 
     if (status != HN_OK) {
@@ -102,6 +100,8 @@ void hn_singularity_free(hn_singularity *r) {
         hn_eval_free(r->rows);
         hn_eval_free(r->gamma);
         hn_factor_free(r->factor);
+        hn_pilot_free(r->pilot);
+        r->pilot = NULL;
         r->rows = r->gamma = NULL;
         r->factor = NULL;
     }
@@ -109,8 +109,9 @@ void hn_singularity_free(hn_singularity *r) {
 
 void hn_singularity_reset(hn_singularity *r) {
     r->first = 1;
-    r->wait = r->n_anchors = r->falling = 0;
-    r->lowest = HUGE_VAL;
+    r->wait = 0;
+    r->next_pilot = -HUGE_VAL;
+    r->last = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     r->largest = r->strongest = 0;
     r->start_rank = r->nc;
     memset(r->r, 0, (size_t)r->nc * sizeof *r->r);
@@ -221,77 +222,73 @@ static void look_sparsely(hn_singularity *r, int sweeps, hn_singularity_info *in
     }
 }
 
-/// sigma^2 as a parabola through the anchors, from the last of them on: slope, curve. 0 where it
-/// does not fall to a lowest value.
-static bool fit(const hn_singularity *r, double *slope, double *curve) {
-    if (r->n_anchors < ANCHORS) {
-        return false;
+/// The smallest sigma_min inside the pilot's last step, by golden section; *share: where.
+static double smallest_inside(hn_singularity *r, double *share) {
+    const double golden = 0.6180339887498949, t = hn_pilot_time(r->pilot);
+    double low = 0, high = 1, x[2] = {1 - golden, golden}, sigma[2];
+    for (int i = 0; i < 2; i++) {
+        hn_pilot_inside(r->pilot, x[i], r->ahead_q);
+        sigma[i] = hn_singularity_probe(r, t, r->ahead_q);
     }
-    const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
-    const double s1 = (r->square[1] - r->square[0]) / a, s2 = (r->square[2] - r->square[1]) / b;
-    *curve = (s2 - s1) / (a + b);
-    *slope = s2 + *curve * b;
-    return *curve > 0 && *slope < 0;
+    for (int k = 0; k < NARROWINGS; k++) {
+        const int left = sigma[0] < sigma[1], fresh = left ? 0 : 1;
+        *(left ? &high : &low) = x[left ? 1 : 0];
+        x[!fresh] = x[fresh];
+        sigma[!fresh] = sigma[fresh];
+        x[fresh] = left ? high - golden * (high - low) : low + golden * (high - low);
+        hn_pilot_inside(r->pilot, x[fresh], r->ahead_q);
+        sigma[fresh] = hn_singularity_probe(r, t, r->ahead_q);
+    }
+    *share = 0.5 * (low + high);
+    return fmin(sigma[0], sigma[1]);
 }
 
-/// Seconds from the last anchor until sigma itself, as a parabola through the anchors, is zero.
-static double root(const hn_singularity *r) {
-    const double s[ANCHORS] = {sqrt(r->square[0]), sqrt(r->square[1]), sqrt(r->square[2])};
-    const double a = r->t[1] - r->t[0], b = r->t[2] - r->t[1];
-    const double s1 = (s[1] - s[0]) / a, s2 = (s[2] - s[1]) / b;
-    const double curve = (s2 - s1) / (a + b), slope = s2 + curve * b;
-    const double square = slope * slope - 4 * curve * s[2];
-    return slope < 0 && square > 0 ? 2 * s[2] / (sqrt(square) - slope) : HUGE_VAL;
+/// Seconds until the pilot run reaches a singular configuration within `horizon`, else HUGE_VAL.
+///
+/// A zero of sigma_min is passed between two steps, so every step whose ends do not rule it out is
+/// searched: sigma_min falls towards a zero and rises from it like a straight line.
+static double run_pilot(hn_singularity *r, double t, const double *q, const double *v,
+                        double horizon, double sigma_now) {
+    const double h = horizon / PILOT_STEPS;
+    double before = sigma_now, slope = 0;
+    hn_pilot_start(r->pilot, t, q, v);
+    for (int k = 0; k < PILOT_STEPS; k++) {
+        if (hn_pilot_step(r->pilot, h) != HN_OK) {
+            return HUGE_VAL;
+        }
+        const double sigma = hn_singularity_probe(r, hn_pilot_time(r->pilot), hn_pilot_q(r->pilot));
+        const double steepest = fmax(slope, fabs(sigma - before));
+        double share = 1;
+        if (sigma + before < 2 * steepest || sigma < REACHED * r->largest) {
+            if (smallest_inside(r, &share) < REACHED * r->largest) {
+                return hn_pilot_time(r->pilot) - (1 - share) * h - t;
+            }
+        }
+        slope = fabs(sigma - before);
+        before = sigma;
+    }
+    return HUGE_VAL;
 }
 
-/// Seconds from t until sigma is zero if it goes on as it did, HUGE_VAL when it does not get there.
-static double predict(const hn_singularity *r, double t, double sigma) {
-    double slope = 0, curve = 0, when = HUGE_VAL;
-    if (!(sigma < NEAR * r->largest) || !fit(r, &slope, &curve)) {
-        return HUGE_VAL;
-    }
-    if (fabs(r->lowest) <= TOUCHES * r->square[2]) {
-        when = r->t[2] - slope / (2 * curve);
-    } else if (r->falling >= FALLING && r->lowest <= BENT * r->square[2]) {
-        when = r->t[2] + root(r);
-    }
-    return when > t && when < HUGE_VAL ? when - t : HUGE_VAL;
-}
-
-/// What the parabola through the anchors says after one was added.
-static void follow_lowest(hn_singularity *r) {
-    double slope = 0, curve = 0;
-    if (!fit(r, &slope, &curve)) {
-        r->falling = 0;
-        r->lowest = HUGE_VAL;
+/// Decides whether a pilot run is due: sigma_min has fallen, and the last run is over or was long
+/// ago against how fast the motion is.
+static void look_ahead(hn_singularity *r, double t, const double *q, const double *v,
+                       hn_singularity_info *info) {
+    const double horizon = hn_pilot_half_turn(r->pilot, v);
+    const int falls = info->sigma_min < r->last.sigma_min;
+    if (!falls || !(info->sigma_min < FALLEN * r->largest) || r->wait > 0 || t < r->next_pilot ||
+        !isfinite(horizon)) {
         return;
     }
-    const double lowest = r->square[2] - slope * slope / (4 * curve);
-    const double share = r->square[2] / r->square[1];
-    r->falling = lowest > 0 && lowest <= share * r->lowest ? r->falling + 1 : 0;
-    r->lowest = lowest;
+    info->ahead = run_pilot(r, t, q, v, horizon, info->sigma_min);
+    info->predicted = isfinite(info->ahead) ? t + info->ahead : info->predicted;
+    r->next_pilot = t + (isfinite(info->ahead) ? info->ahead + 0.1 * horizon : 0.25 * horizon);
 }
 
-static void remember(hn_singularity *r, double t, double sigma) {
-    const double square = sigma * sigma;
-    if (r->n_anchors > 0 && square > r->square[r->n_anchors - 1]) {
-        r->n_anchors = 0; // rising: no approach
-    }
-    if (r->n_anchors > 0 && square > ANCHOR * ANCHOR * r->square[r->n_anchors - 1]) {
-        return;
-    }
-    if (r->n_anchors == ANCHORS) {
-        memmove(r->t, r->t + 1, (ANCHORS - 1) * sizeof *r->t);
-        memmove(r->square, r->square + 1, (ANCHORS - 1) * sizeof *r->square);
-        r->n_anchors--;
-    }
-    r->t[r->n_anchors] = t;
-    r->square[r->n_anchors++] = square;
-    follow_lowest(r);
-}
-
-void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singularity_info *info) {
-    *info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL};
+void hn_singularity_check(hn_singularity *r, double t, const double *q, const double *v,
+                          hn_singularity_info *info) {
+    const double predicted = r->last.predicted;
+    *info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = predicted};
     if (r->nc == 0) {
         return;
     }
@@ -321,9 +318,11 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singu
     info->ratio = info->sigma_max > 0 ? info->sigma_min / info->sigma_max : 0;
     info->lost = info->ratio < LOST;
     r->largest = fmax(r->largest, info->sigma_min);
-    remember(r, t, info->sigma_min);
-    info->ahead = predict(r, t, info->sigma_min);
-    r->first = 0;
+    if (r->first) {
+        r->last = *info;
+        r->first = 0;
+    }
+    look_ahead(r, t, q, v, info);
     r->last = *info;
     r->last.ahead = HUGE_VAL; // said once
 }
@@ -430,6 +429,26 @@ static void vanishing_combination(hn_singularity *r) {
     (void)normalise(r->nc, r->y);
 }
 
+/// Rows that are kept at a configuration where the weakest are below `lost`. Near it, rows that are
+/// lost together have pivots of different sizes (those of a long chain span two decades), but the
+/// kept ones are far above all of them: the widest gap between neighbouring pivots divides the two.
+static int count_kept(const hn_singularity *r, double lost) {
+    const int rank = r->qr.rank;
+    int kept = rank;
+    double widest = 0;
+    while (kept > 0 && diagonal(r, kept - 1) <= lost) {
+        kept--;
+    }
+    for (int k = 1, surely = kept; k <= surely && k < rank; k++) {
+        const double gap = diagonal(r, k - 1) / fmax(diagonal(r, k), RANK_TOL * diagonal(r, 0));
+        if (gap > widest && diagonal(r, k) < WEAK * diagonal(r, 0)) {
+            widest = gap;
+            kept = k;
+        }
+    }
+    return kept;
+}
+
 void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,
                             hn_singularity_pose *pose) {
     const double lost = TOGETHER * fmax(sigma_min, RANK_TOL);
@@ -444,9 +463,7 @@ void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double
     scale(r);
     fill_qr(r);
     hn_qr_factor(&r->qr, r->nv, r->nc, 0);
-    while (r->qr.rank > 0 && diagonal(r, r->qr.rank - 1) <= lost) {
-        r->qr.rank--;
-    }
+    r->qr.rank = count_kept(r, lost);
 
     pose->mobility = r->nv - r->qr.rank;
     if (r->qr.rank == r->nc) {

@@ -12,12 +12,13 @@
 // of [D^-2 J'; J 0], started from the last answer: a check costs as much as J and the factor have
 // entries. Where the factor has lost a pivot, a dense rank-revealing QR answers.
 //
-// Prediction. Along a smooth motion sigma_min^2 is smooth, and a zero of it is a double one: a
-// parabola through three looks whose lowest value is zero against the present one says when; one
-// that turns back above zero is a pose that is only passed near. Branches. With w' J = 0 the
-// velocities v that J allows must also obey w' gamma(q, v) = 0, a quadratic form. Two degrees of
-// freedom at the pose: two real roots are two crossing branches, none means that the mechanism is
-// locked, a double one is a cusp.
+// Prediction. When sigma_min has fallen by a tenth, a pilot run (pilot.h) goes half a turn ahead;
+// a configuration is announced only if that run reaches it. No extrapolation is used:
+// along a crank-rocker sigma_min falls almost straight to 0.27 and turns there.
+//
+// Branches. With w' J = 0 the velocities v that J allows must also obey w' gamma(q, v) = 0, a
+// quadratic form. With two degrees of freedom at the configuration, two real roots are two crossing
+// branches, none means that the mechanism is locked, a double one is a cusp.
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
 
 #include "base/arena.h"
@@ -36,7 +37,10 @@ typedef struct hn_singularity_info {
     double ratio; ///< sigma_min / sigma_max; 1 without rows
     /// rows lost beyond those that were dependent at the first look; 0 unless ratio < 1e-8
     int lost;
-    double ahead; ///< seconds until sigma_min vanishes, if that can be said, else HUGE_VAL
+    /// seconds until a singular configuration that the pilot run has just reached, else HUGE_VAL;
+    /// said once for each
+    double ahead;
+    double predicted; ///< time of the last one that was announced, -HUGE_VAL: none so far
 } hn_singularity_info;
 
 /// What a pose where rows are nearly lost looks like.
@@ -54,8 +58,9 @@ HN_MUST_CHECK hn_status hn_singularity_create(const hn_system *sys, hn_arena *ar
 void hn_singularity_free(hn_singularity *r); ///< NULL is legal
 /// Forgets all looks.
 void hn_singularity_reset(hn_singularity *r);
-/// Looks at a state; times should rise. Allocates nothing.
-void hn_singularity_check(hn_singularity *r, double t, const double *q, hn_singularity_info *info);
+/// Checks a state; times should rise. Allocates nothing.
+void hn_singularity_check(hn_singularity *r, double t, const double *q, const double *v,
+                          hn_singularity_info *info);
 /// sigma_min at a pose beside the looks, which are not told of it; HUGE_VAL before the first look,
 /// and where one costs so much that not every state gets it. Allocates nothing.
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);

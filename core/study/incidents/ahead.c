@@ -6,23 +6,20 @@
 
 #include <math.h>
 
-/// Of the largest sigma_min so far: farther away from a singular configuration a prediction is over.
-static const double FAR = 0.35;
-
 static void check(hn_watch *w) {
     const hn_singular_record *s = &w->singular;
     if (w->run->info.nc == 0) {
         return;
     }
     if (!(s->info.ahead < HUGE_VAL)) {
-        if (s->info.sigma_min > FAR * s->largest) {
+        if (w->run->now.t > s->info.predicted) {
             hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
         }
         return;
     }
     hn_incident_report(w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
-                       "J loses rank in %.3g s, at t = %.4g s, if the motion goes on as now: "
-                       "sigma_min is %.2g of %.2g and falls to zero there",
+                       "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a "
+                       "singular configuration then; sigma_min is %.2g of %.2g now",
                        s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min,
                        s->info.sigma_max);
 }

@@ -94,7 +94,7 @@ static void measure_solution(hn_watch *w) {
     if (w->at_start) {
         w->start_rank = w->accel_status == HN_OK ? w->accel_info.rank : s->info.nc;
     }
-    hn_singularity_check(w->singular.monitor, s->now.t, s->now.q, &w->singular.info);
+    hn_singularity_check(w->singular.monitor, s->now.t, s->now.q, s->now.v, &w->singular.info);
     w->singular.largest = fmax(w->singular.largest, w->singular.info.sigma_min);
     measure_rows(w);
 }
@@ -135,7 +135,7 @@ static void forget(hn_watch *w) {
     hn_incident_log_clear(&w->log);
     hn_heading_start(w);
     hn_singularity_reset(s->monitor);
-    s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL};
+    s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     s->largest = s->multiplier = 0;
     s->fallbacks = 0;
     s->passing = 0;
