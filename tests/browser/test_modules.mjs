@@ -368,6 +368,7 @@ test("limits and incidents are those of the server's index", () => {
   readIndex({
     limits: { methods: 5 },
     incidents: [{ code: "diverged", name: "diverged", rule }],
+    studies: [],
   });
   assert.equal(limits().methods, 5);
   assert.equal(incidentOf("diverged")?.rule, rule);

@@ -4,6 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, read, screenshot, until } from "./support.mjs";
 import { barsOf, boundaryOf, dotsOf, floorOf, frameOf } from "../../web/state/study-documents.js";
+import { readIndex } from "../../web/state/catalogue.js";
+import { heatRange, heatSentences, HEATS } from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 
@@ -109,18 +111,79 @@ test("the predicted boundary lies between cells on either side of the limit, or 
   assert.ok(Math.abs(line[0][1] - 1) < 1e-12, "half-way between the middles of two cells");
 });
 
+/** The part of the server's index that tells of studies. */
+const STUDIES = [
+  { name: "work-precision", chooses: ["h", "rtol"], presets: [], fields: [] },
+  {
+    name: "stability",
+    chooses: ["h"],
+    fields: [{ name: "methods", max: 4 }],
+    presets: [
+      { name: "limits", about: "the step", chooses: ["h"], stabilised: false },
+      { name: "baumgarte", about: "α and β", chooses: ["alpha", "beta"], stabilised: true },
+    ],
+  },
+  { name: "budget", chooses: [], presets: [], fields: [] },
+];
+const CATALOGUE = {
+  formulations: [
+    { name: "index1", options: [] },
+    {
+      name: "baumgarte",
+      options: [
+        { key: "alpha", default: 5 },
+        { key: "beta", default: 5 },
+      ],
+    },
+  ],
+  integrators: [{ name: "rk4", options: [{ key: "h", default: 1e-3 }] }],
+};
+readIndex({ limits: { methods: 8 }, incidents: [], studies: STUDIES });
+
+test("the present α and β are inside the axes of their map, whatever the step", () => {
+  const order = (spelling) =>
+    orderOf(
+      "stability",
+      { scene: { id: "a" }, settings: {}, methods: [{ spelling }], catalogue: CATALOGUE },
+      "baumgarte",
+    );
+  assert.equal(order("baumgarte:alpha=5,beta=5@rk4:h=0.02").preset, "baumgarte");
+  const { over, preset } = order("baumgarte:alpha=5,beta=9@rk4:h=1e-3");
+  assert.equal(preset, undefined);
+  assert.equal(over, "alpha=2.5..5000,beta=2.5..5000");
+});
+
+test("the heat of a map is that of the cells that ran, and its least is found in words", () => {
+  const cell = (gap, state = "inaccurate") => ({ class: state, gap, error: gap, energy: 1 / gap });
+  const rows = [
+    [cell(1e-3), cell(1e-4)],
+    [cell(1e-5), cell(1e-9, "grew")],
+  ];
+  const { low, high, best } = heatRange(HEATS[0], rows, 2);
+  assert.deepEqual([best.i, best.j], [0, 1]);
+  assert.ok(Math.abs(low - Math.log10(2e-5)) < 1e-12 && Math.abs(high - Math.log10(2e-3)) < 1e-12);
+  const map = { x: { values: [1, 2] }, y: { values: [3, 4] } };
+  const said = heatSentences(map, { rows }, 2, (_, value) => String(value));
+  assert.equal(said[0], "smallest worst loop gap: 20 µm at 1, 4");
+});
+
 test("a map over alpha and beta is asked for the methods that have them alone", () => {
   const data = {
     scene: { id: "four-bar" },
     settings: {},
     methods: [{ spelling: "index1@rk4" }, { spelling: "baumgarte:alpha=5,beta=5@rk4" }],
+    catalogue: CATALOGUE,
   };
   assert.deepEqual(orderOf("stability", data, "baumgarte").methods, [
     "baumgarte:alpha=5,beta=5@rk4",
   ]);
   assert.equal(orderOf("stability", data, "limits").methods.length, 2);
-  assert.ok(presetsOf(data.methods).some(({ preset }) => preset === "baumgarte"));
-  assert.ok(!presetsOf(data.methods.slice(0, 1)).some(({ preset }) => preset === "baumgarte"));
+  assert.ok(presetsOf(data).some(({ name }) => name === "baumgarte"));
+  assert.ok(
+    !presetsOf({ ...data, methods: data.methods.slice(0, 1) }).some(
+      ({ name }) => name === "baumgarte",
+    ),
+  );
 });
 
 test("a link names the study that is open, and no other word", () => {

@@ -10,6 +10,7 @@ import { SHORT, firstSpeed } from "./speeds.js";
 
 const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows", "reactions"]);
 
+const FRAMES_AT_ONCE = 600; // of a link, in one request
 const FIRST_SCENE = "four-bar";
 const FIRST_METHODS = [
   "index1@rk4:h=0.02",
@@ -41,9 +42,8 @@ export function createSceneActions(store, exchange, notice) {
 
   /** @param {import("../state/link.js").Linked} link */
   async function showLinked({ frame, selected, hidden, study }) {
-    const most = limits().frames;
-    for (let left = frame; left > 0; left -= most) {
-      await exchange.change({ step: Math.min(left, most) });
+    for (let left = frame; left > 0; left -= FRAMES_AT_ONCE) {
+      await exchange.change({ step: Math.min(left, FRAMES_AT_ONCE) });
       if (data.state === "finished") {
         break;
       }

@@ -3,40 +3,58 @@
 // What the server's index tells of itself: limits, incidents and kinds of studies. This is the only
 // module that knows them; everything else asks here.
 
-/** Kinds of studies, in the order of their tabs. */
+/**
+ * `chooses`: options that the study varies itself; `stabilised`: for methods that have those options.
+ * @typedef {{name: string, about: string, chooses: string[], stabilised: boolean}} Preset
+ * @typedef {{
+ *   name: string, about: string, chooses: string[], presets: Preset[],
+ *   fields: {name: string, max?: number}[],
+ * }} StudyKind
+ * @typedef {{code: string, name: string, rule: string}} IncidentKind
+ */
+
+/** Kinds of studies that this page can draw, in the order of their tabs. */
 export const KINDS = /** @type {const} */ (["work-precision", "stability", "budget"]);
 
-/** Stability maps that the page offers, and the options that each of them varies. */
-const PRESETS = [
-  { preset: "baumgarte", word: "α and β of Baumgarte", varies: ["alpha", "beta"] },
-  { preset: "limits", word: "the step", varies: ["h"] },
-  { preset: "stiffness", word: "the step and a stiffness", varies: ["h"] },
-  { preset: "mass-ratio", word: "the step and a mass", varies: ["h"] },
-];
-
-/** methods: in one comparison; frames: that one request may step. */
-let known = { methods: 8, frames: 600 };
-/** @type {Map<string, {code: string, name: string, rule: string}>} by code */
-let incidents = new Map();
+let known = {
+  methods: 0,
+  /** @type {Map<string, IncidentKind>} by code */ incidents: new Map(),
+  /** @type {Map<string, StudyKind>} by name */ studies: new Map(),
+};
 
 /** Reads the answer of `GET /api/v1/`. @param {any} index */
 export function readIndex(index) {
-  incidents = new Map(index.incidents.map((one) => [one.code, one]));
-  known = { methods: index.limits.methods, frames: index.limits.frames ?? known.frames };
+  known = {
+    methods: index.limits.methods,
+    incidents: new Map(index.incidents.map((one) => [one.code, one])),
+    studies: new Map(index.studies.map((one) => [one.name, one])),
+  };
 }
 
-/** What the server allows. */
+/** What the server allows. @returns {{methods: number}} */
 export const limits = () => known;
 
 /**
  * Name and rule of an incident; undefined for a code that is not in the list.
  * @param {string} code of the engine
- * @returns {{name: string, rule: string} | undefined}
  */
-export const incidentOf = (code) => incidents.get(code);
+export const incidentOf = (code) => known.incidents.get(code);
 
-/** The stability maps, in the order they are offered. */
-export const presets = () => PRESETS;
+/** @param {string} kind */
+const studyOf = (kind) => known.studies.get(kind);
+
+/** The stability maps; those of a method's own options come first. */
+export function presets() {
+  const list = studyOf("stability")?.presets ?? [];
+  return [...list].sort((a, b) => Number(b.stabilised) - Number(a.stabilised));
+}
+
+/**
+ * How many methods a study takes at most.
+ * @param {string} kind
+ */
+export const mostMethods = (kind) =>
+  studyOf(kind)?.fields.find(({ name }) => name === "methods")?.max ?? Infinity;
 
 /**
  * Options that a study varies itself: a change of them makes no other study of it.
@@ -45,10 +63,7 @@ export const presets = () => PRESETS;
  * @returns {string[]}
  */
 export function variedBy(kind, preset) {
-  if (kind === "work-precision") {
-    return ["h", "rtol"];
-  }
-  return kind === "stability"
-    ? (PRESETS.find((one) => one.preset === preset)?.varies ?? ["h"])
-    : [];
+  const study = studyOf(kind);
+  const chosen = study?.presets.find(({ name }) => name === preset);
+  return chosen?.chooses ?? study?.chooses ?? [];
 }

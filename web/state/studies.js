@@ -4,12 +4,16 @@
 // comes from. A study is asked for, looked at while it lasts, and read when it is done; its
 // document is that of the command line.
 import { Problem, api, sentenceOf } from "../api/client.js";
-import { presets, variedBy } from "./catalogue.js";
-import { formatSpelling, parseSpelling } from "./spelling.js";
+import { mostMethods, presets, variedBy } from "./catalogue.js";
+import { formatSpelling, parseSpelling, settingOf } from "./spelling.js";
+
+/** @typedef {{formulations: any[], integrators: any[]}} Catalogue */
 
 const LOOK_EVERY = 400; // [ms]
 const MAP_SIDE = { columns: 16, rows: 14 };
-const MAP_METHODS = 4;
+/** Axes of the map over Baumgarte's constants, times the step. */
+const LOWEST = 0.05;
+const HIGHEST = 5;
 const SAMPLES = 4; // of time per point: what is needed to rank
 const LEVELS = 6;
 
@@ -31,27 +35,61 @@ export const noStudy = () => ({
   report: "",
 });
 
-const isBaumgarte = (spelling) => parseSpelling(spelling).formulation.name === "baumgarte";
+/** Has the method every option that a map varies? */
+const hasOptions = (catalogue, spelling, { chooses, stabilised }) =>
+  !stabilised || chooses.every((key) => settingOf(catalogue, spelling, key));
 
-/** The maps that these methods have. @param {{spelling: string}[]} methods */
-export const presetsOf = (methods) =>
-  presets().filter(
-    ({ preset }) => preset !== "baumgarte" || methods.some(({ spelling }) => isBaumgarte(spelling)),
+/**
+ * The maps that the methods have.
+ * @param {{catalogue: Catalogue, methods: {spelling: string}[]}} data
+ */
+export const presetsOf = ({ catalogue, methods }) =>
+  presets().filter((preset) =>
+    methods.some(({ spelling }) => hasOptions(catalogue, spelling, preset)),
   );
+
+/**
+ * Axes of a map that hold the present values of its options as well; "" where the server's own do.
+ * @param {Catalogue} catalogue
+ * @param {string} spelling
+ * @param {string[]} keys two options, with the unit 1/s
+ */
+function widerAxes(catalogue, spelling, keys) {
+  const valueOf = (key) => Number(settingOf(catalogue, spelling, key)?.value);
+  const h = valueOf("h");
+  const values = keys.map(valueOf);
+  const [low, high] = [LOWEST / h, HIGHEST / h];
+  if (!(h > 0) || values.some((value) => !(value > 0)) || keys.length !== 2) {
+    return "";
+  }
+  const from = Math.min(low, ...values.map((value) => value / 2));
+  const to = Math.max(high, ...values.map((value) => 2 * value));
+  const round = (value) => Number(value.toPrecision(3));
+  return from < low || to > high
+    ? keys.map((key) => `${key}=${round(from)}..${round(to)}`).join(",")
+    : "";
+}
 
 /**
  * What the server is asked.
  * @param {string} kind
- * @param {{scene: {id: string}, settings: Record<string, number>, methods: {spelling: string}[]}}
- *   data
+ * @param {{
+ *   scene: {id: string}, settings: Record<string, number>, methods: {spelling: string}[],
+ *   catalogue: Catalogue,
+ * }} data
  * @param {string} preset of a map
  */
-export function orderOf(kind, { scene, settings, methods }, preset) {
+export function orderOf(kind, { scene, settings, methods, catalogue }, preset) {
   const all = methods.map(({ spelling }) => spelling);
   const common = { scene: scene.id, parameters: settings, kind };
   if (kind === "stability") {
-    const fitting = preset === "baumgarte" ? all.filter(isBaumgarte) : all;
-    return { ...common, methods: fitting.slice(0, MAP_METHODS), preset, ...MAP_SIDE };
+    const chosen = presets().find(({ name }) => name === preset);
+    const fitting = chosen
+      ? all.filter((spelling) => hasOptions(catalogue, spelling, chosen))
+      : all;
+    const over = chosen?.stabilised ? widerAxes(catalogue, fitting[0] ?? "", chosen.chooses) : "";
+    const axes = over ? { over } : { preset };
+    return { ...common, methods: fitting.slice(0, mostMethods(kind)), ...axes, ...MAP_SIDE };
   }
   return kind === "work-precision"
     ? { ...common, methods: all, samples: SAMPLES, levels: LEVELS }
@@ -60,10 +98,11 @@ export function orderOf(kind, { scene, settings, methods }, preset) {
 
 /**
  * What tells studies apart: the request without what the study chooses itself.
- * @param {{kind: string, methods: string[], preset?: string}} order
+ * @param {{kind: string, methods: string[], preset?: string, over?: string}} order
  */
 export function signatureOf(order) {
-  const chosen = variedBy(order.kind, order.preset ?? "");
+  const over = (order.over ?? "").split(",").map((axis) => axis.split("=")[0]);
+  const chosen = order.over ? over : variedBy(order.kind, order.preset ?? "");
   const bare = ({ name, settings }) => ({
     name,
     settings: settings.filter(([key]) => !chosen.includes(key)),
@@ -140,7 +179,7 @@ export function createStudyFeed(store) {
     }
   }
 
-  const preset = () => data.view.map || presetsOf(data.methods)[0].preset;
+  const preset = () => data.view.map || (presetsOf(data)[0]?.name ?? "");
   const order = (kind) => orderOf(kind, data, preset());
 
   return {

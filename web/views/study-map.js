@@ -3,11 +3,13 @@
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
 import { plain, prettyUnit, quantity } from "../state/format.js";
+import { HEATS, criticalLine, heatOf, heatSentences, heatWords } from "../state/heat.js";
 import { presetsOf } from "../state/studies.js";
 import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
+import { fillLegend, shadeCells } from "./study-map-parts.js";
 
 const GREEK = { alpha: "α", beta: "β" };
 const ROOM = { left: 62, right: 12, top: 8, bottom: 44 };
@@ -29,14 +31,30 @@ const valueOf = (axis, value) =>
 export function createStudyMap(store, actions) {
   const data = store.data;
   const menu = h("select", { id: "map-over", onchange: () => actions.changePreset(menu.value) });
+  const shades = h(
+    "div",
+    { class: "choices", role: "group", "aria-label": "Colour of the cells" },
+    ...[{ name: "", word: "outcome" }, ...HEATS].map(({ name, word }) =>
+      h("button", { type: "button", class: "quiet", onclick: () => shade(name) }, word),
+    ),
+  );
+  let heat = ""; // the quantity that colours the cells; "": their outcome
+  const best = h("ul", { class: "answers" });
   const legend = h("ul", { class: "legend" });
   const told = h("p", { class: "told" });
   const fields = h("div", { class: "maps" });
   const el = h(
     "div",
     {},
-    h("div", { class: "study-bar" }, h("label", { for: "map-over", class: "word" }, "over"), menu),
+    h(
+      "div",
+      { class: "study-bar" },
+      h("label", { for: "map-over", class: "word" }, "over"),
+      menu,
+      shades,
+    ),
     fields,
+    best,
     told,
     legend,
   );
@@ -66,10 +84,15 @@ export function createStudyMap(store, actions) {
       .filter(Boolean)
       .join(", ");
     const outcome = `${CLASSES[cell.class]?.word ?? cell.class}${cell.reason ? `: ${cell.reason}` : ""}`;
+    const length = data.scene.length;
+    const sizes = HEATS.map((kind) => ({ kind, value: heatOf(kind, cell, length) }))
+      .filter(({ value }) => !Number.isNaN(value))
+      .map(({ kind, value }) => `${kind.word} ${heatWords(kind, value)}`);
+    const figures = sizes.length ? `; ${sizes.join(", ")}` : "";
     const margin = Number.isFinite(cell.margin ?? NaN)
       ? `; the step is ${plain(Number(cell.margin.toPrecision(2)))} of the predicted limit`
       : "";
-    return `${labelOf(method)}, ${where}: ${outcome}${margin}`;
+    return `${labelOf(method)}, ${where}: ${outcome}${figures}${margin}`;
   }
 
   /** What a click on a cell sets. */
@@ -95,6 +118,32 @@ export function createStudyMap(store, actions) {
       .map(([axis, at]) => valueOf(axis, Number(axis.values[at].toPrecision(4))))
       .join(", ");
     return { m, spelling, parameters, words: `${labelOf(method)}: ${words}` };
+  }
+
+  /** @param {string} name of a quantity, or "" */
+  function shade(name) {
+    heat = name;
+    paint();
+  }
+
+  /** Where the smallest values are, for every quantity. */
+  function showBest() {
+    const { x, y, methods } = map();
+    const lines = x
+      ? methods.flatMap((method) =>
+          heatSentences({ x, y }, method, data.scene.length, valueOf).map((text) =>
+            h("li", {}, `${labelOf(method)}, ${text}`),
+          ),
+        )
+      : [];
+    best.replaceChildren(...lines);
+    shades.hidden = !x;
+    [...shades.children].forEach((button, k) =>
+      button.setAttribute(
+        "aria-pressed",
+        String(["", ...HEATS.map((one) => one.name)][k] === heat),
+      ),
+    );
   }
 
   function tickList(axis) {
@@ -168,6 +217,12 @@ export function createStudyMap(store, actions) {
       }
     }
     methods.forEach((method, k) => {
+      const critical = criticalLine(map());
+      if (critical) {
+        const [[i0, j0], [i1, j1]] = critical;
+        const d = `M${px(i0)} ${py(j0)}L${px(i1)} ${py(j1)}`;
+        picture.append(s("path", { d, class: "critical" }));
+      }
       for (const line of boundaryOf(map(), method)) {
         const d = line
           .map(([i, j], n) => `${n ? "L" : "M"}${px(k + i).toFixed(1)} ${py(j).toFixed(1)}`)
@@ -178,6 +233,7 @@ export function createStudyMap(store, actions) {
         );
       }
       drawn.push({ method, picture, px: (i) => px(k + i), py });
+      shadeCells(picture, heat, method.rows, data.scene.length, (i) => (x ? i : i === k ? 0 : -1));
     });
     const ticks = tickList(y).map(({ value, i }) =>
       s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)),
@@ -256,62 +312,9 @@ export function createStudyMap(store, actions) {
   const IDLE =
     "Point at a cell or reach it with the arrow keys. A click runs the method with these values.";
 
-  function fillLegend() {
-    const used = new Set(
-      map().methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)),
-    );
-    legend.replaceChildren(
-      ...Object.entries(CLASSES)
-        .filter(([name]) => used.has(name))
-        .map(([name, { letter, word }]) =>
-          h(
-            "li",
-            {},
-            s(
-              "svg",
-              { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
-              s(
-                "g",
-                { class: `cell ${name}` },
-                s("rect", { width: 18, height: 18 }),
-                s("text", { x: 9, y: 13, class: "letter" }, letter),
-              ),
-            ),
-            word,
-          ),
-        ),
-      h(
-        "li",
-        {},
-        s(
-          "svg",
-          { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
-          s("path", { d: "M0 9H18", class: "boundary" }),
-        ),
-        "predicted boundary",
-      ),
-      ...(fields.querySelector(".here")
-        ? [
-            h(
-              "li",
-              {},
-              s(
-                "svg",
-                { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" },
-                s("circle", { cx: 9, cy: 9, r: 6, class: "here" }),
-              ),
-              "present values",
-            ),
-          ]
-        : []),
-    );
-  }
-
   function paint() {
-    const presets = presetsOf(data.methods);
-    menu.replaceChildren(
-      ...presets.map(({ preset, word }) => h("option", { value: preset }, word)),
-    );
+    const presets = presetsOf(data);
+    menu.replaceChildren(...presets.map(({ name, about }) => h("option", { value: name }, about)));
     menu.value = actions.preset();
     fields.hidden = legend.hidden = told.hidden = !map();
     if (map()) {
@@ -319,6 +322,7 @@ export function createStudyMap(store, actions) {
       fields.replaceChildren(
         ...(map().x ? map().methods.map((method) => drawOne([method])) : [drawOne(map().methods)]),
       );
+      showBest();
       mark();
       say(told, IDLE);
     }
@@ -334,7 +338,7 @@ export function createStudyMap(store, actions) {
       }
     }
     if (map()) {
-      fillLegend();
+      fillLegend(legend, map(), { heat, here: Boolean(fields.querySelector(".here")) });
     }
   }
 
