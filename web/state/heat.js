@@ -13,8 +13,8 @@ import { plain, quantity } from "./format.js";
  */
 export const HEATS = [
   { name: "gap", word: "worst loop gap", unit: "m", of: (cell, length) => cell.gap * length },
-  { name: "error", word: "error of position", unit: "", of: (cell) => cell.error },
-  { name: "energy", word: "energy error at the end", unit: "", of: (cell) => cell.energy },
+  { name: "error", word: "error of velocity", unit: "", of: (cell) => cell.error },
+  { name: "energy", word: "energy gained", unit: "", of: (cell) => cell.energy },
 ];
 
 const RAN = ["stable", "inaccurate"];

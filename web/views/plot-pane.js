@@ -7,9 +7,11 @@ import { thin } from "../state/history.js";
 import { QUANTITIES, quantityNamed } from "../state/quantities.js";
 import { shownIndex } from "../state/store.js";
 import { h, icon, set } from "../widgets/dom.js";
+import { createPhase } from "../widgets/phase.js";
 import { createPlot } from "../widgets/plot.js";
 
 const BUCKETS = 240;
+const PHASE = "phase"; // the choice that is no quantity over time
 const TABLE_ROWS = 9;
 
 /**
@@ -34,9 +36,17 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     "select",
     { id: `plot-${id}`, class: "axis-title", "aria-label": "Quantity of the plot" },
     ...QUANTITIES.map(({ name, title }) => h("option", { value: name }, title)),
+    h("option", { value: PHASE }, "Phase plot: velocity against coordinate"),
   );
   menu.value = first;
   menu.addEventListener("change", () => choose(menu.value));
+  const which = h("select", {
+    class: "axis-title",
+    "aria-label": "Coordinate of the phase plot",
+    hidden: true,
+    onchange: () => paint(),
+  });
+  let isPhase = false;
   const log = h("button", { type: "button", class: "quiet", onclick: toggleLog }, "log");
   const twin = h(
     "button",
@@ -55,11 +65,12 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
   const figure = h(
     "figure",
     { class: "plot" },
-    h("figcaption", {}, menu, h("span", { class: "choices" }, whole, log, twin)),
+    h("figcaption", {}, menu, which, h("span", { class: "choices" }, whole, log, twin)),
     canvas,
     table,
   );
   const plot = createPlot(canvas, options);
+  const phase = createPhase(canvas);
 
   function toggleLog() {
     options.log = !options.log;
@@ -77,6 +88,17 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
 
   /** @param {string} name of a quantity */
   function choose(name) {
+    isPhase = name === PHASE;
+    phase.show(isPhase);
+    canvas.classList.toggle("of-phase", isPhase);
+    which.hidden = !isPhase;
+    log.hidden = twin.hidden = isPhase;
+    if (isPhase) {
+      fillCoordinates();
+      empty.hidden = true;
+      paint();
+      return;
+    }
     kind = quantityNamed(name);
     menu.value = name;
     options.log = kind.log;
@@ -84,6 +106,35 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     setSeries(true);
     paint();
   }
+
+  /** The coordinates of the scene, as choices for the phase plot. */
+  function fillCoordinates() {
+    const names = data.scene?.coordinates.map(({ name }) => name) ?? [];
+    if (names.join() !== [...which.options].map(({ value }) => value).join()) {
+      which.replaceChildren(...names.map((name) => h("option", { value: name }, name)));
+    }
+  }
+
+  function paintPhase() {
+    fillCoordinates();
+    const k = Math.max(0, which.selectedIndex);
+    const { history, methods, view, scene } = data;
+    const column = (m, part) =>
+      Float64Array.from({ length: history.count }, (_, i) => history.stateAt(m, i)[part][k]);
+    const orbits = methods.flatMap((method, m) =>
+      view.hidden.has(m) ? [] : [{ ...styleOf(method, m), x: column(m, "q"), y: column(m, "v") }],
+    );
+    const coordinate = scene.coordinates[k];
+    phase.draw(orbits, shownIndex(data), { x: coordinate.name, y: coordinate.rate });
+  }
+
+  /** How a method is drawn. */
+  const styleOf = (method, m) => ({
+    label: method.label,
+    colour: data.look.slots[method.slot][data.theme],
+    dash: data.look.slots[method.slot].dash,
+    width: m === data.view.selected ? 2.5 : 1.5,
+  });
 
   /** The reference among the methods' curves: its energy, or its own error. */
   const hasGrey = () => data.reference?.state === "ready" && kind.grey !== "";
@@ -120,10 +171,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
       return;
     }
     const series = data.methods.map((method, m) => ({
-      label: method.label,
-      colour: data.look.slots[method.slot][data.theme],
-      dash: data.look.slots[method.slot].dash,
-      width: m === data.view.selected ? 2.5 : 1.5,
+      ...styleOf(method, m),
       ended: data.history.ended[m],
       present: true,
     }));
@@ -142,7 +190,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     const { reference } = data;
     const lacks = kind.reference && reference?.state !== "ready";
     const loopless = kind.loop && data.scene?.m === 0;
-    empty.hidden = !lacks && !loopless;
+    empty.hidden = isPhase || (!lacks && !loopless);
     const compute = h(
       "button",
       { type: "button", class: "quiet", onclick: () => actions.computeReference() },
@@ -163,6 +211,10 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     }
     if (canvas.hidden) {
       fillTable();
+      return;
+    }
+    if (isPhase) {
+      paintPhase();
       return;
     }
     const nothing = new Float64Array(history.count).fill(NaN);

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recording: played from where the scrubber stands, pointed at, zoomed, and saved as data.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { createBench, fastest, playTo, read, stood, until } from "./support.mjs";
+
+const { open } = createBench();
+const LONG = 60000; // [ms] that a run may take on a busy machine
+
+/** Requests that change a comparison, from now on. */
+function watchChanges(page) {
+  const changes = [];
+  page.on("request", (request) => {
+    if (request.method() === "PATCH") {
+      changes.push(request.postData());
+    }
+  });
+  return changes;
+}
+
+test("Play goes on from where the scrubber stands, and computes nothing again", async (t) => {
+  const page = await open(t);
+  await playTo(page, 2);
+  const frames = await read(page, (data) => data.history.count);
+  await page.evaluate(() => {
+    const scrub = document.querySelector("#scrub");
+    scrub.value = "0.8";
+    scrub.dispatchEvent(new Event("input"));
+  });
+  await until(page, (data) => data.view.shown > 0);
+  const from = await read(page, (data) => data.history.t[data.view.shown]);
+  assert.ok(Math.abs(from - 0.8) < 0.03, `${from} s`);
+  const changes = watchChanges(page);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.view.replaying && data.view.shown >= 0);
+  const shown = await read(page, (data) => data.history.t[data.view.shown]);
+  assert.ok(shown >= from && shown < 1.6, `it goes on from ${from} s, at ${shown} s`);
+  assert.equal(await page.textContent("#play"), "Pause");
+  await page.keyboard.press("Space");
+  await until(page, (data) => !data.view.replaying);
+  assert.equal(await read(page, (data) => data.history.count), frames);
+  assert.deepEqual(changes, [], "the server was asked for nothing");
+});
+
+test("after the recording the computation goes on; at the end Replay starts from 0, and loops", async (t) => {
+  const page = await open(t, { hash: "#pendulum" });
+  await fastest(page);
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  await page.keyboard.press("Space");
+  await stood(page);
+  await page.keyboard.press("Backspace");
+  await until(page, (data) => data.view.shown === 0);
+  const head = await read(page, (data) => data.latest.t);
+  await page.keyboard.press("Space");
+  await until(page, `(data) => data.latest.t > ${head} && data.view.shown < 0`);
+  await until(page, (data) => data.state === "finished", LONG);
+  const frames = await read(page, (data) => data.history.count);
+  assert.equal(await page.textContent("#play"), "Replay");
+  await page.getByRole("button", { name: "loop" }).click();
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.view.replaying && data.view.shown > frames / 2, LONG).catch(
+    () => undefined,
+  );
+  const places = [];
+  for (let k = 0; k < 40; k++) {
+    places.push(await read(page, (data) => data.view.shown));
+    await page.waitForTimeout(100);
+  }
+  assert.ok(
+    places.some((at, k) => k > 0 && at < places[k - 1]),
+    `it starts again: ${places}`,
+  );
+  assert.equal(await read(page, (data) => data.history.count), frames);
+});
+
+test("pointing at a plot shows the values of all curves in both plots", async (t) => {
+  const page = await open(t);
+  await playTo(page, 2);
+  await until(page, (data) => data.reference?.state === "ready");
+  const box = await page.locator(".u-over").first().boundingBox();
+  await page.mouse.move(box.x + 0.1 * box.width, box.y + box.height / 2);
+  const texts = await page.locator(".readout").allTextContents();
+  assert.equal(texts.length, 2);
+  const labels = await read(page, (data) => data.methods.map(({ label }) => label));
+  for (const text of texts) {
+    assert.match(text, /^1\.0\d s/);
+    labels.forEach((label) => assert.ok(text.includes(label), `${label} in ${text}`));
+  }
+  const gap = await read(page, (data) => data.history.columns[0].gap[data.history.indexAt(1)]);
+  assert.ok(gap > 0);
+  await page.mouse.move(5, 5);
+  assert.equal(await page.locator(".readout:visible").count(), 0);
+});
+
+test("dragging zooms both plots, a double click shows the whole run again; decades can be left", async (t) => {
+  const page = await open(t);
+  await playTo(page, 2);
+  const box = await page.locator(".u-over").last().boundingBox();
+  const [x, y] = [box.x, box.y + box.height / 2];
+  await page.mouse.move(x + 0.05 * box.width, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.15 * box.width, y, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await page.getByRole("button", { name: "whole run" }).count(), 2);
+  await page.mouse.click(x + 0.5 * box.width, y);
+  await until(page, (data) => data.view.shown > 0);
+  const shown = await read(page, (data) => data.history.t[data.view.shown]);
+  assert.ok(Math.abs(shown - 1) < 0.1, `the middle of 0.5 to 1.5 s is ${shown} s`);
+  await page.mouse.dblclick(x + 0.5 * box.width, y);
+  assert.equal(await page.locator("button:visible", { hasText: "whole run" }).count(), 0);
+  const log = page.locator("figure.plot").last().getByRole("button", { name: "log" });
+  await log.click();
+  assert.equal(await log.getAttribute("aria-pressed"), "false");
+  await page.selectOption("#plot-lower", "energy_change");
+  assert.equal(await log.getAttribute("aria-pressed"), "true");
+});
+
+test("a pane shows a phase plot: velocity against coordinate, for every method", async (t) => {
+  const page = await open(t);
+  await playTo(page, 1);
+  await page.selectOption("#plot-lower", "phase");
+  const figure = page.locator("figure.plot").last();
+  assert.equal(await figure.locator(".phase path.orbit").count(), 5);
+  const d = await figure.locator(".phase path.orbit").first().getAttribute("d");
+  assert.ok(d.length > 100 && !/NaN/.test(d));
+  assert.match(await figure.locator(".phase").textContent(), /th1.*w1/s);
+});
+
+test("the recording is saved as CSV and NDJSON with every digit, the drawing as SVG and PNG", async (t) => {
+  const page = await open(t);
+  await playTo(page, 0.2);
+  await page.getByRole("button", { name: "export" }).click();
+  const fetchFile = async (word) => {
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.locator(".formats").getByRole("button", { name: word, exact: true }).click(),
+    ]);
+    return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+  };
+  const kept = await read(page, (data) => ({
+    count: data.history.count,
+    t: data.history.t[3],
+    gap: data.history.columns[1].gap[3],
+    spelling: data.methods[1].spelling,
+  }));
+
+  const csv = await fetchFile("CSV");
+  assert.equal(csv.name, "four-bar.csv");
+  const lines = csv.bytes.toString().trim().split("\n");
+  assert.match(lines[0], /^t,method,th1,a2,th3,w1,wa2,w3,gap,velocity_gap,energy_change/);
+  assert.equal(lines.length, 1 + 5 * kept.count);
+  assert.ok(lines.some((line) => line.includes(`,${kept.gap},`)));
+
+  const rows = (await fetchFile("NDJSON")).bytes.toString().trim().split("\n").map(JSON.parse);
+  const row = rows.find((one) => one.t === kept.t && one.method === kept.spelling);
+  assert.equal(row.gap, kept.gap);
+
+  const svg = (await fetchFile("SVG")).bytes.toString();
+  assert.match(svg, /^<svg[^>]* xmlns="http:\/\/www.w3.org\/2000\/svg"/);
+  assert.doesNotMatch(svg, /var\(--|class=/);
+  const png = (await fetchFile("PNG")).bytes;
+  assert.equal(png.subarray(1, 4).toString(), "PNG");
+});
