@@ -17,6 +17,7 @@ import {
   scientific,
   withPowers,
 } from "../../web/state/format.js";
+import { evaluate } from "../../web/state/formula.js";
 import { createHistory, thin } from "../../web/state/history.js";
 import { KEYS, bindingOf, findKey, isCharacter } from "../../web/state/keys.js";
 import {
@@ -361,6 +362,31 @@ test("a remedy becomes a button only when it can be carried out", () => {
   assert.deepEqual(tryOfRemedy("h=0.005"), { label: "h = 0.005", key: "h", value: 0.005 });
   assert.equal(tryOfRemedy("projection@rk4:h=1e-3").method, "projection@rk4:h=1e-3");
   assert.deepEqual(tryOfRemedy("look at the start"), { label: "look at the start" });
+});
+
+test("formulas are evaluated with the rules of arithmetic; an unknown name gives no number", () => {
+  const values = new Map(Object.entries({ x: 2, y: 3, th_1: 0.5 }));
+  const cases = [
+    ["1 + 2*3", 7],
+    ["-x^2", -4],
+    ["2^-1", 0.5],
+    ["x - y - 1", -2],
+    ["12/x/y", 2],
+    ["2^3^x", 512],
+    ["-(x + y)*2", -10],
+    ["sin(th_1)^2 + cos(th_1)^2", 1],
+    ["atan2(1, x - 1)", Math.PI / 4],
+    ["1.5e-3*x", 3e-3],
+    ["z + 1", NaN],
+    ["x +", NaN],
+    ["x y", NaN],
+    ["foo(x)", NaN],
+    ["(x", NaN],
+  ];
+  for (const [text, value] of cases) {
+    const found = evaluate(text, values);
+    assert.ok(Object.is(found, value) || Math.abs(found - value) < 1e-15, `${text}: ${found}`);
+  }
 });
 
 test("limits and incidents are those of the server's index", () => {

@@ -3,6 +3,7 @@
 // tables, no script.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { evaluate, valuesAt } from "../../web/state/formula.js";
 import { createBench, drawn, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
 
 const SMALLEST_TARGET = 24; // [px] WCAG 2.5.8
@@ -314,6 +315,55 @@ test("the equations of the scene are set as mathematics", async (t) => {
   assert.ok((await page.locator(".term-block").count()) >= 4);
   assert.equal(await page.locator(".katex-error").count(), 0);
   await screenshot(page, "page-1280-light-equations");
+});
+
+test("the numbers beside the entries are those of the state shown: with them J v = 0, and v'Mv is the kinetic energy", async (t) => {
+  const page = await open(t);
+  await page.click(".equation-panel summary");
+  await page.waitForSelector(".term-block .katex");
+  const { answer, terms, state } = await page.evaluate(async () => {
+    const post = (path, body) =>
+      fetch(`/api/v1/${path}`, {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify(body),
+      }).then((response) => response.json());
+    const { latest, scene } = globalThis.holonom.data;
+    const { q, v } = latest.methods[0];
+    return {
+      answer: await post("equations", { scene: "four-bar", format: "json" }),
+      terms: await post("terms", { scene: "four-bar" }),
+      state: { scene, q, v },
+    };
+  });
+  const values = valuesAt(answer, state.scene, { t: 0, ...state });
+  const rates = answer.speeds.map((name) => values.get(name));
+  const of = (name) =>
+    answer.entries
+      .filter(({ term }) => term === name)
+      .map((one) => ({ ...one, value: evaluate(one.text, values) }));
+  const Jv = [0, 0];
+  of("J").forEach(({ row, column, value }) => (Jv[row - 1] += value * rates[column - 1]));
+  assert.ok(Math.max(...Jv.map(Math.abs)) < 1e-12, `J v = ${Jv}`);
+  const twice = of("M").reduce(
+    (total, { row, column, value }) =>
+      total + (row === column ? 1 : 2) * value * rates[row - 1] * rates[column - 1],
+    0,
+  );
+  assert.ok(Math.abs(twice / 2 - terms.kinetic) < 1e-12 * terms.kinetic, `${twice / 2} J`);
+
+  const shown = () => page.locator(".equation-body > .terms .line .value").allTextContents();
+  const first = await shown();
+  assert.ok(
+    first.every((text) => /^= -?[\d.e-]+$/.test(text)),
+    first.join("; "),
+  );
+  const M21 = of("M").find(({ row, column }) => row === 2 && column === 1).value;
+  assert.ok(first.includes(`= ${Number(M21.toPrecision(4))}`));
+  await page.focus("#play");
+  await playTo(page, 0.4);
+  await page.waitForTimeout(400);
+  assert.notDeepEqual(await shown(), first, "they follow the time shown");
 });
 
 for (const [theme, width] of [

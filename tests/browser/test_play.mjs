@@ -449,3 +449,20 @@ test("a singular pose is counted down, and then told with what became of each me
   );
   assert.equal(told.filter((text) => /the run (went straight on|turned off)/.test(text)).length, 3);
 });
+
+test("one bad entry of a link is left out and named; the others stay", async (t) => {
+  const page = await open(t, {
+    hash: "#scene=four-bar&set.l2=1.3&set.l1=50&set.zz=1&method=projection@rk4:h=0.01&method=projektion@rk4&frame=3",
+  });
+  await until(page, (data) => /the link/.test(data.notice) && data.latest?.frame === 3);
+  const { notice, methods, settings } = await read(page, (data) => ({
+    notice: data.notice,
+    methods: data.methods.map(({ spelling }) => spelling),
+    settings: data.settings,
+  }));
+  assert.deepEqual(methods, ["projection@rk4:h=0.01"]);
+  assert.equal(settings.l2, 1.3);
+  assert.match(notice, /l1 is 50; 0\.1 to 3 is allowed/);
+  assert.match(notice, /no parameter 'zz'/);
+  assert.match(notice, /projektion/);
+});

@@ -2,8 +2,9 @@
 // @ts-check
 // Actions that open a scene: at the start, from the menu, from a link. Makes the link to what is
 // shown.
-import { api, sentenceOf } from "../api/client.js";
+import { Problem, api, sentenceOf } from "../api/client.js";
 import { limits, readIndex } from "../state/catalogue.js";
+import { plain } from "../state/format.js";
 import { decodeLink, encodeLink, fits } from "../state/link.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
 import { SHORT, firstSpeed } from "./speeds.js";
@@ -19,6 +20,50 @@ const FIRST_METHODS = [
   "nullspace@rk4:h=0.02",
   "reduced@rk4:h=0.02",
 ];
+
+/**
+ * Takes the parameters that the scene does not have, or not with that value, out of a link.
+ * @param {{settings: Record<string, number>}} left
+ * @param {import("../state/store.js").Parameter[]} parameters of the scene
+ * @returns {string[]} a sentence for each
+ */
+export function dropUnknown(left, parameters) {
+  return Object.entries(left.settings).flatMap(([name, value]) => {
+    const known = parameters.find((one) => one.name === name);
+    if (known && value >= known.min && value <= known.max) {
+      return [];
+    }
+    delete left.settings[name];
+    return [
+      known
+        ? `${name} is ${plain(value)}; ${plain(known.min)} to ${plain(known.max)} is allowed`
+        : `the scene has no parameter '${name}'`,
+    ];
+  });
+}
+
+/**
+ * Takes the entry that the server refused out of what a link wants: one parameter, one method, or
+ * all parameters where none is named.
+ * @param {{settings: Record<string, number>, methods: string[]}} left
+ * @param {unknown} error
+ * @returns {boolean} false: there is nothing to take out
+ */
+export function dropRefused(left, error) {
+  const pointer = error instanceof Problem ? (error.errors[0]?.pointer ?? "") : "";
+  const [, kind, name] = pointer.split("/");
+  if (kind === "parameters" && name in left.settings) {
+    delete left.settings[name];
+    return true;
+  }
+  if (kind === "methods" && Number(name) in left.methods) {
+    left.methods.splice(Number(name), 1);
+    return true;
+  }
+  const some = Object.keys(left.settings).length > 0;
+  left.settings = {};
+  return some;
+}
 
 /**
  * @param {import("../state/store.js").Store} store
@@ -52,6 +97,37 @@ export function createSceneActions(store, exchange, notice) {
     data.view.hidden = new Set(hidden.filter((m) => m < n));
     data.view.selected = Math.min(selected, n - 1);
     data.view.study = study;
+  }
+
+  /**
+   * Opens a scene as a link wants it. An entry that the server refuses is left out and named; the
+   * others stay.
+   * @param {string} id
+   * @param {import("../state/link.js").Linked | null} link null: as the scene suggests
+   * @param {string[]} faults gets a sentence for every entry left out
+   */
+  async function loadLinked(id, link, faults) {
+    if (!link) {
+      await actions.loadScene(id);
+      return;
+    }
+    const left = { settings: { ...link.settings }, methods: [...link.methods] };
+    if (Object.keys(left.settings).length > 0) {
+      faults.push(...dropUnknown(left, (await api.scene(id)).parameters));
+    }
+    for (;;) {
+      try {
+        await actions.loadScene(id, left);
+        faults.push(...data.refused.map((one) => `${one.spelling}: ${one.reason}`));
+        return;
+      } catch (error) {
+        faults.push(sentenceOf(error));
+        if (!dropRefused(left, error)) {
+          await actions.loadScene(id);
+          return;
+        }
+      }
+    }
   }
 
   /** The link to what is shown, without the address. */
@@ -112,12 +188,7 @@ export function createSceneActions(store, exchange, notice) {
       }
       const shown = PANELS.map((name) => [name, link.show.includes(name)]);
       Object.assign(data.view, Object.fromEntries(shown));
-      try {
-        await actions.loadScene(id, id === link.scene ? link : undefined);
-      } catch (error) {
-        faults.unshift(sentenceOf(error));
-        await actions.loadScene(id);
-      }
+      await loadLinked(id, id === link.scene ? link : null, faults);
       if (id === link.scene) {
         await showLinked(link);
       }

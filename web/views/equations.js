@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
-// The equations that this scene runs, as the engine prints them. Fetched when the panel is opened.
+// The equations that this scene runs, as the engine prints them, with the numbers of the state that
+// is shown. Both they and the library that sets them are fetched when the panel is opened.
 import { sentenceOf } from "../api/client.js";
-import katex from "katex";
-import { listen } from "../state/store.js";
-import { h } from "../widgets/dom.js";
+import { plain } from "../state/format.js";
+import { evaluate, valuesAt } from "../state/formula.js";
+import { listen, shownIndex } from "../state/store.js";
+import { h, say } from "../widgets/dom.js";
 import { createReduced } from "./reduced.js";
 
+const REDRAW = 200; // [ms] between two sets of numbers
 const MOST_ENTRIES = 40; // beyond it a large scene would only fill the page
 /** [characters of TeX] Nobody reads a longer formula, and setting it takes a browser seconds. */
 const LONGEST = 600;
@@ -36,6 +39,11 @@ export function createEquations(el, store, actions) {
   el.replaceChildren(details);
   const reduced = createReduced(store, actions, { formula, line: entryLine });
   let shownFor = "";
+  /** the library that sets formulas, once it is here */
+  let katex = /** @type {import("katex").default | any} */ (null);
+  /** the entries on the page, and the answer that they come from */
+  let printed = { answer: /** @type {any} */ (null), nodes: /** @type {any[]} */ ([]) };
+  let timer = 0;
 
   /** A long subscript has its parts apart: e_{0,top} for e_{0\\_top}. @param {string} latex */
   const tidy = (latex) =>
@@ -56,7 +64,7 @@ export function createEquations(el, store, actions) {
   function special() {
     const method = data.methods[data.view.selected];
     return method && PRINTED[method.formulation]
-      ? [h("p", { class: "term" }, method.title), formula(PRINTED[method.formulation], true)]
+      ? [h("p", { class: "about" }, method.title), formula(PRINTED[method.formulation], true)]
       : [];
   }
 
@@ -68,7 +76,9 @@ export function createEquations(el, store, actions) {
     shownFor = key;
     let answer;
     try {
-      answer = await actions.equations();
+      const [library, equations] = await Promise.all([import("katex"), actions.equations()]);
+      katex = library.default;
+      answer = equations;
     } catch (error) {
       shownFor = "";
       body.replaceChildren(h("p", { class: "hint" }, sentenceOf(error)));
@@ -77,6 +87,7 @@ export function createEquations(el, store, actions) {
     if (key !== shownFor) {
       return;
     }
+    printed = { answer, nodes: [] };
     const constrained = data.scene.m > 0;
     const terms = answer.terms.map((term) => ({
       ...term,
@@ -88,7 +99,7 @@ export function createEquations(el, store, actions) {
       h(
         "p",
         { class: "about" },
-        `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Matrices M are symmetric and only their lower half is listed; other entries not listed are zero.`,
+        `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Matrices M are symmetric and only their lower half is listed; other entries not listed are zero. Numbers belong to the time shown, in SI units.`,
       ),
       ...(answer.coordinates ?? []).map(({ name, is }) =>
         h("p", { class: "about" }, `${name}: ${is}.`),
@@ -97,11 +108,40 @@ export function createEquations(el, store, actions) {
       reduced.node,
     );
     reduced.give(answer.position);
+    showNumbers();
+  }
+
+  /** The value of every entry at the frame shown; nothing where the page cannot work it out. */
+  function showNumbers() {
+    timer = 0;
+    const i = shownIndex(data);
+    const { answer, nodes } = printed;
+    if (!details.open || !answer || i < 0) {
+      return;
+    }
+    const state = { t: data.history.t[i], ...data.history.stateAt(data.view.selected, i) };
+    const values = valuesAt(answer, data.scene, state);
+    for (const { text, node } of nodes) {
+      const value = evaluate(text, values);
+      say(node, Number.isFinite(value) ? `= ${plain(Number(value.toPrecision(4)))}` : "");
+    }
+  }
+
+  function showNumbersSoon() {
+    if (details.open && !timer) {
+      timer = window.setTimeout(showNumbers, REDRAW);
+    }
   }
 
   function entryLine(entry) {
     if (entry.latex.length <= LONGEST) {
-      return formula(`${entry.name_latex} = ${entry.latex}`, false);
+      const whole = formula(`${entry.name_latex} = ${entry.latex}`, false);
+      if (entry.text) {
+        const node = h("span", { class: "number value" });
+        whole.append(node);
+        printed.nodes.push({ text: entry.text, node });
+      }
+      return whole;
     }
     const line = formula(`${entry.name_latex} = \\ldots`, false);
     const size = `${Math.round(entry.latex.length / 100) / 10} thousand characters`;
@@ -122,11 +162,19 @@ export function createEquations(el, store, actions) {
   }
 
   details.addEventListener("toggle", show);
-  const stop = listen(store, { scene: show, view: show, methods: show });
+  const stop = listen(store, {
+    scene: show,
+    view: () => {
+      show();
+      showNumbersSoon();
+    },
+    methods: show,
+  });
   return {
-    update() {},
+    update: showNumbersSoon,
     dispose() {
       stop();
+      clearTimeout(timer);
       reduced.dispose();
       el.replaceChildren();
     },

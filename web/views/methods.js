@@ -59,7 +59,7 @@ export function createMethods(el, store, actions, openDialog) {
     ),
     h(
       "div",
-      { class: "method-scroll", tabindex: "0", role: "region", "aria-labelledby": "methods-title" },
+      { class: "method-scroll", tabindex: "0", role: "region", "aria-label": "List of methods" },
       h("table", { role: "table", class: "method-table" }, makeHead(), body),
     ),
   );

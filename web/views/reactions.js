@@ -89,7 +89,7 @@ export function createReactions(el, store, actions) {
       cell("Force"),
       ...forces.map((k) => cell(`F${names[k]}`)),
       ...moments.map((k) => cell(`M${names[k]}`)),
-      cell(""),
+      cell("Remark"),
     );
   }
 

@@ -177,7 +177,6 @@ export function createStudies(el, store, actions) {
     tabs.forEach((tab, i) =>
       set(tab, {
         "aria-selected": String(KINDS[i] === kind),
-        "aria-pressed": String(KINDS[i] === kind),
         tabindex: KINDS[i] === kind ? 0 : -1,
       }),
     );

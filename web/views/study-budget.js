@@ -45,7 +45,12 @@ export function createStudyBudget(store) {
   const about = h("p", { class: "about" });
   const list = h("div", { class: "accounts" });
   const legend = h("ul", { class: "legend" });
-  const table = h("div", { class: "twin-table" });
+  const table = h("div", {
+    class: "twin-table",
+    tabindex: "0",
+    role: "region",
+    "aria-label": "Table of the study",
+  });
   const el = h(
     "div",
     {},

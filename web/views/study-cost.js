@@ -62,7 +62,12 @@ export function createStudyCost(store, onPick) {
   const frame = h("div", { class: "study-picture" }, picture);
   const sentences = h("ul", { class: "answers" });
   const classes = h("ul", { class: "answers" });
-  const table = h("div", { class: "twin-table" });
+  const table = h("div", {
+    class: "twin-table",
+    tabindex: "0",
+    role: "region",
+    "aria-label": "Table of the study",
+  });
   const choice = (list, key, label) =>
     h(
       "div",
