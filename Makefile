@@ -18,10 +18,11 @@ PREFIX ?= /usr/local
 PORT   ?= 8080
 
 # ---- layers: each names what it may include, lowest last; tests link the same list ----------------------------
-LAYERS := base linalg expr scene import dynamics formulations integrators study render session server
+LAYERS := base linalg expr export scene import dynamics formulations integrators study render session server
 NEEDS_base        :=
 NEEDS_linalg      := base
 NEEDS_expr        := base
+NEEDS_export      := expr base
 NEEDS_scene       := expr base
 NEEDS_import      := scene expr linalg base
 NEEDS_dynamics    := scene expr linalg base
@@ -29,7 +30,7 @@ NEEDS_formulations := dynamics $(NEEDS_dynamics)
 NEEDS_integrators := formulations $(NEEDS_formulations)
 NEEDS_study       := integrators $(NEEDS_integrators)
 NEEDS_render      := dynamics $(NEEDS_dynamics)
-NEEDS_session     := import render study $(NEEDS_study)
+NEEDS_session     := export import render study $(NEEDS_study)
 NEEDS_server      := session $(NEEDS_session)
 
 # ---- rooms of the larger layers, lowest first: room:rooms below it that it may include -------------------------
@@ -41,7 +42,7 @@ ROOMS_integrators  := step: explicit:step implicit:step constrained:step externa
 ROOMS_study        := stepping: incidents:stepping run:stepping,incidents truth:stepping,incidents,run \
                       account:stepping,incidents,run stability:stepping,incidents,run \
                       cost:stepping,incidents,run,truth
-ROOMS_session      := store: model:store job:model compare:store,model references:store,model face:model \
+ROOMS_session      := store: model:store job:model compare:store,model references:store,model face:model export:model \
                       precision:store,model,job,compare,references \
                       accounts:store,model,job,references,precision \
                       stability:store,model,job,references,precision \
@@ -171,7 +172,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
                  libxml2-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
-TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3:python3 python3-jsonschema locales chromium:chromium \
+TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 

@@ -35,6 +35,10 @@ static const hn_command COMMANDS[] = {
      1, hn_command_inspect},
     {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
      MODEL_OPTIONS " --format", 1, 1, hn_command_equations},
+    {"export", "SCENE",
+     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave or "
+     "julia",
+     MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
     {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
      MODEL_OPTIONS " --t --q --v --reactions", 1, 1, hn_command_terms},
     {"run", "SCENE", "one method; samples as --format csv, ndjson or json",

@@ -51,6 +51,8 @@ static const option OPTIONS[] = {
      "coordinates that differ from the assembled start"},
     {"--v", "NAME=VALUE...", OPTION_WORDS, AT(state_v),
      "rates that differ from the assembled start"},
+    {"--language", "NAME", OPTION_TEXT, AT(language),
+     "of the program: python, c, cpp, java, octave or julia"},
     {"--out", "FILE", OPTION_TEXT, AT(out), "where to write"},
     {"-o", "FILE", OPTION_TEXT, AT(out), "the same as --out"},
     {"--loops", "FILE", OPTION_TEXT, AT(loops),

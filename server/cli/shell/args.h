@@ -29,8 +29,8 @@ typedef struct hn_args {
     hn_words words; ///< what is neither command nor option
     hn_words set, methods, state_q, state_v, allow_hosts;
     hn_numbers at;
-    const char *method, *format, *out, *host, *theme, *view, *loops, *key, *grid, *plots, *size,
-        *runs, *token;
+    const char *method, *format, *language, *out, *host, *theme, *view, *loops, *key, *grid, *plots,
+        *size, *runs, *token;
     double time, every, t, port, width, height, seed, frame_dt, frames;
     double history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause, expiry,
         keep_alive;

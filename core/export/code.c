@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/code.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_BYTES = 4 << 20, LONGEST = 160 }; // of all code; of a piece inside a line
+
+/// How tightly a piece binds; a weaker piece inside a stronger one gets parentheses.
+typedef enum level { LEVEL_SUM, LEVEL_PRODUCT, LEVEL_ATOM } level;
+
+typedef struct writer {
+    hn_strbuf *b;
+    const hn_graph *g;
+    const hn_language *language;
+    int indent;
+    int n_nodes, n_shared;
+    int *uses;          ///< of each node, by nodes and entries
+    int *variable;      ///< number of a shared node's variable, 0: none yet
+    const char *prefix; ///< of variables, that no symbol of the scene begins with
+} writer;
+
+// ---- numbers, names, forms ----
+
+void hn_code_number(hn_strbuf *b, const hn_language *language, double value) {
+    char text[40];
+    for (int digits = 1; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) {
+            break;
+        }
+    }
+    hn_strbuf_add(b, text);
+    if (language->needs_point && !strpbrk(text, ".e")) {
+        hn_strbuf_add(b, ".0");
+    }
+}
+
+/// Whether `word` is among the words of `list`.
+static bool lists(const char *list, const char *word) {
+    const size_t n = strlen(word);
+    for (const char *at = list; (at = strstr(at, word)) != NULL; at += n) {
+        const bool begins = at == list || at[-1] == ' ', ends = at[n] == ' ' || at[n] == '\0';
+        if (begins && ends) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name) {
+    hn_strbuf_add(b, name);
+    if (lists(language->reserved, name)) {
+        hn_strbuf_add(b, "_");
+    }
+}
+
+void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts) {
+    for (const char *c = form; *c; c++) {
+        if (*c == '#' && isdigit((unsigned char)c[1])) {
+            hn_strbuf_add(b, texts[*++c - '1']);
+        } else {
+            hn_strbuf_add_n(b, c, 1);
+        }
+    }
+}
+
+// ---- which nodes get a variable ----
+
+/// Counts how often each node below `node` is used; a node's own arguments count once.
+static void count_uses(writer *w, int32_t node, int *stack) {
+    int n = 0;
+    w->uses[node]++;
+    if (w->uses[node] > 1) {
+        return;
+    }
+    stack[n++] = node;
+    while (n > 0) {
+        const hn_node_view view = hn_graph_node(w->g, stack[--n]);
+        for (int i = 0; i < view.n_args; i++) {
+            const int32_t arg = view.args[i].n;
+            if (w->uses[arg]++ == 0) {
+                stack[n++] = arg;
+            }
+        }
+    }
+}
+
+static bool is_leaf(const writer *w, int32_t node) {
+    const hn_op op = hn_graph_node(w->g, node).op;
+    return op == HN_OP_ONE || op == HN_OP_SYMBOL;
+}
+
+/// A prefix such that no symbol is prefix and digits: "k", "kk", ...
+static const char *choose_prefix(const hn_graph *g) {
+    static const char *const candidates[] = {"k", "kk", "shared", "holonom_shared"};
+    for (int c = 0; c < 3; c++) {
+        const size_t n = strlen(candidates[c]);
+        bool free = true;
+        for (int i = 0; i < hn_graph_n_symbols(g); i++) {
+            const char *name = hn_graph_symbol_name(g, i);
+            free &= strncmp(name, candidates[c], n) != 0 || !isdigit((unsigned char)name[n]);
+        }
+        if (free) {
+            return candidates[c];
+        }
+    }
+    return candidates[3];
+}
+
+// ---- expressions ----
+
+static void put_ex(writer *w, hn_ex e, level around);
+
+/// A call by its form, or as name(arguments).
+static void put_call(writer *w, const hn_node_view *view) {
+    const char *form = w->language->call[view->op];
+    if (!form) {
+        hn_strbuf_printf(w->b, "%s(", hn_op_get_info(view->op)->name);
+        for (int i = 0; i < view->n_args; i++) {
+            hn_strbuf_add(w->b, i ? ", " : "");
+            put_ex(w, view->args[i], LEVEL_SUM);
+        }
+        hn_strbuf_add(w->b, ")");
+        return;
+    }
+    for (const char *c = form; *c; c++) {
+        if (*c == '#') {
+            put_ex(w, view->args[*++c - '1'], LEVEL_SUM);
+        } else {
+            hn_strbuf_add_n(w->b, c, 1);
+        }
+    }
+}
+
+static void put_sum(writer *w, const hn_node_view *view) {
+    for (int i = 0; i < view->n_args; i++) {
+        hn_ex term = view->args[i];
+        hn_strbuf_add(w->b, i == 0 ? "" : term.c < 0 ? " - " : " + ");
+        term.c = i == 0 ? term.c : fabs(term.c);
+        put_ex(w, term, LEVEL_PRODUCT);
+    }
+}
+
+/// A node without its coefficient: its variable, or its own text.
+static void put_node(writer *w, int32_t node, level around) {
+    const hn_node_view view = hn_graph_node(w->g, node);
+    if (w->variable[node] > 0) {
+        hn_strbuf_printf(w->b, "%s%d", w->prefix, w->variable[node]);
+        return;
+    }
+
+    // a quotient inside a product is safer in parentheses than left to the order of operators
+    const level own = view.op == HN_OP_SUM                             ? LEVEL_SUM
+                      : view.op == HN_OP_MUL || view.op == HN_OP_RECIP ? LEVEL_PRODUCT
+                                                                       : LEVEL_ATOM;
+    const bool parentheses =
+        own < around || (own == LEVEL_PRODUCT && view.op == HN_OP_RECIP && around > LEVEL_SUM);
+    hn_strbuf_add(w->b, parentheses ? "(" : "");
+    if (view.op == HN_OP_SYMBOL) {
+        hn_code_name(w->b, w->language, hn_graph_symbol_name(w->g, view.symbol));
+    } else if (view.op == HN_OP_SUM) {
+        put_sum(w, &view);
+    } else if (view.op == HN_OP_MUL) {
+        put_ex(w, view.args[0], LEVEL_PRODUCT);
+        hn_strbuf_add(w->b, "*");
+        put_ex(w, view.args[1], LEVEL_PRODUCT);
+    } else {
+        put_call(w, &view);
+    }
+    hn_strbuf_add(w->b, parentheses ? ")" : "");
+}
+
+/// A coefficient times a node.
+static void put_ex(writer *w, hn_ex e, level around) {
+    if (e.n == HN_NODE_ONE) {
+        const bool parentheses = e.c < 0 && around > LEVEL_SUM;
+        hn_strbuf_add(w->b, parentheses ? "(" : "");
+        hn_code_number(w->b, w->language, e.c);
+        hn_strbuf_add(w->b, parentheses ? ")" : "");
+        return;
+    }
+
+    // a coefficient of 1 is not written, one of -1 is a sign
+    if (e.c == 1) {
+        put_node(w, e.n, around);
+        return;
+    }
+    const bool parentheses = e.c < 0 && around > LEVEL_PRODUCT;
+    hn_strbuf_add(w->b, parentheses ? "(" : "");
+    if (e.c == -1) {
+        hn_strbuf_add(w->b, "-");
+    } else {
+        hn_code_number(w->b, w->language, e.c);
+        hn_strbuf_add(w->b, "*");
+    }
+    put_node(w, e.n, LEVEL_ATOM);
+    hn_strbuf_add(w->b, parentheses ? ")" : "");
+}
+
+// ---- statements ----
+
+/// The text of an expression on its own; reset by the caller.
+static void text_of(writer *w, hn_ex e, hn_strbuf *text) {
+    hn_strbuf *outer = w->b;
+    w->b = text;
+    hn_strbuf_clear(text);
+    put_ex(w, e, LEVEL_SUM);
+    w->b = outer;
+}
+
+static void begin_line(writer *w) {
+    hn_strbuf_printf(w->b, "%*s", w->indent, "");
+}
+
+/// Gives a variable to each node that is shared, or whose text is long. Arguments have smaller
+/// numbers than the nodes that use them, so the order of numbers is an order to compute in.
+static void write_shared(writer *w, hn_strbuf *text) {
+    for (int32_t node = 0; node < w->n_nodes && w->b->n < MAX_BYTES; node++) {
+        if (w->uses[node] == 0 || is_leaf(w, node) || w->variable[node] > 0) {
+            continue;
+        }
+        text_of(w, (hn_ex){1, node}, text);
+        if (w->uses[node] < 2 && text->n <= LONGEST) {
+            continue;
+        }
+        char name[32];
+        snprintf(name, sizeof name, "%s%d", w->prefix, ++w->n_shared);
+        begin_line(w);
+        hn_code_fill(w->b, w->language->constant, (const char *[]){name, hn_strbuf_text(text)});
+        hn_strbuf_add(w->b, "\n");
+        w->variable[node] = w->n_shared;
+    }
+}
+
+static void write_entry(writer *w, const hn_code_entry *e, hn_strbuf *text) {
+    char row[16], column[16];
+    text_of(w, e->value, text);
+    snprintf(row, sizeof row, "%d", e->row + w->language->first);
+    snprintf(column, sizeof column, "%d", e->column + w->language->first);
+    begin_line(w);
+    if (e->column < 0) {
+        hn_code_fill(w->b, w->language->vector,
+                     (const char *[]){e->array, row, hn_strbuf_text(text)});
+    } else {
+        hn_code_fill(w->b, w->language->matrix,
+                     (const char *[]){e->array, row, column, hn_strbuf_text(text)});
+    }
+    hn_strbuf_add(w->b, "\n");
+}
+
+hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
+                        const hn_code_entry *entries, int n, int indent) {
+    const int n_nodes = hn_graph_size(g);
+    int *scratch = calloc(3 * (size_t)n_nodes + 1, sizeof *scratch);
+    if (!scratch) {
+        return HN_ERR_MEMORY;
+    }
+    writer w = {.b = b,
+                .g = g,
+                .language = language,
+                .indent = indent,
+                .n_nodes = n_nodes,
+                .uses = scratch,
+                .variable = scratch + n_nodes,
+                .prefix = choose_prefix(g)};
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+
+    // shared pieces first, in the order of their numbers, then the entries
+    for (int i = 0; i < n; i++) {
+        count_uses(&w, entries[i].value.n, scratch + 2 * n_nodes);
+    }
+    write_shared(&w, &text);
+    for (int i = 0; i < n && b->n < MAX_BYTES; i++) {
+        write_entry(&w, &entries[i], &text);
+    }
+
+    const bool failed = b->failed || text.failed;
+    hn_strbuf_reset(&text);
+    free(scratch);
+    return failed ? HN_ERR_MEMORY : b->n >= MAX_BYTES ? HN_ERR_LIMIT : HN_OK;
+}

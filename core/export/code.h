@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_EXPORT_CODE_H
+#define HN_EXPORT_CODE_H
+// Expressions of a graph as statements of a programming language. A node that is used more than
+// once is computed once, into a variable of its own; so is a piece that would make a line too long.
+
+#include "base/strbuf.h"
+#include "export/language.h"
+#include "expr/graph.h"
+
+/// One statement: `array`[row] or `array`[row][column] = value. Indices count from 0.
+typedef struct hn_code_entry {
+    const char *array;
+    int row, column; ///< column -1: a vector
+    hn_ex value;
+} hn_code_entry;
+
+/// Writes the entries in their order, each behind the shared pieces that it needs first. Every line
+/// is indented by `indent` spaces. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT (more than 4 MiB of text).
+HN_MUST_CHECK hn_status hn_code_write(hn_strbuf *b, const hn_graph *g, const hn_language *language,
+                                      const hn_code_entry *entries, int n, int indent);
+
+/// Writes a number so that it reads back to the same double.
+void hn_code_number(hn_strbuf *b, const hn_language *language, double value);
+/// Writes a symbol's name; a reserved word gets a '_' behind it.
+void hn_code_name(hn_strbuf *b, const hn_language *language, const char *name);
+/// Writes a form with #1, #2, ... replaced by the texts.
+void hn_code_fill(hn_strbuf *b, const char *form, const char *const *texts);
+
+#endif

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/language.h"
+
+#include <string.h>
+
+/// Names that the texts with places use beside those of the scene.
+#define OWN                                                                                       \
+    " q v mass force jacobian bias closure closure_rate energy NQ NV NC START_Q START_V START_A " \
+    "ENERGY "                                                                                     \
+    "CHECK_T CHECK_Q CHECK_V CHECK_A ALPHA BETA rates terms move slope close "
+#define C_WORDS                                                                                  \
+    " auto break case char const continue default do double else enum extern float for goto if " \
+    "inline int long register restrict return short signed sizeof static struct switch typedef " \
+    "union unsigned void volatile while class new delete this template try catch throw public "  \
+    "private protected operator namespace using final byte boolean package import "
+
+/// C, and languages whose functions have the same names.
+#define C_CALLS                                                                          \
+    [HN_OP_RECIP] = "1.0 / (#1)", [HN_OP_POW] = "pow(#1, #2)", [HN_OP_ABS] = "fabs(#1)", \
+    [HN_OP_MIN] = "fmin(#1, #2)", [HN_OP_MAX] = "fmax(#1, #2)"
+
+#define JAVA(name) "Math." #name "(#1)"
+
+static const hn_language LANGUAGES[] = {
+    {.name = "python",
+     .suffix = ".py",
+     .about = "Python with numpy and scipy",
+     .comment = "#",
+     .constant = "#1 = #2",
+     .vector = "#1[#2] = #3",
+     .matrix = "#1[#2, #3] = #4",
+     .entry = "#1[#2]",
+     .reserved = OWN "and as assert async await break class continue def del elif else except "
+                     "finally for from global if import in is lambda nonlocal not or pass raise "
+                     "return try while with yield np solve_ivp abs min max print range",
+     .call = {[HN_OP_RECIP] = "1 / (#1)", [HN_OP_POW] = "(#1)**(#2)"}},
+    {.name = "c",
+     .suffix = ".c",
+     .about = "C99, nothing but the C library",
+     .comment = "//",
+     .constant = "const double #1 = #2;",
+     .vector = "#1[#2] = #3;",
+     .matrix = "#1[#2][#3] = #4;",
+     .entry = "#1[#2]",
+     .needs_point = true,
+     .reserved = OWN C_WORDS,
+     .call = {C_CALLS}},
+    {.name = "cpp",
+     .suffix = ".cpp",
+     .about = "C++17, nothing but the standard library",
+     .comment = "//",
+     .constant = "const double #1 = #2;",
+     .vector = "#1[#2] = #3;",
+     .matrix = "#1[#2][#3] = #4;",
+     .entry = "#1[#2]",
+     .needs_point = true,
+     .reserved = OWN C_WORDS,
+     .call = {C_CALLS}},
+    {.name = "java",
+     .suffix = ".java",
+     .about = "Java, nothing but its library",
+     .comment = "//",
+     .constant = "final double #1 = #2;",
+     .vector = "#1[#2] = #3;",
+     .matrix = "#1[#2][#3] = #4;",
+     .entry = "#1[#2]",
+     .needs_point = true,
+     .reserved = OWN C_WORDS,
+     .call = {[HN_OP_RECIP] = "1.0 / (#1)",     [HN_OP_POW] = "Math.pow(#1, #2)",
+              [HN_OP_SQRT] = JAVA(sqrt),        [HN_OP_SIN] = JAVA(sin),
+              [HN_OP_COS] = JAVA(cos),          [HN_OP_TAN] = JAVA(tan),
+              [HN_OP_ASIN] = JAVA(asin),        [HN_OP_ACOS] = JAVA(acos),
+              [HN_OP_ATAN] = JAVA(atan),        [HN_OP_ATAN2] = "Math.atan2(#1, #2)",
+              [HN_OP_SINH] = JAVA(sinh),        [HN_OP_COSH] = JAVA(cosh),
+              [HN_OP_TANH] = JAVA(tanh),        [HN_OP_EXP] = JAVA(exp),
+              [HN_OP_LOG] = JAVA(log),          [HN_OP_ABS] = JAVA(abs),
+              [HN_OP_SIGN] = JAVA(signum),      [HN_OP_STEP] = "((#1) >= 0 ? 1.0 : 0.0)",
+              [HN_OP_MIN] = "Math.min(#1, #2)", [HN_OP_MAX] = "Math.max(#1, #2)"}},
+    {.name = "octave",
+     .suffix = ".m",
+     .about = "GNU Octave or MATLAB, with ode45",
+     .comment = "%",
+     .constant = "#1 = #2;",
+     .vector = "#1(#2) = #3;",
+     .matrix = "#1(#2, #3) = #4;",
+     .entry = "#1(#2)",
+     .first = 1,
+     .reserved = OWN "break case catch continue do else elseif end endfor endfunction endif "
+                     "endwhile for function global if otherwise persistent return switch try "
+                     "until while unwind_protect abs min max e i j pi Inf NaN",
+     .call = {[HN_OP_RECIP] = "1 / (#1)",
+              [HN_OP_POW] = "(#1)^(#2)",
+              [HN_OP_STEP] = "double((#1) >= 0)"}},
+    {.name = "julia",
+     .suffix = ".jl",
+     .about = "Julia, nothing but its standard library",
+     .comment = "#",
+     .constant = "#1 = #2",
+     .vector = "#1[#2] = #3",
+     .matrix = "#1[#2, #3] = #4",
+     .entry = "#1[#2]",
+     .first = 1,
+     .reserved = OWN "abstract begin break catch const continue do else elseif end export false "
+                     "finally for function global if import let local macro module quote return "
+                     "struct true try type using while abs min max pi im",
+     .call = {[HN_OP_RECIP] = "1 / (#1)",
+              [HN_OP_POW] = "(#1)^(#2)",
+              [HN_OP_ATAN2] = "atan(#1, #2)",
+              [HN_OP_STEP] = "Float64((#1) >= 0)"}},
+};
+enum { N_LANGUAGES = sizeof LANGUAGES / sizeof LANGUAGES[0] };
+
+const hn_language *hn_languages(int *n) {
+    *n = N_LANGUAGES;
+    return LANGUAGES;
+}
+
+const hn_language *hn_language_find(const char *name) {
+    for (int i = 0; i < N_LANGUAGES; i++) {
+        if (strcmp(LANGUAGES[i].name, name) == 0) {
+            return &LANGUAGES[i];
+        }
+    }
+    return NULL;
+}

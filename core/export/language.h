@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_EXPORT_LANGUAGE_H
+#define HN_EXPORT_LANGUAGE_H
+// The programming languages that equations can be written in, as one table. A row says how a
+// number, an operator and an assignment are spelled; the rest of a program is a text with places to
+// fill, core/export/NAME.txt.
+
+#include "expr/ops.h"
+
+#include <stdbool.h>
+
+typedef struct hn_language {
+    const char *name;     ///< "python"; also the name of the text with places: python.txt
+    const char *suffix;   ///< of a file: ".py"
+    const char *about;    ///< one line for a list: what the program needs
+    const char *comment;  ///< begins a comment
+    const char *constant; ///< declares a number: #1 the name, #2 the value
+    const char *vector;   ///< assigns an entry: #1 the array, #2 its index, #3 the value
+    const char *matrix;   ///< likewise: #1, #2 row, #3 column, #4 the value
+    const char *entry;    ///< reads an entry of a vector: #1 the array, #2 its index
+    int first;            ///< index of the first entry
+    bool needs_point;     ///< 1 / 2 would divide whole numbers
+    const char *reserved; ///< words that no symbol may have, separated by spaces
+    /// how functions are called: #1 and #2 for the arguments; NULL: as in a scene, name(#1, #2)
+    const char *call[HN_OP_COUNT];
+} hn_language;
+
+/// The table; `n` gets the number of rows. Static.
+const hn_language *hn_languages(int *n);
+/// The row of this name, or NULL.
+const hn_language *hn_language_find(const char *name);
+
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_EXPORT_H
+#define HN_SESSION_EXPORT_H
+// A mechanism as a program: the equations of one scene in a programming language, with a solver,
+// and a self-check against numbers that were computed here. Each language has a text with places to
+// fill, core/export/NAME.txt:
+//
+//   @SCENE@ @TITLE@          its name, its title
+//   @NQ@ @NV@ @NC@           numbers of coordinates, velocities, constraints
+//   @PARAMETERS@             an assignment each, with unit and meaning
+//   @NAMES@                  a comment for each coordinate: which entry of q or v it is
+//   @UNPACK@                 t, q and v under the names of the scene
+//   @TERMS@                  statements for mass, force, jacobian, bias, closure, closure_rate,
+//                            energy
+//   @RATES@                  statements for rate: the time derivative of q
+//   @START_Q@ @START_V@      the assembled start, numbers separated by commas
+//   @START_A@ @ENERGY@       accelerations and energy there
+//   @T1@ @Q1@ @V1@ @A1@      a later state of the motion, and its accelerations
+//
+// A place alone in its line is filled with lines of the same indentation.
+
+#include "session/model/library.h"
+#include "session/model/model.h"
+
+/// Writes the program for `model` in `language` to `b`. The languages are those of
+/// export/language.h; `suffix` (may be NULL) gets the ending of a file's name.
+/// Fails: HN_ERR_INPUT (unknown language, with the nearest), HN_ERR_IO (the text of the language is
+/// not installed), HN_ERR_LIMIT (the code is too long), or as a run does when the later state
+/// cannot be reached.
+HN_MUST_CHECK hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
+                                        const char *language, const char **suffix, hn_diags *diags);
+/// {"languages":[{"name","suffix","about"}]}
+void hn_export_languages_json(hn_strbuf *b);
+
+#endif

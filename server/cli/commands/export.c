@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom export: a mechanism as a program of its own.
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/output_file.h"
+#include "cli/shell/scene_word.h"
+#include "session/export/export.h"
+
+hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
+    hn_model *model = NULL;
+    hn_diags diags = {0};
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_status status = hn_cli_check_folder(args->out, &diags);
+    if (status == HN_OK) {
+        status = hn_cli_protect_inputs(args, &diags);
+    }
+    if (status == HN_OK) {
+        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
+    }
+
+    // the program, into the file or onto standard output
+    if (status == HN_OK) {
+        const char *language = args->language ? args->language : "python";
+        status = hn_model_export(&b, model, lib, language, NULL, &diags);
+    }
+    hn_model_free(model);
+    if (status != HN_OK) {
+        hn_strbuf_reset(&b);
+        return hn_report_diags(args, status, &diags);
+    }
+    return hn_cli_write_file(args, args->out, &b);
+}

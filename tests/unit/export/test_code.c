@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions as statements: what is shared is computed once, and text keeps the order of operations.
+#include "export/code.h"
+
+#include "base/strbuf.h"
+#include "expr/construct.h"
+#include "support/near.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct fixture {
+    hn_graph *g;
+    hn_ex x, y;
+    hn_strbuf b;
+} fixture;
+
+static void begin(fixture *f) {
+    f->g = hn_graph_create();
+    assert_non_null(f->g);
+    f->x = hn_symbol(f->g, "x", NULL);
+    f->y = hn_symbol(f->g, "y", NULL);
+    hn_strbuf_init(&f->b);
+}
+
+static void end(fixture *f) {
+    hn_strbuf_reset(&f->b);
+    hn_graph_free(f->g);
+}
+
+/// The text of one entry m[0] = e.
+static const char *code_of(fixture *f, const char *language, hn_ex e) {
+    const hn_code_entry entry = {.array = "m", .row = 0, .column = -1, .value = e};
+    hn_strbuf_clear(&f->b);
+    assert_int_equal(hn_code_write(&f->b, f->g, hn_language_find(language), &entry, 1, 0), HN_OK);
+    return hn_strbuf_text(&f->b);
+}
+
+static void what_two_entries_share_is_computed_once(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    const hn_ex s = hn_sin(f.g, hn_add(f.g, f.x, f.y));
+    const hn_code_entry entries[] = {{"m", 0, 1, s}, {"m", 1, 0, hn_add(f.g, s, hn_num(2))}};
+    assert_int_equal(hn_code_write(&f.b, f.g, hn_language_find("python"), entries, 2, 4), HN_OK);
+    assert_string_equal(hn_strbuf_text(&f.b),
+                        "    k1 = sin(x + y)\n    m[0, 1] = k1\n    m[1, 0] = k1 + 2\n");
+    end(&f);
+}
+
+static void a_sum_inside_a_product_has_parentheses(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    const hn_ex sum = hn_add(f.g, f.x, f.y), z = hn_symbol(f.g, "z", NULL);
+    assert_non_null(strstr(code_of(&f, "c", hn_mul(f.g, z, sum)), "(x + y)"));
+    assert_string_equal(code_of(&f, "c", hn_neg(hn_mul(f.g, f.x, f.y))), "m[0] = -(x*y);\n");
+    assert_string_equal(code_of(&f, "c", hn_sub(f.g, f.x, f.y)), "m[0] = x - y;\n");
+    end(&f);
+}
+
+static void whole_numbers_do_not_divide_in_c(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    assert_string_equal(code_of(&f, "c", hn_scale(3, f.x)), "m[0] = 3.0*x;\n");
+    assert_string_equal(code_of(&f, "octave", hn_scale(3, f.x)), "m(1) = 3*x;\n");
+    assert_string_equal(code_of(&f, "julia", hn_num(0.1)), "m[1] = 0.1\n");
+    end(&f);
+}
+
+static void a_reserved_word_is_no_name(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    assert_string_equal(code_of(&f, "python", hn_symbol(f.g, "lambda", NULL)), "m[0] = lambda_\n");
+    assert_string_equal(code_of(&f, "c", hn_symbol(f.g, "lambda", NULL)), "m[0] = lambda;\n");
+    assert_string_equal(code_of(&f, "c", hn_symbol(f.g, "mass", NULL)), "m[0] = mass_;\n");
+    end(&f);
+}
+
+static void variables_keep_clear_of_the_scenes_names(void **state) {
+    (void)state;
+    fixture f;
+    begin(&f);
+    const hn_ex k1 = hn_symbol(f.g, "k1", NULL), s = hn_sin(f.g, k1);
+    const char *text = code_of(&f, "python", hn_mul(f.g, s, hn_add(f.g, s, f.x)));
+    assert_non_null(strstr(text, "kk1 = sin(k1)\n"));
+    end(&f);
+}
+
+static void a_number_reads_back_to_the_same_double(void **state) {
+    (void)state;
+    static const double numbers[] = {0.1, 1.0 / 3, 1e300, -2.2250738585072014e-308, 123456789.0};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        hn_strbuf b;
+        hn_strbuf_init(&b);
+        hn_code_number(&b, hn_language_find("c"), numbers[i]);
+        assert_true(strtod(hn_strbuf_text(&b), NULL) == numbers[i]);
+        hn_strbuf_reset(&b);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_two_entries_share_is_computed_once),
+        cmocka_unit_test(a_sum_inside_a_product_has_parentheses),
+        cmocka_unit_test(whole_numbers_do_not_divide_in_c),
+        cmocka_unit_test(a_reserved_word_is_no_name),
+        cmocka_unit_test(variables_keep_clear_of_the_scenes_names),
+        cmocka_unit_test(a_number_reads_back_to_the_same_double),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
