@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One evaluation of accelerations and multipliers: the reference four-bar FB0 through its tape beside the same equations
-// written by hand for this one mechanism, and the ladder of N four-bars for its growth with N. Prints CSV.
+// One evaluation of accelerations and multipliers: the reference four-bar FB0 through its tape
+// beside the same equations written by hand for this one mechanism, and the ladder of N four-bars
+// for its growth with N. Prints CSV.
 //
-// Every result feeds the next input, so that no evaluation can be hoisted or overlapped more than in a real step. Batches of
-// the two alternate; the smallest is what the machine can do, the median what it did.
+// Every result feeds the next input, so that no evaluation can be hoisted or overlapped more than
+// in a real step. Batches of the two alternate; the smallest is what the machine can do, the median
+// what it did.
 #include "dynamics/compile/compile.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tape against the compiler: one list of formulas, compiled by the C compiler into a function and typed into the
-// expression graph. They are the accelerations and multipliers of the reference four-bar FB0 (absolute angles,
-// uniform rods 1, 2 and 1.8 m of 1, 2 and 1.8 kg, span 2.2 m) with the saddle point factored by L D L' with pivots
-// 1 x 1. Prints CSV.
+// The tape against the compiler: one list of formulas, compiled by the C compiler into a function
+// and typed into the expression graph. They are the accelerations and multipliers of the reference
+// four-bar FB0 (absolute angles, uniform rods 1, 2 and 1.8 m of 1, 2 and 1.8 kg, span 2.2 m) with
+// the saddle point factored by L D L' with pivots 1 x 1. Prints CSV.
 //
 // Results feed the next inputs, so that no evaluation can be hoisted; batches of the two alternate.
 #include "expr/parse.h"

@@ -2,7 +2,7 @@
 """Every shipped scene as a program: it compiles without a warning, and its own self-check agrees. Speaks TAP.
 
 The self-check of each program compares accelerations and energy to 1e-10 and the motion to 1e-6. C runs for every scene, the
-other languages where the machine has them: Python and Octave for all, C++ and Java for a few that cover every kind of coordinate.
+other languages where the machine has them: Python for every scene, the others for a few that cover every kind of coordinate.
 """
 
 import concurrent.futures
@@ -14,7 +14,8 @@ import sys
 import tempfile
 
 PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
-FEW = ["four-bar", "heavy-top", "cardan-shaft", "stewart-6-6", "car-axis", "planetary-gear"]
+FEW = ["four-bar", "heavy-top", "cardan-shaft", "delta-robot", "car-axis", "planetary-gear"]
+SLOW = {("octave", "delta-robot")}  # minutes in an interpreter that solves by singular values
 FACTS = 5  # lines of a self-check
 
 
@@ -44,7 +45,10 @@ def languages():
 
 
 def call(words):
-    return subprocess.run(words, capture_output=True, text=True, timeout=300)
+    try:
+        return subprocess.run(words, capture_output=True, text=True, timeout=300)
+    except subprocess.TimeoutExpired:
+        return subprocess.CompletedProcess(words, -1, "", "not done after 300 s")
 
 
 def faults_of(folder, scene, name, language):
@@ -89,7 +93,7 @@ def main():
     known = languages()
     results = []
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
-        jobs = [(s, name) for name in known for s in (FEW if name in ("cpp", "java") else scenes)]
+        jobs = [(s, name) for name in known for s in (scenes if name in ("c", "python") else FEW) if (name, s) not in SLOW]
         found = pool.map(lambda job: faults_of(folder, *job, known[job[1]]), jobs)
         results = [(f"{name}: {scene} agrees with the workbench", faults) for (scene, name), faults in zip(jobs, found)]
         results.append(("a parameter that is off by 1e-7 is found by the self-check", slip(folder)))

@@ -15,8 +15,8 @@ void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *piece, size_t size);
 void __wrap_free(void *piece);
 
-// The live pieces, a set by open addressing: memory that libc itself allocated (strdup) also comes to
-// __wrap_free and must not be counted, so a plain counter would drift.
+// The live pieces, a set by open addressing: memory that libc itself allocated (strdup) also comes
+// to __wrap_free and must not be counted, so a plain counter would drift.
 static struct {
     pthread_mutex_t lock;
     long calls, fail_at;

@@ -2,8 +2,8 @@
 #ifndef HN_SUPPORT_ALLOC_H
 #define HN_SUPPORT_ALLOC_H
 // Counts and fails the allocations of the code under test. Every unit test is linked with
-// -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free, so calls made by our own objects come here;
-// calls made inside shared libraries (GSL, OSMesa, libc's own) do not.
+// -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free, so calls made by our own objects come
+// here; calls made inside shared libraries (GSL, OSMesa, libc's own) do not.
 
 /// Calls of malloc, calloc and realloc (to a size above 0) so far, failed ones included.
 long hn_alloc_count(void);

@@ -157,7 +157,8 @@ static void place_body(const hn_system *sys, const double *x, int body, pose *po
     done[body] = 1;
 }
 
-/// Poses of all bodies after the time s of the motion; of a body its centre of mass instead of its origin.
+/// Poses of all bodies after the time s of the motion; of a body its centre of mass instead of its
+/// origin.
 static void place_all(const hn_system *sys, const double *q, const double *v, const double *a,
                       double s, pose *poses) {
     const hn_scene *scene = hn_system_scene(sys);
@@ -201,7 +202,8 @@ static double second(const double f[TIMES], double h) {
     return (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (12 * h * h);
 }
 
-/// Acceleration of the centre of mass, angular velocity and acceleration from R' R' and R'' R': their skew parts.
+/// Acceleration of the centre of mass, angular velocity and acceleration from R' R' and R'' R':
+/// their skew parts.
 static void differentiate(const hn_scene *scene, pose *const poses[TIMES], int body, double h,
                           double acc[3], double w[3], double al[3], double v[3]) {
     double f[TIMES], x[TIMES][3], D[3][3], A[3][3], W[3][3], L[3][3], T[3][3];

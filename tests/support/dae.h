@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_DAE_H
 #define HN_SUPPORT_DAE_H
-// Steppers of the differential-algebraic system driven straight through their table, step by step, without a run around them.
+// Steppers of the differential-algebraic system driven straight through their table, step by step,
+// without a run around them.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -22,8 +23,9 @@ typedef struct hn_test_dae {
     double gap, speed_gap, energy;
 } hn_test_dae;
 
-/// A stepper on the model's assembled state. `options` is NULL or "rho=0.9 a0=zero"; names of choices are understood. The
-/// formulation's options (hn_test_dae_open_as) are given likewise. Failures stop the test with their reason.
+/// A stepper on the model's assembled state. `options` is NULL or "rho=0.9 a0=zero"; names of
+/// choices are understood. The formulation's options (hn_test_dae_open_as) are given likewise.
+/// Failures stop the test with their reason.
 void hn_test_dae_open(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
                       hn_dae_form form, const char *options);
 void hn_test_dae_open_as(hn_test_dae *d, const hn_model *m, const hn_stepper *stepper,
@@ -35,8 +37,8 @@ hn_status hn_test_dae_steps(hn_test_dae *d, double h, long long n);
 /// Accelerations, multipliers, gaps and energy at the state reached.
 void hn_test_dae_measure(hn_test_dae *d);
 
-/// Orders of q, v, lambda (recomputed) and raw lambda at time T from n halvings of h (fit over all), errors taken against
-/// `fine`, a state (q, v) and multipliers at T.
+/// Orders of q, v, lambda (recomputed) and raw lambda at time T from n halvings of h (fit over
+/// all), errors taken against `fine`, a state (q, v) and multipliers at T.
 typedef struct hn_test_orders {
     double q, v, lambda, raw;
     double err_q[8], err_v[8], err_lambda[8], err_raw[8];

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_FIGURES_H
 #define HN_SUPPORT_FIGURES_H
-// Figures that programs written by hand for one mechanism at a time printed for these methods, each measured again. A figure
-// is kept as text, as it was printed: its digits say how exactly it is known. What is found must agree with it to the last printed
-// digit; where it cannot, the row carries a wider bound, or what is found instead, and the reason.
+// Figures that programs written by hand for one mechanism at a time printed for these methods, each
+// measured again. A figure is kept as text, as it was printed: its digits say how exactly it is
+// known. What is found must agree with it to the last printed digit; where it cannot, the row
+// carries a wider bound, or what is found instead, and the reason.
 //
-// `make figures` prints all of them (tests/tables/figures.c); unit tests measure those that take little time.
+// `make figures` prints all of them (tests/tables/figures.c); unit tests measure those that take
+// little time.
 
 #include "support/motion.h"
 
@@ -18,14 +20,15 @@ typedef enum hn_figure_cost {
 /// What was printed, and what may differ.
 typedef struct hn_figure {
     const char *what, *how; ///< the quantity; scene, method and time
-    const char
-        *printed;     ///< a number, "<1e-14" or ">1" (a bound), or words that have to be the same
+    /// a number, "<1e-14" or ">1" (a bound), or words that have to be the same
+    const char *printed;
     const char *note; ///< why it may differ, or NULL
-    double
-        units; ///< of the last printed digit that it may be off; 0: one, or half where only one digit was printed
+    /// of the last printed digit that it may be off; 0: one, or half where only one digit was
+    /// printed
+    double units;
     double factor; ///< or this factor either way; 0: none
-    const char
-        *instead; ///< what is found where the printed figure is not right: has to be met likewise
+    /// what is found where the printed figure is not right: has to be met likewise
+    const char *instead;
 } hn_figure;
 
 typedef struct hn_figures hn_figures;
@@ -41,10 +44,11 @@ typedef struct hn_figure_topic {
 int hn_figure_topic_count(void);
 const hn_figure_topic *hn_figure_topic_at(int i);
 
-// --- for those who measure ----------------------------------------------------------------------------------------
+// ---- for those who measure ----
 /// A figure and what was found for it; NaN: nothing, the measurement failed.
 void hn_figure_add(hn_figures *f, const hn_figure *figure, double found);
-/// The same for a figure that needs no more than its number; and for one in words, which have to be the same.
+/// The same for a figure that needs no more than its number; and for one in words, which have to be
+/// the same.
 void hn_figure_put(hn_figures *f, const char *what, const char *how, const char *printed,
                    double found);
 void hn_figure_put_words(hn_figures *f, const char *what, const char *how, const char *printed,
@@ -79,7 +83,7 @@ double hn_figure_measure(const hn_model *m, const char *method, double t,
 /// Order fitted over n halvings of h; the method has "%h" where the step stands; errors at t.
 double hn_figure_order(const hn_model *m, const char *method, double h, int n, double t);
 
-// --- for those who show ---------------------------------------------------------------------------------------------
+// ---- for those who show ----
 typedef struct hn_figure_result {
     char what[160], how[200], printed[64], found[64];
     char verdict[400];

@@ -10,14 +10,15 @@
 #include <stdio.h>
 #include <string.h>
 
-// Poses where J loses rank, passed, landed on and started from: the ladder with its tips as coordinates, parallelograms, a
-// platform on six rods.
+// Poses where J loses rank, passed, landed on and started from: the ladder with its tips as
+// coordinates, parallelograms, a platform on six rods.
 
 #define PI 3.14159265358979323846
 
-// --- the ladder of two four-bars ---------------------------------------------------------------------------------------
+// ---- the ladder of two four-bars ----
 
-/// Uniform bars of 1 kg and 1 m; coordinates are the tips of three verticals; upright, 1 m/s to the right.
+/// Uniform bars of 1 kg and 1 m; coordinates are the tips of three verticals; upright, 1 m/s to the
+/// right.
 static const char ladder[] =
     "{\"holonom\": 1, \"name\": \"ladder\", \"lagrangian\": {\"coordinates\": ["
     "{\"name\": \"x0\", \"rate\": \"u0\", \"unit\": \"m\"}, {\"name\": \"y0\", \"rate\": \"v0\", "
@@ -83,7 +84,7 @@ void hn_figures_ladder(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- six rods ------------------------------------------------------------------------------------------------------------
+// ---- six rods ----
 
 static double rods_sigma(const char *settings) {
     double sigma[6], v[8] = {0};
@@ -119,7 +120,7 @@ void hn_figures_rods(hn_figures *f) {
                   "six rods between similar hexagons, yaw 0.3 rad", "<1e-14", rods_sigma(hexagons));
 }
 
-// --- parallelograms and their neighbours -------------------------------------------------------------------------------
+// ---- parallelograms and their neighbours ----
 
 static hn_figure_links parallelogram(void) {
     hn_figure_links l = hn_figure_fb0();
@@ -176,7 +177,8 @@ static void swinging_through(hn_figures *f) {
     hn_model_close(&m);
 }
 
-/// Without gravity it turns at a constant rate, and 250 steps of 1e-3 s end flat to the last bit or two.
+/// Without gravity it turns at a constant rate, and 250 steps of 1e-3 s end flat to the last bit or
+/// two.
 static void landing(hn_figures *f) {
     hn_figure_links l = parallelogram();
     hn_model m;

@@ -107,9 +107,10 @@ void hn_figures_nullspace(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- charts ----------------------------------------------------------------------------------------------------
+// ---- charts ----
 
-/// |det J_d| over ten seconds with coordinate `column` independent: the least, and when it first vanishes (0: never).
+/// |det J_d| over ten seconds with coordinate `column` independent: the least, and when it first
+/// vanishes (0: never).
 static double least_determinant(const hn_model *m, int column, double *first_zero) {
     const int i = (column + 1) % 3, j = (column + 2) % 3;
     hn_eval *e = NULL;
@@ -135,7 +136,8 @@ static double least_determinant(const hn_model *m, int column, double *first_zer
     return least;
 }
 
-/// Newton iterations to 1e-13 m for each step of the crank over a turn, from the tangent or from where the others were.
+/// Newton iterations to 1e-13 m for each step of the crank over a turn, from the tangent or from
+/// where the others were.
 static double iterations(const hn_model *m, double step, int predict) {
     hn_chart chart;
     hn_diag diag = {0};
@@ -163,7 +165,8 @@ static double iterations(const hn_model *m, double step, int predict) {
     return found;
 }
 
-/// A coordinate that ends at a dead point: when the run says so, and when |det J_d| vanishes on the exact motion.
+/// A coordinate that ends at a dead point: when the run says so, and when |det J_d| vanishes on the
+/// exact motion.
 static void dead_point(hn_figures *f, const hn_model *m, int column, const char *method,
                        const char *printed, const char *instead) {
     double zero;

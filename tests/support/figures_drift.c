@@ -12,9 +12,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// The unstabilised form, and Baumgarte's: how gaps drift and decay, and what alpha does to the motion.
+// The unstabilised form, and Baumgarte's: how gaps drift and decay, and what alpha does to the
+// motion.
 
-// --- drift ------------------------------------------------------------------------------------------------------
+// ---- drift ----
 
 void hn_figures_drift(hn_figures *f) {
     static const double times[] = {5, 10, 20, 40};
@@ -65,7 +66,7 @@ void hn_figures_drift(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- an open start -------------------------------------------------------------------------------------------------
+// ---- an open start ----
 
 enum { NV = 3, NC = 2 };
 
@@ -118,7 +119,7 @@ void hn_figures_open_start(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- alpha ---------------------------------------------------------------------------------------------------------
+// ---- alpha ----
 
 #define BAUM(alpha, h) "baumgarte:alpha=" alpha ",beta=" alpha "@rk4:h=" h
 #define ERROR_AT(alpha, h, figure)                                       \

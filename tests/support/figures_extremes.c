@@ -18,9 +18,10 @@
 
 enum { NV = 3, NC = 2 };
 
-// --- speeds that do not fit the loop -------------------------------------------------------------------------------------
+// ---- speeds that do not fit the loop ----
 
-/// dv = M^-1 J' S^-1 rate: the smallest change of the speeds that makes J v = rate. Returns 1/2 dv' M dv [J].
+/// dv = M^-1 J' S^-1 rate: the smallest change of the speeds that makes J v = rate. Returns 1/2 dv'
+/// M dv [J].
 static double misfit(const hn_model *m, const double rate[NC], double dv[NV]) {
     hn_eval *e = NULL;
     double Mdv[NV];
@@ -78,7 +79,7 @@ static void wrong_speeds(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- a library's default tolerances ------------------------------------------------------------------------------------
+// ---- a library's default tolerances ----
 
 static double rms(int n, const double *x, const double *scale) {
     double sum = 0;
@@ -117,7 +118,8 @@ static double first_step(controlled *c) {
     return fmin(100 * h0, pow(0.01 / fmax(d1, d2), 0.2));
 }
 
-/// Steps to `end` as SciPy's solve_ivp does with RK45: errors by their rms, factors 0.2 to 10, safety 0.9, exponent 1/5.
+/// Steps to `end` as SciPy's solve_ivp does with RK45: errors by their rms, factors 0.2 to 10,
+/// safety 0.9, exponent 1/5.
 static void integrate(controlled *c, double end) {
     double y_new[NY], err[NY], scale[NY];
     c->h = first_step(c);
@@ -189,7 +191,7 @@ static void default_tolerances(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- sizes and speeds -----------------------------------------------------------------------------------------------------
+// ---- sizes and speeds ----
 
 static double crank_at_one(double scale, const char *method) {
     hn_figure_links l = hn_figure_fb0();
@@ -266,7 +268,7 @@ static void speeds(hn_figures *f) {
     hn_figure_add(f, &fast, relative_error(1e4));
 }
 
-// --- chaos, and what a lesson gets wrong -----------------------------------------------------------------------------------
+// ---- chaos, and what a lesson gets wrong ----
 
 /// Mean rate at which two neighbouring motions part, set back to 1e-8 every half second.
 static double lyapunov(const hn_model *m, double t) {
@@ -303,7 +305,8 @@ static double lyapunov(const hn_model *m, double t) {
     return sum / t;
 }
 
-/// The four-bar with multiplier terms in the first two equations alone, by RK4: M a = f + P J' lambda.
+/// The four-bar with multiplier terms in the first two equations alone, by RK4: M a = f + P J'
+/// lambda.
 typedef struct masked {
     hn_eval *e;
 } masked;

@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// SUNDIALS IDA on the reference four-bar to t = 1 s: dense matrix, difference quotients, the library's own first step, and
-// atol = rtol / 10, with which the printed counts come out to the step.
+// SUNDIALS IDA on the reference four-bar to t = 1 s: dense matrix, difference quotients, the
+// library's own first step, and atol = rtol / 10, with which the printed counts come out to the
+// step.
 
 #define LIBRARY ",h0=-1,jacobian=differences"
 #define UNTESTED ",suppress=multipliers,loosen=1" LIBRARY

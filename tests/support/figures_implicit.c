@@ -14,7 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Orders and condition of the implicit methods for the differential-algebraic forms; structural and half-explicit ones.
+// Orders and condition of the implicit methods for the differential-algebraic forms; structural and
+// half-explicit ones.
 
 #define T_END 1.0
 
@@ -124,7 +125,7 @@ void hn_figures_recomputed(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- condition of Newton's matrix ---------------------------------------------------------------------------------
+// ---- condition of Newton's matrix ----
 
 enum { MAX_N = 32 };
 
@@ -151,8 +152,9 @@ static double condition(const bench *b, int n, const double *A) {
     return hn_condition_of(n, sigma);
 }
 
-/// Of implicit Euler's equations q1 - q0 - h v1, M (v1 - v0) - h (f + J' lambda), and phi or J v. In (q, v, lambda) as they stand
-/// (s = 1), or with the unknowns (q, h v, h^2 lambda) and the second row times h (s = h).
+/// Of implicit Euler's equations q1 - q0 - h v1, M (v1 - v0) - h (f + J' lambda), and phi or J v.
+/// In (q, v, lambda) as they stand (s = 1), or with the unknowns (q, h v, h^2 lambda) and the
+/// second row times h (s = h).
 static double condition_of(const bench *b, double h, double s, int index) {
     const int nv = b->nv, nc = b->nc, n = 2 * nv + nc;
     double A[MAX_N * MAX_N] = {0};
@@ -194,7 +196,7 @@ void hn_figures_newton_matrix(hn_figures *f) {
     hn_model_close(&b.model);
 }
 
-// --- structural and half-explicit ------------------------------------------------------------------------------------
+// ---- structural and half-explicit ----
 
 void hn_figures_structural(hn_figures *f) {
     static const order_row rows[] = {

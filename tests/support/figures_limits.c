@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-// Limits of the steps, from the steps themselves: one step on x'' + 2 a x' + b^2 x = 0 with h = 1 is a 2 x 2 matrix, and its
-// spectral radius says what becomes of x.
+// Limits of the steps, from the steps themselves: one step on x'' + 2 a x' + b^2 x = 0 with h = 1
+// is a 2 x 2 matrix, and its spectral radius says what becomes of x.
 
 static hn_arena *arena;
 

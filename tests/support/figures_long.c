@@ -14,7 +14,9 @@ typedef struct long_row {
     const char *printed;   ///< largest change of the energy at the end [J]
     const char *a_million; ///< what that makes after a million steps by its law
     double tenth,
-        units; ///< growth over the last nine tenths and what it may be off: 1 flat, 10 linear, 100 quadratic
+        /// growth over the last nine tenths and what it may be off: 1 flat, 10 linear, 100
+        /// quadratic
+        units;
     const char *law;
 } long_row;
 

@@ -13,7 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Penalty, augmented Lagrangian, and the trapezoidal rule on index 3 with and without its projections.
+// Penalty, augmented Lagrangian, and the trapezoidal rule on index 3 with and without its
+// projections.
 
 enum { NV = 3, NC = 2 };
 
@@ -55,10 +56,11 @@ void hn_figures_penalty(hn_figures *f) {
     hn_model_close(&m);
 }
 
-// --- ALI3P -----------------------------------------------------------------------------------------------------------
+// ---- ALI3P ----
 
-/// The scheme written down plainly: trapezoidal rule, tangent M + h^2/4 a J' J, projections, turns until no angle moves by 1e-11,
-/// at most `most`. `early`: lambda* takes a phi of the old q before the solve, which counts Newton's correction twice.
+/// The scheme written down plainly: trapezoidal rule, tangent M + h^2/4 a J' J, projections, turns
+/// until no angle moves by 1e-11, at most `most`. `early`: lambda* takes a phi of the old q before
+/// the solve, which counts Newton's correction twice.
 typedef struct plain_scheme {
     hn_eval *terms;
     double q[NV], v[NV], a[NV], lambda[NC];

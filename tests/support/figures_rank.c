@@ -14,9 +14,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// Rows that depend on each other, links without mass, sparse elimination along a chain, singular poses.
+// Rows that depend on each other, links without mass, sparse elimination along a chain, singular
+// poses.
 
-// --- repeated rows -------------------------------------------------------------------------------------------------
+// ---- repeated rows ----
 
 enum { NV = 3, MAX_NC = 4 };
 
@@ -138,9 +139,10 @@ static void repeated_rows(hn_figures *f) {
                   hypot(hn_dot(NV, r.J, a) + r.gamma[0], hn_dot(NV, r.J + 2 * NV, a) + r.gamma[2]));
 }
 
-// --- Udwadia and Kalaba ---------------------------------------------------------------------------------------------
+// ---- Udwadia and Kalaba ----
 
-/// Largest difference of the accelerations by the method's right-hand side from those of the saddle system.
+/// Largest difference of the accelerations by the method's right-hand side from those of the saddle
+/// system.
 static double by_udwadia_kalaba(const hn_model *m, const double *a) {
     const double settings[HN_MAX_OPTIONS] = {0};
     return hn_motion_acceleration_error(m, "udwadia-kalaba", settings, a);
@@ -170,7 +172,7 @@ static void udwadia_kalaba(hn_figures *f) {
     hn_model_close(&once);
 }
 
-// --- a chain of point masses on rods -------------------------------------------------------------------------------
+// ---- a chain of point masses on rods ----
 
 enum { MAX_RODS = 30, MAX_SYMBOLS = 20 * MAX_RODS };
 
@@ -246,7 +248,7 @@ void hn_figures_rank(hn_figures *f) {
     chains(f);
 }
 
-// --- singular poses --------------------------------------------------------------------------------------------------
+// ---- singular poses ----
 
 static int singular_values_of(const hn_model *m, const double *q, double *sigma) {
     hn_eval *e = NULL;
@@ -270,7 +272,8 @@ static int singular_values_of(const hn_model *m, const double *q, double *sigma)
     return rank;
 }
 
-/// The ladder in Cartesian coordinates of its tips: N + 1 points, 2 N + 1 bars of length 1, all at `angle` from level.
+/// The ladder in Cartesian coordinates of its tips: N + 1 points, 2 N + 1 bars of length 1, all at
+/// `angle` from level.
 static void open_points(hn_model *m, int n, double angle) {
     char text[8000], *p = text;
     const char *const end = text + sizeof text;

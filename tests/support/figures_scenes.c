@@ -68,7 +68,7 @@ void hn_figure_open_links(hn_model *m, const hn_figure_links *l) {
     hn_model_open_text(m, text, NULL);
 }
 
-// --- a chain of point masses on massless rods ------------------------------------------------------------------------
+// ---- a chain of point masses on massless rods ----
 
 typedef struct writer {
     char text[6000], *p;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_FIGURES_SETS_H
 #define HN_SUPPORT_FIGURES_SETS_H
-// What measures each topic, for the list in figures_topics.c, and scenes that several of them share.
+// What measures each topic, for the list in figures_topics.c, and scenes that several of them
+// share.
 
 #include "support/figures.h"
 
@@ -34,7 +35,8 @@ void hn_figures_million_steps(hn_figures *f);
 void hn_figures_long_runs(hn_figures *f);
 void hn_figures_lesson(hn_figures *f);
 
-/// A bob of 1 kg on a rod of 1 m, level at the start, in Cartesian coordinates; the constraint is (x^2 + y^2 - 1) / 2.
+/// A bob of 1 kg on a rod of 1 m, level at the start, in Cartesian coordinates; the constraint is
+/// (x^2 + y^2 - 1) / 2.
 extern const char hn_figure_bob[];
 
 /// A four-bar of uniform bars in absolute angles; th2 and th3 are guesses.
@@ -50,7 +52,8 @@ typedef struct hn_figure_links {
 hn_figure_links hn_figure_fb0(void);
 /// The assembly may fail: see m->status.
 void hn_figure_open_links(hn_model *m, const hn_figure_links *links);
-/// Ten points of 1 kg on massless rods of 1 m, a bow to the right, the last point of `tip` kg, at rest.
+/// Ten points of 1 kg on massless rods of 1 m, a bow to the right, the last point of `tip` kg, at
+/// rest.
 void hn_figure_open_chain(hn_model *m, double tip);
 
 #endif

@@ -120,7 +120,7 @@ static double relative_error(const saddle *s, hn_kkt_way way, int refinements) {
     return status == HN_OK ? difference(s->nv, a, exact) : nan("");
 }
 
-// --- plainly, as in the books ----------------------------------------------------------------------------------------
+// ---- plainly, as in the books ----
 
 /// LU of K with partial pivoting.
 static void by_elimination(const saddle *s, double *a) {
@@ -222,7 +222,7 @@ static double condition(const saddle *s) {
     return hn_condition_of(n, sigma);
 }
 
-// --- extreme masses ----------------------------------------------------------------------------------------------------
+// ---- extreme masses ----
 
 typedef struct mass_row {
     const char *scene;

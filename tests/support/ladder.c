@@ -13,7 +13,8 @@ enum { LOOKS = 100, FINE = 10 };
 #define MAX_DISTANCE 1e-2 // [m]
 #define FOLDED 0.1        // [m]: tips this far from each other are not parallel any more
 
-// one step of the classical Runge-Kutta method; with these steps its error is below 1e-12 after 10 s
+// one step of the classical Runge-Kutta method; with these steps its error is below 1e-12 after 10
+// s
 static void step_pendulum(double k, double h, double *b, double *w) {
     const double w1 = *w, a1 = k * sin(*b);
     const double w2 = *w + h / 2 * a1, a2 = k * sin(*b + h / 2 * w1);
@@ -46,7 +47,8 @@ double hn_ladder_motion_angle(const hn_ladder_motion *motion, double t) {
            h * (s * r * r * motion->rate[i] - s * s * r * motion->rate[i + 1]);
 }
 
-/// Largest distance of a tip from its exact place; *spread: of two tips from each other, as seen from their pivots.
+/// Largest distance of a tip from its exact place; *spread: of two tips from each other, as seen
+/// from their pivots.
 static double distance(const hn_model *m, const hn_ladder_motion *motion, const hn_sample *s,
                        double *spread) {
     const double th = HALF_PI - hn_ladder_motion_angle(motion, s->t);
@@ -78,7 +80,8 @@ static hn_survival_seen look(void *user, int k, const hn_sample *s) {
 hn_survival_end hn_ladder_run(const hn_model *m, const hn_ladder_motion *motion, const char *method,
                               double *worst) {
     beside b = {m, motion, 0};
-    // every look is half an interval early, so that the exact motion covers the step behind the last
+    // every look is half an interval early, so that the exact motion covers the step behind the
+    // last
     const hn_survival_judge judge = {.look = look,
                                      .user = &b,
                                      .T = motion->duration,

@@ -71,7 +71,7 @@ static void triad(const double axis[3], const double ref[3], double out[3][3]) {
     }
 }
 
-// motion -----------------------------------------------------------------------------------------------------------
+// ---- motion ----
 
 void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at, double x[3],
                      double v[3], double a[3]) {
@@ -97,8 +97,8 @@ void mechanism_point(const body_motion *bodies, int body, const hn_quantity *at,
     add_scaled(a, 1, t);
 }
 
-/// The child's half of a joint seen from the parent's, in the parent's joint axes: turn, place, and their derivatives at zero
-/// second derivatives of the coordinates.
+/// The child's half of a joint seen from the parent's, in the parent's joint axes: turn, place, and
+/// their derivatives at zero second derivatives of the coordinates.
 typedef struct relative_motion {
     double R[3][3], d[3], w[3], v[3], al[3], a[3];
 } relative_motion;
@@ -330,7 +330,7 @@ void mechanism_terms(const hn_scene *scene, const double *q, const double *qd, d
     free(now);
 }
 
-// random mechanisms -----------------------------------------------------------------------------------------------------
+// ---- random mechanisms ----
 
 static void random_vector(unsigned *seed, double v[3]) {
     for (int i = 0; i < 3; i++) {
@@ -446,7 +446,8 @@ static void make_tree_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed
     set_values(j->child_at, at, o->planar);
 }
 
-/// A joint between two bodies that is closed in the pose given: its half on the child is worked out from the parent's.
+/// A joint between two bodies that is closed in the pose given: its half on the child is worked out
+/// from the parent's.
 static void make_cut_joint(hn_scene *s, const mechanism_opts *o, unsigned *seed, int i,
                            const body_motion *pose) {
     hn_joint *j = &s->joints[i];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_MODEL_H
 #define HN_SUPPORT_MODEL_H
-// A scene loaded, compiled and assembled, for tests of dynamics and above. Failures stop the test with their message.
+// A scene loaded, compiled and assembled, for tests of dynamics and above. Failures stop the test
+// with their message.
 
 #include "dynamics/assembly/assemble.h"
 #include "dynamics/compile/system.h"
@@ -19,8 +20,8 @@ typedef struct hn_model {
     hn_status status; ///< of the assembly
 } hn_model;
 
-/// Scenes of the lessons ("fb0"), of the tests ("fb0-redundant") and of published problems ("andrews"), by name.
-/// `settings` is NULL or "l1=1.2 m2=3". The assembly may fail: see status.
+/// Scenes of the lessons ("fb0"), of the tests ("fb0-redundant") and of published problems
+/// ("andrews"), by name. `settings` is NULL or "l1=1.2 m2=3". The assembly may fail: see status.
 void hn_model_begin(hn_model *m, const char *name, const char *settings);
 /// From JSON text.
 void hn_model_open_text(hn_model *m, const char *json, const char *settings);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_NEAR_H
 #define HN_SUPPORT_NEAR_H
-// Comparing doubles in cmocka tests so that a failure shows both values, and poisoning outputs so that a
-// value that was never written is seen. A NaN is near nothing.
+// Comparing doubles in cmocka tests so that a failure shows both values, and poisoning outputs so
+// that a value that was never written is seen. A NaN is near nothing.
 
 // cmocka.h needs these four before it
 #include <setjmp.h>

@@ -12,7 +12,8 @@ typedef struct hn_test_oscillator {
 } hn_test_oscillator;
 hn_ode hn_test_oscillator_ode(hn_test_oscillator *self);
 
-/// A planet about a sun of strength 1, eccentricity e, semi-axis 1, from perihelion; y = (x, z, x', z').
+/// A planet about a sun of strength 1, eccentricity e, semi-axis 1, from perihelion; y = (x, z, x',
+/// z').
 hn_ode hn_test_kepler_ode(void);
 void hn_test_kepler_exact(double e, double t, double y[4]);
 

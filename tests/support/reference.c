@@ -18,14 +18,14 @@ struct hn_reference {
     double scale[HN_REFERENCE_KINDS][HN_REFERENCE_MAX];
 };
 
-/// A state to compare with: a trusted one, which the method has to meet to digits of its own, or a published one, with digits
-/// that it is known to have.
+/// A state to compare with: a trusted one, which the method has to meet to digits of its own, or a
+/// published one, with digits that it is known to have.
 typedef struct row {
     double t;
     const cJSON *state, *digits;
 } row;
 
-// the file -----------------------------------------------------------------------------------------------------------
+// ---- the file ----
 
 static char *read_all(const char *path) {
     FILE *file = fopen(path, "rb");
@@ -51,7 +51,8 @@ static const cJSON *need(const cJSON *object, const char *key) {
     return item;
 }
 
-/// Numbers stand in the file as decimal digits in quotes, since they have more of them than a double.
+/// Numbers stand in the file as decimal digits in quotes, since they have more of them than a
+/// double.
 static double number(const cJSON *item) {
     char *end = NULL;
     assert_true(cJSON_IsString(item));
@@ -115,7 +116,7 @@ const char *hn_reference_method(const hn_reference *r, int i) {
     return need(method_entry(r, i), "method")->valuestring;
 }
 
-// states -------------------------------------------------------------------------------------------------------------
+// ---- states ----
 
 static const cJSON *trusted_at(const hn_reference *r, double t) {
     const cJSON *state;
@@ -139,7 +140,8 @@ hn_reference_state hn_reference_trusted(const hn_reference *r, double t) {
     return s;
 }
 
-/// Each coordinate of the reference is an offset and a sum of factors times coordinates of the scene.
+/// Each coordinate of the reference is an offset and a sum of factors times coordinates of the
+/// scene.
 static hn_reference_state convert(const hn_reference *r, const hn_model *m, const hn_sample *s) {
     hn_reference_state out = {0};
     const cJSON *c, *part;
@@ -167,7 +169,8 @@ static hn_reference_state convert(const hn_reference *r, const hn_model *m, cons
     return out;
 }
 
-/// -1 where the reference has nothing of this kind. A component that was not published is null there.
+/// -1 where the reference has nothing of this kind. A component that was not published is null
+/// there.
 static double agreement(const hn_reference *r, hn_reference_kind kind, const cJSON *state,
                         const hn_reference_state *found) {
     const cJSON *values = cJSON_GetObjectItemCaseSensitive(state, KIND[kind]), *x;
@@ -193,7 +196,7 @@ double hn_reference_digits(const hn_reference *r, hn_reference_kind kind, double
     return agreement(r, kind, trusted_at(r, t), found);
 }
 
-// runs ---------------------------------------------------------------------------------------------------------------
+// ---- runs ----
 
 static void open_scene(const hn_reference *r, const char *scene, hn_model *m) {
     const cJSON *set = cJSON_GetObjectItemCaseSensitive(r->file, "set");

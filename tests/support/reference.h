@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_REFERENCE_H
 #define HN_SUPPORT_REFERENCE_H
-// Published problems with states that can be trusted, read from tests/reference/states/NAME.json: which scenes write the
-// problem, how the reference's coordinates follow from a scene's, the states, what was published, the methods to run, and to
-// how many digits each has to agree. Failures stop the test and say problem, scene, method, time and digits.
+// Published problems with states that can be trusted, read from tests/reference/states/NAME.json:
+// which scenes write the problem, how the reference's coordinates follow from a scene's, the
+// states, what was published, the methods to run, and to how many digits each has to agree.
+// Failures stop the test and say problem, scene, method, time and digits.
 //
-// Digits: -log10 of the largest error of a component, each divided by the largest value that component takes in the list of
-// trusted states (a component that passes through zero keeps its scale); 16 at most.
+// Digits: -log10 of the largest error of a component, each divided by the largest value that
+// component takes in the list of trusted states (a component that passes through zero keeps its
+// scale); 16 at most.
 
 #include "support/motion.h"
 
@@ -43,8 +45,9 @@ hn_reference_state hn_reference_trusted(const hn_reference *r, double t);
 double hn_reference_digits(const hn_reference *r, hn_reference_kind kind, double t,
                            const hn_reference_state *found);
 
-/// Every scene by every method of the file, at every time: as many digits as the file asks for, and as many of the published
-/// ones; where the file says that a method stops, it has to stop for that reason.
+/// Every scene by every method of the file, at every time: as many digits as the file asks for, and
+/// as many of the published ones; where the file says that a method stops, it has to stop for that
+/// reason.
 void hn_reference_check(const char *name);
 
 #endif

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// the first joint is the crank; freedoms are the joints' less six (spatial mobility), where no leg spins about itself
+// the first joint is the crank; freedoms are the joints' less six (spatial mobility), where no leg
+// spins about itself
 static const ring RINGS[] = {
     {"RSCR", 4, {"revolute", "spherical", "cylindrical", "revolute"}, 1},
     {"RUSR", 4, {"revolute", "universal", "spherical", "revolute"}, 1},
@@ -31,7 +32,8 @@ static void add(char *text, const char *more) {
     strcat(text, more);
 }
 
-/// Joint j between body j - 1 and body j (the ground at both ends), at corners of a skew polygon with skew axes.
+/// Joint j between body j - 1 and body j (the ground at both ends), at corners of a skew polygon
+/// with skew axes.
 static void add_joint(char *text, const ring *r, int j, int cut) {
     static const double at[RING_MAX][3] = {{0, 0, 0},     {0.3, 0.8, 0.2},   {1.7, 1.1, 0.6},
                                            {2.1, 0.2, 0}, {1.1, -0.4, -0.3}, {0.2, 0.2, 0.2}};

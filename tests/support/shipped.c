@@ -112,7 +112,8 @@ static void move(const probe *p, double *q, double h, const double *dq) {
     }
 }
 
-/// J against central differences of phi, gamma against those of J v + phi_t along the motion at constant v.
+/// J against central differences of phi, gamma against those of J v + phi_t along the motion at
+/// constant v.
 static void derivatives_agree(probe *p) {
     const int nv = p->info.nv, nc = p->info.nc;
     const double h = 1e-5;
@@ -204,7 +205,8 @@ static void loops_do_no_work(probe *p, const double *a) {
     check_near(p, "the power of the loops' forces", power / (1 + size), 0, 1e-11);
 }
 
-/// Speeds after one step of RK4 from the state, a twentieth of what the scene suggests and no more than 50 us.
+/// Speeds after one step of RK4 from the state, a twentieth of what the scene suggests and no more
+/// than 50 us.
 static void speeds_after_a_step(probe *p, const char *formulation, double *user_v) {
     char method[64];
     snprintf(method, sizeof method, "%s@rk4:h=%.3g", formulation,
@@ -224,7 +226,8 @@ static void speeds_after_a_step(probe *p, const char *formulation, double *user_
     hn_run_free(run);
 }
 
-/// One step each, by the saddle-point system and by independent coordinates: the same but for the local error of RK4.
+/// One step each, by the saddle-point system and by independent coordinates: the same but for the
+/// local error of RK4.
 static void two_formulations_step_alike(probe *p) {
     const int n = p->info.n_user;
     double *one = copy(p, NULL, n), *two = copy(p, NULL, n);
@@ -236,8 +239,9 @@ static void two_formulations_step_alike(probe *p) {
     }
 }
 
-/// The sparse factor of the whole system (or what stands in for it) and the dense null space of the rows.
-/// Newton and Euler for each body, from differences of poses, with what its joints and constraints carry.
+/// The sparse factor of the whole system (or what stands in for it) and the dense null space of the
+/// rows. Newton and Euler for each body, from differences of poses, with what its joints and
+/// constraints carry.
 static void every_body_is_in_balance(probe *p, const double *a, const double *lambda) {
     const hn_scene *scene = hn_model_scene(p->model);
     hn_reactions *r = NULL;

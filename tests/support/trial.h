@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SUPPORT_TRIAL_H
 #define HN_SUPPORT_TRIAL_H
-// A scene file loaded, compiled and assembled, and runs on it, for tests of methods and runs. A failure on the way stops the
-// test with its message.
+// A scene file loaded, compiled and assembled, and runs on it, for tests of methods and runs. A
+// failure on the way stops the test with its message.
 
 #include "dynamics/assembly/assemble.h"
 #include "study/run/run.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which methods survive the flat poses of the ladder of N four-bars, as counts out of so many step sizes. Prints the table that is
-// kept in results.txt; arguments choose: survival [METHOD-PREFIX [N [STEPS]]]. See README.md.
+// Which methods survive the flat poses of the ladder of N four-bars, as counts out of so many step
+// sizes. Prints the table that is kept in results.txt; arguments choose: survival [METHOD-PREFIX [N
+// [STEPS]]]. See README.md.
 #include "support/ladder.h"
 #include "support/near.h"
 
@@ -15,8 +16,8 @@ static const int sizes[SIZES] = {1, 2, 10, 40};
 
 typedef struct entry {
     const char *formulation, *stepper;
-    int steps
-        [SIZES]; ///< step sizes that are tried on each ladder, fewer where a run is dear; 0: left out
+    /// step sizes that are tried on each ladder, fewer where a run is dear; 0: left out
+    int steps[SIZES];
     int adaptive; ///< tolerances from 1e-3 to 1e-9 take the place of step sizes
 } entry;
 

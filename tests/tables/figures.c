@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures that programs written by hand for one mechanism at a time printed for the methods of this one, measured again. Prints
-// the table that is kept in figures.txt; arguments choose topics by a part of their name. Fails when a figure is not met.
+// Figures that programs written by hand for one mechanism at a time printed for the methods of this
+// one, measured again. Prints the table that is kept in figures.txt; arguments choose topics by a
+// part of their name. Fails when a figure is not met.
 #include "support/figures.h"
 
 #include <stdio.h>

@@ -164,50 +164,17 @@ static void constraints_of_formulas_alone_have_efforts_and_no_place(void **state
     "{\"name\":\"" name "\",\"type\":\"revolute\",\"parent\":{\"body\":\"" parent "\",\"at\":[" at \
     ",0,0]},\"child\":{\"body\":\"" child "\",\"at\":[" child_at ",0,0]},\"coordinate\":\"" x      \
     "\",\"rate\":\"d" x "\""
-#define FOUR_BAR                                                                                           \
-    "{\"holonom\":1,\"name\":\"x\",\"gravity\":[0,-9.81,0],\"bodies\":[" BAR("crank", "1", "0.5") "," BAR( \
-        "coupler", "2",                                                                                    \
-        "1.5") "," BAR("rocker", "1.5",                                                                    \
-                       "1") "],\"joints\":[" PIN("A", "ground", "0", "crank", "0",                         \
-                                                 "a") "}," PIN("B", "crank", "1", "coupler", "0",          \
-                                                               "b") "}," PIN("C", "coupler", "3",          \
-                                                                             "rocker", "2",                \
-                                                                             "c") ",\"cut\":true}"         \
-                                                                                  "," PIN(                 \
-                                                                                      "D",                 \
-                                                                                      "groun"              \
-                                                                                      "d",                 \
-                                                                                      "2.5",               \
-                                                                                      "rocke"              \
-                                                                                      "r",                 \
-                                                                                      "0",                 \
-                                                                                      "d") "}"             \
-                                                                                           "]"             \
-                                                                                           ","             \
-                                                                                           "\"sta"         \
-                                                                                           "rt\":"         \
-                                                                                           "{\"po"         \
-                                                                                           "sitio"         \
-                                                                                           "ns\":"         \
-                                                                                           "{\"a"          \
-                                                                                           "\":1."         \
-                                                                                           "1,"            \
-                                                                                           "\"b\""         \
-                                                                                           ":{"            \
-                                                                                           "\"gue"         \
-                                                                                           "ss\":"         \
-                                                                                           "-0.6}"         \
-                                                                                           ",\"d"          \
-                                                                                           "\":{"          \
-                                                                                           "\"gue"         \
-                                                                                           "ss\":"         \
-                                                                                           "1.6}}"         \
-                                                                                           ","             \
-                                                                                           "\"rat"         \
-                                                                                           "es\":"         \
-                                                                                           "{\"a"          \
-                                                                                           "\":2."         \
-                                                                                           "3}}"
+// clang-format off
+#define FOUR_BAR \
+    "{\"holonom\":1,\"name\":\"x\",\"gravity\":[0,-9.81,0],\"bodies\":[" \
+    BAR("crank", "1", "0.5") "," BAR("coupler", "2", "1.5") "," BAR("rocker", "1.5", "1") \
+    "],\"joints\":[" PIN("A", "ground", "0", "crank", "0", "a") "}," \
+    PIN("B", "crank", "1", "coupler", "0", "b") "}," \
+    PIN("C", "coupler", "3", "rocker", "2", "c") ",\"cut\":true}," \
+    PIN("D", "ground", "2.5", "rocker", "0", "d") "}]," \
+    "\"start\":{\"positions\":{\"a\":1.1,\"b\":{\"guess\":-0.6},\"d\":{\"guess\":1.6}}," \
+    "\"rates\":{\"a\":2.3}}"
+// clang-format on
 
 static const char SPRINGS[] = FOUR_BAR
     ",\"loads\":[{\"name\":\"at C\",\"joint_spring\":{\"joint\":\"C\",\"stiffness\":7}},"

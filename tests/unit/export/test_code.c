@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions as statements: what is shared is computed once, and text keeps the order of operations.
+// Expressions as statements: what is shared is computed once, and text keeps the order of
+// operations.
 #include "export/code.h"
 
 #include "base/strbuf.h"

@@ -174,7 +174,8 @@ static hn_ex random_expression(hn_graph *g, const hn_ex x[N], unsigned *seed, in
     }
 }
 
-// three routes to the same numbers: symbol by symbol, a gradient in one sweep, one direction in one sweep
+// three routes to the same numbers: symbol by symbol, a gradient in one sweep, one direction in one
+// sweep
 static void forward_reverse_and_directional_derivatives_agree(void **state) {
     (void)state;
     const int symbols[N] = {0, 1, 2, 3, 4, 5};
@@ -202,7 +203,8 @@ static void forward_reverse_and_directional_derivatives_agree(void **state) {
     }
 }
 
-// Griewank's bound: the gradient costs a small multiple of the function, whatever the number of symbols
+// Griewank's bound: the gradient costs a small multiple of the function, whatever the number of
+// symbols
 static void a_gradient_costs_a_few_times_the_function(void **state) {
     (void)state;
     enum { MANY = 200 };

@@ -134,7 +134,8 @@ static void eval_long(const hn_tape *tape, const double *x, int n, long double *
     free(work);
 }
 
-// one operation of each kind on moderate numbers: the double is the rounded long double, to an operation's rounding or two
+// one operation of each kind on moderate numbers: the double is the rounded long double, to an
+// operation's rounding or two
 static void single_operations_in_long_double_round_to_the_double_ones(void **state) {
     (void)state;
     for (int op = HN_OP_MUL; op < HN_OP_COUNT; op++) {
@@ -197,7 +198,8 @@ static int find_symbol(void *user, const char *name, hn_ex *out) {
     return 1;
 }
 
-// (sin^2 + cos^2 - 1) cancels to the rounding of the precision: the double leaves 1e-16, these leave 1e-19
+// (sin^2 + cos^2 - 1) cancels to the rounding of the precision: the double leaves 1e-16, these
+// leave 1e-19
 static void closed_forms_hold_to_eighteen_digits(void **state) {
     (void)state;
     const char *const formulas[] = {
@@ -285,7 +287,8 @@ static void operations_are_counted_exactly(void **state) {
     assert_int_equal(info.ops, 4);
     assert_int_equal(info.instructions, 2);
     hn_tape_free(tape);
-    // a quotient is one division, a difference one addition; a negated product inside a sum costs no negation
+    // a quotient is one division, a difference one addition; a negated product inside a sum costs
+    // no negation
     const hn_ex quotient = hn_sub(g, hn_div(g, x[0], x[1]), hn_mul(g, x[2], x[3]));
     tape = compile(g, &quotient, 1);
     info = hn_tape_get_info(tape);

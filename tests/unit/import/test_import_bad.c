@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that are no mechanism: each is refused with a line and what is wrong, quickly and in bounded memory.
+// Files that are no mechanism: each is refused with a line and what is wrong, quickly and in
+// bounded memory.
 #include "support/near.h"
 
 #include "support/imported.h"

@@ -122,7 +122,8 @@ static void coordinates_are_ref_in_the_pose_of_the_file(void **state) {
     assert_near(s->parent_at[2].value, 0.75, 0);
     assert_near(x.scene->coordinates[s->coordinate].q0, 0.25, 0);
     assert_near(x.scene->coordinates[h->coordinate].q0, PI / 2, 0);
-    // at 90 degrees the child's reference has to stand where the parent's does after that turn about y: x to -z
+    // at 90 degrees the child's reference has to stand where the parent's does after that turn
+    // about y: x to -z
     assert_all_near(h->parent_ref, ((double[]){1, 0, 0}), 3, 0);
     assert_all_near(h->child_ref, ((double[]){0, 0, -1}), 3, 1e-15);
     imported_close(&x);

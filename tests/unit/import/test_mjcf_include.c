@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that include files: the same scene as with their text in place, and every way in which it cannot be.
+// Files that include files: the same scene as with their text in place, and every way in which it
+// cannot be.
 #include "support/near.h"
 
 #include "support/imported.h"
@@ -51,7 +52,8 @@ static const char IN_PARTS[] =
     "<mujoco model='m'><include file='looks/defaults.xml'/><worldbody>" ARM
     "<include file='./parts//tip.xml'/></body></worldbody><include "
     "file='parts/loop.xml'/></mujoco>";
-// names are relative to the model's folder in files of other folders, too, and the roots may have any name
+// names are relative to the model's folder in files of other folders, too, and the roots may have
+// any name
 static const file PARTS[] = {
     {"looks/defaults.xml", "<mujocoinclude><default><include file='looks/bar.xml'/></default>"
                            "</mujocoinclude>"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense ways to solve the saddle-point system, one beside the other: extreme masses, a massless link, rows that repeat and
-// rows that contradict each other. The reference is an elimination in quadruple precision.
+// The dense ways to solve the saddle-point system, one beside the other: extreme masses, a massless
+// link, rows that repeat and rows that contradict each other. The reference is an elimination in
+// quadruple precision.
 
 #include "linalg/bunch_kaufman.h"
 #include "linalg/dense.h"
@@ -16,7 +17,8 @@ __extension__ typedef __float128 quad;
 
 enum { NV = 3, MAX_NC = 4, MAX_N = NV + MAX_NC };
 
-/// The four-bar of links 1, 2, 1.8 on a ground of 2.2 m at crank angle 1 rad and 2 rad/s, absolute angles, uniform bars.
+/// The four-bar of links 1, 2, 1.8 on a ground of 2.2 m at crank angle 1 rad and 2 rad/s, absolute
+/// angles, uniform bars.
 typedef struct four_bar {
     int nc;
     double M[NV * NV], J[MAX_NC * NV], f[NV], gamma[MAX_NC];
@@ -221,7 +223,8 @@ static void repeated_rows_change_nothing_where_they_are_served(void **state) {
             least_norm = hn_norm2(4, x.lambda);
         }
     }
-    // any lambda with the same J' lambda is at least as long: here the one that uses the first two rows alone
+    // any lambda with the same J' lambda is at least as long: here the one that uses the first two
+    // rows alone
     assert_true(least_norm < hn_norm2(2, plain.lambda));
 }
 
@@ -251,7 +254,8 @@ static void rows_that_contradict_each_other_are_met_as_well_as_can_be_or_refused
     }
     assert_near(hypot(left[0], left[1]), 7.0710678e-4, 1e-9);
     assert_near(left[0], -left[1], 1e-9);
-    // its multipliers grow by the contradiction over the shift each turn: why it is not the automatic choice
+    // its multipliers grow by the contradiction over the shift each turn: why it is not the
+    // automatic choice
     const four_bar plain = make_four_bar(2, 1.8);
     const answer usual = solve(kkt_of(state), HN_KKT_PROXIMAL, &plain, 4);
     assert_true(hn_norm2(3, x.lambda) > 100 * hn_norm2(2, usual.lambda));
@@ -259,7 +263,8 @@ static void rows_that_contradict_each_other_are_met_as_well_as_can_be_or_refused
 }
 
 static void the_condition_is_that_of_the_equilibrated_matrix(void **state) {
-    // units of all kinds, but after scaling K is [1 . . 1; . 1 . .; . . 1 .; 1 . . .]: |K|_1 = 2, |K^-1|_1 = 2
+    // units of all kinds, but after scaling K is [1 . . 1; . 1 . .; . . 1 .; 1 . . .]: |K|_1 = 2,
+    // |K^-1|_1 = 2
     const four_bar good = {
         .nc = 1, .M = {4, 0, 0, 0, 9, 0, 0, 0, 1e-6}, .J = {1e3, 0, 0}, .f = {1, 0, 0}};
     // two rows at an angle of e to each other: J M^-1 J' has the eigenvalues 2 and e^2 / 2
@@ -270,7 +275,8 @@ static void the_condition_is_that_of_the_equilibrated_matrix(void **state) {
         if (way == HN_KKT_PROXIMAL) {
             continue; // its matrix is another one, and better conditioned
         }
-        // a lower bound, within a factor of three (Higham 2002, section 15.3); scales are rounded to powers of two
+        // a lower bound, within a factor of three (Higham 2002, section 15.3); scales are rounded
+        // to powers of two
         const double of_good = solve(kkt_of(state), (hn_kkt_way)way, &good, 4).info.cond;
         assert_true(of_good < 4.0001 * 4 && of_good > 4.0 / 3);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Newton matrices solve what they were filled with, dense or sparse, real or complex, at a cost that follows the entries.
+// Newton matrices solve what they were filled with, dense or sparse, real or complex, at a cost
+// that follows the entries.
 #include "linalg/newton_matrix.h"
 
 #include "linalg/compressed.h"
@@ -11,7 +12,8 @@
 
 enum { MAX = 400 };
 
-// saddle of a chain: masses that touch their neighbours, a row between each two of them; `turn` changes values, not places
+// saddle of a chain: masses that touch their neighbours, a row between each two of them; `turn`
+// changes values, not places
 static void fill_chain(hn_newton_matrix *m, int links, double turn) {
     const int rows = links - 1;
     hn_newton_matrix_begin(m, links + rows);

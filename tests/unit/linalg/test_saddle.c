@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense saddle-point solve: redundancy, mass ratios, massless coordinates, contradictions, against quadruple precision.
+// The dense saddle-point solve: redundancy, mass ratios, massless coordinates, contradictions,
+// against quadruple precision.
 
 #include "linalg/dense.h"
 #include "linalg/saddle.h"
@@ -103,7 +104,8 @@ static void solve_quad(const problem *p, double *a, double *lambda) {
     }
 }
 
-/// The four-bar with links 1, 2, 1.8 on a 2.2 m ground at th1 = 1, w1 = 2, with a coupler of mass m2.
+/// The four-bar with links 1, 2, 1.8 on a 2.2 m ground at th1 = 1, w1 = 2, with a coupler of mass
+/// m2.
 static void make_four_bar(problem *p, double m2) {
     const double l1 = 1, l2 = 2, l3 = 1.8, m1 = 1, m3 = 1.8;
     const double th1 = 1, th2 = 0.498324904142577, th3 = 1.516841745037813, w1 = 2;
@@ -221,7 +223,8 @@ static void every_mass_ratio_is_solved_to_thirteen_digits(void **state) {
     }
 }
 
-/// An open chain of rods in absolute angles, its tip held in x, with a heavy point mass at the tip: M is nearly of rank two.
+/// An open chain of rods in absolute angles, its tip held in x, with a heavy point mass at the tip:
+/// M is nearly of rank two.
 static void make_heavy_tip(problem *p, int links, double tip) {
     *p = (problem){.nv = links, .nc = 1, .gamma = {0.7}};
     for (int i = 0; i < links; i++) {
@@ -467,7 +470,8 @@ static void condition_estimate_follows_a_known_condition_number(void **state) {
     fixture *f = *state;
     hn_saddle_opts opts = hn_saddle_opts_default();
     opts.want_cond = 1;
-    // unit masses and two rows at a small angle e: the smallest singular value of the equilibrated J is e / sqrt 2
+    // unit masses and two rows at a small angle e: the smallest singular value of the equilibrated
+    // J is e / sqrt 2
     for (int power = 1; power <= 4; power++) {
         double e = pow(10, -power);
         f->p = (problem){

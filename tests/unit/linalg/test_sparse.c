@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparse factors of matrices that keep their pattern: against matrices built from known solutions, by their cost in entries,
-// and where they have to refuse.
+// Sparse factors of matrices that keep their pattern: against matrices built from known solutions,
+// by their cost in entries, and where they have to refuse.
 
 #include "linalg/dense.h"
 #include "linalg/sparse_lu.h"
@@ -99,7 +99,8 @@ static void the_determinant_of_a_permutation_is_its_sign(void **state) {
 
 static void an_order_that_became_bad_is_chosen_anew(void **state) {
     (void)state;
-    // [a 1; 1 a]: good with pivot a at first, and with a = 1e-20 only by exchanging rows: the solution is (1, 1)
+    // [a 1; 1 a]: good with pivot a at first, and with a = 1e-20 only by exchanging rows: the
+    // solution is (1, 1)
     static const int row[] = {0, 0, 1, 1}, col[] = {0, 1, 0, 1};
     double value[] = {2, 1, 1, 2}, b[] = {3, 3};
     hn_arena *arena = hn_arena_create(0);
@@ -168,7 +169,8 @@ static void a_chain_of_spd_blocks_costs_the_same_for_each_block(void **state) {
 
 static void an_arrow_fills_in_nothing(void **state) {
     (void)state;
-    // dense first row and column: eliminated first it would fill everything, minimum degree takes it last
+    // dense first row and column: eliminated first it would fill everything, minimum degree takes
+    // it last
     static matrix m;
     const int n = 20;
     m = (matrix){.n = n};

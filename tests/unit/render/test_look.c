@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contrast by WCAG 2.2 ("contrast ratio", "relative luminance"); distance as CIE 1976 Lab under D65. Sight without
-// one kind of cone by two models: Vienot, Brettel & Mollon, Color Research & Application 24 (1999) 243-252, and
-// Machado, Oliveira & Fernandes, IEEE TVCG 15 (2009) 1291-1298, table 1, severity 1.
+// Contrast by WCAG 2.2 ("contrast ratio", "relative luminance"); distance as CIE 1976 Lab under
+// D65. Sight without one kind of cone by two models: Vienot, Brettel & Mollon, Color Research &
+// Application 24 (1999) 243-252, and Machado, Oliveira & Fernandes, IEEE TVCG 15 (2009) 1291-1298,
+// table 1, severity 1.
 #include "support/near.h"
 
 #include "render/look.h"

@@ -214,7 +214,8 @@ static void the_selected_method_is_filled_and_a_ghost_is_an_outline_at_sixty_per
     bare.n_tears = 0;
     hn_snapshot_pose poses[2] = {{.points = a, .slot = 0, .selected = 1}, {.points = b, .slot = 1}};
     const hn_snapshot_opts opts = hn_snapshot_opts_default();
-    // a filled bar mixes its colour into the paper at 30 % (so do some edge pixels), a ghost's outline at 60 %
+    // a filled bar mixes its colour into the paper at 30 % (so do some edge pixels), a ghost's
+    // outline at 60 %
     const hn_surface *s = hn_surface_get(HN_THEME_LIGHT);
     uint32_t tint[2] = {0, 0}, ghost[2] = {0, 0};
     for (int slot = 0; slot < 2; slot++) {
@@ -251,7 +252,8 @@ static void a_long_note_is_told_in_lines_and_not_cut_to_one(void **state) {
         pose.note = notes[i];
         rgb[i] = draw(&four_bar, &pose, 1, &opts);
     }
-    // the letters are alike, so that ink counts them: 17 against 65, of which an ellipsis in one line would leave some 30
+    // the letters are alike, so that ink counts them: 17 against 65, of which an ellipsis in one
+    // line would leave some 30
     assert_true(differing_pixels(rgb[0], rgb[2]) > 3 * differing_pixels(rgb[0], rgb[1]));
     for (int i = 0; i < 3; i++) {
         free(rgb[i]);

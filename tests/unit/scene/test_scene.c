@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the loader makes of sound scenes: the shipped ones, and small ones for each rule of the format.
+// What the loader makes of sound scenes: the shipped ones, and small ones for each rule of the
+// format.
 #include "expr/construct.h"
 #include "expr/parse.h"
 #include "scene/scene.h"
@@ -45,7 +46,7 @@ static int count_shapes(const hn_scene *s, hn_shape_kind kind) {
     return n;
 }
 
-// the shipped scenes ----------------------------------------------------------------------------------
+// ---- the shipped scenes ----
 
 static void every_shipped_scene_loads_with_its_sizes(void **state) {
     static const struct {
@@ -187,7 +188,7 @@ static void the_hash_is_of_what_moves_not_of_words_or_white_space(void **state) 
     }
 }
 
-// the formulas of the Lagrangian scenes against the reference ------------------------------------------
+// ---- the formulas of the Lagrangian scenes against the reference ----
 
 /// A value for each name of a formula.
 typedef struct named_values {
@@ -218,7 +219,8 @@ static double formula_value(const named_values *v, const char *formula) {
     return value;
 }
 
-/// Parameters of the scene and a state, the rates of links 2 and 3 from the two velocity equations of the loop.
+/// Parameters of the scene and a state, the rates of links 2 and 3 from the two velocity equations
+/// of the loop.
 static named_values fb0_state(const hn_scene *s, double th1, double th2, double th3, double w1) {
     const double l1 = 1, l2 = 2, l3 = 1.8;
     double a = -l2 * sin(th2), b = l3 * sin(th3), c = l2 * cos(th2), d = -l3 * cos(th3);
@@ -238,8 +240,9 @@ static named_values fb0_state(const hn_scene *s, double th1, double th2, double 
 }
 
 static void energy_and_loop_of_fb0_are_those_of_its_reference_motion(void **state) {
-    // th1, th2, th3, w1 at t = 0, 1, 2 s: th1 by quadrature of dt = dth1 / w1(th1), where w1 follows from the energy
-    // and the other angles from the triangle of coupler, rocker and diagonal
+    // th1, th2, th3, w1 at t = 0, 1, 2 s: th1 by quadrature of dt = dth1 / w1(th1), where w1
+    // follows from the energy and the other angles from the triangle of coupler, rocker and
+    // diagonal
     static const double motion[3][4] = {
         {1, 0.498324904142577, 1.516841745037813, 2},
         {2.726775244353718, 0.4341207943944537, 2.3783762332849223, 4.168076162534862},
@@ -264,7 +267,7 @@ static void energy_and_loop_of_fb0_are_those_of_its_reference_motion(void **stat
     }
 }
 
-// rules of the format ---------------------------------------------------------------------------------
+// ---- rules of the format ----
 
 static void parameters_may_be_formulas_of_each_other_in_any_order(void **state) {
     static const char text[] =
@@ -339,7 +342,8 @@ static void a_childs_own_axis_and_reference_are_kept(void **state) {
 }
 
 static void inertia_of_a_real_body_is_accepted_however_its_axes_stand(void **state) {
-    // a thin plate (xx + yy = zz exactly) turned by 0.3 rad about z, and one by formulas with 3 digits
+    // a thin plate (xx + yy = zz exactly) turned by 0.3 rad about z, and one by formulas with 3
+    // digits
     double c = cos(0.3), sn = sin(0.3), a = 0.02, b = 0.05;
     char text[600];
     (void)state;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Malformed scenes: each file of tests/scenes/bad is told with the pointer and the words that expected.tsv asks for.
+// Malformed scenes: each file of tests/scenes/bad is told with the pointer and the words that
+// expected.tsv asks for.
 #include "scene/scene.h"
 
 #include "support/near.h"

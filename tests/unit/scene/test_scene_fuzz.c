@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text that was cut off or damaged, and memory that runs out: an error, never a crash, a leak or a hang.
+// Text that was cut off or damaged, and memory that runs out: an error, never a crash, a leak or a
+// hang.
 #include "scene/scene.h"
 
 #include "support/alloc.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the loader makes of joints with several coordinates, of constraints beside joints, and of actuators.
+// What the loader makes of joints with several coordinates, of constraints beside joints, and of
+// actuators.
 #include "scene/scene.h"
 
 #include "support/near.h"
@@ -242,7 +243,8 @@ static void the_hash_sees_joints_constraints_and_mode(void **state) {
     }
 }
 
-// edges of the block with m = 2, moments 3, 4, 5: a^2 = 6 (yy + zz - xx) / m = 18, b^2 = 12, c^2 = 6
+// edges of the block with m = 2, moments 3, 4, 5: a^2 = 6 (yy + zz - xx) / m = 18, b^2 = 12, c^2 =
+// 6
 static void a_free_body_is_drawn_with_the_extents_of_its_inertia(void **state) {
     hn_scene *s =
         load(HEAD BODIES "\"joints\":[{\"name\":\"F\",\"type\":\"free\"," ON_GROUND

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grading of Problem 3: right answers in many spellings, each known mistake named, unreadable files refused with a reason.
+// Grading of Problem 3: right answers in many spellings, each known mistake named, unreadable files
+// refused with a reason.
 #include "grade/grade.h"
 
 #include "support/alloc.h"

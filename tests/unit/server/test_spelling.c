@@ -97,7 +97,8 @@ static void any_bytes_end_and_grow_by_a_factor_alone(void **state) {
         hn_strbuf b;
         hn_strbuf_init(&b);
         hn_spelling_normalise(&b, text);
-        // the longest replacement makes seven bytes of two, with brackets and a product sign round it
+        // the longest replacement makes seven bytes of two, with brackets and a product sign round
+        // it
         assert_true(b.n < 8 * sizeof text);
         hn_strbuf_reset(&b);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every scene of the library at many random states near its start; where nothing takes energy, none is lost but by the order.
+// Every scene of the library at many random states near its start; where nothing takes energy, none
+// is lost but by the order.
 
 #include "session/model/model.h"
 #include "study/run/run.h"
@@ -50,8 +51,8 @@ static double energy_change(const hn_model *model, const char *id, double h) {
     return change;
 }
 
-// Order four: half the step, a sixteenth of the change, but for terms of the next order and where rounding is all there is. On a
-// free rotation the leading term keeps the energy: a thirty-second.
+// Order four: half the step, a sixteenth of the change, but for terms of the next order and where
+// rounding is all there is. On a free rotation the leading term keeps the energy: a thirty-second.
 static void energy_is_kept_to_the_order_of_the_method(void **state) {
     (void)state;
     int seen = 0;

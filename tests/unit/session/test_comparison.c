@@ -122,7 +122,8 @@ static void a_second_comparison_and_a_reset_give_the_same_bits(void **state) {
     hn_library_free(lib);
 }
 
-// a step of 0.4 s on a crank that turns at 4 rad/s cannot hold: the loop opens and the state blows up
+// a step of 0.4 s on a crank that turns at 4 rad/s cannot hold: the loop opens and the state blows
+// up
 static void a_failed_method_stays_with_its_last_state_and_its_reason(void **state) {
     (void)state;
     hn_library *lib = open_library();
@@ -258,7 +259,8 @@ static void the_columns_of_a_run_have_one_length(void **state) {
     hn_library_free(lib);
 }
 
-// 0.0137 is no multiple of the step: the sample comes from a side step, and the run goes on as if nobody had looked
+// 0.0137 is no multiple of the step: the sample comes from a side step, and the run goes on as if
+// nobody had looked
 static void looking_between_steps_does_not_change_a_run(void **state) {
     (void)state;
     hn_library *lib = open_library();

@@ -21,11 +21,13 @@ static void open_import(hn_model *m, const hn_imported *x) {
     }
 }
 
-/// Two links in the world's x-z plane, turned about y by angles p1 and p2, written as formulas of a Lagrangian.
+/// Two links in the world's x-z plane, turned about y by angles p1 and p2, written as formulas of a
+/// Lagrangian.
 static const char BY_HAND[] =
     "{\"holonom\": 1, \"name\": \"by-hand\", \"lagrangian\": {"
     "\"coordinates\": [{\"name\": \"p1\", \"rate\": \"w1\"}, {\"name\": \"p2\", \"rate\": \"w2\"}],"
-    // upper: com 0.25 along its x; lower: joint at 0.5, com (0.2, 0.1) in its x and z; y turns x to -z
+    // upper: com 0.25 along its x; lower: joint at 0.5, com (0.2, 0.1) in its x and z; y turns x to
+    // -z
     "\"kinetic\": \"1.2*0.25^2*w1^2/2 + 0.025*w1^2/2 + 0.03*(w1 + w2)^2/2 + 0.8/2*(0.25*w1^2 + "
     "(0.2^2 + 0.1^2)*(w1 + w2)^2 + 2*0.5*w1*(w1 + w2)*(0.2*cos(p2) + 0.1*sin(p2)))\","
     "\"potential\": \"-1.2*9.81*0.25*sin(p1) + 0.8*9.81*(-0.5*sin(p1) - 0.2*sin(p1 + p2) + "
@@ -147,7 +149,8 @@ static void a_four_bar_closed_by_connect_moves_as_our_own(void **state) {
     imported_close(&y);
 }
 
-/// Freedoms counted by hand: Stewart 6 + 6*3 - 6*3; leg 8 speeds, 3 rows of the ball, 1 of the coupling.
+/// Freedoms counted by hand: Stewart 6 + 6*3 - 6*3; leg 8 speeds, 3 rows of the ball, 1 of the
+/// coupling.
 static void spatial_loops_close_where_the_file_is_drawn(void **state) {
     (void)state;
     static const struct {

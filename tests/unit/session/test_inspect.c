@@ -104,7 +104,8 @@ static void list_is(const cJSON *object, const char *key, int n, const char *con
     }
 }
 
-// a plane says: no way along its normal, no tilt; the compiler sees it also where the plane is oblique
+// a plane says: no way along its normal, no tilt; the compiler sees it also where the plane is
+// oblique
 static void rows_that_a_plane_leaves_out_are_named(void **state) {
     static const char *const oblique[] = {"B: 3rd axis", "B: tilt 1", "B: tilt 2"},
                              *const upright[] = {"B: z", "B: tilt 1", "B: tilt 2"};
@@ -122,8 +123,9 @@ static void rows_that_a_plane_leaves_out_are_named(void **state) {
     hn_library_free(lib);
 }
 
-// teeth of sun, planet and ring fix each planet and the carrier: the second and third planet's ring teeth add nothing. With the
-// first planet's two rows and its own sun row the carrier and the planet are known, so that is what each follows from.
+// teeth of sun, planet and ring fix each planet and the carrier: the second and third planet's ring
+// teeth add nothing. With the first planet's two rows and its own sun row the carrier and the
+// planet are known, so that is what each follows from.
 static void the_teeth_of_further_planets_follow_from_the_first(void **state) {
     static const char *const second[] = {"sun and planet 1", "sun and planet 2",
                                          "ring and planet 1"};
@@ -141,7 +143,8 @@ static void the_teeth_of_further_planets_follow_from_the_first(void **state) {
     hn_library_free(lib);
 }
 
-// two shafts that are parallel, five closure rows of which a spatial loop of one freedom has room for two
+// two shafts that are parallel, five closure rows of which a spatial loop of one freedom has room
+// for two
 static void dependent_rows_of_shaft_and_bennett_are_named(void **state) {
     static const char *const first[] = {"U2: 1st axis"};
     static const char *const two[] = {"J3: 1st axis", "J3: 2nd axis"};
@@ -175,7 +178,8 @@ static void as_many_rows_follow_as_assembly_counts(void **state) {
     hn_library_free(lib);
 }
 
-// the nine unknowns of two four-bars are dense, forty-one of ten are few against the square of their number
+// the nine unknowns of two four-bars are dense, forty-one of ten are few against the square of
+// their number
 static void who_factors_newton_matrices_is_told(void **state) {
     (void)state;
     hn_library *lib = open_library();

@@ -203,7 +203,8 @@ static void a_state_with_an_unknown_name_is_refused_with_a_hint(void **state) {
     assert_int_equal(hn_model_terms_json(&b, model, 0, &right, 1, &diags), HN_OK);
     cJSON *doc = parse_and_reset(&b);
     assert_near(entry(doc, "q", 0, -1), 0.7, 1e-15);
-    // only the named entry moved: the loop is open by the chord of 0.3 rad on a 1 m crank, and that is told
+    // only the named entry moved: the loop is open by the chord of 0.3 rad on a 1 m crank, and that
+    // is told
     assert_near(cJSON_GetObjectItem(doc, "gap")->valuedouble, 2 * sin(0.15), 1e-12);
     cJSON_Delete(doc);
     hn_model_free(model);
@@ -216,7 +217,8 @@ static void equations_say_which_quaternion_an_orientation_is(void **state) {
     hn_strbuf_init(&b);
     hn_diags diags = {0};
     assert_int_equal(hn_model_equations(&b, model, HN_EQUATIONS_TEXT, &diags), HN_OK);
-    // coordinates behind the platform's orientation keep their own symbols, one entry of q further on than of v
+    // coordinates behind the platform's orientation keep their own symbols, one entry of q further
+    // on than of v
     assert_non_null(strstr(hn_strbuf_text(&b),
                            "y of the rotation vector of the unit quaternion (e0_platform, "
                            "e1_platform, e2_platform, e3_platform)"));
@@ -291,7 +293,8 @@ static void a_parameter_changes_the_mechanism(void **state) {
     hn_model_free(model);
 }
 
-/// Whether every point of every fixed shape (`standing` of them solid bars) is told as ground, and no point of a body.
+/// Whether every point of every fixed shape (`standing` of them solid bars) is told as ground, and
+/// no point of a body.
 static void assert_ground(const char *scene, int n_standing) {
     hn_model *model = load(&(hn_model_source){.name = scene});
     const hn_system *sys = hn_model_system(model);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The derivatives that formulations give to implicit integrators, on every scene of the library against differences of their own
-// right-hand sides, and the systems solved by structure against the full matrix.
+// The derivatives that formulations give to implicit integrators, on every scene of the library
+// against differences of their own right-hand sides, and the systems solved by structure against
+// the full matrix.
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
@@ -33,8 +34,8 @@ static int close_library(void **state) {
 
 enum { STATES = 2 };
 static const double STEP = 2e-5;
-// Differences over 2 STEP leave STEP^2 times a third derivative and rounding over STEP, below 1e-4 of the largest slope at these
-// states; derivatives that miss a term are off by its whole size.
+// Differences over 2 STEP leave STEP^2 times a third derivative and rounding over STEP, below 1e-4
+// of the largest slope at these states; derivatives that miss a term are off by its whole size.
 static const double TOL = 1e-4;
 static const double MILD =
     1e3; // penalty: the strong ones drown digits of the masses, which differences then lack
@@ -174,7 +175,8 @@ static void slopes_agree_along_closed_motions(bench *b) {
     }
 }
 
-// where rows depend on each other the right-hand side has no derivative in directions that open the loops: there they part
+// where rows depend on each other the right-hand side has no derivative in directions that open the
+// loops: there they part
 static void slopes_agree_in_every_direction(bench *b) {
     double y[256], y_back[256];
     for (int k = 0; k < b->n; k++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every scene of the library, at random states near its start and in motion: facts that hold for any mechanism.
+// Every scene of the library, at random states near its start and in motion: facts that hold for
+// any mechanism.
 
 #include "session/model/model.h"
 #include "study/run/run.h"
@@ -53,7 +54,8 @@ static void every_shipped_scene_runs_two_seconds_by_two_methods(void **state) {
             if (hn_run_advance(run, fmin(2, s->duration)) != HN_OK) {
                 fail_msg("%s by %s: %s", source.name, method, hn_run_get_summary(run).reason);
             }
-            // a change point, met head-on, is the one place where loops stay open by what phi can tell there
+            // a change point, met head-on, is the one place where loops stay open by what phi can
+            // tell there
             assert_true(k == 0 || hn_run_get_summary(run).worst_gap < 1e-6);
             hn_run_free(run);
             hn_model_free(model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps of stability: the same cells whatever happens on the way, boundaries that agree, requests that are refused.
+// Maps of stability: the same cells whatever happens on the way, boundaries that agree, requests
+// that are refused.
 #include "session/stability/stability.h"
 
 #include "support/near.h"

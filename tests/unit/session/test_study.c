@@ -186,7 +186,8 @@ static void the_same_study_twice_at_once_is_refused(void **state) {
     close_place(&p);
 }
 
-/// A study of four free angles without a clock, to T: the bands of the coordinates' error, by operations.
+/// A study of four free angles without a clock, to T: the bands of the coordinates' error, by
+/// operations.
 static hn_pareto bands_of(const char *scene, double T, double *horizon) {
     place p;
     hn_study *study = NULL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every fixed-step formulation with every fixed-step integrator converges with the integrator's order: slopes fitted over
-// six steps against the reference four-bar at t = 1, known to 18 digits.
+// Every fixed-step formulation with every fixed-step integrator converges with the integrator's
+// order: slopes fitted over six steps against the reference four-bar at t = 1, known to 18 digits.
 
 #include "study/cost/convergence.h"
 #include "support/model.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Long runs of mechanisms with balls: RATTLE on the group of turns beside rk4 on the projected system.
+// Long runs of mechanisms with balls: RATTLE on the group of turns beside rk4 on the projected
+// system.
 #include "support/model.h"
 #include "support/near.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No run ends on another branch of the motion without a word: many methods over many steps and tolerances, on mechanisms whose
-// branches cross or come close. Where the run stands is judged by closed forms.
+// No run ends on another branch of the motion without a word: many methods over many steps and
+// tolerances, on mechanisms whose branches cross or come close. Where the run stands is judged by
+// closed forms.
 
 #include "support/motion.h"
 #include "support/near.h"

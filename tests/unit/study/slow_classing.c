@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Model error or discretisation error, on eight scenes: the null-space form as the lesson prints it is told from the truth by
-// its points alone, and no sound method is accused.
+// Model error or discretisation error, on eight scenes: the null-space form as the lesson prints it
+// is told from the truth by its points alone, and no sound method is accused.
 #include "support/near.h"
 #include "support/trial.h"
 

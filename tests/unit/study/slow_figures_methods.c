@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of an independent program for the classical formulations, reproduced: the tables of Baumgarte's alpha and of
-// projection on the reference four-bar, where alpha tied to the step costs the order, the end of an unstabilised pendulum; and
-// the null-space forms with their bases. Errors are of all coordinates at the end, the largest, against projection@dop853.
+// Figures of an independent program for the classical formulations, reproduced: the tables of
+// Baumgarte's alpha and of projection on the reference four-bar, where alpha tied to the step costs
+// the order, the end of an unstabilised pendulum; and the null-space forms with their bases. Errors
+// are of all coordinates at the end, the largest, against projection@dop853.
 
 #include "study/cost/convergence.h"
 #include "support/motion.h"
@@ -110,8 +111,9 @@ static void alpha_tied_to_the_step_costs_rk4_its_order_and_euler_nothing(void **
     (void)state;
     hn_model m;
     hn_model_open_closed(&m, "fb0-lagrangian", NULL);
-    // alpha^2 times the O(h^2) by which inner stages leave the constraints: O(1) for alpha = c / h, two orders lost. Printed are 2.1
-    // to 2.3 and 3.3, slopes at these steps; smaller ones come down to 2 and 3.
+    // alpha^2 times the O(h^2) by which inner stages leave the constraints: O(1) for alpha = c / h,
+    // two orders lost. Printed are 2.1 to 2.3 and 3.3, slopes at these steps; smaller ones come
+    // down to 2 and 3.
     assert_near(order_with(&m, "rk4", 1, 1), 2.2, 0.1);
     assert_near(order_with(&m, "rk4", 1.6, 1), 2.1, 0.1);
     assert_near(order_with(&m, "rk4", 1, 0.5), 3.3, 0.1);
@@ -168,7 +170,8 @@ static void a_pendulum_without_stabilisation_comes_off_its_rod_for_good(void **s
     hn_model m;
     hn_model_open_text(&m, bob, NULL);
     hn_run *run = hn_motion_start(&m, "index1@rk4:h=1e-2");
-    // 1e3 and 1e4 steps: with the square of time; then it is lost, in step 98,918 of the printed run
+    // 1e3 and 1e4 steps: with the square of time; then it is lost, in step 98,918 of the printed
+    // run
     (void)hn_motion_at(run, 10);
     must_be(hn_run_get_summary(run).worst_gap, 4e-5, 1.15, "1e3 steps"); // one digit is printed
     (void)hn_motion_at(run, 100);

@@ -6,16 +6,19 @@
 #include <stdio.h>
 #include <string.h>
 
-// SUNDIALS IDA on the reference four-bar to t = 1 s, as an independent program found it (SUNDIALS 6.4.1, dense matrix, difference
-// quotients, the library's own first step, atol = rtol / 10): steps, error-test failures, flags, errors. What the library can and
-// cannot do with each form of the constraints is one row each. With the same settings the counts come out the same to
-// a step where the residual is the same, entry by entry; the differences:
-//   index2, nothing suppressed at 1e-4: 3335 steps for 3345. Every step is turned down some six times out of seven, and rounding decides.
-//   the same at 1e-6 ends for want of steps: t = 0.06 there, and 0.04 here after 100,000.
-//   ggl: 99 and 296 steps for 96 and 275. There the kinematics had the identity for weight, here the mass matrix.
-//   With nothing suppressed ggl creeps as index2 does; with the identity it gave up at the start (flags -3, -4).
-//   ggl at 1e-10: flag -4 at the start for 795 steps. The library's first step of 1e-12 s divides the rounding of q
-//   by itself, and with this weight that is more than the Newton test lets mu have. Our own first step mends it (last row but one).
+// SUNDIALS IDA on the reference four-bar to t = 1 s, as an independent program found it (SUNDIALS
+// 6.4.1, dense matrix, difference quotients, the library's own first step, atol = rtol / 10):
+// steps, error-test failures, flags, errors. What the library can and cannot do with each form of
+// the constraints is one row each. With the same settings the counts come out the same to a step
+// where the residual is the same, entry by entry; the differences:
+//   index2, nothing suppressed at 1e-4: 3335 steps for 3345. Every step is turned down some six
+//   times out of seven, and rounding decides. the same at 1e-6 ends for want of steps: t = 0.06
+//   there, and 0.04 here after 100,000.
+//   ggl: 99 and 296 steps for 96 and 275. There the kinematics had the identity for weight, here
+//   the mass matrix. With nothing suppressed ggl creeps as index2 does; with the identity it gave
+//   up at the start (flags -3, -4). ggl at 1e-10: flag -4 at the start for 795 steps. The library's
+//   first step of 1e-12 s divides the rounding of q by itself, and with this weight that is more
+//   than the Newton test lets mu have. Our own first step mends it (last row but one).
 
 typedef struct row {
     const char *form;     // formulation

@@ -43,7 +43,8 @@ static void the_exact_motion_is_the_published_one(void **state) {
     hn_ladder_motion_fill(&motion, 1, 1.92371181733896585);
     assert_near(motion.b[HN_LADDER_GRID], 6.28318530717958648, 1e-11);
     assert_near(motion.rate[HN_LADDER_GRID], 1, 1e-11);
-    // N = 2 after 10 s: x of the first tip, published for the double four-bar, to the digits it has at h = 1.25e-4
+    // N = 2 after 10 s: x of the first tip, published for the double four-bar, to the digits it has
+    // at h = 1.25e-4
     hn_ladder_motion_fill(&motion, 2, 10);
     assert_near(sin(hn_ladder_motion_angle(&motion, 10)), 0.32845738, 1e-6);
 }

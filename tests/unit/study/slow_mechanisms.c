@@ -163,7 +163,8 @@ static void a_parallelogram_stays_parallel_and_swings_as_a_pendulum(void **state
 
 static void whitworths_ram_has_the_stroke_and_the_time_ratio_of_the_formula(void **state) {
     (void)state;
-    // without gravity the motor turns the crank steadily; the formula is about its angles, whatever its speed
+    // without gravity the motor turns the crank steadily; the formula is about its angles, whatever
+    // its speed
     const hn_setting level = {"g", 0};
     const double r = 0.3, d = 0.15, e = 0.2, l = 0.7;
     hn_trial trial;
@@ -213,7 +214,8 @@ static void a_ring_of_three_is_a_triangle_that_swings_as_a_pendulum(void **state
     const hn_setting three = {"n", 3};
     hn_trial trial;
     open_scene(&trial, "ring", &three, 1);
-    // side l = 1 m: centre at l/sqrt 3 from the pivot, inertia about it m (l^2/12 + l^2/12) plus m l^2/3: m l^2/2
+    // side l = 1 m: centre at l/sqrt 3 from the pivot, inertia about it m (l^2/12 + l^2/12) plus m
+    // l^2/3: m l^2/2
     const double centre = 1 / sqrt(3), inertia = 0.5;
     const int th1 = coordinate(&trial, "th1");
     hn_run *run = hn_trial_run(&trial, "projection@rk4:h=1e-3");
@@ -279,7 +281,8 @@ static void bennetts_loop_moves_with_three_rows_too_many(void **state) {
     hn_trial_close(&trial);
 }
 
-/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of them.
+/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of
+/// them.
 static void every_setting_in_the_ranges_closes_the_loops(void **state) {
     (void)state;
     static const char *const scenes[] = {

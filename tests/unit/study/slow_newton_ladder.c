@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ladder of N four-bars by integrators with Newton matrices: what a step costs for each loop as N grows.
+// The ladder of N four-bars by integrators with Newton matrices: what a step costs for each loop as
+// N grows.
 
 #include "support/model.h"
 #include "support/motion.h"
@@ -19,7 +20,8 @@ static double cost_per_loop(int n_loops, const char *method) {
     return s.cost.ops / n_loops;
 }
 
-// A dense factorisation costs 400 times as much a loop when there are 20 times as many; 1.5 leaves room for an iteration more.
+// A dense factorisation costs 400 times as much a loop when there are 20 times as many; 1.5 leaves
+// room for an iteration more.
 static void a_newton_step_costs_the_same_for_each_loop_however_many_there_are(void **state) {
     (void)state;
     static const char *const methods[] = {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Example mechanisms of other programs, with their published figures and with states that were found by two independent
+// Example mechanisms of other programs, with their published figures and with states that were
+// found by two independent
 // computations: Drake, the Modelica Standard Library, Exudyn.
 
 #include "support/reference.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two problems of the test set for initial value problems: Andrews' seven-body squeezer, as bodies and joints and as a
-// Lagrangian, and the car axis, whose road moves. Hairer & Wanner 1996, VII.7; Mazzia & Magherini 2008.
+// Two problems of the test set for initial value problems: Andrews' seven-body squeezer, as bodies
+// and joints and as a Lagrangian, and the car axis, whose road moves. Hairer & Wanner 1996, VII.7;
+// Mazzia & Magherini 2008.
 
 #include "support/reference.h"
 #include "support/near.h"
@@ -17,7 +18,8 @@ static void the_car_axis_meets_its_reference_at_all_times(void **state) {
     hn_reference_check("caraxis");
 }
 
-/// By each component's own size, which is harder than by the largest it takes: gamma is 0.04 there, beta 16.
+/// By each component's own size, which is harder than by the largest it takes: gamma is 0.04 there,
+/// beta 16.
 static void must_have_twelve_digits(const double *found, const double *exact, int n) {
     for (int i = 0; i < n; i++) {
         assert_rel(found[i], exact[i], 1e-12);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dormand-Prince 5 on an undamped vibration: a step at 1.05 of the limit grows by 3e-5 only, so that it takes 100,000 steps to
-// see on which side of the limit one is.
+// Dormand-Prince 5 on an undamped vibration: a step at 1.05 of the limit grows by 3e-5 only, so
+// that it takes 100,000 steps to see on which side of the limit one is.
 #include "study/stability/stability.h"
 
 #include "support/model.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole runs against trusted numbers: the reference four-bar at t = 1 and 2, found by two independent computations that share
-// 13 digits, and the N-four-bar, whose motion is known in closed form.
+// Whole runs against trusted numbers: the reference four-bar at t = 1 and 2, found by two
+// independent computations that share 13 digits, and the N-four-bar, whose motion is known in
+// closed form.
 
 #include "support/motion.h"
 #include "support/near.h"
@@ -12,7 +13,8 @@ typedef struct golden {
     double t, th1, th2, th3, w1, lambda[2];
 } golden;
 
-// angles and rate: one-coordinate equation by extrapolation in 30-digit arithmetic, all digits shown agree for two step sizes;
+// angles and rate: one-coordinate equation by extrapolation in 30-digit arithmetic, all digits
+// shown agree for two step sizes;
 // multipliers: 13 digits
 static const golden REFERENCE[] = {
     {1,
@@ -30,7 +32,8 @@ static const golden REFERENCE[] = {
 };
 static const double ENERGY = 49.34675722838445;
 
-/// Rates of coupler and rocker for a crank rate, from the closed loop by Cramer's rule (l = 1, 2, 1.8).
+/// Rates of coupler and rocker for a crank rate, from the closed loop by Cramer's rule (l = 1, 2,
+/// 1.8).
 static void other_rates(const golden *g, double *w2, double *w3) {
     double det = 2 * sin(g->th2 - g->th3);
     *w2 = -sin(g->th1 - g->th3) * g->w1 / det;
@@ -175,7 +178,8 @@ static void a_loop_closed_twice_moves_as_if_closed_once(void **state) {
     }
 }
 
-/// Angle from the upright, clockwise, and its rate: exact, ((N+1)/3 + N) th'' = g ((N+1)/2 + N) sin th.
+/// Angle from the upright, clockwise, and its rate: exact, ((N+1)/3 + N) th'' = g ((N+1)/2 + N) sin
+/// th.
 static void must_follow_ladder(const char *settings, const char *method, const double (*exact)[3],
                                int n, double tol) {
     hn_model m;

@@ -45,7 +45,8 @@ static void parts_add_up_to_the_error_and_the_energy_of_every_kind_of_method(voi
         // first order: what is left out is the square of the error, against a motion known to 1e-12
         assert_near(a.sum, a.error, 1e-3 * fabs(a.error) + 2e-12);
         assert_near(bill_of(&a), a.energy, 1e-12 * a.swing);
-        // nothing comes from outside where nothing acts from outside: flows are followed to 1e-14 in each of up to 1000 steps
+        // nothing comes from outside where nothing acts from outside: flows are followed to 1e-14
+        // in each of up to 1000 steps
         assert_true(a.conservative);
         assert_near(a.bill[HN_BILL_OUTSIDE], 0, 1e-11 * a.swing);
     }
@@ -112,8 +113,8 @@ static void drift_is_what_a_projection_would_have_spared(void **state) {
     const hn_account raw = account_of(&m, "index1@rk4:h=1e-2", 1),
                      closed = account_of(&m, "projection@rk4:h=1e-2", 1);
     hn_model_close(&m);
-    // the same steps of the same integrator: along the loops' motion they do the same harm, to a few parts in a thousand of it,
-    // because the states they start from are apart by the drift
+    // the same steps of the same integrator: along the loops' motion they do the same harm, to a
+    // few parts in a thousand of it, because the states they start from are apart by the drift
     assert_rel(raw.part[HN_CAUSE_TRUNCATION], closed.part[HN_CAUSE_TRUNCATION], 5e-3);
     assert_rel(raw.part[HN_CAUSE_DRIFT], raw.error - closed.error, 5e-3);
     assert_near(closed.part[HN_CAUSE_DRIFT], 0, 1e-4 * fabs(raw.part[HN_CAUSE_DRIFT]));

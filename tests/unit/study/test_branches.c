@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other branches and other frames: jumps between assembly modes with a ball in the loop, links that stay folded, rows that part
-// where loops stand open, a platform carried through its singular pose; the same motion whatever the units and wherever it is.
+// Other branches and other frames: jumps between assembly modes with a ball in the loop, links that
+// stay folded, rows that part where loops stand open, a platform carried through its singular pose;
+// the same motion whatever the units and wherever it is.
 
 #include "support/motion.h"
 #include "support/near.h"
@@ -26,7 +27,7 @@ static const hn_incident *find(const hn_run *run, hn_incident_code code, const c
     return NULL;
 }
 
-// branches --------------------------------------------------------------------------------------------------
+// ---- branches ----
 
 static void a_jump_to_the_other_assembly_mode_is_told_with_a_ball_in_the_loop(void **state) {
     (void)state;
@@ -50,7 +51,8 @@ static void a_jump_to_the_other_assembly_mode_is_told_with_a_ball_in_the_loop(vo
 
 static void a_motion_that_turns_back_is_no_jump(void **state) {
     (void)state;
-    // both swing; speeds of order 1 are not exactly along the loops, and near the turn that is all there is of them
+    // both swing; speeds of order 1 are not exactly along the loops, and near the turn that is all
+    // there is of them
     static const char *const scenes[] = {"scott-russell", "peaucellier"};
     for (int k = 0; k < 2; k++) {
         hn_model m;
@@ -103,7 +105,7 @@ static void rows_that_part_with_the_gap_do_not_throw_a_run(void **state) {
     hn_model_close(&m);
 }
 
-// a platform on six legs ----------------------------------------------------------------------------------------
+// ---- a platform on six legs ----
 
 static double rods_sigma(double degrees) {
     char setting[80];
@@ -220,7 +222,8 @@ static void speeds_that_turn_round_in_a_step_are_told(void **state) {
 
 static void a_swing_that_turns_back_is_no_jump_of_its_speeds(void **state) {
     (void)state;
-    // released at rest, one step ends just past each end of the swing, with speeds reversed and small
+    // released at rest, one step ends just past each end of the swing, with speeds reversed and
+    // small
     static const char *const methods[] = {"projection@rk4:h=1e-2", "projection@rk4:h=1e-3",
                                           "nullspace@rk4:h=5e-3", "projection@dop853:rtol=1e-6"};
     hn_model m;
@@ -264,7 +267,8 @@ an_iteration_that_fails_at_a_flat_pose_is_told_with_the_pose_and_a_way_through(v
     hn_model_close(&m);
 }
 
-// where th1 passes pi, two of the five dependent rows of the linkage vanish, and it moves on as anywhere
+// where th1 passes pi, two of the five dependent rows of the linkage vanish, and it moves on as
+// anywhere
 static void rows_that_vanish_beside_others_that_do_not_stop_nobody(void **state) {
     (void)state;
     static const char *const methods[] = {"projection@gauss2:h=1e-3", "projection@gauss3:h=1e-3",
@@ -294,7 +298,7 @@ static void energy_that_is_lost_little_by_little_is_told(void **state) {
     hn_model_close(&m);
 }
 
-// other frames ------------------------------------------------------------------------------------------------------
+// ---- other frames ----
 
 /// th1 of the reference four-bar after 1 s, every length (and gravity) times `scale`.
 static double crank_after_a_second(double scale) {
@@ -333,7 +337,8 @@ static void a_mechanism_of_micrometres_or_of_megametres_moves_as_one_of_metres(v
     (void)state;
     const double metres = crank_after_a_second(1);
     assert_near(metres, 2.72677524435375, 1e-10); // h^4
-    // neither is a power of two: lengths are rounded anew, and 500 steps make some 50 roundings of it
+    // neither is a power of two: lengths are rounded anew, and 500 steps make some 50 roundings of
+    // it
     assert_near(crank_after_a_second(1e-6), metres, 5e-14);
     assert_near(crank_after_a_second(1e6), metres, 5e-14);
 }
@@ -355,7 +360,8 @@ static void rotate_quantity(double R[3][3], hn_quantity *x, const double *shift)
     }
 }
 
-/// Turns about (1, 2, -2)/3 by 1.1 rad and shifts whatever belongs to the ground, and gravity with it.
+/// Turns about (1, 2, -2)/3 by 1.1 rad and shifts whatever belongs to the ground, and gravity with
+/// it.
 static void put_elsewhere(hn_scene *scene) {
     const double k[3] = {1.0 / 3, 2.0 / 3, -2.0 / 3}, c = cos(1.1), s = sin(1.1);
     const double shift[3] = {0.7, -1.3, 0.4};

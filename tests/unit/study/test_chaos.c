@@ -44,7 +44,8 @@ static void a_top_that_precesses_is_regular(void **state) {
     const hn_chaos c = chaos_of("heavy-top", NULL, 10);
     assert_true(c.possible);
     assert_false(c.chaotic);
-    // integrable: neighbours part like t, by a factor 2 in the second half, give or take how they swing
+    // integrable: neighbours part like t, by a factor 2 in the second half, give or take how they
+    // swing
     assert_near(c.growth, log(2), 0.7);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Index 2 with rows that depend on each other: Bennett's loop, five rows of rank two, keeps closed and keeps its energy.
+// Index 2 with rows that depend on each other: Bennett's loop, five rows of rank two, keeps closed
+// and keeps its energy.
 
 #include "support/model.h"
 #include "support/motion.h"
@@ -10,7 +11,9 @@
 typedef struct trial {
     const char *method;
     double
-        energy; // error allowed after 2 s [J], of some 10 J of kinetic energy: ten times what the order leaves
+        // error allowed after 2 s [J], of some 10 J of kinetic energy: ten times what the order
+        // leaves
+        energy;
 } trial;
 
 static void dependent_rows_are_closed_after_each_step(void **state) {
@@ -33,7 +36,8 @@ static void dependent_rows_are_closed_after_each_step(void **state) {
     hn_model_close(&m);
 }
 
-// on the four-bar no row depends on another: without `close` the gap opens, with it the gap is that of the last steps alone
+// on the four-bar no row depends on another: without `close` the gap opens, with it the gap is that
+// of the last steps alone
 static void positions_are_projected_every_so_many_steps_on_request(void **state) {
     (void)state;
     static const char *const methods[] = {"index2@hem3:h=1e-2", "index2:close=1@hem3:h=1e-2",

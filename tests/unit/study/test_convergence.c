@@ -22,7 +22,8 @@ static void points_without_a_logarithm_are_left_out(void **state) {
     assert_true(isnan(hn_fit_order(2, x, y)));
 }
 
-// th1, th2, th3 and the speed of the crank of FB0 at t = 1: two independent solutions agree on these digits
+// th1, th2, th3 and the speed of the crank of FB0 at t = 1: two independent solutions agree on
+// these digits
 static const double reference_q[3] = {2.72677524435375, 0.43412079439446, 2.37837623328494};
 #define REFERENCE_W1 4.16807616253500
 

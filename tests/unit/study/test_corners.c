@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// a wheel on a torsional spring and a damper, I = 2, k = 50, c = 0.8, pushed by a torque of 1e3 N m from t = 0.5 s on
+// a wheel on a torsional spring and a damper, I = 2, k = 50, c = 0.8, pushed by a torque of 1e3 N m
+// from t = 0.5 s on
 #define WHEEL                                                                                \
     "{\"holonom\":1,\"name\":\"x\",\"bodies\":[{\"name\":\"wheel\",\"mass\":1,\"inertia\":{" \
     "\"zz\":2}}],\"joints\":[{\"name\":\"A\",\"type\":\"revolute\",\"parent\":{\"body\":"    \
@@ -58,7 +59,8 @@ static void rk4_keeps_its_order_over_a_corner_of_a_table(void **state) {
     assert_near(slope(STEP_TABLE, "heun"), 2, 0.2);
 }
 
-// the same torque as a formula hides the corner: the error is a whole step's share of the push, far above that of rk4
+// the same torque as a formula hides the corner: the error is a whole step's share of the push, far
+// above that of rk4
 static void a_corner_that_is_hidden_costs_the_order(void **state) {
     (void)state;
     const double hidden = error_at(STEP_FORMULA, "rk4", 3.0 / 350, 1.5),
@@ -117,8 +119,8 @@ static void an_adaptive_run_lands_on_the_corner_and_rejects_little(void **state)
     }
 }
 
-// implicit integrators and libraries carry slopes, histories and accelerations that end at a corner; the tolerance of a step for
-// a hundred steps of 20 rad
+// implicit integrators and libraries carry slopes, histories and accelerations that end at a
+// corner; the tolerance of a step for a hundred steps of 20 rad
 static void implicit_and_library_integrators_begin_anew_at_the_corner(void **state) {
     (void)state;
     static const char *const methods[] = {"index1@radau5:rtol=1e-8", "ggl@radau5:rtol=1e-8",
@@ -205,7 +207,8 @@ static void straight_lines_of_a_table_are_integrated_exactly(void **state) {
     hn_model_close(&m);
 }
 
-// a follower of a ramp at constant speed is left behind by nothing: target and rate are met, torque is what the spring asks
+// a follower of a ramp at constant speed is left behind by nothing: target and rate are met, torque
+// is what the spring asks
 static void a_follower_without_limit_keeps_to_a_target_that_the_spring_does_not_pull(void **state) {
     (void)state;
     hn_model m;

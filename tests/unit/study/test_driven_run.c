@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mechanisms that are moved from outside: where every freedom is prescribed nothing but the drive says how large a step may be.
+// Mechanisms that are moved from outside: where every freedom is prescribed nothing but the drive
+// says how large a step may be.
 
 #include "support/model.h"
 #include "support/motion.h"
@@ -7,7 +8,8 @@
 
 #include <math.h>
 
-// a double pendulum of which both angles are prescribed: a = 3 t + sin(5 t) / 5, b = sin^2 a + t / 10
+// a double pendulum of which both angles are prescribed: a = 3 t + sin(5 t) / 5, b = sin^2 a + t /
+// 10
 static const char PUPPET[] =
     "{\"holonom\": 1, \"name\": \"puppet\", \"gravity\": [0, -9.81, 0], \"bodies\": ["
     "{\"name\": \"upper\", \"mass\": 1, \"com\": [0.5, 0], \"inertia\": {\"zz\": 0.0833}},"
@@ -29,8 +31,9 @@ static double error_at(const hn_model *m, const char *method, double t) {
     return error;
 }
 
-// between the ends of steps too: a tolerance bounds what interpolation leaves there, the tolerance over its weight
-// (hn_collocation_estimate_weight) times ten for the times that are not the one looked at
+// between the ends of steps too: a tolerance bounds what interpolation leaves there, the tolerance
+// over its weight (hn_collocation_estimate_weight) times ten for the times that are not the one
+// looked at
 static void steps_follow_the_drive_where_nothing_else_moves(void **state) {
     (void)state;
     static const struct {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must hold whatever the speed of a mechanism, and how explicit Euler gains energy: closed forms.
+// What must hold whatever the speed of a mechanism, and how explicit Euler gains energy: closed
+// forms.
 
 #include "support/motion.h"
 #include "support/near.h"
@@ -7,7 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/// Relative energy error of the reference four-bar without gravity after ten radians of its crank's starting speed.
+/// Relative energy error of the reference four-bar without gravity after ten radians of its crank's
+/// starting speed.
 static double relative_energy_error(const char *formulation, const char *integrator, double speed) {
     hn_model m;
     char method[96];
@@ -39,7 +41,8 @@ without_gravity_ten_thousand_times_the_speed_gives_the_same_relative_errors(void
     }
 }
 
-/// Energy after t over that at the start, of a pendulum that swings by a ten-thousandth of a radian.
+/// Energy after t over that at the start, of a pendulum that swings by a ten-thousandth of a
+/// radian.
 static double euler_growth(double h, double t) {
     hn_model m;
     char method[48];

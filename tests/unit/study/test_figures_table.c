@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures that take little time, each topic a test: tests/support/figures.h says what a figure is.
+// The figures that take little time, each topic a test: tests/support/figures.h says what a figure
+// is.
 #include "support/figures.h"
 
 int main(void) {

@@ -16,7 +16,7 @@
 
 enum { MOST = 64 };
 
-// --- in closed form ---------------------------------------------------------------------------------------------
+// ---- in closed form ----
 
 static hn_status oscillator_back(void *self, double t, const double *y, const double *w,
                                  double *out) {
@@ -93,7 +93,7 @@ static void slopes_that_fail_are_told(void **state) {
     hn_arena_free(arena);
 }
 
-// --- mechanisms: against differences of flows -------------------------------------------------------------------
+// ---- mechanisms: against differences of flows ----
 
 typedef struct motion {
     const hn_model *m;
@@ -181,7 +181,8 @@ static void weights_carried_back_are_differences_of_flows_of(const char *name, d
 
 static void weights_carried_back_are_differences_of_flows(void **state) {
     (void)state;
-    // one loop; balls that turn; several loops in space; rows that depend on others, in the plane and in space
+    // one loop; balls that turn; several loops in space; rows that depend on others, in the plane
+    // and in space
     weights_carried_back_are_differences_of_flows_of("fb0", 0.1);
     weights_carried_back_are_differences_of_flows_of("heavy-top", 0.05);
     weights_carried_back_are_differences_of_flows_of("spinning-block", 0.1);

@@ -13,7 +13,8 @@
 
 static void an_open_gap_decays_under_baumgarte_as_the_closed_formula_says(void **state) {
     (void)state;
-    // phi'' at an open state is -2 alpha phi' - alpha^2 phi; along the run phi(t) = (p + (p' + alpha p) t) exp(-alpha t)
+    // phi'' at an open state is -2 alpha phi' - alpha^2 phi; along the run phi(t) = (p + (p' +
+    // alpha p) t) exp(-alpha t)
     hn_trial trial;
     hn_trial_open(&trial, FB0);
     const double alpha = 10, T = 1;
@@ -129,8 +130,8 @@ static void weight_and_part_of_a_projection_can_be_chosen(void **state) {
     hn_trial_close(&trial);
 }
 
-/// What each formulation states about the gap is what it does: closed to rounding, or open by what RK4 leaves (about 1e-6 m at
-/// this step).
+/// What each formulation states about the gap is what it does: closed to rounding, or open by what
+/// RK4 leaves (about 1e-6 m at this step).
 static void traits_say_what_stays_closed(void **state) {
     (void)state;
     hn_trial trial;
@@ -191,8 +192,8 @@ static void reduced_coordinates_stop_at_the_dead_point_at_every_step_size(void *
 
 static void partitioning_goes_through_the_dead_point_where_a_fixed_crank_stops(void **state) {
     (void)state;
-    // l = 1, 2, 1 and d = 2.5: the crank cannot turn round, its range ends where coupler and rocker are in line,
-    // |A - O3| = 3, at cos th1 = (1 + 6.25 - 9) / 5
+    // l = 1, 2, 1 and d = 2.5: the crank cannot turn round, its range ends where coupler and rocker
+    // are in line, |A - O3| = 3, at cos th1 = (1 + 6.25 - 9) / 5
     static const hn_setting lengths[] = {{"l1", 1}, {"l2", 2}, {"l3", 1}, {"d", 2.5}};
     const double fold = acos(-0.35);
     hn_trial trial;
@@ -252,7 +253,8 @@ static void operations_are_counted_and_follow_the_evaluations(void **state) {
             assert_int_equal(s.cost.evals, 400);
         }
         assert_true(s.cost.ops / (double)s.cost.evals > 80);
-        // tangent-space coordinates close the loops at each evaluation: two turns, each with its own factors
+        // tangent-space coordinates close the loops at each evaluation: two turns, each with its
+        // own factors
         assert_true(s.cost.ops / (double)s.cost.evals < 800);
         assert_true(s.cost.factorisations >= 400);
         assert_int_equal(s.cost.fallbacks, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Implicit methods in runs: orders of q, v and multipliers on every form they serve, what stays closed, redundant rows, stiffness.
+// Implicit methods in runs: orders of q, v and multipliers on every form they serve, what stays
+// closed, redundant rows, stiffness.
 #include "study/cost/convergence.h"
 
 #include "support/alloc.h"
@@ -72,8 +73,8 @@ static errors errors_of(const hn_trial *trial, const char *spelling, double T, c
     return e;
 }
 
-// Hairer, Lubich & Roche 1989, table 2.3: orders of q, v and the scheme's own multipliers; multipliers from the saddle system follow the
-// state
+// Hairer, Lubich & Roche 1989, table 2.3: orders of q, v and the scheme's own multipliers;
+// multipliers from the saddle system follow the state
 typedef struct order_row {
     const char *method;
     double h;
@@ -333,8 +334,8 @@ static void raw_multipliers_come_only_when_asked_for_and_also_between_steps(void
     hn_trial_close(&trial);
 }
 
-// A slider-crank whose slider drags a second mass on a spring of 1e9 N/m, stretched by 1 um at the start: more than 31,600 rad/s
-// against motions of a second.
+// A slider-crank whose slider drags a second mass on a spring of 1e9 N/m, stretched by 1 um at the
+// start: more than 31,600 rad/s against motions of a second.
 static const char stiff[] =
     "{\"holonom\": 1, \"name\": \"stiff\", \"lagrangian\": {\"coordinates\": ["
     "{\"name\": \"th\", \"rate\": \"w\", \"unit\": \"rad\"}, {\"name\": \"x\", \"rate\": \"vx\", "

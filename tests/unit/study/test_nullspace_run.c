@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The null-space forms as whole runs: with the basis by partition, orthonormal and carried along, in tangent-space coordinates,
-// and with a basis that nobody tracks.
+// The null-space forms as whole runs: with the basis by partition, orthonormal and carried along,
+// in tangent-space coordinates, and with a basis that nobody tracks.
 
 #include "study/cost/convergence.h"
 #include "support/motion.h"
@@ -37,7 +37,8 @@ static double error_of(const hn_model *m, const char *formulation, double h, dou
     return error;
 }
 
-// one freedom, two, balls, redundant rows (three too many; one written twice), rows that move in time
+// one freedom, two, balls, redundant rows (three too many; one written twice), rows that move in
+// time
 static void every_form_has_the_order_of_rk4_whatever_the_mechanism(void **state) {
     (void)state;
     static const struct {
@@ -80,8 +81,8 @@ static void gap_and_speed_gap_stay_at_rounding(void **state) {
     hn_model_close(&m);
 }
 
-// a light crank and a heavy slider: with the slider's place as the independent coordinate, taken almost to its dead points, the
-// error was 1500 times that of projection
+// a light crank and a heavy slider: with the slider's place as the independent coordinate, taken
+// almost to its dead points, the error was 1500 times that of projection
 static void a_heavy_slider_is_not_kept_to_its_dead_points(void **state) {
     (void)state;
     hn_model m;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs with orientations: bodies that turn freely or about a point, against what theory says of them.
+// Runs with orientations: bodies that turn freely or about a point, against what theory says of
+// them.
 #include "support/near.h"
 
 #include "support/motion.h"
@@ -82,22 +83,26 @@ static void a_body_that_turns_about_its_middle_axis_flips_and_keeps_its_momentum
     hn_model_close(&m);
 }
 
-// the heavy top ------------------------------------------------------------------------------------------------------
+// ---- the heavy top ----
 
 #define TOP_MASS 1.5
 #define TOP_ARM 0.4
 #define TOP_I1 0.5 // about the tip, across
 #define TOP_I3 0.2 // along
 
-/// A symmetric top on its tip, leaning by `lean`, turning with `vertical` about the vertical and `spin` in all about its own axis.
+/// A symmetric top on its tip, leaning by `lean`, turning with `vertical` about the vertical and
+/// `spin` in all about its own axis.
 static void open_top(hn_model *m, double lean, double vertical, double spin, int reversed) {
     char text[TEXT];
     const double across = TOP_I1 - TOP_MASS * TOP_ARM * TOP_ARM;
-    // the axis leans towards -y: turned by `lean` about x; in body axes the vertical is (0, sin, cos)
+    // the axis leans towards -y: turned by `lean` about x; in body axes the vertical is (0, sin,
+    // cos)
     const double w[3] = {0, vertical * sin(lean), spin};
     double rate[3] = {w[0], w[1], w[2]};
     const double r[3] = {lean, 0, 0};
-    if (reversed) { // the joint's child is the ground: its turn is back, its rates are those of the ground in ground axes
+    // the joint's child is the ground: its turn is back, its rates are those of the ground in
+    // ground axes
+    if (reversed) {
         turned(r, w, rate);
         for (int i = 0; i < 3; i++) {
             rate[i] = -rate[i];
@@ -173,7 +178,7 @@ static void a_nodding_top_keeps_energy_vertical_momentum_and_spin(void **state) 
     hn_model_close(&m);
 }
 
-// joints that can be said in two ways ---------------------------------------------------------------------------------
+// ---- joints that can be said in two ways ----
 
 static void a_body_on_a_fixed_joint_moves_as_part_of_what_carries_it(void **state) {
     static const char *const texts[2] = {
@@ -184,7 +189,8 @@ static void a_body_on_a_fixed_joint_moves_as_part_of_what_carries_it(void **stat
         "\"coordinate\":\"th\"},{\"name\":\"W\",\"type\":\"fixed\",\"parent\":{\"body\":\"a\","
         "\"at\":[1,0,0]},\"child\":{\"body\":\"b\"}}],\"start\":{\"positions\":{\"th\":0.3},"
         "\"rates\":{\"d_th\":2}}}",
-        // one body: mass 5, first moment 2*0.5 + 3*1.1, inertia about the pivot 0.2 + 0.5 + 0.1 + 3.63
+        // one body: mass 5, first moment 2*0.5 + 3*1.1, inertia about the pivot 0.2 + 0.5 + 0.1 +
+        // 3.63
         "{\"holonom\":1,\"name\":\"one\",\"gravity\":[0,-9.81,0],\"bodies\":[{\"name\":\"ab\","
         "\"mass\":5,\"com\":[0.86,0,0],\"inertia\":{\"zz\":0.732}}],\"joints\":[{\"name\":\"A\","
         "\"type\":\"revolute\",\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"ab\"},"
@@ -257,7 +263,8 @@ static void a_body_on_a_cylindrical_joint_falls_and_turns_as_a_screw(void **stat
     hn_model_close(&m);
 }
 
-// a four-bar in which the link that turns all the way hangs on a ball and is kept in its plane: th only rocks
+// a four-bar in which the link that turns all the way hangs on a ball and is kept in its plane: th
+// only rocks
 static const char FOUR_BAR_WITH_A_BALL[] =
     "{\"holonom\":1,\"name\":\"ball four-bar\",\"gravity\":[0,0,0],"
     "\"bodies\":[{\"name\":\"rocker\",\"mass\":1,\"com\":[0.5,0,0],\"inertia\":{\"xx\":0.01,"
@@ -305,7 +312,8 @@ static void coordinates_that_end_where_only_a_ball_could_follow_say_so(void **st
 }
 
 static void a_multistep_method_that_starts_again_after_every_step_says_so(void **state) {
-    // projection changes the state of a loop, a ball's quaternion is brought back to length 1; baumgarte leaves the state alone
+    // projection changes the state of a loop, a ball's quaternion is brought back to length 1;
+    // baumgarte leaves the state alone
     static const struct {
         const char *scene, *method;
         int told;

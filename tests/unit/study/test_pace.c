@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When loops of steps look at their limits: after each slow step, seldom between quick ones, and whatever the output asked for.
+// When loops of steps look at their limits: after each slow step, seldom between quick ones, and
+// whatever the output asked for.
 
 #include "study/run/pace.h"
 #include "base/clock.h"

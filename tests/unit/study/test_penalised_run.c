@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Penalty, augmented Lagrangian and Udwadia-Kalaba against figures of an independent program and against exact statements.
+// Penalty, augmented Lagrangian and Udwadia-Kalaba against figures of an independent program and
+// against exact statements.
 
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
@@ -89,7 +90,7 @@ a_penalty_is_not_stiff_in_time_however_strong_and_stops_at_the_limit_of_omega(vo
     hn_model_close(&m);
 }
 
-// --- the turns of the augmented Lagrangian ------------------------------------------------------------------
+// ---- the turns of the augmented Lagrangian ----
 
 static void
 each_turn_of_the_augmented_lagrangian_shrinks_the_error_by_the_known_factor(void **state) {
@@ -126,7 +127,7 @@ static void the_limit_of_the_turns_is_baumgarte(void **state) {
     hn_model_close(&m);
 }
 
-// --- redundant rows, massless links -------------------------------------------------------------------------
+// ---- redundant rows, massless links ----
 
 static void repeated_rows_change_nothing_for_those_that_promise_it(void **state) {
     (void)state;

@@ -49,7 +49,8 @@ static double apart(const seen *a, const seen *b) {
     return most;
 }
 
-// th1, th2, th3, w1 of FB0 at t = 2: one-coordinate equation by extrapolation in 30-digit arithmetic
+// th1, th2, th3, w1 of FB0 at t = 2: one-coordinate equation by extrapolation in 30-digit
+// arithmetic
 static void the_reference_four_bar_has_every_digit_of_a_double(void **state) {
     (void)state;
     const double known[3] = {7.41136679869211579, 0.464690378889553311, 1.56178258771354034};
@@ -59,7 +60,8 @@ static void the_reference_four_bar_has_every_digit_of_a_double(void **state) {
         seen r;
         follow(&trial, kinds[m], 2, &r);
         for (int i = 0; i < 3; i++) {
-            // coefficients of the model are rounded to doubles: a few units in the last place of 7.4
+            // coefficients of the model are rounded to doubles: a few units in the last place of
+            // 7.4
             assert_near(r.q[N][i], known[i], 3e-15);
         }
         assert_near(r.v[N][0], 1.57149060850687302, 2e-14);

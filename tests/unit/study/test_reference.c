@@ -16,7 +16,8 @@ static hn_ref *reference_of(const hn_trial *trial, double T) {
     return ref;
 }
 
-// th1, th2, th3, w1 of FB0 at t = 2: one-coordinate equation by extrapolation in 30-digit arithmetic
+// th1, th2, th3, w1 of FB0 at t = 2: one-coordinate equation by extrapolation in 30-digit
+// arithmetic
 static void the_reference_four_bar_has_the_digits_it_claims(void **state) {
     (void)state;
     hn_trial trial;
@@ -50,7 +51,8 @@ static void the_two_computations_share_neither_formulation_nor_integrator(void *
     hn_trial_close(&trial);
 }
 
-// a pendulum of length 1 let go at rest from the horizontal: its energy stays, its rate follows from it
+// a pendulum of length 1 let go at rest from the horizontal: its energy stays, its rate follows
+// from it
 static void a_pendulum_keeps_its_energy_along_the_reference(void **state) {
     (void)state;
     hn_trial trial;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spatial linkages run by every formulation whose state is (q, v): they agree, keep closed what they say they keep, and without
-// motors or dampers the energy.
+// Spatial linkages run by every formulation whose state is (q, v): they agree, keep closed what
+// they say they keep, and without motors or dampers the energy.
 #include "support/near.h"
 
 #include "support/motion.h"
@@ -34,7 +34,8 @@ static void formulations_agree_on_spatial_linkages_and_energy_is_kept(void **sta
             const double now = s.q[hn_model_user(&m, "J0")];
             crank = i ? crank : now;
             assert_true(fabs(now) > 0.1);
-            // fast where the ring stands badly (the first one: 39 kJ), up to 5700 steps at 1e-11 each
+            // fast where the ring stands badly (the first one: 39 kJ), up to 5700 steps at 1e-11
+            // each
             assert_near(now, crank, 1e-7);
             assert_true(s.gap < methods[i].gap);
             hn_run_free(run);

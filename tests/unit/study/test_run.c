@@ -367,7 +367,8 @@ static void a_step_that_nobody_looks_into_is_spared_the_slopes_of_dense_output(v
     hn_run *run = hn_trial_run(&fb0, "index1@dop853:rtol=1e-8");
     assert_int_equal(hn_run_advance(run, 2), HN_OK);
     const hn_run_summary s = hn_run_get_summary(run);
-    // two for the first step size, 12 stages a step, 11 a rejected trial, four more slopes in the last step
+    // two for the first step size, 12 stages a step, 11 a rejected trial, four more slopes in the
+    // last step
     assert_int_equal(s.cost.evals, 2 + 12 * s.steps + 11 * s.rejected + 4);
     hn_run_free(run);
     hn_trial_close(&fb0);

@@ -68,8 +68,8 @@ static void every_point_belongs_to_one_part_whatever_their_number(void **state) 
     close_split(&s);
 }
 
-/// Whoever gets the next point has least so far, so no more than the mean of the others' (Graham 1966): the longest part ends within the mean
-/// load plus (1 - 1/n) of its last point.
+/// Whoever gets the next point has least so far, so no more than the mean of the others' (Graham
+/// 1966): the longest part ends within the mean load plus (1 - 1/n) of its last point.
 static void the_longest_part_is_within_grahams_bound(void **state) {
     (void)state;
     split s;

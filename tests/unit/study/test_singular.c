@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run tells when it comes close to a pose where the closure rows depend on each other, and only then.
+// A run tells when it comes close to a pose where the closure rows depend on each other, and only
+// then.
 
 #include "support/motion.h"
 #include "support/near.h"
@@ -29,7 +30,8 @@ static void the_flat_poses_of_a_parallelogram_are_told_twice_a_turn(void **state
         (void)hn_motion_at(run, 1.92); // one turn takes 1.92371 s
         assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 2);
 
-        // flat at 0.70845 s and, by symmetry of a turn, 1.92371 - 0.70845 s; told from 0.015 rad on at 4.95 rad/s
+        // flat at 0.70845 s and, by symmetry of a turn, 1.92371 - 0.70845 s; told from 0.015 rad on
+        // at 4.95 rad/s
         assert_near(t[0], 0.70845, 0.0045);
         assert_near(t[1], 1.21526, 0.0045);
         hn_run_free(run);
@@ -55,7 +57,8 @@ static void a_pose_in_the_middle_of_a_long_step_is_told_at_its_time(void **state
         const hn_run_summary s = hn_run_get_summary(run);
         assert_true(1.92 / (double)s.steps > 0.5 * runs[k].longest);
         assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 2);
-        // the cubic through both ends of half a radian is off by 1e-4 of it, the motion itself by less
+        // the cubic through both ends of half a radian is off by 1e-4 of it, the motion itself by
+        // less
         assert_near(t[0], 0.70845, 5e-4);
         assert_near(t[1], 1.21526, 5e-4);
         hn_run_free(run);

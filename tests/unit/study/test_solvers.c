@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who solves for the accelerations is a choice: the same motion by each, a reason from each that cannot serve; and what is told
-// at singular poses leads through them.
+// Who solves for the accelerations is a choice: the same motion by each, a reason from each that
+// cannot serve; and what is told at singular poses leads through them.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -195,7 +195,8 @@ static void the_remedy_for_a_chart_that_ends_at_a_flat_pose_goes_through_it(void
         const hn_incident *incident = NULL;
         const int n = hn_run_incidents(run, &incident);
         assert_true(n > 0);
-        // the last incident is the end of the run; its first remedy has to reach 10 s on the right branch
+        // the last incident is the end of the run; its first remedy has to reach 10 s on the right
+        // branch
         const char *remedy = incident[n - 1].remedy[0];
         assert_non_null(strchr(remedy, '@'));
         hn_run *mended = hn_motion_start(&m, remedy);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mechanisms in space, drives and published problems, as shipped: what closed forms and other people's figures say of them.
+// Mechanisms in space, drives and published problems, as shipped: what closed forms and other
+// people's figures say of them.
 #include "support/near.h"
 #include "support/trial.h"
 
@@ -99,8 +100,9 @@ static void the_spatial_slider_stands_where_its_rod_reaches(void **state) {
     hn_trial_close(&trial);
 }
 
-// d^2 + a^2 + c^2 + e^2 - b^2 - 2 d a cos th - 2 e c sin ps - 2 a c sin th cos ps = 0, and the spin about the coupler's axis,
-// its own and what the crank adds, stays: balls on the axis of a round bar give no moment about it
+// d^2 + a^2 + c^2 + e^2 - b^2 - 2 d a cos th - 2 e c sin ps - 2 a c sin th cos ps = 0, and the spin
+// about the coupler's axis, its own and what the crank adds, stays: balls on the axis of a round
+// bar give no moment about it
 static void an_rssr_linkage_closes_and_its_coupler_keeps_its_spin(void **state) {
     (void)state;
     const hn_setting spin = {"s", 10};
@@ -178,7 +180,8 @@ static void a_heavy_top_precesses_steadily_at_the_lower_root(void **state) {
     hn_trial_close(&trial);
 }
 
-// Without precession the foot's top nods, and the angular momentum about the vertical and about the stem stay.
+// Without precession the foot's top nods, and the angular momentum about the vertical and about the
+// stem stay.
 static void a_heavy_top_let_go_nods_between_two_heights(void **state) {
     (void)state;
     hn_trial trial;
@@ -302,9 +305,10 @@ static void the_squeezer_has_twelve_digits_at_its_end(void **state) {
     hn_trial_close(&trial);
 }
 
-// robots --------------------------------------------------------------------------------------------------
+// ---- robots ----
 
-/// The largest distance of a platform from its circle of radius rc, and of its height from h, from t = 1 on.
+/// The largest distance of a platform from its circle of radius rc, and of its height from h, from
+/// t = 1 on.
 static void follow_circle(const char *scene, double w, double h, const char *const names[3],
                           double *off, double *low) {
     hn_trial trial;
@@ -380,7 +384,8 @@ static void a_delta_platform_does_not_turn(void **state) {
     }
 }
 
-/// Least singular value of the six rods' rows at a yaw [degrees], rows per metre of the platform's six speeds.
+/// Least singular value of the six rods' rows at a yaw [degrees], rows per metre of the platform's
+/// six speeds.
 static double rods_sigma(double degrees) {
     const hn_setting yaw = {"yaw", degrees * PI / 180};
     hn_scene *scene;
@@ -405,7 +410,8 @@ static double rods_sigma(double degrees) {
     return sigma[5];
 }
 
-// Fichter 1986: half-angles of 15 and 45 degrees lose rank at a yaw of 90 degrees, linearly in the angle
+// Fichter 1986: half-angles of 15 and 45 degrees lose rank at a yaw of 90 degrees, linearly in the
+// angle
 static void a_platform_on_six_rods_comes_loose_at_a_yaw_of_ninety_degrees(void **state) {
     (void)state;
     const double s60 = rods_sigma(60), s89 = rods_sigma(89), close = rods_sigma(89.9);
@@ -414,7 +420,7 @@ static void a_platform_on_six_rods_comes_loose_at_a_yaw_of_ninety_degrees(void *
     assert_true(rods_sigma(90) < 1e-14);
 }
 
-// drives, wheels, teeth -------------------------------------------------------------------------------------
+// ---- drives, wheels, teeth ----
 
 // what the energy gains is the drive's work less what friction takes (Simpson's rule over samples)
 static void the_torque_of_a_given_motion_does_the_work_that_the_energy_gains(void **state) {
@@ -442,7 +448,8 @@ static void the_torque_of_a_given_motion_does_the_work_that_the_energy_gains(voi
     hn_trial_close(&trial);
 }
 
-// one freedom: I ws' = T(t) - b n^2 ws, n = rs/(rs + rr), with T from 0 to T0 in half a second, then constant
+// one freedom: I ws' = T(t) - b n^2 ws, n = rs/(rs + rr), with T from 0 to T0 in half a second,
+// then constant
 static void a_planetary_gear_turns_as_its_table_of_torque_says(void **state) {
     (void)state;
     const double rs = 0.2, rp = 0.15, rr = 0.5, ms = 1, mp = 0.5, Ic = 0.05, T0 = 2, b = 1;
@@ -465,7 +472,8 @@ static void a_planetary_gear_turns_as_its_table_of_torque_says(void **state) {
     hn_trial_close(&trial);
 }
 
-// at rest with the pendulum upright: a = (m + mp) g sin al / (m (1 + k) + mp sin^2 al), and all of it without slip
+// at rest with the pendulum upright: a = (m + mp) g sin al / (m (1 + k) + mp sin^2 al), and all of
+// it without slip
 static void a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theory(void **state) {
     (void)state;
     const double al = 0.168, R = 0.4, m = 2, mp = 1, g = 9.81;
@@ -487,7 +495,8 @@ static void a_wheel_rolls_without_slip_and_starts_with_the_acceleration_of_theor
     hn_trial_close(&trial);
 }
 
-/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of them.
+/// Corners and edges of the ranges: each parameter at its ends, and ends drawn at random for all of
+/// them.
 static void every_setting_in_the_ranges_closes_the_loops(void **state) {
     (void)state;
     static const char *const scenes[] = {

@@ -56,7 +56,8 @@ static void a_stiff_spring_on_the_loop_vibrates_as_the_loop_lets_it(void **state
     open_sprung_fb0(&m, 1e6);
     assert_int_equal(start_spectrum(&m, s, 2), 2);
 
-    // one freedom: w^2 = k (th2' - th3')^2 / (v' M v) along the one motion v that the loop allows, th1' = 1
+    // one freedom: w^2 = k (th2' - th3')^2 / (v' M v) along the one motion v that the loop allows,
+    // th1' = 1
     const double a1 = m.q[0], a2 = m.q[1], a3 = m.q[2], det = -2 * 1.8 * sin(a2 - a3);
     const double w2 = -1 * 1.8 * sin(a3 - a1) / det, w3 = -2 * sin(a2 - a1) / det;
     const double inertia = (1.0 / 3 + 2) + 8.0 / 3 * w2 * w2 + 1.8 * 1.8 * 1.8 / 3 * w3 * w3 +
@@ -183,7 +184,8 @@ static void spectra_are_those_known_and_do_not_depend_on_how_the_loop_is_written
     assert_near(modulus(&s[3]), 0, 1e-8);
     hn_model_close(&m);
 
-    // rows that depend on each other change nothing; a loop described as bodies or by formulas is the same loop
+    // rows that depend on each other change nothing; a loop described as bodies or by formulas is
+    // the same loop
     const char *const same[] = {"fb0-redundant", "fb0-lagrangian", "fb0-tilted"};
     hn_model_open_closed(&m, "fb0", NULL);
     assert_int_equal(start_spectrum(&m, s, 12), 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Explicit methods with a step control on a stiff part: they arrive, with steps that stability holds, and say so.
+// Explicit methods with a step control on a stiff part: they arrive, with steps that stability
+// holds, and say so.
 
 #include "support/motion.h"
 #include "support/near.h"
@@ -8,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// 1 kg on a damper of 1e6 N s/m, pushed as sin t: a motion of metres in seconds, and a rate of 1e6 1/s that dies away
+// 1 kg on a damper of 1e6 N s/m, pushed as sin t: a motion of metres in seconds, and a rate of 1e6
+// 1/s that dies away
 static const char *const damped =
     "{\"holonom\":1,\"name\":\"damped-slider\",\"bodies\":[{\"name\":\"mass\",\"mass\":1}],"
     "\"joints\":[{\"name\":\"S\",\"type\":\"prismatic\",\"axis\":[1,0,0],"

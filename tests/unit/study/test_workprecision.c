@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// ladders written down by hand: what is said of them can be checked ------------------------------------------------
+// ---- ladders written down by hand: what is said of them can be checked ----
 
 typedef struct written {
     hn_wp wp;
@@ -31,7 +31,8 @@ static void write_down(written *w, int n_methods, int n_levels, double reference
     }
 }
 
-/// Errors e at steps 10, 20, 40, ...; `limit` is where the method converges to, away from the reference.
+/// Errors e at steps 10, 20, 40, ...; `limit` is where the method converges to, away from the
+/// reference.
 static void set_ladder(written *w, int m, const double *e, double limit) {
     for (int k = 0; k < w->wp.n_levels; k++) {
         hn_wp_point *p = &w->methods[m].point[k];
@@ -148,7 +149,7 @@ static void a_method_that_hardly_ever_finishes_is_failed_with_its_reason(void **
     assert_non_null(strstr(class_of(&w, 0).text, "1 of 4 sizes came to the end: the loop flew"));
 }
 
-// times ------------------------------------------------------------------------------------------------------------
+// ---- times ----
 
 static void set_time(hn_wp_point *p, const double *samples, int n) {
     memcpy(p->sample, samples, (size_t)n * sizeof *samples);
@@ -204,7 +205,8 @@ static void the_cheapest_method_of_each_accuracy_is_named(void **state) {
         assert_int_equal(p.band[i].n_close, 0);
         assert_near(p.band[i].ratio, 2, 1e-12);
     }
-    // accuracies between the points are read off: 1e-3 lies halfway from 1 s to 2 s in the logarithms
+    // accuracies between the points are read off: 1e-3 lies halfway from 1 s to 2 s in the
+    // logarithms
     assert_near(p.band[2].best.cost, sqrt(2), 1e-12);
     assert_near(p.band[0].best.cost, 1, 0); // nothing cheaper was measured
     assert_int_equal(p.band[0].best.level, 0);
@@ -253,7 +255,8 @@ static void a_clock_that_changed_its_pace_ranks_nothing_and_counts_do(void **sta
     written w;
     hn_pareto p = front_of(&w, 3);
     assert_int_equal(p.band[5].ranking, HN_RANKING_CLEAR);
-    // the second method costs a little more operations, and the clock ran 20 % slower in its second half
+    // the second method costs a little more operations, and the clock ran 20 % slower in its second
+    // half
     for (int k = 0; k < 3; k++) {
         w.methods[1].point[k].cost.ops *= 1.5;
         disturb(&w.methods[1].point[k], 3.0 * (1 << k), 3.6 * (1 << k));
@@ -285,7 +288,8 @@ static void the_winner_too_must_be_as_fast_the_second_time(void **state) {
     front_of(&w, 3);
     disturb(&w.methods[0].point[1], 2.0, 1.7);
     hn_wp_pareto(&w.wp, w.classes, HN_ERROR_Q, HN_COST_TIME, &p);
-    // errors of 1e-3 and 1e-5 are read off between that point and a neighbour; 1e-1 and 1e-6 need it not
+    // errors of 1e-3 and 1e-5 are read off between that point and a neighbour; 1e-1 and 1e-6 need
+    // it not
     const hn_ranking expected[6] = {HN_RANKING_CLEAR,    HN_RANKING_CLEAR,    HN_RANKING_UNSTEADY,
                                     HN_RANKING_UNSTEADY, HN_RANKING_UNSTEADY, HN_RANKING_CLEAR};
     for (int i = 0; i < 6; i++) {
@@ -364,7 +368,8 @@ static void equal_cost_is_read_off_between_the_points(void **state) {
     hn_wp_race(&w.wp, w.classes, HN_ERROR_Q, &race);
     assert_int_equal(race.n, HN_RACE_COSTS);
     for (int i = 0; i < race.n; i++) {
-        // e = 1e-2 at 1000, 1e-4 at 2000, 1e-6 at 4000 operations: a straight line in the logarithms
+        // e = 1e-2 at 1000, 1e-4 at 2000, 1e-6 at 4000 operations: a straight line in the
+        // logarithms
         const double expected = 1e-2 * pow(1e-2, log2(race.cost[i] / 1000));
         assert_true(race.cost[i] > 1000 && race.cost[i] < 4000);
         assert_near(race.error[i][0] / expected, 1, 1e-9);
@@ -379,7 +384,7 @@ static void equal_cost_is_read_off_between_the_points(void **state) {
     assert_near(race.error[0][1], 1e-6, 0);
 }
 
-// real ladders -----------------------------------------------------------------------------------------------------
+// ---- real ladders ----
 
 static hn_wp *study_of(const hn_trial *trial, const hn_ref *ref, const char *const *spellings,
                        int n, const hn_wp_opts *opts) {
