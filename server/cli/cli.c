@@ -235,7 +235,8 @@ static const char *command_word(const char *word) {
                                                                   : word;
 }
 
-/// `holonom complete -- WORD...`: what shells ask; the last word may be unfinished. No command of its own in the help.
+/// `holonom complete -- WORD...`: what shells ask; the last word may be unfinished. No command of
+/// its own in the help.
 static hn_exit complete(int n, char **words) {
     hn_library *lib = NULL;
     hn_diag diag = {0};
@@ -273,6 +274,8 @@ int hn_cli_main(int argc, char **argv) {
     if (strcmp(argv[1], "complete") == 0) {
         return complete(argc - 2, argv + 2);
     }
+
+    // a command, by its name or by one of the names of lists
     const bool list = is_list(argv[1]);
     const char *name = list ? "list" : command_word(argv[1]);
     const hn_command *command = find_command(name);

@@ -306,6 +306,8 @@ static void put_question(hn_strbuf *b, const hn_exercise *p) {
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
+
+    // the names that formulas may use, and the equations
     hn_json_key(b, "names");
     hn_json_array(b);
     for (int i = 0; i < p->n_names; i++) {

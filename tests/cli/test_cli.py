@@ -96,13 +96,13 @@ class CommandLine(unittest.TestCase):
             self.assertIn(title, text)
         moving = self.assert_exit(call("terms", "driven-crank"), DONE)
         self.assertIn("M_r a_r + C_r v_r + d_r + g_r = tau_r", moving)
-        self.assertIn("s, speeds at v_r = 0", moving)
+        self.assertIn("s, velocities at v_r = 0", moving)
         ball = strict(self.assert_exit(call("terms", "heavy-top", "--json"), DONE))["reduced"]
         self.assertFalse(ball["exists"])
         self.assertIn("a ball has none of its own", ball["why"])
         self.assertIn("a ball has none of its own", self.assert_exit(call("terms", "heavy-top"), DONE))
         unfit = self.assert_exit(call("terms", "five-bar", "--v", "w1=1"), DONE)
-        self.assertIn("the speeds given do not fit the loops", unfit)
+        self.assertIn("the velocities given do not fit the loops", unfit)
 
     def test_inspect_says_why_a_loop_stays_open(self):
         # crank 3 at 1 rad and ground 1 are sqrt(3^2 + 1^2 - 2*3*cos(1)) = 2.59965 apart, coupler and rocker reach 1.2 + 0.8

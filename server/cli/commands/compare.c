@@ -34,7 +34,8 @@ static hn_status create(const hn_args *args, const hn_model *model, hn_compariso
     return hn_comparison_create(model, methods, n, &opts, out, diags);
 }
 
-/// Keeps gap and energy change of every method at the present frame; a method that has ended leaves a hole.
+/// Keeps gap and energy change of every method at the present frame; a method that has ended leaves
+/// a hole.
 static void keep_frame(hn_motion_plot *plot, hn_comparison *c) {
     if (!hn_motion_plot_next(plot)) {
         return;
@@ -107,6 +108,8 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
             hn_strbuf_printf(b, "! %s: %s\n", hn_document_text(m, "method"),
                              hn_document_text(m, "warning"));
         }
+
+        // its first incidents; the rest are counted
         cJSON_ArrayForEach(incident, hn_document_get(summary, "incidents")) {
             if ((int)hn_document_number(incident, "method") == i && n++ < MAX_INCIDENTS) {
                 hn_strbuf_printf(b, "! %s at t = %.4g s: %s\n", hn_document_text(m, "method"),
@@ -186,6 +189,8 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
         hn_model_free(model);
         return hn_report_diags(args, status, &diags);
     }
+
+    // to the end, the plot on the way
     char names[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     hn_motion_plot plot;
     begin_plot(&plot, c, gap_unit(model), names);
@@ -200,6 +205,8 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
         }
     }
     hn_motion_plot_free(&plot);
+
+    // a method that ended early is no fault of the program
     hn_exit result = args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
     int failed = tell_failures(summary, !args->json);
     cJSON_Delete(summary);

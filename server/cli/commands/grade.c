@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom problem and holonom grade. Exit statuses: 0 graded, however low; 2 a submission that cannot
-// be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot be written.
+// holonom problem and holonom grade. Exit statuses: 0 graded, however low; 2 a submission that
+// cannot be read, or a word that is wrong; 3 an exercise that does not load, an output that cannot
+// be written.
 #include "base/clock.h"
 #include "cli/commands/verdict_names.h"
 #include "cli/shell/commands.h"

@@ -33,6 +33,8 @@ static hn_status read_included(void *user, const char *name, size_t most, hn_str
     const int why = errno;
     hn_status status = path.failed ? HN_ERR_MEMORY : HN_OK;
     const int below = real && strncmp(real, folder, n) == 0 && (real[n] == '/' || n == 1);
+
+    // a link that leads out of the folder is not followed
     if (status == HN_OK && !real) {
         status = hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "cannot read '%.100s': %s", name,
                              strerror(why));
@@ -68,6 +70,8 @@ static hn_status read_source(const hn_args *args, hn_import **out, hn_diags *dia
     if (status == HN_OK && args->loops) {
         status = read_file(args->loops, &loops, diags);
     }
+
+    // files that the model includes are looked for beside it
     if (status == HN_OK) {
         char *folder = folder_of(path);
         hn_import_source source = {.text = hn_strbuf_text(&text),
@@ -232,6 +236,8 @@ hn_exit hn_command_import(const hn_library *lib, const hn_args *args) {
         hn_import_free(im);
         return hn_report_diags(args, status, &why);
     }
+
+    // the scene first, so that what is said of it is true
     hn_exit result = args->out || !args->json ? write_scene(args, im) : HN_EXIT_DONE;
     if (result == HN_EXIT_DONE && args->json) {
         result = print_json(args, im, model, &why);

@@ -139,6 +139,8 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     if (args->json) {
         return hn_cli_print(&text);
     }
+
+    // tables, then what is said of each row
     cJSON *document = hn_document_parse(&text);
     for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
         const cJSON *array = hn_document_get(document, LISTS[which].tables[i].member);

@@ -145,6 +145,8 @@ static void put_head(hn_strbuf *b, const column *columns, int n, int ndjson, con
         hn_strbuf_add(b, "\n");
         return;
     }
+
+    // the first line of NDJSON names the columns
     hn_strbuf line;
     hn_strbuf_init(&line);
     hn_json_object(&line);
@@ -182,6 +184,8 @@ static void put_samples(hn_strbuf *b, cJSON *run, int ndjson) {
         for (int c = 0; c < n; c++) {
             cursors[c].entry = columns[c].list ? columns[c].list->child : NULL;
         }
+
+        // row by row, all columns at once
         put_head(b, columns, n, ndjson, run);
         while (cursors[0].entry) {
             hn_strbuf_add(b, ndjson ? "[" : "");
@@ -254,6 +258,8 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .reactions = args->reactions,
                                   .progress = tell_progress,
                                   .user = &progress};
+
+        // an interval of 0 would mean the default
         if (!isnan(args->every) && !(args->every > 0)) {
             status = hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
                                   "the output interval is %g s; it must be above 0", args->every);
@@ -266,7 +272,8 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
     return status;
 }
 
-/// Gap and energy change of the samples, drawn over the index of the sample: they are taken at equal intervals.
+/// Gap and energy change of the samples, drawn over the index of the sample: they are taken at
+/// equal intervals.
 static void put_plot(hn_strbuf *b, const cJSON *run) {
     const cJSON *samples = hn_document_get(run, "samples");
     const cJSON *t = hn_document_get(samples, "t"),
@@ -277,6 +284,8 @@ static void put_plot(hn_strbuf *b, const cJSON *run) {
     plot.tracks[0] = (hn_motion_track){.name = hn_document_text(run, "method")};
     plot.dt =
         last ? last->valuedouble / (cJSON_GetArraySize(t) > 1 ? cJSON_GetArraySize(t) - 1 : 1) : 1;
+
+    // one point a sample; a gap that is null is left out
     const cJSON *g = gap ? gap->child : NULL;
     const double first = energy && energy->child ? energy->child->valuedouble : 0;
     for (const cJSON *e = energy ? energy->child : NULL; e && hn_motion_plot_next(&plot);
@@ -317,6 +326,8 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
+
+    // people get a table or a plot, and what was noticed
     cJSON *run = NULL;
     char reason[300] = "";
     if (strcmp(format, "json") != 0) {
@@ -335,6 +346,8 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
         }
         cJSON_Delete(run);
     }
+
+    // a run that ended early has an exit status of its own
     hn_exit result = args->plot ? hn_cli_print_text(&b) : hn_cli_print(&b);
     if (ended != HN_OK && reason[0]) {
         fprintf(stderr, "holonom: the run ended early %s\n", reason);

@@ -24,6 +24,8 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
+
+    // the document, or its outline for people
     if (args->json) {
         return hn_cli_print(&b);
     }
@@ -120,6 +122,8 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
     if (cJSON_GetArraySize(list) == 0) {
         return;
     }
+
+    // numbers that are rounding beside the largest are shown as 0
     const double force = largest_of(list, "force"), moment = largest_of(list, "moment");
     const double rounding[] = {1e-12 * force, 1e-12 * fmax(force, moment)};
     hn_strbuf_add(b, "reactions on the child, world axes\n");
@@ -168,6 +172,8 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
                  {"g_r = Phi' g, gravity and springs", "g_r", 0},
                  {"tau_r = Phi' tau, motors and other loads", "tau_r", 0},
                  {"a_r", "a_r", 0}};
+
+    // the choice of coordinates, and why there is none
     const cJSON *independent = hn_document_get(d, "independent"), *name;
     if (!cJSON_IsTrue(hn_document_get(d, "exists"))) {
         hn_strbuf_printf(b, "reduced coordinates: none here: %s\n", hn_document_text(d, "why"));
@@ -181,15 +187,17 @@ static void put_reduced(hn_strbuf *b, const cJSON *d, const cJSON *names) {
     const double gap = hn_document_number(d, "speed_gap");
     if (!isnan(gap)) {
         hn_strbuf_printf(b,
-                         "the speeds given do not fit the loops (by %.3g); below, the others "
+                         "the velocities given do not fit the loops (by %.3g); below, the others "
                          "follow from v_r\n",
                          gap);
     }
     if (cJSON_GetArraySize(independent) == 0) {
         return;
     }
+
+    // matrices and vectors in these coordinates
     hn_document_matrix(b, "Phi, v = Phi v_r", hn_document_get(d, "Phi"), names, independent);
-    put_vector(b, "s, speeds at v_r = 0", d, "s", names);
+    put_vector(b, "s, velocities at v_r = 0", d, "s", names);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         if (parts[i].matrix) {
             hn_document_matrix(b, parts[i].title, hn_document_get(d, parts[i].key), independent,
@@ -227,6 +235,8 @@ static void put_terms(hn_strbuf *b, const cJSON *d) {
     const cJSON *names = hn_document_get(d, "coordinates"), *rows = hn_document_get(d, "rows");
     hn_strbuf_printf(b, "%s at t = %g s: %s\n", hn_document_text(d, "scene"),
                      hn_document_number(d, "t"), hn_document_text(d, "equations"));
+
+    // matrices where they have rows, vectors always
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const cJSON *row_names = parts[i].by_row ? rows : names;
         if (parts[i].matrix && cJSON_GetArraySize(hn_document_get(d, parts[i].key)) > 0) {
@@ -260,6 +270,8 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
     if (status == HN_OK) {
         status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
     }
+
+    // the terms at that state
     if (status == HN_OK) {
         const double t = isnan(args->t) ? 0 : args->t;
         status = args->reactions
@@ -272,6 +284,8 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
+
+    // the document, or tables for people
     if (args->json) {
         return hn_cli_print(&b);
     }

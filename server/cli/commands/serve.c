@@ -44,6 +44,8 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     choose_seconds(&opts->keep_alive, args->keep_alive);
     opts->allow_hosts = args->allow_hosts.word;
     opts->n_allow_hosts = args->allow_hosts.n;
+
+    // every bound is checked, given or not
     const struct {
         const char *option;
         double value, min, max;
@@ -102,6 +104,8 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
     if (opts->port != 0 && port != opts->port) {
         fprintf(stderr, "holonom: port %d is taken; port %d is used\n", opts->port, port);
     }
+
+    // a script reads the address, a person clicks on it
     if (args->json) {
         hn_strbuf b;
         hn_strbuf_init(&b);

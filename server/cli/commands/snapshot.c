@@ -26,6 +26,8 @@ static hn_status read_opts(const hn_args *args, hn_picture_request *request, hn_
                             args->theme);
     }
     request->view = args->view;
+
+    // where it goes, and as what
     if (!args->out) {
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, "-o FILE.png, or -o - for standard output",
                             "where should the picture go?");

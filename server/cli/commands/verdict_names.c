@@ -82,7 +82,8 @@ static hn_status put_paths(hn_verdict_names *names, const char *folder,
     return HN_OK;
 }
 
-/// The first pair with one name, capital letters ignored as some file systems do; 0 when there is none.
+/// The first pair with one name, capital letters ignored as some file systems do; 0 when there is
+/// none.
 static int find_pair(const hn_verdict_names *names, int *first, int *second) {
     for (int i = 0; i < names->n; i++) {
         for (int k = 0; k < i; k++) {

@@ -276,6 +276,8 @@ static hn_status read_numbers(hn_numbers *numbers, const option *o, const char *
 static hn_status read_value(hn_args *args, const option *o, const char *text, hn_diag *diag) {
     void *place = (char *)args + o->place;
     double value;
+
+    // the place has the type of the kind
     switch (o->kind) {
     case OPTION_TEXT:
         *(const char **)place = text;
@@ -381,6 +383,8 @@ hn_status hn_args_parse(hn_args *args, const hn_command *command, int argc, char
             return status;
         }
     }
+
+    // help needs no words
     if (args->help) {
         return HN_OK;
     }

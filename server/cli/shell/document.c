@@ -90,6 +90,8 @@ void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *co
     for (int c = 0; c < n; c++) {
         hn_table_column(&t, columns[c].head, columns[c].unit != NULL);
     }
+
+    // a quantity with its unit, or text
     const cJSON *row;
     cJSON_ArrayForEach(row, array) {
         for (int c = 0; c < n; c++) {
@@ -182,6 +184,8 @@ void hn_document_outline(hn_strbuf *b, const cJSON *object, int indent) {
         int n = (int)strlen(item->string);
         width = n > width && is_scalar(item) ? n : width;
     }
+
+    // lines, then what is nested, indented
     cJSON_ArrayForEach(item, object) {
         if (is_scalar(item)) {
             hn_strbuf_printf(b, "%*s%-*s  ", indent, "", width, item->string);
@@ -216,6 +220,8 @@ void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const
         int n = (int)strlen(item->valuestring);
         width = n > width ? n : width;
     }
+
+    // heads of columns
     if (column_names) {
         hn_strbuf_printf(b, "  %*s", width, "");
         cJSON_ArrayForEach(item, column_names) {
@@ -223,6 +229,8 @@ void hn_document_matrix(hn_strbuf *b, const char *name, const cJSON *rows, const
         }
         hn_strbuf_add(b, "\n");
     }
+
+    // rows; a vector has one number in each
     int i = 0;
     cJSON_ArrayForEach(item, rows) {
         const cJSON *row_name = cJSON_GetArrayItem(row_names, i++);

@@ -9,7 +9,8 @@
 
 typedef void (*hn_text_writer)(hn_strbuf *b, const void *work);
 
-/// Checks --out, --json and --csv before anything is computed. Fails: HN_ERR_INPUT, reported in diags.
+/// Checks --out, --json and --csv before anything is computed. Fails: HN_ERR_INPUT, reported in
+/// diags.
 HN_MUST_CHECK hn_status hn_forms_check(const hn_job_form *forms, const hn_args *args,
                                        hn_diags *diags);
 /// Writes where these options say; into the file first, so that a broken pipe does not cost it.

@@ -13,6 +13,8 @@ hn_status hn_assignments_read(const hn_words *words, const char *option, hn_see_
     for (int i = 0; i < words->n; i++) {
         char copy[256], *rest = copy;
         int n = snprintf(copy, sizeof copy, "%s", words->word[i]);
+
+        // several assignments may stand in one word
         for (char *part = strsep(&rest, ","); part; part = strsep(&rest, ",")) {
             char *equals = strchr(part, '=');
             double value;
@@ -59,6 +61,8 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
     if (status == HN_OK) {
         hn_model_source source = {
             .settings = s->item, .n_settings = s->n, .allow_open = allow_open};
+
+        // standard input, a file, or a shipped scene
         if (strcmp(word, "-") == 0) {
             status = hn_file_read_stdin(HN_SCENE_MAX_BYTES, &text, diags);
             source.text = hn_strbuf_text(&text);

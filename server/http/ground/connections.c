@@ -26,7 +26,8 @@ struct hn_connections {
     int has_thread, stop;
 };
 
-/// Ends what is beyond its deadline: the library then finds the connection closed. With the lock held.
+/// Ends what is beyond its deadline: the library then finds the connection closed. With the lock
+/// held.
 static void look(hn_connections *all) {
     const double now = hn_clock_wall();
     for (hn_connection_watch *w = all->first; w; w = w->next) {

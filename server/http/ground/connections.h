@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_CONNECTIONS_H
 #define HN_HTTP_CONNECTIONS_H
-// Deadlines of connections. The HTTP library counts the seconds since the last byte, so that a client
-// which sends a byte now and then keeps its place for ever; here a head and a body have a time in all.
+// Deadlines of connections. The HTTP library counts the seconds since the last byte, so that a
+// client which sends a byte now and then keeps its place for ever; here a head and a body have a
+// time in all.
 
 #include "http/ground/http_opts.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_JOBS_H
 #define HN_HTTP_JOBS_H
-// A pool of threads with a bounded queue: long requests are done here, so that short ones and streams
-// never wait. Among those that wait, the client with the fewest jobs at work comes first.
+// A pool of threads with a bounded queue: long requests are done here, so that short ones and
+// streams never wait. Among those that wait, the client with the fewest jobs at work comes first.
 
 #include "base/status.h"
 #include "http/ground/shares.h"

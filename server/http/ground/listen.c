@@ -78,6 +78,8 @@ hn_status hn_listen(const char *host, int port, int next_ports, int *fd, int *bo
         return hn_diag_set(diag, HN_ERR_IO, NULL, "leave --host out to listen on 127.0.0.1",
                            "the host '%.100s' is unknown: %s", host, gai_strerror(fault));
     }
+
+    // the port asked for, or one of the next
     int last = port + (port > 0 ? next_ports : 0);
     last = last > LAST_PORT ? LAST_PORT : last;
     int reason = EADDRINUSE, socket_fd = -1;
@@ -86,6 +88,8 @@ hn_status hn_listen(const char *host, int port, int next_ports, int *fd, int *bo
         socket_fd = open_socket(where);
         reason = socket_fd < 0 ? errno : 0;
     }
+
+    // how a link names the address
     if (socket_fd >= 0) {
         *fd = socket_fd;
         *bound = get_port(socket_fd);

@@ -44,6 +44,8 @@ void hn_http_problem_json(hn_strbuf *b, hn_http_problem kind, const char *detail
     hn_json_put_string(b, "title", info->title);
     hn_json_put_int(b, "status", info->status);
     hn_json_put_string(b, "detail", detail);
+
+    // members that only some kinds have
     if (hint && *hint) {
         hn_json_put_string(b, "hint", hint);
     }

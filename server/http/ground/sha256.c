@@ -23,6 +23,8 @@ static uint32_t rotate(uint32_t x, int n) {
 
 static void add_block(uint32_t H[8], const unsigned char *p) {
     uint32_t W[64], s[8];
+
+    // the message schedule
     for (int t = 0; t < 16; t++) {
         W[t] = (uint32_t)p[4 * t] << 24 | (uint32_t)p[4 * t + 1] << 16 |
                (uint32_t)p[4 * t + 2] << 8 | p[4 * t + 3];
@@ -32,6 +34,8 @@ static void add_block(uint32_t H[8], const unsigned char *p) {
         W[t] = W[t - 16] + (rotate(a, 7) ^ rotate(a, 18) ^ a >> 3) + W[t - 7] +
                (rotate(b, 17) ^ rotate(b, 19) ^ b >> 10);
     }
+
+    // the compression function
     memcpy(s, H, sizeof s);
     for (int t = 0; t < 64; t++) {
         uint32_t t1 = s[7] + (rotate(s[4], 6) ^ rotate(s[4], 11) ^ rotate(s[4], 25)) +

@@ -101,6 +101,8 @@ hn_comparisons *hn_comparisons_create(const hn_http_opts *opts, const hn_library
     pthread_cond_init(&all->changed, &attr);
     pthread_condattr_destroy(&attr);
     pthread_mutex_init(&all->lock, NULL);
+
+    // the keeper looks after those that nobody touches
     all->opts = opts;
     all->lib = lib;
     all->sessions = calloc((size_t)opts->max_comparisons, sizeof(hn_session *));
@@ -198,8 +200,8 @@ static int reserve(hn_comparisons *all, hn_request *r) {
     return placed;
 }
 
-/// Fills the reserved place, or gives it back when `session` is NULL. A server that stops in between
-/// keeps nothing.
+/// Fills the reserved place, or gives it back when `session` is NULL. A server that stops in
+/// between keeps nothing.
 static void settle(hn_comparisons *all, hn_client client, hn_session *session) {
     pthread_mutex_lock(&all->lock);
     all->n_reserved--;

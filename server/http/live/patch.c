@@ -68,7 +68,8 @@ static int choose_methods(const hn_session *session, const cJSON *asked, char (*
     return n;
 }
 
-/// What the change asks for; new methods run on the model that is there (then fresh->model is NULL).
+/// What the change asks for; new methods run on the model that is there (then fresh->model is
+/// NULL).
 static hn_status build(hn_session *session, const change *c, hn_subject *fresh, hn_diags *diags) {
     char kept[HN_COMPARISON_MAX_METHODS][HN_SPEC_MAX];
     const char *methods[HN_COMPARISON_MAX_METHODS];
@@ -130,6 +131,8 @@ static hn_status restart(hn_session *session) {
     hn_session_set_anchor(session);
     hn_strbuf_clear(&session->latest);
     pthread_mutex_unlock(&session->lock);
+
+    // readers get the whole description, then frame 0
     hn_status status = hn_session_publish_setup(session);
     hn_strbuf b;
     hn_strbuf_init(&b);

@@ -72,6 +72,8 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     char self[64], events[80];
     snprintf(self, sizeof self, "/api/v1/comparisons/%s", session->id);
     snprintf(events, sizeof events, "%s/events", self);
+
+    // what changes from frame to frame
     hn_json_object(b);
     hn_json_put_string(b, "id", session->id);
     hn_session_put_state(b, session);
@@ -82,6 +84,8 @@ void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
     hn_json_put_int(b, "generation", session->generation);
     hn_json_put_number(b, "lag", session->lag);
     hn_json_put_int(b, "last_event", (long long)session->history.last_id);
+
+    // texts that were written before
     put_raw(b, "scene", &session->scene_json);
     put_raw(b, "comparison", &session->comparison_json);
     put_raw(b, "parameters", &session->settings_json);
@@ -206,6 +210,8 @@ void hn_session_publish_frame(hn_session *session) {
     hn_comparison_frame_json(&frame, session->bench.comparison);
     put_with_generation(&event, session, &frame);
     hn_strbuf_add_n(&latest, hn_strbuf_text(&event), event.n);
+
+    // the frame is there for all at once
     pthread_mutex_lock(&session->lock);
     session->frame = hn_comparison_frame(session->bench.comparison);
     if (!latest.failed) {
@@ -214,6 +220,8 @@ void hn_session_publish_frame(hn_session *session) {
     hn_history_add(&session->history, HN_EVENT_FRAME, &event);
     hn_session_wake_streams(session);
     pthread_mutex_unlock(&session->lock);
+
+    // then what happened in it
     publish_incidents(session);
     if (hn_comparison_finished(session->bench.comparison)) {
         publish_end(session);
@@ -318,6 +326,8 @@ static void do_next(hn_session *session) {
         pthread_mutex_lock(&session->lock);
         return;
     }
+
+    // nothing runs, or nobody reads
     if (session->state != HN_SESSION_RUNNING) {
         pthread_cond_wait(&session->wake, &session->lock);
         return;
@@ -328,6 +338,8 @@ static void do_next(hn_session *session) {
         pthread_mutex_lock(&session->lock);
         return;
     }
+
+    // the next frame, when it is due
     double due = next_due(session);
     if (hn_clock_wall() < due) {
         wait_until(session, due);
@@ -406,11 +418,15 @@ static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
     pthread_cond_init(&session->wake, &attr);
     pthread_condattr_destroy(&attr);
     pthread_mutex_init(&session->lock, NULL);
+
+    // a name that nobody can guess
     uint64_t name = 0;
     if (getrandom(&name, sizeof name, 0) != (ssize_t)sizeof name) {
         name = (uint64_t)(hn_clock_wall() * 1e9);
     }
     snprintf(session->id, sizeof session->id, "%016llx", (unsigned long long)name);
+
+    // the caller's reference
     session->refs = 1;
     session->opts = opts;
     session->lib = lib;

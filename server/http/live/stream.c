@@ -41,7 +41,8 @@ void hn_stream_wake(hn_stream *s) {
     }
 }
 
-/// 1 when the reader has closed the connection. A suspended one is not looked at by the HTTP library.
+/// 1 when the reader has closed the connection. A suspended one is not looked at by the HTTP
+/// library.
 static int has_gone(const hn_stream *s) {
     struct pollfd look = {.fd = s->fd, .events = POLLRDHUP};
     return s->waiting && poll(&look, 1, 0) > 0 && look.revents;
@@ -154,6 +155,8 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
             return MHD_CONTENT_READER_END_OF_STREAM;
         }
     }
+
+    // what is left of the text
     if (s->text.failed) {
         return MHD_CONTENT_READER_END_WITH_ERROR;
     }
@@ -263,6 +266,8 @@ static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
         hn_reply_problem(r, HN_PROBLEM_INTERNAL, NULL, "%s", hn_status_text(HN_ERR_MEMORY));
         return NULL;
     }
+
+    // it joins the session's list later
     *s = (hn_stream){.session = session,
                      .connection = r->connection,
                      .fd = hn_request_socket(r),

@@ -148,6 +148,8 @@ int hn_guard_query(hn_request *r) {
     if (!check.unknown[0]) {
         return 1;
     }
+
+    // the known names, or the one that was meant
     char hint[HN_DIAG_HINT] = "this address takes no parameters";
     const char *names[MAX_QUERY];
     int n = 0;

@@ -11,7 +11,7 @@ int hn_gzip_accepted(const hn_request *r);
 int hn_gzip_is_worth(const char *media_type, size_t n);
 /// Appends the compressed bytes. Returns 0 when memory is out.
 int hn_gzip(hn_strbuf *out, const char *bytes, size_t n);
-/// Compresses the text of a reply where that is worth it; `most`: texts longer than that stay as they
-/// are (the time it takes is the thread's that calls).
+/// Compresses the text of a reply where that is worth it; `most`: texts longer than that stay as
+/// they are (the time it takes is the thread's that calls).
 void hn_reply_compress(hn_request *r, size_t most);
 #endif

@@ -79,8 +79,8 @@ void hn_reply_bad_json(hn_request *r, size_t offset, const char *what, const cha
 /// HN_ERR_INPUT and its like become 422 with errors[], a fault of the program 500.
 void hn_reply_diags(hn_request *r, hn_status status, const hn_diags *diags);
 
-/// Parses the body and checks it against the fields of the route. Returns 0 with a problem as reply.
-/// Cost: the length of the body; not for the connection's thread.
+/// Parses the body and checks it against the fields of the route. Returns 0 with a problem as
+/// reply. Cost: the length of the body; not for the connection's thread.
 int hn_request_read_body(hn_request *r);
 /// Suspends the connection: from here on another thread owns the request, until
 /// hn_request_finish().

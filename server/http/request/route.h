@@ -10,11 +10,13 @@ enum { HN_MAX_PARTS = 2, HN_HEADER_TEXT = 256 };
 struct hn_request;
 
 typedef enum hn_work {
-    HN_WORK_LIGHT, ///< answered at once on the connection's thread: lookups and copies only, no body
-    HN_WORK_QUICK,     ///< done by the quick pool: reads a shipped scene, opens a comparison
-    HN_WORK_HEAVY,     ///< done by the pool, for as long as run_cpu_s; a full pool: 429
-    HN_WORK_QUICK_OWN, ///< the same, asynchronous: the handler finishes the request, or has it finished
-    HN_WORK_OWN        ///< asynchronous: the handler replies now or arranges a later reply
+    /// answered at once on the connection's thread: lookups and copies only, no body
+    HN_WORK_LIGHT,
+    HN_WORK_QUICK, ///< done by the quick pool: reads a shipped scene, opens a comparison
+    HN_WORK_HEAVY, ///< done by the pool, for as long as run_cpu_s; a full pool: 429
+    /// the same, asynchronous: the handler finishes the request, or has it finished
+    HN_WORK_QUICK_OWN,
+    HN_WORK_OWN ///< asynchronous: the handler replies now or arranges a later reply
 } hn_work;
 
 typedef struct hn_route_query {

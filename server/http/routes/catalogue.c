@@ -54,6 +54,8 @@ static void put_limits(hn_strbuf *b, const hn_http_opts *o) {
                 {"request_deadline_s", o->request_deadline},
                 {"connection_timeout_s", o->connection_timeout},
                 {"json_depth", 64}};
+
+    // as members, for scripts
     hn_json_key(b, "limits");
     hn_json_object(b);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -83,10 +85,13 @@ void hn_handle_index(hn_request *r) {
                                            {"methods", "/api/v1/methods"},
                                            {"lessons", "/api/v1/lessons"},
                                            {"problems", "/api/v1/problems"},
+                                           {"runs", "/api/v1/runs"},
                                            {"comparisons", "/api/v1/comparisons"},
                                            {"studies", "/api/v1/studies"},
                                            {"errors", "/api/v1/errors"},
                                            {"page", "/"}};
+
+    // who answers, and where everything is
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
@@ -99,6 +104,8 @@ void hn_handle_index(hn_request *r) {
         hn_json_put_string(&b, links[i][0], links[i][1]);
     }
     hn_json_end_object(&b);
+
+    // what a page would otherwise copy: limits, kinds of studies, incidents
     put_limits(&b, &r->context->opts);
     hn_json_key(&b, "studies");
     hn_job_kinds_json(&b);
@@ -172,6 +179,8 @@ static hn_model *load_scene(hn_request *r, int allow_open) {
         hn_scene_request_reset(&order);
         return NULL;
     }
+
+    // with the parameters of the query
     hn_status status =
         order.name ? hn_request_each_query(r, "set", see_setting, &settings) : HN_ERR_MEMORY;
     if (status == HN_OK) {
@@ -197,6 +206,9 @@ void hn_handle_scene(hn_request *r) {
 }
 
 // ---- reference solutions ----
+
+/// A reference is tried by up to three means; each gets its part of the time of one request.
+enum { MEANS = 3 };
 
 /// A number of the query above 0 and at most `most`, NaN when it was not given.
 static hn_status read_number(const hn_request *r, const char *name, double most, double *out,
@@ -225,7 +237,7 @@ typedef struct reference_order {
 
 static hn_status read_reference_order(hn_request *r, reference_order *o, hn_diags *diags) {
     const char *compute = hn_request_query(r, "compute");
-    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu, is_stopping, r->context};
+    o->limits = (hn_walk_limits){r->context->opts.max_run_cpu / MEANS, is_stopping, r->context};
     o->request = hn_ref_request_default();
     o->request.opts.limits = o->limits;
     o->request.only_stored = !compute || strcmp(compute, "true") != 0;
@@ -272,6 +284,8 @@ void hn_handle_reference(hn_request *r) {
         hn_reply_json(r, MHD_HTTP_OK, &b);
         return;
     }
+
+    // one that is not stored is not found; it may be computed
     hn_strbuf_reset(&b);
     if (status == HN_ERR_UNSUPPORTED && order.request.only_stored) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, "compute=true computes it, within run_cpu_s",

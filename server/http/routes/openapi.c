@@ -98,6 +98,8 @@ static void put_schema_members(hn_strbuf *b, const hn_field *fields) {
         hn_json_end_object(b);
     }
     hn_json_end_object(b);
+
+    // fields that must be there
     hn_json_key(b, "required");
     hn_json_array(b);
     for (const hn_field *f = fields; f->name; f++) {
@@ -551,6 +553,8 @@ static void put_problem_answers(hn_strbuf *b, const hn_route_table *table) {
         if (!used) {
             continue;
         }
+
+        // the document says what the kind means
         hn_json_key(b, info ? info->code : "Problem");
         hn_json_object(b);
         hn_json_put_string(b, "description", info ? info->about : "A problem document.");

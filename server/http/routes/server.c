@@ -42,9 +42,9 @@ static void set_hosts(hn_server *s) {
                    .any_address = strcmp(host, "0.0.0.0") == 0 || strcmp(host, "::") == 0};
 }
 
-/// Several event loops of the HTTP library, each with its share of the connections. The library asks
-/// for 128 events at a time and, when it gets as many, asks again before it serves them: a loop with
-/// fewer sockets than that never waits there.
+/// Several event loops of the HTTP library, each with its share of the connections. The library
+/// asks for 128 events at a time and, when it gets as many, asks again before it serves them: a
+/// loop with fewer sockets than that never waits there.
 static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
     const int connections = s->context.opts.max_connections;
     const int loops = connections / LOOP_CONNECTIONS + 1;

@@ -49,6 +49,8 @@ void hn_handle_terms(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_diags diags = {0};
+
+    // coordinates and rates that differ from the start
     const cJSON *state = cJSON_GetObjectItemCaseSensitive(r->json, "state"), *item;
     int n = 0;
     hn_state_entry *entries = calloc((size_t)cJSON_GetArraySize(state) + 1, sizeof *entries);
@@ -97,6 +99,8 @@ void hn_handle_equations(hn_request *r) {
     hn_equation_form form = strcmp(format, "latex") == 0  ? HN_EQUATIONS_LATEX
                             : strcmp(format, "json") == 0 ? HN_EQUATIONS_JSON
                                                           : HN_EQUATIONS_TEXT;
+
+    // JSON is the document itself, text stands in one
     hn_strbuf text, b;
     hn_diags diags = {0};
     hn_strbuf_init(&text);
@@ -132,6 +136,8 @@ void hn_handle_snapshot(hn_request *r) {
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->json, "methods")) {
         methods[n++] = item->valuestring;
     }
+
+    // what is left out is chosen by the picture
     hn_picture_request request = {.methods = methods,
                                   .n_methods = n,
                                   .time = hn_fields_number(r->json, "time", 0),
@@ -143,6 +149,8 @@ void hn_handle_snapshot(hn_request *r) {
                                   .cpu_budget = r->context->opts.max_run_cpu,
                                   .stop = is_stopping,
                                   .user = r->context};
+
+    // drawn, or refused with the reason
     hn_strbuf png;
     hn_diags diags = {0};
     hn_strbuf_init(&png);
@@ -186,6 +194,8 @@ void hn_handle_grade(hn_request *r) {
                                                                 hn_fields_text(r->json, "problem"),
                                                                 &problem, &diags)
                                        : HN_ERR_MEMORY;
+
+    // the verdict, or the exercise's fault
     if (status == HN_OK) {
         status = hn_grade_json(problem, submission, strlen(submission),
                                (uint64_t)hn_fields_number(r->json, "seed", 0), v);

@@ -57,6 +57,8 @@ static const char *find_media_type(const char *name) {
                 {".txt", "text/plain; charset=utf-8"},
                 {".md", "text/markdown; charset=utf-8"},
                 {".webmanifest", "application/manifest+json"}};
+
+    // by the ending alone
     const char *dot = strrchr(name, '.');
     for (size_t i = 0; dot && i < sizeof rows / sizeof *rows; i++) {
         if (strcasecmp(dot, rows[i].ending) == 0) {
@@ -92,6 +94,8 @@ static hn_status list_folder(hn_static_files *s, const char *folder, size_t n_ro
         return HN_ERR_IO;
     }
     hn_status status = HN_OK;
+
+    // links are not followed, and nothing hidden is served
     for (struct dirent *e = readdir(dir); e && status == HN_OK; e = readdir(dir)) {
         char path[MAX_PATH_CHARS];
         struct stat st;
@@ -168,6 +172,8 @@ hn_status hn_static_files_create(const char *folder, hn_static_files **out, hn_d
         status = s->arena && s->files && s->addresses ? list_folder(s, folder, strlen(folder), 0)
                                                       : HN_ERR_MEMORY;
     }
+
+    // sorted, so that an address is found by halving
     if (status == HN_OK) {
         qsort(s->files, (size_t)s->n, sizeof *s->files, compare_files);
         for (int i = 0; i < s->n; i++) {

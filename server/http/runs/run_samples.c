@@ -109,6 +109,8 @@ static void put_heads(hn_strbuf *b, const reader *r, int i) {
         hn_strbuf_add(b, c->name);
         return;
     }
+
+    // a vector has a head for each number
     int k = 0;
     for (const char *item = hn_json_next(&row); item; item = hn_json_next(&row), k++) {
         const char *name = names ? hn_json_next(&names) : NULL;

@@ -18,10 +18,9 @@ typedef struct hn_samples_request {
 
 /// Writes one page of the document of a run (hn_model_run_json()).
 ///
-/// CSV has one column a number, named after its coordinate, rate or constraint; JSON and NDJSON keep
-/// vectors. Numbers are copied as text. `next` receives the cursor of the page that follows, -1 when
-/// this is the last.
-/// Fails: HN_ERR_INPUT (a column that the run does not have).
+/// CSV has one column a number, named after its coordinate, rate or constraint; JSON and NDJSON
+/// keep vectors. Numbers are copied as text. `next` receives the cursor of the page that follows,
+/// -1 when this is the last. Fails: HN_ERR_INPUT (a column that the run does not have).
 HN_MUST_CHECK hn_status hn_run_samples_write(hn_strbuf *b, const char *document,
                                              const hn_samples_request *request, long long *next,
                                              hn_diags *diags);

@@ -135,6 +135,8 @@ static int split_file(hn_kept_run *run, const char *text, size_t n) {
     if (memcmp(hash, text, head - 1) != 0) {
         return 0;
     }
+
+    // the documents, one after the other
     const char *at = text + head;
     for (const char *item = hn_json_next(&at); item && run->n < HN_COMPARISON_MAX_METHODS;
          item = hn_json_next(&at)) {
@@ -326,6 +328,8 @@ static hn_status run_method(const hn_runs *all, hn_kept_run *run, const hn_model
                                     .progress = may_go_on,
                                     .stop_reason = "the computing time of one request is used up",
                                     .user = &a};
+
+    // a run that ended early is an answer too
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status ended = HN_OK;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_RUN_STORE_H
 #define HN_HTTP_RUN_STORE_H
-// Runs as resources: found by the id of their question, computed once, by a pool of threads. Kept in
-// memory as long as there is room, and in a folder where the server was given one.
+// Runs as resources: found by the id of their question, computed once, by a pool of threads. Kept
+// in memory as long as there is room, and in a folder where the server was given one.
 
 #include "http/ground/http_opts.h"
 #include "http/ground/shares.h"
@@ -59,7 +59,8 @@ void hn_runs_release(hn_runs *all, hn_kept_run *run);
 int hn_runs_delete(hn_runs *all, const char *id);
 /// Returns the phase.
 hn_run_phase hn_runs_phase(hn_runs *all, const hn_kept_run *run);
-/// Answers a suspended request when the run has ended or `seconds` are over, at once if it has ended.
+/// Answers a suspended request when the run has ended or `seconds` are over, at once if it has
+/// ended.
 void hn_runs_await(hn_runs *all, hn_kept_run *run, struct hn_request *r, double seconds);
 /// Seconds after which a refused question may be asked again.
 int hn_runs_wait(hn_runs *all);

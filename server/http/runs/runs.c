@@ -289,6 +289,8 @@ static void reply_samples(hn_request *r, const hn_kept_run *run) {
     if (!choose_document(r, run, &document) || !read_samples_request(r, &q)) {
         return;
     }
+
+    // one page
     const hn_status status = hn_run_samples_write(&b, document, &q, &next, &diags);
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
