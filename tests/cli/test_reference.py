@@ -112,6 +112,19 @@ class Reference(unittest.TestCase):
         self.assertRegex(seen, r"reference \[[#.]+\] +\d+ %, \d+ (?:s|min) left")
         self.assertIn("stopped on request", seen)
 
+    def test_a_kept_reference_of_nulls_is_computed_again(self):
+        self.call("fb0", "--time", "0.5", "--json")
+        names = [name for name in os.listdir(self.folder) if name.startswith("reference-")]
+        self.assertEqual(len(names), 1)
+        path = os.path.join(self.folder, names[0])
+        with open(path) as f:
+            kept = json.load(f)
+        for member in ("q", "v", "energy", "scales"):
+            with open(path, "w") as f:
+                json.dump({**kept, member: [None] * len(kept[member])}, f)
+            answer = json.loads(self.call("fb0", "--time", "0.5", "--json").stdout)
+            self.assertEqual(answer["source"], "computed", member)
+
     def test_faults_are_told(self):
         for words, status, text in ((["fb0", "--time", "-1"], INPUT, "are allowed"), (["fbo"], INPUT, "did you mean"),
                                     (["fb0", "--recompute", "--time-limit", "1e-9"], ENDED, "takes more"),

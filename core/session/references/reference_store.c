@@ -25,6 +25,16 @@ hn_ref_request hn_ref_request_default(void) {
 
 // reading ----------------------------------------------------------------------------------------------------------
 
+/// A state that is no number is no reference; null is read as NaN.
+static int are_finite(const double *x, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(x[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static int fill(hn_ref *ref, const cJSON *o) {
     const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
     const cJSON *means = cJSON_GetObjectItemCaseSensitive(o, "means");
@@ -46,7 +56,9 @@ static int fill(hn_ref *ref, const cJSON *o) {
            hn_stored_numbers(o, "v", ref->v, rows * nu) &&
            hn_stored_numbers(o, "lambda", ref->lambda, rows * nc) &&
            hn_stored_numbers(o, "energy", ref->energy, rows) &&
-           hn_stored_numbers(o, "between", ref->between, rows * HN_ERROR_COUNT);
+           hn_stored_numbers(o, "between", ref->between, rows * HN_ERROR_COUNT) &&
+           are_finite(scales, 4) && are_finite(ref->q, rows * nu) &&
+           are_finite(ref->v, rows * nu) && are_finite(ref->energy, rows);
 }
 
 hn_ref *hn_reference_take(const cJSON *o, const hn_model *model, double T, int n) {
