@@ -2,6 +2,8 @@
 #include "tui/panels.h"
 
 #include "session/model/lists.h"
+#include "session/model/equations.h"
+#include "session/model/model_json.h"
 
 #include <cjson/cJSON.h>
 #include <ctype.h>

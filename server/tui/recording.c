@@ -3,6 +3,8 @@
 
 #include "base/clock.h"
 #include "session/references/references.h"
+#include "session/references/reference_doc.h"
+#include "session/references/reference_store.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

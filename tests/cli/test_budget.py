@@ -45,6 +45,28 @@ class Budget(unittest.TestCase):
         self.assertEqual(methods[3]["state"], "refused")
         self.assertIn("200000 steps", methods[3]["reason"])
 
+    def test_where_first_order_has_ended_that_is_said_and_no_bars_are_drawn(self):
+        method = "index1@rk4:h=0.01"
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "budget.html")
+            done = call("study", "four-bar", "budget", "--methods", method, "--json", "--out", path)
+            error = strict(done.stdout)["methods"][0]["error"]
+            with open(path, encoding="utf-8") as f:
+                page = f.read()
+        # 1.27 rad of parts against an error of 1.78 rad
+        self.assertAlmostEqual(error["mismatch"], abs(1 - error["sum"] / error["value"]), delta=1e-9)
+        self.assertGreater(error["mismatch"], 0.2)
+        self.assertFalse(error["holds"])
+        self.assertEqual(error["holds_until"], 5)
+        self.assertIn("first order has ended", page)
+        errors, energies = page.split("Who put energy in", 1)
+        self.assertNotIn('<g class="part">', errors)
+        self.assertIn('<g class="part">', energies)
+        # and until then they do add up
+        shorter = strict(call("study", "four-bar", "budget", "--methods", method, "--time", "5", "--json").stdout)["methods"][0]["error"]
+        self.assertTrue(shorter["holds"])
+        self.assertLess(shorter["mismatch"], 0.1)
+
     def test_the_table_names_every_part_and_a_file_holds_the_same_document(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "budget.json")

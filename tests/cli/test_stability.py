@@ -48,6 +48,18 @@ class Stability(unittest.TestCase):
         limits = [m["columns"][0]["predicted"][0] for m in study["methods"]]
         self.assertAlmostEqual(limits[0] / limits[2], 2.8284 / 2, delta=0.01)
 
+    def test_the_default_question_finds_the_boundary_of_every_method(self):
+        done = self.call("study", "four-bar", "stability", "--time-limit", "0", "--json")
+        study = strict(done.stdout)
+        present = 0.01  # the scene's step
+        self.assertLessEqual(study["y"]["values"][0], present)
+        self.assertGreaterEqual(study["y"]["values"][-1], present)
+        for method in study["methods"]:
+            column = method["columns"][0]
+            self.assertGreater(column["last_stable"], 0, method["method"])
+            self.assertLessEqual(column["first_unstable"] / column["last_stable"], 1.021, method["method"])
+            self.assertEqual(method["agreement"]["compared"], 1, method["agreement"]["text"])
+
     def test_an_implicit_method_ends_where_newton_does_and_says_so(self):
         done = self.call(*STUDY, "--methods", "index3@genalpha", "projection@radau5")
         self.assertEqual(done.returncode, DONE, done.stderr)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/accounts/accounts_internal.h"
+#include "session/accounts/accounts_store.h"
 
 #include "base/clock.h"
 
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// rows -----------------------------------------------------------------------------------------------------------------
+// rows ----
 
 const char *hn_account_state(const hn_account_row *row) {
     return row->status == HN_ERR_BUDGET          ? "left out"
@@ -30,13 +31,47 @@ double hn_account_part(const hn_account_row *row, int energy, int i) {
     return of_formulation && !a->has_equations ? (double)NAN : energy ? a->bill[i] : a->part[i];
 }
 
-// life -----------------------------------------------------------------------------------------------------------------
+// errors below it [rad or m] are what rounding leaves: no part of them means anything
+static const double ROUNDING = 1e-11;
+
+double hn_account_mismatch(const hn_account_row *row) {
+    const double sum = row->account.sum, error = row->account.error;
+    const double larger = fmax(fabs(sum), fabs(error));
+    return row->status != HN_OK || row->account.coordinate < 0 ? (double)NAN
+           : larger > 0                                        ? fabs(sum - error) / larger
+                                                               : 0;
+}
+
+bool hn_account_holds(const hn_account_row *row) {
+    const double larger = fmax(fabs(row->account.sum), fabs(row->account.error));
+    return larger < ROUNDING || !(hn_account_mismatch(row) > HN_ACCOUNT_HOLDS);
+}
+
+void hn_account_note(const hn_model *model, const hn_account_row *row, char out[HN_ACCOUNT_NOTE]) {
+    const hn_coordinate *c = hn_account_coordinate(model, row);
+    const char *unit = c && c->kind == HN_LENGTH ? "m" : "rad";
+    out[0] = 0;
+    if (!c || hn_account_holds(row)) {
+        return;
+    }
+    const int n =
+        snprintf(out, HN_ACCOUNT_NOTE,
+                 "first order has ended: the parts add up to %.3g %s, the error is %.3g %s",
+                 row->account.sum, unit, row->account.error, unit);
+    if (isfinite(row->holds_until) && n > 0 && n < HN_ACCOUNT_NOTE) {
+        snprintf(out + n, (size_t)(HN_ACCOUNT_NOTE - n), "; they agree until t = %.3g s",
+                 row->holds_until);
+    }
+}
+
+// life ----
 
 static hn_status set_up(hn_accounts *a, hn_diags *diags) {
     hn_job_request *r = &a->request;
-    const hn_scene *scene = hn_model_scene(a->model);
     if (r->n_methods == 0) {
-        HN_TRY(hn_job_request_set_methods(r, scene->methods, scene->n_methods, diags));
+        int n;
+        const char *const *methods = hn_model_methods(a->model, &n);
+        HN_TRY(hn_job_request_set_methods(r, methods, n, diags));
     }
     HN_TRY(hn_job_complete(r, 0, HN_ACCOUNTS_METHODS, a->specs, diags));
     a->n = r->n_methods;
@@ -44,6 +79,7 @@ static hn_status set_up(hn_accounts *a, hn_diags *diags) {
         hn_account_row *row = &a->rows[i];
         hn_method_format(&a->specs[i], row->spelling);
         row->status = HN_ERR_BUDGET;
+        row->holds_until = (double)NAN;
         snprintf(row->reason, sizeof row->reason, "not begun");
     }
     return r->limits.folder ? hn_accounts_open_journal(a, diags) : HN_OK;
@@ -72,7 +108,7 @@ void hn_accounts_free(hn_accounts *a) {
     }
 }
 
-// making ---------------------------------------------------------------------------------------------------------------
+// making ----
 
 static int ask_stop(void *user) {
     hn_accounts *a = user;
@@ -86,6 +122,26 @@ static void report_progress(void *user, double part) {
     hn_job_progress(&a->request.limits, "", (a->at + part) / a->n);
 }
 
+/// Finds until when the parts add up to the error: the end is halved until they do. Together these
+/// budgets take no longer than the first.
+static void find_horizon(hn_accounts *a, hn_account_row *row) {
+    enum { MOST_HALVINGS = 5 };
+    const hn_account_opts opts = {.stop = ask_stop, .user = a};
+    hn_account_row shorter = *row;
+    double T = row->account.t;
+    for (int k = 0; k < MOST_HALVINGS && !hn_account_holds(&shorter); k++) {
+        hn_diag diag = {0};
+        T /= 2;
+        shorter.status =
+            hn_account_make(hn_model_system(a->model), &a->specs[a->at], hn_model_q(a->model),
+                            hn_model_v(a->model), T, &opts, &shorter.account, &diag);
+        if (shorter.status != HN_OK || shorter.account.coordinate < 0) {
+            return;
+        }
+    }
+    row->holds_until = hn_account_holds(&shorter) ? T : (double)NAN;
+}
+
 /// 0 when it was stopped.
 static int make_row(hn_accounts *a, hn_account_row *row) {
     const hn_account_opts opts = {.stop = ask_stop, .progress = report_progress, .user = a};
@@ -95,7 +151,10 @@ static int make_row(hn_accounts *a, hn_account_row *row) {
                         hn_model_v(a->model), a->request.time, &opts, &row->account, &diag);
     snprintf(row->reason, sizeof row->reason, "%s",
              row->status == HN_OK ? row->account.reason : diag.message);
-    return row->status != HN_ERR_BUDGET;
+    if (row->status == HN_OK && row->account.coordinate >= 0) {
+        find_horizon(a, row);
+    }
+    return row->status != HN_ERR_BUDGET && !a->stopped && !a->out_of_time;
 }
 
 int hn_accounts_run(hn_accounts *a) {
@@ -112,7 +171,7 @@ int hn_accounts_run(hn_accounts *a) {
     return going;
 }
 
-// reading --------------------------------------------------------------------------------------------------------------
+// reading ----
 
 int hn_accounts_resumed(const hn_accounts *a) {
     return a->resumed;

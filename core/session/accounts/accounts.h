@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ACCOUNTS_H
 #define HN_SESSION_ACCOUNTS_H
-// Where errors and energy come from, for several methods of one scene: study/account/account.h method by method, as tables, documents and pictures.
-// With a folder each account is kept as it is made: the same request goes on behind the last whole one.
+// Where errors and energy come from, for several methods of one scene: study/account/account.h
+// method by method, as tables, documents and pictures. With a folder each account is kept as it is
+// made: the same request goes on behind the last whole one.
 
 #include "session/job/job_request.h"
 #include "study/account/account.h"
@@ -15,18 +16,32 @@ typedef struct hn_account_row {
     hn_status status;             ///< HN_OK: `account` is one; HN_ERR_BUDGET: left out
     char reason[HN_DIAG_MESSAGE]; ///< why there is none, or why the run ended early; "" else
     hn_account account;
+    /// [s] latest of the times T, T/2, T/4 ... until which the parts add up to the error; NaN: not
+    /// looked for, or not found
+    double holds_until;
 } hn_account_row;
+#define HN_ACCOUNT_HOLDS 0.1 ///< difference of sum and error, over the larger: first order holds
+/// Returns |sum of the parts - error| over the larger of them; NaN: there is no error at the end.
+double hn_account_mismatch(const hn_account_row *row);
+/// Returns false where the parts do not add up to the error: first order has ended before.
+bool hn_account_holds(const hn_account_row *row);
+enum { HN_ACCOUNT_NOTE = 200 };
+/// Writes the sentence that says so, with the sum and the time until which it held; "" where it
+/// holds.
+void hn_account_note(const hn_model *model, const hn_account_row *row, char out[HN_ACCOUNT_NOTE]);
 /// "done", "failed" (the run ended early), "refused" or "left out".
 const char *hn_account_state(const hn_account_row *row);
 /// Coordinate whose error it is; NULL: there is no error at the end.
 const hn_coordinate *hn_account_coordinate(const hn_model *model, const hn_account_row *row);
-/// Part i of the error (energy = 0, of HN_CAUSE_COUNT) or of the energy (1, of HN_BILL_COUNT); NaN: it cannot be told.
+/// Part i of the error (energy = 0, of HN_CAUSE_COUNT) or of the energy (1, of HN_BILL_COUNT); NaN:
+/// it cannot be told.
 double hn_account_part(const hn_account_row *row, int energy, int i);
 
 typedef struct hn_accounts hn_accounts;
 /// Checks the request and takes up what an interrupted job of the same request left.
 ///
-/// request  in  one model; methods: the scene's where it has none; time limit: none where it has none
+/// request  in  one model; methods: the scene's where it has none; time limit: none where it has
+///              none
 /// Returns owned in *out. The model and the texts of the request must outlive it.
 /// Fails:   HN_ERR_INPUT and HN_ERR_LIMIT (methods, times), HN_ERR_IO as hn_journal_open(),
 ///          HN_ERR_MEMORY. All reported in diags.
@@ -46,20 +61,5 @@ const hn_model *hn_accounts_model(const hn_accounts *accounts);
 double hn_accounts_time(const hn_accounts *accounts); ///< [s]
 
 // documents
-/// {"scene","title","time","methods":[{"method","state","reason","t","steps","error":{"coordinate","unit","value","sum","parts":{cause:
-/// number or null}} or null,"energy":{"change","swing","conservative","loops_back_and_forth","parts":{item: number}}}...]}, energies in J;
-/// from "t" on only where there is an account.
-void hn_accounts_json(hn_strbuf *b, const hn_accounts *accounts);
-/// A row a method, with a head; what cannot be told is empty.
-void hn_accounts_csv(hn_strbuf *b, const hn_accounts *accounts);
-/// One file without network or script: both pictures, and their numbers as tables; light, dark, and A4.
-void hn_accounts_html(hn_strbuf *b, const hn_accounts *accounts);
 
-/// One row as it stands in "methods".
-void hn_account_put(hn_strbuf *b, const hn_model *model, const hn_account_row *row);
-/// 1 if one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
-int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
-/// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a row; colours as in study_plot.h.
-void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,
-                      int energy);
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accounts as JSON and as CSV.
+#include "session/accounts/accounts_doc.h"
+
 #include "session/accounts/accounts_internal.h"
 #include "session/store/csv.h"
 
@@ -16,6 +17,9 @@ static void put_error(hn_strbuf *b, const hn_account_row *row, const hn_coordina
     hn_json_put_string(b, "unit", c->kind == HN_LENGTH ? "m" : "rad");
     hn_json_put_number(b, "value", row->account.error);
     hn_json_put_number(b, "sum", row->account.sum);
+    hn_json_put_number(b, "mismatch", hn_account_mismatch(row));
+    hn_json_put_bool(b, "holds", hn_account_holds(row));
+    hn_json_put_number(b, "holds_until", row->holds_until);
     hn_json_key(b, "parts");
     hn_json_object(b);
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
@@ -88,6 +92,7 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
     hn_strbuf_printf(b, ",%s", !c ? "" : c->kind == HN_LENGTH ? "m" : "rad");
     put_cell(b, c ? row->account.error : (double)NAN);
     put_cell(b, c ? row->account.sum : (double)NAN);
+    put_cell(b, c ? hn_account_mismatch(row) : (double)NAN);
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
         put_cell(b, c ? hn_account_part(row, 0, i) : (double)NAN);
     }
@@ -102,7 +107,7 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
 }
 
 void hn_accounts_csv(hn_strbuf *b, const hn_accounts *a) {
-    hn_strbuf_add(b, "method,state,t,steps,coordinate,unit,error,error_sum");
+    hn_strbuf_add(b, "method,state,t,steps,coordinate,unit,error,error_sum,mismatch");
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
         hn_strbuf_printf(b, ",error_%s", hn_cause_name((hn_cause)i));
     }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accounts as one HTML file: no network, no script. Both pictures, and every number in tables.
+#include "session/accounts/accounts_html.h"
+
 #include "session/accounts/accounts_internal.h"
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
+#include "session/accounts/accounts_plot.h"
+#include "session/precision/study_html.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,6 +82,15 @@ static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
             hn_html_text(b, row->spelling);
             hn_strbuf_printf(b, ": %s, ", hn_account_state(row));
             hn_html_text(b, row->reason);
+            hn_strbuf_add(b, "</p>");
+        }
+        char note[HN_ACCOUNT_NOTE];
+        hn_account_note(a->model, row, note);
+        if (note[0]) {
+            hn_strbuf_add(b, "<p class=\"wrong\">");
+            hn_html_text(b, row->spelling);
+            hn_strbuf_add(b, ": ");
+            hn_html_text(b, note);
             hn_strbuf_add(b, "</p>");
         }
     }

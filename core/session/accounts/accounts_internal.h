@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ACCOUNTS_INTERNAL_H
 #define HN_SESSION_ACCOUNTS_INTERNAL_H
-// The inside of accounts: accounts.c (life and making), accounts_store.c (what is kept of unfinished ones), accounts_doc.c, accounts_html.c
-// and accounts_plot.c (documents).
+// The inside of accounts: accounts.c (life and making), accounts_store.c (what is kept of
+// unfinished ones), accounts_doc.c, accounts_html.c and accounts_plot.c (documents).
 
 #include "session/accounts/accounts.h"
 #include "session/store/journal.h"
@@ -19,8 +19,4 @@ struct hn_accounts {
     int at;          ///< the present one
 };
 
-/// Opens the journal of these accounts and reads what it holds. Fails as hn_journal_open().
-HN_MUST_CHECK hn_status hn_accounts_open_journal(hn_accounts *accounts, hn_diags *diags);
-/// Puts row i into it.
-void hn_accounts_keep(hn_accounts *accounts, int i);
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture of accounts: a bar a method, a block a part.
+#include "session/accounts/accounts_plot.h"
+
 #include "session/accounts/accounts.h"
 
 #include "base/units.h"
@@ -59,7 +60,8 @@ static void format_signed(double value, const char *unit, char out[SIGNED_TEXT])
     snprintf(out, SIGNED_TEXT, "%s%s", value < 0 ? "\xe2\x88\x92" : "+", text);
 }
 
-/// Positive parts to the right of the middle, negative ones to the left; `largest` fills half the width.
+/// Positive parts to the right of the middle, negative ones to the left; `largest` fills half the
+/// width.
 static void put_bar(hn_strbuf *b, const parts *p, double y, double largest) {
     const double middle = (LABELS + RIGHT) / 2.0, scale = (RIGHT - LABELS) / 2.0 / largest;
     double right = middle, left = middle;
@@ -128,8 +130,15 @@ static void put_account(hn_strbuf *b, const hn_model *model, const hn_account_ro
         hn_plot_text(b, LABELS, y + BAR / 2.0 + 4, "note", text);
         return;
     }
+    // parts that do not add up to the error are no parts of it: no bars
     const double largest = largest_side(&p);
-    if (largest > 0) {
+    char note[HN_ACCOUNT_NOTE] = "";
+    if (!energy) {
+        hn_account_note(model, a, note);
+    }
+    if (note[0]) {
+        hn_plot_text(b, LABELS, y + BAR / 2.0 + 4, "note", note);
+    } else if (largest > 0) {
         put_bar(b, &p, y, largest);
         put_words(b, &p, y + BAR + 16, largest);
     }

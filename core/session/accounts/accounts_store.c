@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of unfinished accounts: a line a method.
+#include "session/accounts/accounts_store.h"
+
 #include "session/accounts/accounts_internal.h"
 #include "session/store/stored_json.h"
 
@@ -7,7 +8,7 @@
 
 #include <math.h>
 
-enum { FORMAT = 1 }; // counts up when the meaning of a line changes
+enum { FORMAT = 2 }; // counts up when the meaning of a line changes
 
 /// All that decides what the accounts are.
 static uint64_t accounts_key(const hn_accounts *a) {
@@ -60,7 +61,8 @@ static int take_line(void *user, const cJSON *o) {
     }
     row = a->rows[i];
     row.status = (hn_status)status;
-    if (!hn_stored_text(o, "reason", row.reason, sizeof row.reason) ||
+    if (!hn_stored_number(o, "holds_until", &row.holds_until) ||
+        !hn_stored_text(o, "reason", row.reason, sizeof row.reason) ||
         (status == HN_OK &&
          !take_account(o, hn_system_get_info(hn_model_system(a->model)).n_user, &row.account))) {
         return 0;
@@ -97,6 +99,7 @@ void hn_accounts_keep(hn_accounts *a, int i) {
     hn_json_put_int(&b, "m", i);
     hn_json_put_int(&b, "status", row->status);
     hn_json_put_string(&b, "reason", row->reason);
+    hn_json_put_number(&b, "holds_until", row->holds_until);
     if (row->status == HN_OK) {
         put_account(&b, &row->account);
     }

@@ -8,10 +8,13 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double FRAME = 1.0 / 60; // [s]
 enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length would not show it
+// frames whose cost is kept, and those at the start that are not: caches are cold
+enum { COST_FRAMES = 63, COLD_FRAMES = 3 };
 
 /// One method of the comparison.
 typedef struct entry {
@@ -22,6 +25,9 @@ typedef struct entry {
     int over_budget;               ///< stopped by the comparison because one frame cost too much
     double slowness;               ///< computing time per simulated time in that frame [-]
     double frame_cpu, frame_t;     ///< computing time and own time when the frame was begun [s]
+    long long frame_steps;         ///< steps when the frame was begun
+    double step_cpu[COST_FRAMES];  ///< computing time a step, of the last frames [s]
+    int n_costs;                   ///< frames that were measured
 } entry;
 
 struct hn_comparison {
@@ -37,7 +43,8 @@ hn_comparison_opts hn_comparison_opts_default(void) {
     return (hn_comparison_opts){.cpu_budget = 5};
 }
 
-/// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when two methods share it.
+/// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when
+/// two methods share it.
 static int choose_slot(const hn_comparison *c, const hn_formulation *formulation) {
     int wanted = 0;
     while (wanted < hn_formulation_count() && hn_formulation_at(wanted) != formulation) {
@@ -83,7 +90,8 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     return HN_OK;
 }
 
-/// A whole number of the largest fixed step, at least a sixtieth of a second or of a short run its part.
+/// A whole number of the largest fixed step, at least a sixtieth of a second or of a short run its
+/// part.
 static double choose_frame_dt(const hn_comparison *c) {
     const double shortest = fmin(FRAME, c->duration / LEAST_FRAMES);
     double h = 0;
@@ -221,19 +229,55 @@ static int advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void 
     return 1;
 }
 
+/// Keeps what a step of the frame took on average.
+static void measure_frame(hn_comparison *c, entry *e) {
+    const hn_run_summary s = hn_run_get_summary(e->run);
+    if (c->frame >= COLD_FRAMES && s.steps > e->frame_steps) {
+        e->step_cpu[e->n_costs++ % COST_FRAMES] =
+            (s.cpu_seconds - e->frame_cpu) / (double)(s.steps - e->frame_steps);
+    }
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method) {
+    const entry *e = &c->entries[method];
+    const int n = e->n_costs < COST_FRAMES ? e->n_costs : COST_FRAMES;
+    hn_step_cost cost = {n, (double)NAN, (double)NAN, (double)NAN};
+    double sorted[COST_FRAMES];
+    if (n >= HN_STEP_COST_FRAMES) {
+        memcpy(sorted, e->step_cpu, (size_t)n * sizeof *sorted);
+        qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
+        cost.low = sorted[n / 4];
+        cost.median = sorted[n / 2];
+        cost.high = sorted[(3 * n) / 4];
+    }
+    return cost;
+}
+
 int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
-        c->entries[i].frame_cpu = hn_run_get_summary(c->entries[i].run).cpu_seconds;
+        const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
+        c->entries[i].frame_cpu = s.cpu_seconds;
+        c->entries[i].frame_steps = s.steps;
         c->entries[i].frame_t = hn_run_time(c->entries[i].run);
     }
 
     // methods that are there already have nothing left to do
     c->in_frame = 1;
     const double t = (double)(c->frame + 1) * c->frame_dt;
-    for (int i = 0; i < c->n; i++) {
-        if (is_live(&c->entries[i]) && !advance_entry(c, &c->entries[i], t, stop, user)) {
+    for (int k = 0; k < c->n; k++) {
+        // each frame another method comes first: none always pays for cold caches
+        entry *e = &c->entries[(k + c->frame) % c->n];
+        if (is_live(e) && !advance_entry(c, e, t, stop, user)) {
             return 0;
         }
+    }
+    for (int i = 0; i < c->n; i++) {
+        measure_frame(c, &c->entries[i]);
     }
     c->in_frame = 0;
     c->frame++;
@@ -249,6 +293,7 @@ void hn_comparison_reset(hn_comparison *c) {
     c->in_frame = 0;
     for (int i = 0; i < c->n; i++) {
         c->entries[i].over_budget = 0;
+        c->entries[i].n_costs = 0;
         hn_run_reset(
             c->entries[i]
                 .run); // a run that cannot be set back stays failed, and its summary says why
@@ -331,6 +376,17 @@ static void put_warning(hn_strbuf *b, const entry *e) {
     }
 }
 
+static void put_step_cost(hn_strbuf *b, const hn_comparison *c, int method) {
+    const hn_step_cost cost = hn_comparison_step_cost(c, method);
+    hn_json_key(b, "step_cpu");
+    hn_json_object(b);
+    hn_json_put_number(b, "median", cost.median);
+    hn_json_put_number(b, "low", cost.low);
+    hn_json_put_number(b, "high", cost.high);
+    hn_json_put_int(b, "frames", cost.frames);
+    hn_json_end_object(b);
+}
+
 static void put_cost(hn_strbuf *b, const hn_run_summary *s) {
     hn_json_put_int(b, "steps", s->steps);
     hn_json_put_int(b, "rejected", s->rejected);
@@ -408,6 +464,7 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
         put_reason(b, c, &c->entries[i], &s);
         put_sample(b, c, &sample);
         put_cost(b, &s);
+        put_step_cost(b, c, i);
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
@@ -460,6 +517,7 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         // an adaptive step may end beyond the clock; what was reached is what can be shown
         hn_json_put_number(b, "t_reached", fmin(s.t, (double)c->frame * c->frame_dt));
         put_cost(b, &s);
+        put_step_cost(b, c, i);
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);
         hn_json_put_int(b, "fallbacks", s.cost.fallbacks);
         hn_json_put_int(b, "chart_changes", s.cost.chart_changes);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_COMPARISON_H
 #define HN_SESSION_COMPARISON_H
-// A comparison: several methods on one scene and one clock. Frame k holds every method's state at t = k * frame_dt.
-// A method that fails stays in the comparison with its last good state, its status and the reason.
+// A comparison: several methods on one scene and one clock. Frame k holds every method's state at t
+// = k * frame_dt. A method that fails stays in the comparison with its last good state, its status
+// and the reason.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -14,16 +15,19 @@ enum { HN_COMPARISON_MAX_METHODS = 8 };
 typedef struct hn_comparison hn_comparison;
 
 typedef struct hn_comparison_opts {
-    double
-        frame_dt; ///< [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the duration, whichever is less
+    /// [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the
+    /// duration, whichever is less
+    double frame_dt;
     double duration; ///< [s]; 0: the scene's
-    double
-        cpu_budget; ///< seconds of stepping allowed for one frame of one method; beyond it the method is stopped with HN_ERR_BUDGET; 0: 5
+    /// seconds of stepping allowed for one frame of one method; beyond it the method is stopped
+    /// with HN_ERR_BUDGET; 0: 5
+    double cpu_budget;
     long long max_steps; ///< per method
 } hn_comparison_opts;
 hn_comparison_opts hn_comparison_opts_default(void);
 
-/// The model must outlive the comparison. A spelling that is at fault, or a method the scene cannot serve, is told in diags (pointer "/methods/2").
+/// The model must outlive the comparison. A spelling that is at fault, or a method the scene cannot
+/// serve, is told in diags (pointer "/methods/2").
 HN_MUST_CHECK hn_status hn_comparison_create(const hn_model *model, const char *const *methods,
                                              int n_methods, const hn_comparison_opts *opts,
                                              hn_comparison **out, hn_diags *diags);
@@ -35,11 +39,12 @@ long long
 hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
 int hn_comparison_finished(
     const hn_comparison *c); ///< the clock reached the duration, or every method failed
-/// Advances every method to the next frame. Failures of single methods are not an error of the comparison.
+/// Advances every method to the next frame. Failures of single methods are not an error of the
+/// comparison.
 void hn_comparison_next(hn_comparison *c);
 /// The same in pieces: returns 1 when the next frame is complete, 0 when `stop` (asked every few
-/// milliseconds; may be NULL) returned 1. The next call goes on; until then the present frame has no
-/// samples. A reset forgets what was begun.
+/// milliseconds; may be NULL) returned 1. The next call goes on; until then the present frame has
+/// no samples. A reset forgets what was begun.
 int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
 void hn_comparison_reset(hn_comparison *c);
 /// Changes "alpha" ... of one method (-1: all that have the key) while running.
@@ -47,20 +52,31 @@ HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const ch
                                           double value, hn_diag *diag);
 const hn_run *hn_comparison_run(const hn_comparison *c, int method);
 int hn_comparison_slot(const hn_comparison *c, int method); ///< colour and dash, see render/look.h
-/// The sample of a method at the present frame; 0 when the method has failed (then it is its last good one).
+/// Computing time of one step of a method: what its last frames took, in turns with the others.
+typedef struct hn_step_cost {
+    int frames;               ///< measured; below HN_STEP_COST_FRAMES nothing is said
+    double median, low, high; ///< [s], quartiles; NaN: too few frames
+} hn_step_cost;
+enum { HN_STEP_COST_FRAMES = 5 };
+hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
+/// The sample of a method at the present frame; 0 when the method has failed (then it is its last
+/// good one).
 int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
 /// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
-/// "velocity_gap","energy_change","steps","evals","ops","cpu","worst_gap",...}]}
+/// "velocity_gap","energy_change","steps","evals","ops","cpu","step_cpu":{"median","low","high",
+/// "frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
 void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
 /// Methods with spelling, title, short name, look slot, card; frame_dt, duration.
 void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
-/// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy change, steps, rejected, evals, ops, cpu, incidents.
+/// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy
+/// change, steps, rejected, evals, ops, cpu, incidents.
 void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
-/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...]}; method -1: left out.
+/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...]};
+/// method -1: left out.
 void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
 
-// one run with output, for `holonom run` and POST /runs -----------------------------------------------------------
+// one run with output, for `holonom run` and POST /runs ----
 typedef struct hn_run_request {
     const char *method;
     double time;      ///< end [s]
@@ -70,19 +86,15 @@ typedef struct hn_run_request {
     long long max_samples; ///< bound
     long long max_numbers; ///< in the tables of the answer; 0: 2^25
     long long max_steps;
-    int raw_lambda; ///< 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
-    int reactions; ///< 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names: "efforts") too
+    /// 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
+    int raw_lambda;
+    /// 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names:
+    /// "efforts") too
+    int reactions;
     /// called now and then with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
     const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"
     void *user;
 } hn_run_request;
 
-/// The object of `run --json`: scene, method, status, reason, t_reached, coordinates, samples as columns, incidents, cost. The column
-/// "lambda_mark" says what a sample's multipliers are worth, and the reactions that rest on them: an index into "lambda_marks"
-/// (hn_multiplier_mark); it is left out of a scene without closure rows. *status says how the run
-/// ended (HN_OK or why it ended early). Returns not HN_OK only when the request itself is at fault.
-HN_MUST_CHECK hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model,
-                                          const hn_run_request *request, hn_status *ended,
-                                          hn_diags *diags);
 #endif

@@ -7,6 +7,7 @@
 #include "session/model/caption.h"
 #include "session/compare/comparison.h"
 #include "session/model/envelope.h"
+#include "session/model/state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,7 +46,8 @@ static double cpu_used(const hn_comparison *c) {
     return sum;
 }
 
-/// Runs every method to the wanted time. The clock advances in whole frames, so a frame is a part of that time.
+/// Runs every method to the wanted time. The clock advances in whole frames, so a frame is a part
+/// of that time.
 static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     hn_status status = check_time(r->time, diags);
@@ -144,7 +146,8 @@ static hn_status gather_given_pose(scene_picture *p, hn_diags *diags) {
     return status;
 }
 
-/// The frame is fitted to the motion, so that a series of pictures does not jump; a given pose may lie outside it.
+/// The frame is fitted to the motion, so that a series of pictures does not jump; a given pose may
+/// lie outside it.
 static hn_status choose_view(scene_picture *p, hn_diags *diags) {
     hn_envelope e;
     hn_view asked;

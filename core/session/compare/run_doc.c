@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run with its output: the object of `holonom run --json`.
+#include "session/compare/run_doc.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "session/store/columns_json.h"
@@ -22,6 +23,9 @@ typedef struct table {
     hn_pace pace; ///< of looks at the limits between samples
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
     double *mark;                  ///< hn_multiplier_mark of a sample
+    hn_drawing drawing;            ///< whose points with a name are columns too
+    int n_points;                  ///< of them
+    double *points;                ///< 3 per point, world [m]
     double *raw_lambda;            ///< NULL: not asked for, or the method has none
     hn_reaction_writer *reactions; ///< NULL: not asked for
     double *force, *moment;        ///< 3 per carrier
@@ -39,7 +43,11 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
                               const hn_run_request *request, int raw_lambda, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(sys);
     *tab = (table){.n_user = info.n_user, .nc = info.nc, .cap = cap};
-    double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc;
+    tab->drawing = hn_system_drawing(sys);
+    for (int i = 0; i < tab->drawing.n_points; i++) {
+        tab->n_points += tab->drawing.labels[i] != NULL;
+    }
+    double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc + 3.0 * tab->n_points;
     if (width * (double)cap > most_numbers(request)) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
@@ -56,6 +64,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
     tab->v = hn_arena_doubles(tab->arena, n * (size_t)info.n_user);
     tab->lambda = hn_arena_doubles(tab->arena, n * (size_t)info.nc);
     tab->mark = hn_arena_doubles(tab->arena, n);
+    tab->points = hn_arena_doubles(tab->arena, 3 * n * (size_t)tab->n_points + 1);
     tab->raw_lambda = raw_lambda ? hn_arena_doubles(tab->arena, n * (size_t)info.nc) : NULL;
     tab->gap = hn_arena_doubles(tab->arena, n);
     tab->velocity_gap = hn_arena_doubles(tab->arena, n);
@@ -106,6 +115,16 @@ static void add_reactions(table *tab, const hn_sample *s, size_t k) {
     }
 }
 
+static void add_points(table *tab, const hn_sample *s, size_t k) {
+    double *to = tab->points + 3 * k * (size_t)tab->n_points;
+    for (int i = 0; i < tab->drawing.n_points; i++) {
+        if (tab->drawing.labels[i]) {
+            memcpy(to, s->points + 3 * i, 3 * sizeof *to);
+            to += 3;
+        }
+    }
+}
+
 static void table_add(table *tab, const hn_sample *s, hn_run *run) {
     size_t k = (size_t)tab->n++, nq = (size_t)tab->n_user, nc = (size_t)tab->nc;
     tab->t[k] = s->t;
@@ -121,6 +140,7 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run) {
     if (tab->reactions) {
         add_reactions(tab, s, k);
     }
+    add_points(tab, s, k);
     tab->gap[k] = s->gap;
     tab->velocity_gap[k] = s->velocity_gap;
     tab->energy[k] = s->energy;
@@ -181,7 +201,8 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     return r->at ? check_at(r, diags) : HN_OK;
 }
 
-/// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when told to stop.
+/// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when
+/// told to stop.
 static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r) {
     while (hn_run_time(run) < t * (1 - 1e-14)) {
         hn_status status = hn_run_step_towards(run, t);
@@ -196,7 +217,8 @@ static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_requ
     return HN_OK;
 }
 
-/// The sample at t. Where no step of the integrator's own reaches it the run goes on first: if it ends there, that is the reason.
+/// The sample at t. Where no step of the integrator's own reaches it the run goes on first: if it
+/// ends there, that is the reason.
 static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
     hn_status status = hn_run_sample(run, t, sample);
     if (status != HN_OK && hn_run_time(run) < t) {
@@ -208,7 +230,8 @@ static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
     return status;
 }
 
-/// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that output never moves a step.
+/// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that
+/// output never moves a step.
 static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
                              const hn_run_request *r, table *tab) {
     // a sample may cost more than the steps before it
@@ -231,7 +254,8 @@ static double fixed_step(const hn_method_spec *spec) {
     return hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
 }
 
-/// The whole run; a run that ends early keeps what it reached, with its last good state as the last sample.
+/// The whole run; a run that ends early keeps what it reached, with its last good state as the last
+/// sample.
 static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double h = fixed_step(hn_run_spec(run));
     hn_pace pace = hn_pace_begin();
@@ -269,6 +293,7 @@ static void put_samples(hn_strbuf *b, const table *tab) {
         hn_columns_put_table(b, "effort", tab->effort, tab->n,
                              hn_reaction_writer_efforts(tab->reactions));
     }
+    hn_columns_put_table(b, "points", tab->points, tab->n, 3 * tab->n_points);
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
     hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
@@ -280,6 +305,15 @@ static void put_names(hn_strbuf *b, const hn_model *model) {
     hn_columns_put_coordinates(b, sys);
     hn_columns_put_rates(b, sys);
     hn_columns_put_rows(b, sys);
+    const hn_drawing drawing = hn_system_drawing(sys);
+    hn_json_key(b, "points");
+    hn_json_array(b);
+    for (int i = 0; i < drawing.n_points; i++) {
+        if (drawing.labels[i]) {
+            hn_json_string(b, drawing.labels[i]);
+        }
+    }
+    hn_json_end_array(b);
     hn_json_key(b, "lambda_marks");
     hn_json_strings(b, hn_multiplier_marks, HN_N_MULTIPLIER_MARKS);
 }

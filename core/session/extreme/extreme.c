@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trials run, and what is seen compared with what is predicted.
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_model.h"
+#include "session/extreme/extreme_store.h"
 
 #include "base/clock.h"
 
@@ -24,7 +26,7 @@ int hn_extreme_is_stopped(void *user) {
            (bench->deadline > 0 && hn_clock_wall() > bench->deadline);
 }
 
-// verdicts -----------------------------------------------------------------------------------------------------------
+// verdicts ----
 
 static hn_extreme_verdict judge_number(const hn_extreme_expect *e, double value) {
     if (isnan(value)) {
@@ -91,7 +93,7 @@ static void tell_numbers(hn_extreme_trial *t) {
     }
 }
 
-// runs -----------------------------------------------------------------------------------------------------------------
+// runs ----
 
 void hn_extreme_conclude(hn_extreme_trial *t) {
     t->n_seen = t->n_scenes * t->n_methods;

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_H
 #define HN_SESSION_EXTREME_H
-// The extreme matrix: cases in which a method is known to break, or must not, each a data file with what theory says will be
-// seen, and where that is written. What is measured is a table here; what is expected stands in the files alone.
+// The extreme matrix: cases in which a method is known to break, or must not, each a data file with
+// what theory says will be seen, and where that is written. What is measured is a table here; what
+// is expected stands in the files alone.
 //
-// A case holds trials. A trial runs a scene by some methods (or hands its saddle system to some solvers) for every value of one
-// swept name, takes one quantity from each run, reduces the quantities of a sweep to one number (measure), and compares the
-// numbers of all methods with what is predicted.
+// A case holds trials. A trial runs a scene by some methods (or hands its saddle system to some
+// solvers) for every value of one swept name, takes one quantity from each run, reduces the
+// quantities of a sweep to one number (measure), and compares the numbers of all methods with what
+// is predicted.
 //
 //     pass   every number lies in the band, or every outcome is the word
-//     warn   outside, by no more than three times the tolerance (a one-sided bound: a factor of ten); or the word for some only
+//     warn   outside, by no more than three times the tolerance (a one-sided bound: a factor of
+//     ten); or the word for some only
 //     fail   anything else
 
 #include "base/arena.h"
@@ -47,8 +50,9 @@ typedef struct hn_extreme_expect {
     const char *says; ///< that the reason of the outcome must hold, or NULL
     double low, high; ///< band; one side may be infinite
     double warn_low, warn_high;
-    int from_spectrum; ///< the number is the ratio to the limit that the spectrum of the scene gives
-    char text[96];     ///< as people read it
+    /// the number is the ratio to the limit that the spectrum of the scene gives
+    int from_spectrum;
+    char text[96]; ///< as people read it
     const char *reason, *source;
     const char *was, *was_why,
         *was_source; ///< an earlier prediction that was not observed, and why not; NULL: none
@@ -132,25 +136,11 @@ typedef struct hn_extreme {
     int stopped, out_of_time;
 } hn_extreme;
 
-/// Reads lessons/extreme/ (one file a case, by number): all cases, or those named ("x4", in any case). The library must outlive it.
-/// Every fault of the files is told with the file's name and a JSON pointer. Fails: HN_ERR_INPUT, HN_ERR_IO, HN_ERR_MEMORY.
-HN_MUST_CHECK hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_ids,
-                                        hn_extreme **out, hn_diags *diags);
-/// One case from JSON text, with the library's scenes to refer to.
-HN_MUST_CHECK hn_status hn_extreme_load_text(const hn_library *lib, const char *text, size_t n,
-                                             hn_extreme **out, hn_diags *diags);
-void hn_extreme_free(hn_extreme *x); ///< NULL is legal
-/// Takes the trials that the same cases have done before from the folder, and keeps those to come there until all are done. Before
-/// hn_extreme_run(). Fails as hn_journal_open(), HN_ERR_IO and HN_ERR_MEMORY for a scene that cannot be read.
-HN_MUST_CHECK hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags);
-/// Runs all trials that are not done; those that were stopped, or left out by the time limit, say so. A
-/// trial that is begun is ended by the limit. `run_long`: also the trials that run for minutes.
+/// Runs all trials that are not done; those that were stopped, or left out by the time limit, say
+/// so. A trial that is begun is ended by the limit. `run_long`: also the trials that run for
+/// minutes.
 void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long);
 int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials
 
 // documents, the same on every run: no timings
-void hn_extreme_json(hn_strbuf *b, const hn_extreme *x);
-void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x); ///< a row a trial, with a head
-/// One file without network.
-void hn_extreme_html(hn_strbuf *b, const hn_extreme *x);
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The extreme matrix as JSON and CSV.
+#include "session/extreme/extreme_doc.h"
+
 #include "session/store/csv.h"
 #include "session/extreme/extreme_internal.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of the extreme matrix: lessons/extreme/xNN-....json.
+#include "session/extreme/extreme_files.h"
+
 #include "session/extreme/extreme_reader.h"
+#include "session/extreme/extreme_read.h"
 
 #include "base/file.h"
 #include "base/hash.h"

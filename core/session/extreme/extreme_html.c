@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The extreme matrix as one HTML file: no network, no script; for the screen, light and dark, and for paper.
+#include "session/extreme/extreme_html.h"
+
 #include "session/extreme/extreme_internal.h"
 
 #include "session/precision/study_page.h"
+#include "session/precision/study_html.h"
 
 #include <stdio.h>
 

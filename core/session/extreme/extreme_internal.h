@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_INTERNAL_H
 #define HN_SESSION_EXTREME_INTERNAL_H
-// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts), extreme_model.c (scene and start of
-// a point), extreme_walk.c (a run), extreme_quantity.c and extreme_measure.c (the two tables), extreme_solve.c,
-// extreme_stable.c (measures with a loop of their own).
+// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see
+// extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts),
+// extreme_model.c (scene and start of a point), extreme_walk.c (a run), extreme_quantity.c and
+// extreme_measure.c (the two tables), extreme_solve.c, extreme_stable.c (measures with a loop of
+// their own).
 
 #include "session/extreme/extreme.h"
 #include "session/model/model.h"
@@ -41,25 +43,8 @@ typedef struct hn_extreme_bench {
 /// Tells how far it is, and asks whether to stop: as the `stop` of a walk.
 int hn_extreme_is_stopped(void *bench);
 
-/// Value of a number at a point; HN_ERR_INPUT (told in diags) for a formula that has none.
-HN_MUST_CHECK hn_status hn_extreme_value(const hn_extreme_number *number, const char *name,
-                                         double value, double *out, hn_diags *diags);
-/// The method's spelling with its {formulas} filled in.
-HN_MUST_CHECK hn_status hn_extreme_spell(const hn_extreme_point *point, char out[256],
-                                         hn_diags *diags);
-/// The model of the point, borrowed from the bench until the next call; NULL with bench->load_status and diags.
-const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point *point);
-/// (q, v) where the point's runs start, system coordinates, from arena; HN_ERR_INPUT, HN_ERR_MEMORY, HN_ERR_SINGULAR.
-HN_MUST_CHECK hn_status hn_extreme_start(hn_extreme_bench *bench, const hn_model *model,
-                                         const hn_extreme_trial *trial, hn_arena *arena, double **q,
-                                         double **v);
-/// Unloads the model.
-void hn_extreme_bench_clear(hn_extreme_bench *bench);
-
 /// Verdict and words of a trial whose numbers are all there.
 void hn_extreme_conclude(hn_extreme_trial *trial);
-/// Puts trial k of case i into the journal.
-void hn_extreme_keep(hn_extreme *x, int i, int k);
 
 /// A run at its end, and what was seen on its way.
 typedef struct hn_extreme_look {
@@ -101,8 +86,8 @@ typedef struct hn_extreme_answer {
     double error;       ///< max |a - exact| / max |exact|
     double force_error; ///< of J' lambda, likewise
     double lambda_norm;
-    double
-        exact_lambda_norm; ///< of the multipliers of the exact elimination (0 for rows that depend on others)
+    /// of the multipliers of the exact elimination (0 for rows that depend on others)
+    double exact_lambda_norm;
     char reason[200];
 } hn_extreme_answer;
 
@@ -122,31 +107,4 @@ typedef struct hn_extreme_measure {
                 const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out);
 } hn_extreme_measure;
 
-extern const hn_extreme_quantity hn_extreme_quantities[];
-extern const int hn_extreme_n_quantities;
-extern const hn_extreme_measure hn_extreme_measures[];
-extern const int hn_extreme_n_measures;
-
-/// Runs the point to its time. look->run is NULL and status set when it could not begin. hn_extreme_look_end() in any case.
-void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
-                           hn_extreme_look *look);
-void hn_extreme_look_end(hn_extreme_look *look);
-/// The point's quantity: NaN with a reason, and the status, where there is none.
-double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *point,
-                              char reason[200], hn_status *status);
-/// The saddle system of the scene's start by the way of that name.
-void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
-                      hn_extreme_answer *out);
-int hn_extreme_is_solver(const char *name);
-/// How a status is called in the files: "finished", "diverged", "refused", ...
-const char *hn_extreme_outcome(hn_status status);
-const char *const *hn_extreme_outcomes(int *n);
-
-/// The largest step that does not grow, over the predicted one where that comes from the spectrum.
-void hn_extreme_see_stable_step(hn_extreme_bench *bench, const hn_extreme_trial *trial,
-                                const hn_extreme_scene *scene, const char *method,
-                                hn_extreme_seen *out);
-void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *trial,
-                             const hn_extreme_scene *scene, const char *method,
-                             hn_extreme_seen *out);
 #endif

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the quantities of a sweep become one number or one word.
+#include "session/extreme/extreme_measure.h"
+
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_quantity.h"
+#include "session/extreme/extreme_solve.h"
+#include "session/extreme/extreme_stable.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "study/cost/convergence.h"
 
@@ -8,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// outcomes -----------------------------------------------------------------------------------------------------------
+// outcomes ----
 
 static const struct {
     hn_status status;
@@ -77,7 +82,8 @@ static hn_status end_of(hn_extreme_bench *bench, const hn_extreme_point *point, 
     return status;
 }
 
-/// The word of all points of the sweep, or the first that is another than expected; value: the share that is as expected.
+/// The word of all points of the sweep, or the first that is another than expected; value: the
+/// share that is as expected.
 static void see_outcome(hn_extreme_bench *bench, const hn_extreme_trial *trial,
                         const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out) {
     const int n = trial->n_sweep > 0 ? trial->n_sweep : 1;
@@ -101,7 +107,7 @@ static void see_outcome(hn_extreme_bench *bench, const hn_extreme_trial *trial,
     out->value = (double)good / n;
 }
 
-// numbers --------------------------------------------------------------------------------------------------------------
+// numbers ----
 
 /// The quantity at every value of the sweep; 0 with a reason in out when one is missing.
 static int see_sweep(hn_extreme_bench *bench, const hn_extreme_trial *trial,

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scene of a point and where its runs start: settings filled in from the sweep, states off the loops by a stated amount.
+#include "session/extreme/extreme_model.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "expr/construct.h"
 #include "session/extreme/extreme_internal.h"
+#include "session/model/state.h"
 
 #include "dynamics/evaluate/eval.h"
 #include "expr/parse.h"
@@ -13,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// formulas ---------------------------------------------------------------------------------------------------------
+// formulas ----
 
 typedef struct swept {
     const char *name;
@@ -88,7 +90,7 @@ hn_status hn_extreme_spell(const hn_extreme_point *point, char out[256], hn_diag
     return HN_OK;
 }
 
-// scenes -----------------------------------------------------------------------------------------------------------
+// scenes ----
 
 void hn_extreme_bench_clear(hn_extreme_bench *bench) {
     hn_model_free(bench->model);
@@ -157,7 +159,7 @@ const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point
     return bench->model;
 }
 
-// starts -----------------------------------------------------------------------------------------------------------
+// starts ----
 
 /// The least change, weighted by mass, that takes row `row` to `gap` and its rate to `speed`.
 static hn_status open_row(const hn_system *sys, const hn_extreme_trial *t, hn_arena *arena,

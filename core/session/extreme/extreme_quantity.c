@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What can be read off a run, a model or a solver's answer: one number each.
+#include "session/extreme/extreme_quantity.h"
+
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_measure.h"
+#include "session/extreme/extreme_model.h"
+#include "session/extreme/extreme_solve.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "linalg/dense.h"
 
@@ -33,7 +38,7 @@ static double largest_difference(const double *x, const double *y, int n) {
     return worst;
 }
 
-// errors -----------------------------------------------------------------------------------------------------------
+// errors ----
 
 /// Of the coordinates that the truth names, or all.
 static double error_q(const hn_extreme_look *look) {
@@ -84,7 +89,7 @@ static double lambda(const hn_extreme_look *look) {
     return hn_norm2(n_rows(look), look->end.lambda);
 }
 
-// gaps and energies --------------------------------------------------------------------------------------------------
+// gaps and energies ----
 
 static double gap(const hn_extreme_look *look) {
     return look->end.gap;
@@ -117,7 +122,7 @@ static double energy_growth(const hn_extreme_look *look) {
     return log(look->end.energy / look->start_energy);
 }
 
-// steps --------------------------------------------------------------------------------------------------------------
+// steps ----
 
 static double steps(const hn_extreme_look *look) {
     return (double)look->summary.steps;
@@ -148,7 +153,7 @@ static double per_step_ringing(const hn_extreme_look *look) {
     return exp(log(ringing(look)) / (0.9 * steps(look)));
 }
 
-// what is met ----------------------------------------------------------------------------------------------------------
+// what is met ----
 
 /// The coordinate or rate of that name at the last good state.
 static double coordinate(const hn_extreme_look *look) {
@@ -186,7 +191,7 @@ static double incident_count(const hn_extreme_look *look) {
     return hn_run_incidents(look->run, &list);
 }
 
-// models ---------------------------------------------------------------------------------------------------------------
+// models ----
 
 static double assembly_gap(const hn_extreme_look *look) {
     return hn_model_assembly(look->model)->gap;
@@ -201,7 +206,7 @@ static double sigma_min(const hn_extreme_look *look) {
     return hn_model_assembly(look->model)->sigma_min;
 }
 
-// answers --------------------------------------------------------------------------------------------------------------
+// answers ----
 
 static double solve_error(const hn_extreme_answer *a) {
     return a->error;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A case of the extreme matrix, read strictly: every field is known, every number is in bounds, every name exists.
+#include "session/extreme/extreme_read.h"
+
 #include "session/extreme/extreme_reader.h"
+#include "session/extreme/extreme_measure.h"
+#include "session/extreme/extreme_quantity.h"
+#include "session/extreme/extreme_read_expect.h"
+#include "session/extreme/extreme_solve.h"
 
 #include <stdio.h>
 #include <string.h>
 
-// scenes ---------------------------------------------------------------------------------------------------------------
+// scenes ----
 
 static void read_scenes(hn_xr *r, const cJSON *root) {
     const cJSON *node = hn_xr_get(root, "scenes"), *m;
@@ -71,7 +76,7 @@ static void read_trial_scenes(hn_xr *r, const cJSON *node, const cJSON *root, hn
     }
 }
 
-// trials -----------------------------------------------------------------------------------------------------------------
+// trials ----
 
 static void read_measure(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     const char *names[32];

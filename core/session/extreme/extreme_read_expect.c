@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a trial predicts: a band for a number, or a word for an outcome.
+#include "session/extreme/extreme_read_expect.h"
+
 #include "session/extreme/extreme_reader.h"
+#include "session/extreme/extreme_measure.h"
+#include "session/extreme/extreme_stable.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +19,8 @@ static void set_band(hn_extreme_expect *e, double low, double high, double toler
     e->warn_high = high + (WARN_TOLERANCES - 1) * tolerance;
 }
 
-/// A bound on one side: a factor beyond it is warned of; where the bound is 0 there is nothing to warn of.
+/// A bound on one side: a factor beyond it is warned of; where the bound is 0 there is nothing to
+/// warn of.
 static void set_bounds(hn_extreme_expect *e, double low, double high) {
     e->low = low;
     e->high = high;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/extreme/extreme_reader.h"
+#include "session/extreme/extreme_model.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-// where we are, what is wrong ----------------------------------------------------------------------------------------
+// where we are, what is wrong ----
 
 void hn_xr_fault(hn_xr *r, const char *key, const char *hint, const char *format, ...) {
     char message[HN_DIAG_MESSAGE], pointer[HN_DIAG_POINTER];
@@ -80,7 +81,7 @@ int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields) {
     return 1;
 }
 
-// values ---------------------------------------------------------------------------------------------------------------
+// values ----
 
 const cJSON *hn_xr_get(const cJSON *object, const char *key) {
     return cJSON_GetObjectItemCaseSensitive(object, key);
@@ -126,7 +127,8 @@ int hn_xr_flag(hn_xr *r, const cJSON *object, const char *key) {
     return cJSON_IsTrue(m);
 }
 
-/// A number, or a formula in the swept name; that it has a value is checked at the sweep's first one.
+/// A number, or a formula in the swept name; that it has a value is checked at the sweep's first
+/// one.
 hn_extreme_number hn_xr_formula(hn_xr *r, const cJSON *m, const char *key,
                                 const hn_extreme_trial *trial, double low, double high) {
     hn_extreme_number number = {0};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_READER_H
 #define HN_SESSION_EXTREME_READER_H
-// What the readers of the extreme matrix's files share: where they are, what is wrong, values in bounds.
+// What the readers of the extreme matrix's files share: where they are, what is wrong, values in
+// bounds.
 
 #include "session/extreme/extreme_internal.h"
 
@@ -41,7 +42,8 @@ double hn_xr_check_number(hn_xr *r, const cJSON *m, const char *key, double low,
 double hn_xr_number(hn_xr *r, const cJSON *object, const char *key, double low, double high,
                     double otherwise);
 int hn_xr_flag(hn_xr *r, const cJSON *object, const char *key);
-/// A number, or a formula in the trial's swept name; that it has a value is checked at the sweep's first one.
+/// A number, or a formula in the trial's swept name; that it has a value is checked at the sweep's
+/// first one.
 hn_extreme_number hn_xr_formula(hn_xr *r, const cJSON *m, const char *key,
                                 const hn_extreme_trial *trial, double low, double high);
 /// Names with numbers or formulas under `key`; how many.
@@ -50,9 +52,4 @@ int hn_xr_assigns(hn_xr *r, const cJSON *object, const char *key, const hn_extre
 /// One text under `one`, or a list of at most HN_EXTREME_RUNS under `many`; how many.
 int hn_xr_texts(hn_xr *r, const cJSON *object, const char *one, const char *many, const char **out);
 
-/// Members "predicted" and "corrected" of a trial.
-void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t);
-void hn_xr_corrected(hn_xr *r, const cJSON *root, hn_extreme_expect *e);
-/// A whole case into r->c, which is emptied first.
-void hn_xr_case(hn_xr *r, const cJSON *root);
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The saddle system of a scene's start by one of the dense solvers, beside an elimination with twice the digits.
+#include "session/extreme/extreme_solve.h"
+
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_model.h"
 
 #include "dynamics/evaluate/eval.h"
 #include "linalg/dense.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures with a loop of their own: the largest step that does not grow, and how fast neighbours part.
+#include "session/extreme/extreme_stable.h"
+
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_measure.h"
+#include "session/extreme/extreme_walk.h"
 
 #include "linalg/dense.h"
 #include "study/truth/chaos.h"
@@ -10,10 +13,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define GROWN \
-    1.01 // between the second and the last quarter of the steps: grows. A neutral motion stays below
-#define DECAYED \
-    1e-6 // of the first quarter's rates: what is left is rounding, and may go up and down
+// between the second and the last quarter of the steps: grows. A neutral motion stays below
+#define GROWN 1.01
+// of the first quarter's rates: what is left is rounding, and may go up and down
+#define DECAYED 1e-6
 #define BRACKET 1.6       // times the predicted limit, both ways, is searched
 #define SMALL_STEP 1e-9   // [s], for a method that is only looked at
 #define SAME_LIMIT 2.5e-4 // relative width at which the search ends
@@ -32,7 +35,7 @@ static hn_extreme_trial with_step(const hn_extreme_trial *trial) {
     return t;
 }
 
-// the largest stable step ------------------------------------------------------------------------------------------
+// the largest stable step ----
 
 /// Largest rates over each quarter of the steps; 0 when the run ended early or was stopped.
 static int walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long steps,
@@ -65,7 +68,8 @@ static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
     }
     const int n = hn_system_get_info(hn_model_system(look.model)).n_user;
     const int whole = walk_quarters(bench, look.run, n, (long long)point->trial->steps, most);
-    // an adaptive step that was to be held, and was shortened, had grown beyond all that was allowed
+    // an adaptive step that was to be held, and was shortened, had grown beyond all that was
+    // allowed
     const double steps = floor(point->trial->steps);
     const int held = hn_run_time(look.run) > steps * h * (1 - 1e-6);
     hn_extreme_look_end(&look);
@@ -156,7 +160,7 @@ void hn_extreme_see_stable_step(hn_extreme_bench *bench, const hn_extreme_trial 
     }
 }
 
-// chaos --------------------------------------------------------------------------------------------------------------
+// chaos ----
 
 static int ask_bench(void *user) {
     return hn_extreme_is_stopped(user);

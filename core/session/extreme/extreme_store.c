@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of an unfinished matrix: a line a trial, the numbers and words that were seen. Verdicts follow from them.
+#include "session/extreme/extreme_store.h"
+
 #include "session/extreme/extreme_internal.h"
 #include "session/store/stored_json.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run of a point, from its start to its time, with what was seen on the way.
+#include "session/extreme/extreme_walk.h"
+
 #include "session/extreme/extreme_internal.h"
+#include "session/extreme/extreme_model.h"
 
 #include "linalg/dense.h"
 #include "study/run/pace.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_FIELD_H
 #define HN_SESSION_FIELD_H
-// Fields of a request: one table names what a request takes. The command line reads its options from
-// the table, the server checks a JSON body with it, the OpenAPI document and the index of the API are
-// written from it.
+// Fields of a request: one table names what a request takes. The command line reads its options
+// from the table, the server checks a JSON body with it, the OpenAPI document and the index of the
+// API are written from it.
 
 #include "base/diag.h"
 #include "base/strbuf.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_JOB_REQUEST_H
 #define HN_SESSION_JOB_REQUEST_H
-// What a long job is asked: the scenes, the methods, the values of its own fields (field.h), and how it
-// is bounded. All kinds of jobs share this one request; session/kinds/job.h lists the kinds.
+// What a long job is asked: the scenes, the methods, the values of its own fields (field.h), and
+// how it is bounded. All kinds of jobs share this one request; session/kinds/job.h lists the kinds.
 
 #include "integrators/method/method_spec.h"
 #include "session/job/field.h"
@@ -39,7 +39,8 @@ typedef struct hn_job_value {
 typedef hn_status (*hn_job_load)(void *user, const hn_setting *parameters, int n, hn_model **out,
                                  hn_diags *diags);
 
-/// Start from hn_job_request_default(). Everything it points to is borrowed and must outlive the job.
+/// Start from hn_job_request_default(). Everything it points to is borrowed and must outlive the
+/// job.
 typedef struct hn_job_request {
     const hn_library *lib; ///< for kinds that load scenes by name
     const hn_model *models[HN_JOB_SCENES];
@@ -82,7 +83,8 @@ const char *hn_job_text(const hn_job_request *request, const char *name); ///< N
 /// time_limit  in   [s] the kind's own, where the request has none
 /// most        in   methods that the kind takes, at most HN_JOB_METHODS
 /// specs       out  (n_methods) the methods
-/// Fails: HN_ERR_INPUT (a time, a spelling), HN_ERR_LIMIT (too many methods); reported in diags with
+/// Fails: HN_ERR_INPUT (a time, a spelling), HN_ERR_LIMIT (too many methods); reported in diags
+/// with
 ///        the pointers /time, /time_limit, /methods and /methods/I.
 HN_MUST_CHECK hn_status hn_job_complete(hn_job_request *request, double time_limit, int most,
                                         hn_method_spec *specs, hn_diags *diags);

@@ -2,8 +2,8 @@
 #ifndef HN_SESSION_JOB_H
 #define HN_SESSION_JOB_H
 // The registry of long jobs: what takes seconds to minutes, keeps unfinished work, and ends in
-// documents. A kind is one file (kind_NAME.c) and one row of the list in job.c. The command line, the
-// server and, through the index of the API, the page read what they need from the row.
+// documents. A kind is one file (kind_NAME.c) and one row of the list in job.c. The command line,
+// the server and, through the index of the API, the page read what they need from the row.
 
 #include "session/job/job_request.h"
 
@@ -38,8 +38,8 @@ typedef struct hn_job_kind {
     const hn_field *fields; ///< beside the scene
     const hn_job_preset *(*preset)(int i); ///< choices of its field "preset"; NULL: none
     hn_job_form forms[HN_JOB_FORMS];
-    /// Checks the request and takes up what an interrupted job of the same request left. Returns owned
-    /// in *work. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_IO and others, reported in diags.
+    /// Checks the request and takes up what an interrupted job of the same request left. Returns
+    /// owned in *work. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_IO and others, reported in diags.
     hn_status (*open)(const hn_job_request *request, void **work, hn_diags *diags);
     int (*resumed)(const void *work); ///< pieces taken up; NULL: none ever
     /// Does what is left. Fails: reported in diags; there is then no document.
@@ -52,14 +52,14 @@ const hn_job_kind *hn_job_kind_at(int i);
 /// Returns the kind of this name; NULL: there is none.
 const hn_job_kind *hn_job_kind_find(const char *name);
 
-/// Checks an object against the fields of a kind (hn_fields_check()). A member that another kind takes is
-/// reported with both names. Fails: HN_ERR_INPUT.
+/// Checks an object against the fields of a kind (hn_fields_check()). A member that another kind
+/// takes is reported with both names. Fails: HN_ERR_INPUT.
 HN_MUST_CHECK hn_status hn_job_check(const hn_job_kind *kind, const cJSON *object, bool served,
                                      hn_diags *diags);
 
 typedef struct hn_job hn_job;
-/// Opens a job. The request is copied; what it points to must outlive the job. Returns owned in *out.
-/// Fails: as the kind's open(), HN_ERR_MEMORY.
+/// Opens a job. The request is copied; what it points to must outlive the job. Returns owned in
+/// *out. Fails: as the kind's open(), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_job_open(const hn_job_kind *kind, const hn_job_request *request,
                                     hn_job **out, hn_diags *diags);
 int hn_job_resumed(const hn_job *job);
@@ -69,7 +69,8 @@ bool hn_job_write(hn_strbuf *b, const hn_job *job, const char *suffix);
 const void *hn_job_work(const hn_job *job); ///< what the kind's forms write
 void hn_job_free(hn_job *job);              ///< NULL is legal
 
-/// The list for the index of the API: [{"name","about","chooses","fields":[{"name","type","min","max",
+/// The list for the index of the API:
+/// [{"name","about","chooses","fields":[{"name","type","min","max",
 /// "choices","about"}...],"presets":[{"name","about","chooses","stabilised"}...]}...], kinds that a
 /// server offers, bounds as they hold there.
 void hn_job_kinds_json(hn_strbuf *b);

@@ -2,6 +2,8 @@
 // Error budget: where the error at the end of a run comes from, and where its energy goes.
 #include "session/accounts/accounts.h"
 #include "session/kinds/job.h"
+#include "session/accounts/accounts_doc.h"
+#include "session/accounts/accounts_html.h"
 
 static const hn_field FIELDS[] = {
     HN_JOB_METHODS_FIELD(HN_ACCOUNTS_METHODS, 12),

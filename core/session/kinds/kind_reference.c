@@ -2,6 +2,8 @@
 #include "session/kinds/kind_reference.h"
 
 #include "session/kinds/job.h"
+#include "session/references/reference_doc.h"
+#include "session/references/reference_store.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,8 @@
 // The full report: studies, error budgets and survival of several scenes in one page.
 #include "session/kinds/job.h"
 #include "session/report/report.h"
+#include "session/report/report_doc.h"
+#include "session/report/report_html.h"
 
 static const hn_field FIELDS[] = {
     HN_JOB_METHODS_FIELD(HN_WP_METHODS, 0),

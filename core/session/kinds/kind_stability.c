@@ -2,6 +2,10 @@
 // Stability map: where steps are stable, predicted from the spectrum and tried.
 #include "session/kinds/job.h"
 #include "session/stability/stability.h"
+#include "session/stability/stability_axes.h"
+#include "session/stability/stability_doc.h"
+#include "session/stability/stability_html.h"
+#include "session/stability/stability_picture.h"
 
 static const char *const PRESETS[] = {
 #define NAME(maker, name, about, chooses, stabilised) name,

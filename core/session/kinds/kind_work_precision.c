@@ -2,6 +2,8 @@
 // Work-precision study: error against cost, method by method.
 #include "session/kinds/job.h"
 #include "session/precision/study.h"
+#include "session/precision/study_doc.h"
+#include "session/precision/study_html.h"
 
 static const hn_field FIELDS[] = {
     HN_JOB_METHODS_FIELD(HN_WP_METHODS, 12),

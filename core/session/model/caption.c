@@ -40,8 +40,8 @@ static int turns_in_the_plane(const hn_joint *j) {
            j->child_axis[0] == 0 && j->child_axis[1] == 0;
 }
 
-/// Lengths of a closed plane chain of three bodies and four revolute joints: ground, input, coupler, output. 0 if it is none:
-/// Grashof's rule holds in the plane only.
+/// Lengths of a closed plane chain of three bodies and four revolute joints: ground, input,
+/// coupler, output. 0 if it is none: Grashof's rule holds in the plane only.
 static int four_bar_lengths(const hn_scene *scene, double out[4]) {
     if (scene->is_lagrangian || scene->n_bodies != 3 || scene->n_joints != 4) {
         return 0;

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene makes it slow.
+/// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene
+/// makes it slow.
 enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
 static const double ENVELOPE_SECONDS = 10;
 static const double FAR = 4;     ///< times what the mechanism spans at the start
@@ -31,8 +32,8 @@ static char is_direction_only(const hn_drawing *d, int point) {
 
 enum { FRONT, SPACE, FRONT_Z_UP, SPACE_Z_UP, VIEWS };
 
-/// What every point that is drawn has been through: in the world, from the front and in the view for space, for either
-/// direction upwards.
+/// What every point that is drawn has been through: in the world, from the front and in the view
+/// for space, for either direction upwards.
 typedef struct reach {
     double low[3], high[3];
     double direction[HN_ENVELOPE_EXTREMES][3], farthest[HN_ENVELOPE_EXTREMES];
@@ -111,8 +112,9 @@ static double extent(const reach *r) {
     return size;
 }
 
-/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached still counts; what falls or flies
-/// away would leave the view of a dot, so it is followed for some lengths only.
+/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached
+/// still counts; what falls or flies away would leave the view of a dot, so it is followed for some
+/// lengths only.
 static void grow_by_motion(reach *r, const char *skipped, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
@@ -163,7 +165,8 @@ hn_status hn_model_points(const hn_model *model, const double *q, double *points
     return eval_points(model, 0, q, points);
 }
 
-// a point of a body is a formula of the coordinates: it differs where all of them and the time do; one of the ground is a constant
+// a point of a body is a formula of the coordinates: it differs where all of them and the time do;
+// one of the ground is a constant
 hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     const hn_system_info info = hn_system_get_info(hn_model_system(model));
     const size_t n = 3 * (size_t)info.n_points;

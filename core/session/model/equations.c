@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of motion, with parameters as symbols.
+#include "session/model/equations.h"
+
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
 #include "expr/print.h"

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the compiler made of a scene, and what assembly found at its start.
+#include "session/model/inspect_json.h"
+
 #include "dynamics/analyse/inspect.h"
 #include "dynamics/analyse/redundancy.h"
 #include "session/model/caption.h"
 #include "session/model/model.h"
 #include "session/model/position_json.h"
+#include "session/model/model_json.h"
 
 static void put_start(hn_strbuf *b, const hn_model *model) {
     const hn_assembly *a = hn_model_assembly(model);

@@ -93,7 +93,8 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
     return 0;
 }
 
-/// Puts one file on the shelf at its place in the order of ids; a second file of the same id is left out.
+/// Puts one file on the shelf at its place in the order of ids; a second file of the same id is
+/// left out.
 static void shelve(hn_library *lib, shelf *s, const char *folder, const char *file) {
     size_t n = strlen(file);
     char path[MAX_PATH_CHARS];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_LIBRARY_H
 #define HN_SESSION_LIBRARY_H
-// Where the shipped things are: scenes, lessons, problems and the page. Found beside the program (a checkout), in the
-// place where `make install` put them, or where HOLONOM_HOME points.
+// Where the shipped things are: scenes, lessons, problems and the page. Found beside the program (a
+// checkout), in the place where `make install` put them, or where HOLONOM_HOME points.
 
 #include "base/arena.h"
 #include "base/diag.h"
@@ -10,8 +10,9 @@
 
 typedef struct hn_library hn_library;
 
-/// `home` may be NULL: then HOLONOM_HOME, the checkout around the running program, and the install prefix are tried in this order.
-/// HN_ERR_IO with all places tried when none holds lessons/ and web/.
+/// `home` may be NULL: then HOLONOM_HOME, the checkout around the running program, and the install
+/// prefix are tried in this order. HN_ERR_IO with all places tried when none holds lessons/ and
+/// web/.
 HN_MUST_CHECK hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag);
 void hn_library_free(hn_library *lib);
 const char *hn_library_web(const hn_library *lib);     ///< folder of the page

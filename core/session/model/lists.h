@@ -6,6 +6,7 @@
 #include "base/strbuf.h"
 #include "session/model/library.h"
 
-/// {"lessons":[{"id","title","scenes":[...],"problems":[...]}...]}, sorted by id. The title is the first heading of the lesson's text.md.
+/// {"lessons":[{"id","title","scenes":[...],"problems":[...]}...]}, sorted by id. The title is the
+/// first heading of the lesson's text.md.
 void hn_lessons_json(hn_strbuf *b, const hn_library *lib);
 #endif

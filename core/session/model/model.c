@@ -2,6 +2,7 @@
 #include "session/model/model.h"
 
 #include "dynamics/compile/compile.h"
+#include "integrators/method/method_spec.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -122,6 +123,32 @@ void hn_model_free(hn_model *model) {
 
 const hn_scene *hn_model_scene(const hn_model *model) {
     return model->scene;
+}
+
+const char *const *hn_model_methods(const hn_model *model, int *n) {
+    static const char *const of_loops[] = {"index1@rk4", "baumgarte@rk4", "projection@rk4"};
+    static const char *const of_trees[] = {"index1@rk4", "index1@dopri5"};
+    if (model->scene->n_methods > 0) {
+        *n = model->scene->n_methods;
+        return model->scene->methods;
+    }
+    const bool has_loops = hn_system_get_info(model->system).nc > 0;
+    *n = has_loops ? 3 : 2;
+    return has_loops ? of_loops : of_trees;
+}
+
+const char *hn_model_method(const hn_model *model) {
+    int n;
+    const char *const *methods = hn_model_methods(model, &n);
+    for (int i = 0; i < n; i++) {
+        hn_method_spec spec;
+        hn_diag diag = {0};
+        if (hn_method_parse(methods[i], &spec, &diag) == HN_OK &&
+            (spec.formulation->traits & (HN_TRAIT_CLOSES_POSITION | HN_TRAIT_PULLS_GAP))) {
+            return methods[i];
+        }
+    }
+    return methods[0];
 }
 
 const char *hn_model_reference_path(const hn_model *model) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The documents that describe a scene: the list of scenes, one scene for a page, its assembly.
+#include "session/model/model_json.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "session/model/caption.h"
 #include "session/model/envelope.h"
@@ -45,7 +46,8 @@ static const char *kind_name(hn_unit_kind kind) {
     return kind == HN_ANGLE ? "angle" : kind == HN_LENGTH ? "length" : "other";
 }
 
-/// What a script needs before it runs the scene: suggested times, the length that errors are measured by, kinds of coordinates.
+/// What a script needs before it runs the scene: suggested times, the length that errors are
+/// measured by, kinds of coordinates.
 static void put_measures(hn_strbuf *b, const hn_model *model) {
     const hn_scene *scene = hn_model_scene(model);
     const hn_system *sys = hn_model_system(model);
@@ -246,7 +248,9 @@ void hn_model_json(hn_strbuf *b, const hn_model *model) {
     hn_drawing_json(b, hn_model_system(model));
     put_points(b, model);
     hn_json_key(b, "methods");
-    hn_json_strings(b, scene->methods, (size_t)scene->n_methods);
+    int n_methods;
+    const char *const *methods = hn_model_methods(model, &n_methods);
+    hn_json_strings(b, methods, (size_t)n_methods);
     hn_json_put_number(b, "duration", scene->duration);
     hn_json_put_number(b, "step", scene->step);
     hn_json_end_object(b);

@@ -15,7 +15,7 @@ const char *hn_position_name(const hn_system *sys, int coordinate) {
                : hn_system_scene(sys)->coordinates[hn_system_user_coordinate(sys, coordinate)].name;
 }
 
-// making -------------------------------------------------------------------------------------------------------------
+// making ----
 
 /// The same rows and coordinates: what was chosen for the one serves the other.
 static int is_same_shape(const hn_system *a, const hn_system *b) {
@@ -68,7 +68,7 @@ void hn_position_form_free(hn_position_form *f) {
     *f = (hn_position_form){0};
 }
 
-// telling ------------------------------------------------------------------------------------------------------------
+// telling ----
 
 void hn_position_answer(const hn_position_form *f, char *text, size_t size) {
     const char *refusal = f->dyads ? hn_dyads_refusal(f->dyads) : NULL;

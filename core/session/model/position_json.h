@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_POSITION_JSON_H
 #define HN_SESSION_POSITION_JSON_H
-// How the reduced method finds the whole pose from its independent coordinates, as a part of what inspect tells.
+// How the reduced method finds the whole pose from its independent coordinates, as a part of what
+// inspect tells.
 
 #include "base/strbuf.h"
 #include "session/model/model.h"
 
-/// Puts "position_analysis" into the object open in `b`, for the coordinates that the reduced method chooses at the start:
-///   {"independent": [names], "answers": "dyads: closed form (3 of them)" or "Newton, because ...", "operations"?,
+/// Puts "position_analysis" into the object open in `b`, for the coordinates that the reduced
+/// method chooses at the start:
+///   {"independent": [names], "answers": "dyads: closed form (3 of them)" or "Newton, because ...",
+///   "operations"?,
 ///    "operations_of_a_newton_step", "steps"?: [{"kind", "meets", "unknowns", "rows"}]}
 ///   {"answers": "none: ..."} without loops, or where there are no such coordinates.
 HN_MUST_CHECK hn_status hn_position_put(hn_strbuf *b, const hn_model *model);

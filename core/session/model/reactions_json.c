@@ -12,8 +12,8 @@ struct hn_reaction_writer {
     hn_accel *accel;
     hn_reactions *reactions;
     hn_wrench *wrenches; ///< joints, then constraints
-    int *
-        carrier; ///< of these, the ones that have a place: joints of bodies, and what is held to them
+    /// of these, the ones that have a place: joints of bodies, and what is held to them
+    int *carrier;
     int n_carriers;
     double *a, *lambda;
     int known; ///< the last state has been worked out

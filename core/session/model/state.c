@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/model/state.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "session/model/model.h"
 

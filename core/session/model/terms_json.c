@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every term at one state, in the coordinates of the scene.
+#include "session/model/terms_json.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"
@@ -8,6 +9,7 @@
 #include "session/model/model.h"
 #include "session/model/reactions_json.h"
 #include "session/model/reduced_json.h"
+#include "session/model/state.h"
 
 #include <math.h>
 #include <string.h>
@@ -233,7 +235,8 @@ static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
     }
     if (status == HN_OK) {
         calc_user_terms(&w);
-        // without accelerations there is nothing to carry: the list stays empty and "status" says why
+        // without accelerations there is nothing to carry: the list stays empty and "status" says
+        // why
         if (w.reactions && w.accel_status == HN_OK) {
             w.accel_status = hn_reaction_writer_eval(w.reactions, t, w.q, w.v);
         }

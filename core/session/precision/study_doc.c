@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The study as JSON and as CSV.
+#include "session/precision/study_doc.h"
+
 #include "session/store/csv.h"
 #include "session/precision/study_internal.h"
 
@@ -243,7 +244,8 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     hn_json_put_bool(b, "finished", !s->wp->out_of_time && !s->wp->stopped);
     hn_json_put_bool(b, "stopped", s->wp->stopped);
     hn_json_put_number(b, "time_limit", s->request.limits.time_limit);
-    // where nothing is timed the document holds nothing that a clock said: two of them are the same bytes
+    // where nothing is timed the document holds nothing that a clock said: two of them are the same
+    // bytes
     hn_json_put_number(b, "elapsed", s->wp->opts.n_samples > 0 ? s->wp->elapsed : (double)NAN);
     put_reference(b, s);
     put_chaos(b, s);

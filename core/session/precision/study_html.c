@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The study as one HTML file: no network, no script. Which plot shows is chosen by radio buttons that style sheets read, so
-// that it works wherever a page can be opened; on paper the chosen one is printed.
+#include "session/precision/study_html.h"
+
 #include "session/precision/study_page.h"
 
 #include "base/hash.h"
@@ -127,7 +127,7 @@ void hn_study_put_method(hn_strbuf *b, const hn_study *s, int m) {
     hn_strbuf_add(b, "</th>");
 }
 
-// answers --------------------------------------------------------------------------------------------------------
+// answers ----
 
 int hn_study_is_timed(const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
@@ -169,7 +169,7 @@ void hn_study_put_answers(hn_strbuf *b, const hn_study *s) {
     }
 }
 
-// the table of methods -------------------------------------------------------------------------------------------
+// the table of methods ----
 
 static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind kind) {
     return fmax(p->worst[kind], HN_WP_ABOVE_REFERENCE * wp->ref->error[kind]);
@@ -275,7 +275,7 @@ void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level) {
     hn_strbuf_add(b, "</tbody></table></div>\n");
 }
 
-// every point ----------------------------------------------------------------------------------------------------
+// every point ----
 
 static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp *wp = hn_study_wp(s);
@@ -353,7 +353,7 @@ void hn_study_put_failures(hn_strbuf *b, const hn_study *s, int level) {
     hn_strbuf_add(b, any ? "</ul>\n" : "");
 }
 
-// plots and words ------------------------------------------------------------------------------------------------
+// plots and words ----
 
 static void put_bar(hn_strbuf *b, const char *name, char letter, int n, const char *(*title)(int)) {
     hn_strbuf_printf(b, "<div class=\"bar\"><span>%s</span>", name);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_INTERNAL_H
 #define HN_SESSION_STUDY_INTERNAL_H
-// The inside of a study: study.c (life), study_store.c (files), study_part.c and study_merge.c (parts), study_doc.c and study_html.c
-// (documents).
+// The inside of a study: study.c (life), study_store.c (files), study_part.c and study_merge.c
+// (parts), study_doc.c and study_html.c (documents).
 
 #include "session/store/journal.h"
 #include "session/precision/study.h"
@@ -22,18 +22,8 @@ struct hn_study {
     hn_journal journal;
 };
 
-/// Fills `chaos`, and the horizon of the study. Cut short by the limits it says that it is not known.
+/// Fills `chaos`, and the horizon of the study. Cut short by the limits it says that it is not
+/// known.
 void hn_study_find_chaos(hn_study *study, const hn_walk_limits *limits);
 
-/// Opens the journal of this study and reads what it holds into the study. Fails as hn_journal_open().
-HN_MUST_CHECK hn_status hn_store_open(hn_study *study, hn_diags *diags);
-/// What of a point is no clock's: members of the open object. `q`: n_user values.
-void hn_store_put_point(hn_strbuf *b, const hn_study *study, int m, int k);
-/// The same back; 0 when it is none, and then the point is not to be used.
-int hn_store_take_point(const hn_study *study, const cJSON *o, hn_wp_point *p);
-/// One more sample of time; 0 when it cannot be one.
-int hn_store_take_sample(hn_wp_point *p, double cpu, double busy);
-
-void hn_store_keep_point(hn_study *study, int m, int k);
-void hn_store_keep_sample(hn_study *study, int m, int k);
 #endif

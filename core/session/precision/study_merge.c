@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of a study put together. What two parts both say must be the same in every bit, but for what a clock said: of that the
-// record with more samples is taken, and of equals the one that comes first in the alphabet, so that neither order nor repetition
-// matters.
+#include "session/precision/study_merge.h"
+
 #include "session/references/references.h"
 #include "session/store/stored_json.h"
 #include "session/precision/study_internal.h"
+#include "session/precision/study_store.h"
+#include "session/references/reference_store.h"
 
 #include "base/hash.h"
 #include "study/cost/shards.h"
@@ -68,7 +69,7 @@ static int whole_of(const cJSON *o, const char *path, int low, int high, int *ou
     return 1;
 }
 
-// reading ----------------------------------------------------------------------------------------------------------
+// reading ----
 
 static hn_status refuse(merging *g, const part *p, const char *what) {
     return hn_diags_add(g->diags, HN_ERR_INPUT, NULL,
@@ -99,7 +100,7 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
     return HN_OK;
 }
 
-// agreeing ---------------------------------------------------------------------------------------------------------
+// agreeing ----
 
 /// 1 when both say the same; otherwise what they say, shortened.
 static int say_the_same(const cJSON *a, const cJSON *b, char said[2][SHOWN]) {
@@ -137,7 +138,7 @@ static hn_status compare_heads(merging *g) {
     return HN_OK;
 }
 
-// the study that they are of -----------------------------------------------------------------------------------------
+// the study that they are of ----
 
 static hn_status load_scene(merging *g) {
     const part *p = &g->parts[0];
@@ -234,7 +235,7 @@ static hn_status set_up(merging *g) {
                : hn_diags_add(g->diags, status, diag.pointer, diag.hint, "%s", diag.message);
 }
 
-// points -----------------------------------------------------------------------------------------------------------
+// points ----
 
 static int state_of(const cJSON *o) {
     const cJSON *state = member(o, "state");
@@ -337,7 +338,7 @@ static hn_status take_points(merging *g) {
     return HN_OK;
 }
 
-// what is missing ----------------------------------------------------------------------------------------------------
+// what is missing ----
 
 /// The name of the part shard/of when it was given, NULL otherwise.
 static const char *given(const merging *g, int shard, int of) {
@@ -393,7 +394,7 @@ static hn_status find_missing(merging *g) {
     return HN_ERR_INPUT;
 }
 
-// clocks -----------------------------------------------------------------------------------------------------------
+// clocks ----
 
 /// The median of a part's yardstick; NaN: it has none, or not the first part's.
 static double yardstick_of(const merging *g, const part *p) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A part of a study as JSON: all that putting it together needs, so that neither the scene's file nor the folder of references has
-// to be where that is done.
+#include "session/precision/study_part.h"
+
 #include "session/references/references.h"
 #include "session/precision/study_internal.h"
+#include "session/precision/study_store.h"
+#include "session/references/reference_store.h"
 
 #include "base/hash.h"
 

@@ -279,7 +279,7 @@ static void put_failures(hn_strbuf *b, const hn_study *s, const frame *f, int m)
     }
 }
 
-// labels at the curves' ends -----------------------------------------------------------------------------------------
+// labels at the curves' ends ----
 
 typedef struct label {
     int method;

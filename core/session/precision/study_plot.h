@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_PLOT_H
 #define HN_SESSION_STUDY_PLOT_H
-// Error against cost as an SVG picture, in the colours, dashes and markers of render/look.h. Colours are the variables --slot-0 ..
-// --slot-6, --ink, --muted, --hairline, --raised of the page around it, so that one picture serves light, dark and paper.
+// Error against cost as an SVG picture, in the colours, dashes and markers of render/look.h.
+// Colours are the variables --slot-0 ..
+// --slot-6, --ink, --muted, --hairline, --raised of the page around it, so that one picture serves
+// light, dark and paper.
 
 #include "session/precision/study.h"
 
-/// One <svg> element. Curves are labelled at their ends; failed points stand on the upper edge, at what they had cost by then; the band
-/// at the lower edge is what the reference cannot resolve.
+/// One <svg> element. Curves are labelled at their ends; failed points stand on the upper edge, at
+/// what they had cost by then; the band at the lower edge is what the reference cannot resolve.
 void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_cost_kind cost);
 /// Line and marker of method m on their own, for legends.
 void hn_study_key(hn_strbuf *b, int m);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of an unfinished study between two runs of the program: a line a point, a line a sample of time.
+#include "session/precision/study_store.h"
+
 #include "session/store/stored_json.h"
 #include "session/precision/study_internal.h"
 
@@ -12,7 +13,8 @@
 enum { FORMAT = 2 };
 static const double LARGEST_COUNT = 9e15; // whole numbers are exact up to here
 
-/// All that decides what the points are: everything but the budget. A part of a study has a journal of its own.
+/// All that decides what the points are: everything but the budget. A part of a study has a journal
+/// of its own.
 static uint64_t study_key(const hn_study *s) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &s->ref->scene, sizeof s->ref->scene);
     hash = hn_hash_double(hash, s->ref->T);

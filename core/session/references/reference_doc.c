@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A reference solution as JSON: what is stored, and the motion between.
+#include "session/references/reference_doc.h"
+
 #include "session/store/columns_json.h"
 #include "session/references/references.h"
+#include "session/references/reference_store.h"
 
 #include "base/hash.h"
 #include "study/run/pace.h"
@@ -10,13 +12,14 @@
 #include <math.h>
 #include <string.h>
 
-// The second goes through poses where J loses rank: steps that are chosen by so small a tolerance end up inside them.
+// The second goes through poses where J loses rank: steps that are chosen by so small a tolerance
+// end up inside them.
 static const char *const MOTION_METHODS[] = {"projection@dop853:rtol=1e-13",
                                              "projection@rk4:h=2e-4"};
 enum { N_MOTION_METHODS = sizeof MOTION_METHODS / sizeof *MOTION_METHODS };
 static const double SAME_TIME = 1e-12; // relative
 
-// what is stored ---------------------------------------------------------------------------------------------------
+// what is stored ----
 
 static void put_errors(hn_strbuf *b, const char *key, const double e[HN_ERROR_COUNT]) {
     hn_json_key(b, key);
@@ -91,7 +94,7 @@ void hn_reference_json(hn_strbuf *b, const hn_model *model, const hn_ref *ref,
     hn_json_end_object(b);
 }
 
-// the motion between -----------------------------------------------------------------------------------------------
+// the motion between ----
 
 typedef struct motion {
     const hn_ref *ref;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where references are kept. A file that does not fit is not used, never trusted halfway; one that is written appears whole.
+#include "session/references/reference_store.h"
+
 #include "session/references/references.h"
 #include "base/file.h"
 #include "session/store/stored_json.h"
@@ -23,7 +24,7 @@ hn_ref_request hn_ref_request_default(void) {
     return (hn_ref_request){.time = (double)NAN, .opts = hn_ref_opts_default()};
 }
 
-// reading ----------------------------------------------------------------------------------------------------------
+// reading ----
 
 /// A state that is no number is no reference; null is read as NaN.
 static int are_finite(const double *x, size_t n) {
@@ -87,7 +88,7 @@ static hn_ref *read_ref(const char *path, const hn_model *model, double T, int n
     return ref;
 }
 
-// writing ----------------------------------------------------------------------------------------------------------
+// writing ----
 
 void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
     const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
@@ -131,7 +132,7 @@ hn_status hn_reference_save(const char *path, const hn_model *model, const hn_re
     return status;
 }
 
-// finding ----------------------------------------------------------------------------------------------------------
+// finding ----
 
 static int kept_path(const char *folder, uint64_t scene, double T, int n, char out[512]) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene, sizeof scene);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/report/report_internal.h"
+#include "session/report/report_words.h"
 
 #include "base/clock.h"
 
@@ -16,7 +17,8 @@ static const double ACCOUNT_STEP = 4;              // times the scene's
 static const double NO_LIMIT = 1e9;                // [s]
 static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
 
-// one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground; space
+// one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground;
+// space
 static const char *const SCENES[] = {
     "fb0", "five-bar", "n-four-bar", "seven-body-squeezer", "car-axis", "stewart-6-6",
 };
@@ -28,7 +30,8 @@ static const char *const ACCOUNTED[HN_REPORT_ACCOUNTS] = {
     "projection@rk4",
 };
 
-// in which order sizes are tried, so that what a budget leaves is spread evenly: prime to HN_REPORT_SIZES
+// in which order sizes are tried, so that what a budget leaves is spread evenly: prime to
+// HN_REPORT_SIZES
 enum { STRIDE = 7 };
 
 const char *const *hn_report_standard(int *n) {
@@ -36,7 +39,7 @@ const char *const *hn_report_standard(int *n) {
     return SCENES;
 }
 
-// telling and asking -------------------------------------------------------------------------------------------------
+// telling and asking ----
 
 static double elapsed(const hn_report *r) {
     return hn_clock_wall() - r->started;
@@ -73,7 +76,7 @@ static void account_progress(void *user, double part) {
     report_progress(r, STUDY_SHARE + ACCOUNT_SHARE * (s->n_accounts + part) / HN_REPORT_ACCOUNTS);
 }
 
-// one scene ----------------------------------------------------------------------------------------------------------
+// one scene ----
 
 static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     hn_diags diags = {0};
@@ -109,6 +112,7 @@ static void account(hn_report *r, hn_report_scene *s) {
                                   .user = r};
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
         hn_account_row *a = &s->accounts[s->n_accounts];
+        a->holds_until = (double)NAN;
         hn_diag diag = {0};
         hn_method_spec spec;
         snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", ACCOUNTED[s->n_accounts],
@@ -128,7 +132,8 @@ static void account(hn_report *r, hn_report_scene *s) {
     }
 }
 
-/// Whether the motion passes near singular poses: a run that puts itself back after each step looks out for them.
+/// Whether the motion passes near singular poses: a run that puts itself back after each step looks
+/// out for them.
 static void find_singular(hn_report *r, hn_report_scene *s) {
     const double T = hn_study_wp(s->study)->ref->T;
     hn_method_spec spec;
@@ -213,7 +218,7 @@ static void make_scene(hn_report *r, double seconds) {
     }
 }
 
-// the whole ----------------------------------------------------------------------------------------------------------
+// the whole ----
 
 static hn_status complete(hn_job_request *q, hn_diags *diags) {
     hn_method_spec specs[HN_WP_METHODS];

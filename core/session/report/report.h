@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_H
 #define HN_SESSION_REPORT_H
-// The full report: for several scenes a work-precision study of the same methods, the account of errors and energy of a few of them,
-// and, where the scene passes singular poses, how many step sizes each method survives. One budget of time for all.
+// The full report: for several scenes a work-precision study of the same methods, the account of
+// errors and energy of a few of them, and, where the scene passes singular poses, how many step
+// sizes each method survives. One budget of time for all.
 //
-// Scenes are taken one after another, and nothing runs beside what is timed: a second process on the other core would share its
-// caches and its clock, and times would be those of the pair. What a scene does not use of its share goes to those after it.
+// Scenes are taken one after another, and nothing runs beside what is timed: a second process on
+// the other core would share its caches and its clock, and times would be those of the pair. What a
+// scene does not use of its share goes to those after it.
 //
-// Studies are kept in the folder as they are made, finished ones too, until the report is whole: the same request goes on where it was
-// interrupted. Accounts and survivals take seconds and are made anew.
+// Studies are kept in the folder as they are made, finished ones too, until the report is whole:
+// the same request goes on where it was interrupted. Accounts and survivals take seconds and are
+// made anew.
 
 #include "session/accounts/accounts.h"
 #include "session/precision/study.h"
@@ -22,8 +25,9 @@ const char *const *hn_report_standard(int *n);
 typedef struct hn_report hn_report;
 /// Checks the request.
 ///
-/// request  in  one model or several; methods: hn_study_standard() where it has none; time limit of the
-///              whole: 240 s where it has none. Values: "levels" and "samples", as of a study.
+/// request  in  one model or several; methods: hn_study_standard() where it has none; time limit
+///              of the whole: 240 s where it has none. Values: "levels" and "samples", as of a
+///              study.
 /// Returns owned in *out. The models and the texts of the request must outlive the report.
 /// Fails:   HN_ERR_INPUT and HN_ERR_LIMIT (the request), HN_ERR_MEMORY. All reported in diags.
 HN_MUST_CHECK hn_status hn_report_open(const hn_job_request *request, hn_report **out,
@@ -68,8 +72,6 @@ typedef struct hn_report_answer {
     int n_alike; ///< by operations alone: others as cheap
 } hn_report_answer;
 enum { HN_REPORT_BANDS = 3 };
-extern const double hn_report_accuracy[HN_REPORT_BANDS]; ///< 1e-3, 1e-6, 1e-9
-hn_report_answer hn_report_find_answer(const hn_report_scene *scene, double accuracy);
 
 typedef enum hn_verdict_kind {
     HN_VERDICT_GOOD,
@@ -81,36 +83,20 @@ typedef enum hn_verdict_kind {
 } hn_verdict_kind;
 typedef struct hn_verdict {
     hn_verdict_kind kind;
-    double
-        best; ///< smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed; NaN: none
+    /// smallest error of the coordinates (beyond the horizon: of the energy) that may be claimed;
+    /// NaN: none
+    double best;
     int done, failed, skipped; ///< sizes
     int untrusted;             ///< 1: nothing that came out is right to one digit
     char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "no digit", "elsewhere, by 0.3"
     const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
 } hn_verdict;
-hn_verdict hn_report_find_verdict(const hn_report_scene *scene, int m);
-/// The report in a few lines, one sentence each: who is cheapest how often, who may be relied on, what fails where, what is ranked by time.
-void hn_report_sentences(hn_strbuf *b, const hn_report *report);
-
-const char *hn_report_scene_id(const hn_report_scene *scene); ///< "scene" where it has none
-/// One of its studies: methods are the same in all. NULL: there is none.
-const hn_study *hn_report_any_study(const hn_report *report);
 
 // documents
-/// {"report","budget","elapsed","stopped","scenes":[{"scene","title","reason","study": as hn_study_json(),"accounts":[as in hn_accounts_json()],
-/// "singular_at","survival":[{"method","survived","tried","runs":[...]}...]}...]}
-void hn_report_json(hn_strbuf *b, const hn_report *report);
-/// One file without network: the answer in a table, then each scene with its plots; works without scripts, and with them points tell their
-/// numbers and methods can be hidden; light, dark, and A4 in grey.
-void hn_report_html(hn_strbuf *b, const hn_report *report);
 
 typedef struct hn_report_plot {
     char name[160]; ///< for a file: "fb0-q-time"
     const hn_report *of;
     int scene, kind, error, cost;
 } hn_report_plot;
-int hn_report_n_plots(const hn_report *report);
-hn_report_plot hn_report_plot_at(const hn_report *report, int i);
-/// An SVG file on its own, in the light theme. 0: there is nothing to draw.
-int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *plot);
 #endif

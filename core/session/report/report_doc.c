@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole of a report as JSON.
+#include "session/report/report_doc.h"
+
 #include "session/report/report_internal.h"
+#include "session/accounts/accounts_doc.h"
+#include "session/precision/study_doc.h"
+#include "session/report/report_words.h"
 
 #include <math.h>
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report as one HTML file: the answer on the first screen, then each scene. Scripts only add to it: without them points tell their
-// numbers as the browser shows titles, and every method is drawn.
+#include "session/report/report_html.h"
+
 #include "session/report/report_internal.h"
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
+#include "session/accounts/accounts_plot.h"
+#include "session/precision/study_html.h"
+#include "session/report/report_plot.h"
+#include "session/report/report_words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,7 +83,7 @@ static void put_hiding_style(hn_strbuf *b) {
     }
 }
 
-// the first screen ---------------------------------------------------------------------------------------------------
+// the first screen ----
 
 static void put_answer(hn_strbuf *b, const hn_report_scene *s, double accuracy) {
     const hn_report_answer a = hn_report_find_answer(s, accuracy);
@@ -227,7 +231,7 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
     hn_strbuf_add(b, "</div>\n");
 }
 
-// a scene ------------------------------------------------------------------------------------------------------------
+// a scene ----
 
 static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
     const int error = hn_accounts_can_plot(s->accounts, s->n_accounts, 0);

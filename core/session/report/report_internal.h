@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_INTERNAL_H
 #define HN_SESSION_REPORT_INTERNAL_H
-// The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c (pictures), report_html.c and
-// report_doc.c (documents).
+// The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c
+// (pictures), report_html.c and report_doc.c (documents).
 
 #include "session/report/report.h"
 
@@ -17,6 +17,4 @@ struct hn_report {
     double until; ///< when the present part of it has to end, wall clock [s]
 };
 
-/// Every run that was counted: its size across, where it ended up.
-void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *scene);
 #endif

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strips of survival, the pictures that a report alone has; and any picture as a file.
+#include "session/report/report_plot.h"
+
 #include "session/report/report_internal.h"
 
 #include "base/units.h"
 #include "session/precision/study_page.h"
+#include "session/accounts/accounts_plot.h"
+#include "session/precision/study_html.h"
+#include "session/report/report_words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +17,7 @@ enum { WIDTH = 900, LABELS = 196, RIGHT = 744 };
 enum { STRIP_TOP = 62, STRIP_ROW = 38, STRIP = 26, STRIP_BOTTOM = 36 };
 static const double LETTER = 6.6; // about the width of one in a label [px]
 
-// survival -----------------------------------------------------------------------------------------------------------
+// survival ----
 
 static const char *const SIGNS[HN_SURVIVAL_ENDS] = {
     [HN_SURVIVAL_SURVIVED] = "M0-5V5",
@@ -118,7 +122,7 @@ void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *s) {
     hn_strbuf_add(b, "</svg>");
 }
 
-// files --------------------------------------------------------------------------------------------------------------
+// files ----
 
 enum { KIND_STUDY, KIND_ERRORS, KIND_ENERGY, KIND_SURVIVAL };
 enum { PER_STUDY = HN_ERROR_COUNT * HN_COST_COUNT, PER_SCENE = PER_STUDY + 3 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report says in short: who is cheapest, what each method reaches, and both of them in sentences.
+#include "session/report/report_words.h"
+
 #include "session/report/report_internal.h"
 
 #include "session/precision/study_page.h"
+#include "session/precision/study_html.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -85,7 +87,7 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
     return v;
 }
 
-// sentences ----------------------------------------------------------------------------------------------------------
+// sentences ----
 
 static const double DEPENDABLE = 1e-6; // the error that a method has to reach in every scene [-]
 

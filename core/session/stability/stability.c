@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/stability/stability_internal.h"
+#include "session/stability/stability_axes.h"
+#include "session/stability/stability_column.h"
+#include "session/stability/stability_store.h"
 
 #include "base/clock.h"
 
@@ -73,7 +76,7 @@ void hn_map_free(hn_map *map) {
     }
 }
 
-// scenes -----------------------------------------------------------------------------------------------------------
+// scenes ----
 
 static int ask_to_stop(void *user) {
     return hn_map_must_end(user);
@@ -123,7 +126,7 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
     return s;
 }
 
-// cells ------------------------------------------------------------------------------------------------------------
+// cells ----
 
 hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
     hn_method_spec spec = map->specs[m];
@@ -166,7 +169,7 @@ static int try_cell(hn_map *map, int m, int column, int row) {
     return 1;
 }
 
-// rounds -----------------------------------------------------------------------------------------------------------
+// rounds ----
 
 static int count_pending(const hn_map *map) {
     int n = 0;
@@ -226,7 +229,7 @@ int hn_map_run(hn_map *map) {
     return finished;
 }
 
-// reading ----------------------------------------------------------------------------------------------------------
+// reading ----
 
 const hn_model *hn_map_model(const hn_map *map) {
     return map->model;

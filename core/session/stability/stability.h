@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_H
 #define HN_SESSION_STABILITY_H
-// A map of stability: a grid over two of {a scene's parameters, a method's settings, the step}, every cell a trial that is
-// classed (study/stability/stability.h), with the boundary predicted from the spectrum on the loops beside what was observed. Where the
-// vertical axis is the step h, the observed boundary of every column is found to 2 %, so that prediction and observation can be
-// compared as numbers. Cells are tried in rounds from coarse to fine; finished ones are kept in a folder, so that the same request
-// goes on where it was interrupted.
+// A map of stability: a grid over two of {a scene's parameters, a method's settings, the step},
+// every cell a trial that is classed (study/stability/stability.h), with the boundary predicted
+// from the spectrum on the loops beside what was observed. Where the vertical axis is the step h,
+// the observed boundary of every column is found to 2 %, so that prediction and observation can be
+// compared as numbers. Cells are tried in rounds from coarse to fine; finished ones are kept in a
+// folder, so that the same request goes on where it was interrupted.
 
 #include "session/job/job_request.h"
 #include "study/stability/stability.h"
@@ -20,15 +21,14 @@ enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSI
 
 typedef struct hn_map hn_map;
 
-/// What a map may be over by name: maker of the axes, name, about, chooses, stabilised (hn_job_preset).
+/// What a map may be over by name: maker of the axes, name, about, chooses, stabilised
+/// (hn_job_preset).
 #define HN_MAP_PRESETS(X)                                                               \
     X(stiffness_axes, "stiffness", "the step and a stiffness of the scene", "h", false) \
     X(mass_axes, "mass-ratio", "the step and a mass of the scene", "h", false)          \
     X(baumgarte_axes, "baumgarte", "alpha and beta of Baumgarte's method, at one step", \
       "alpha beta", true)                                                               \
     X(limit_axes, "limits", "the step, doubled until each method fails", "h", false)
-/// Returns preset i; NULL beyond the last.
-const hn_job_preset *hn_map_preset_at(int i);
 
 typedef struct hn_map_axis {
     char name[64]; ///< "h", "alpha", a parameter's; "" of a map with one column
@@ -60,7 +60,8 @@ typedef struct hn_map_column {
     } verdict;
 } hn_map_column;
 
-/// Agreement of prediction and observation of one method: columns where the vertical axis is a step, cells otherwise.
+/// Agreement of prediction and observation of one method: columns where the vertical axis is a
+/// step, cells otherwise.
 typedef struct hn_map_agreement {
     int by_columns, compared, agree, unseen, earlier, later;
     const char *why; ///< why nothing could be compared; NULL otherwise
@@ -68,11 +69,11 @@ typedef struct hn_map_agreement {
 
 /// Checks the request and takes up what an interrupted map of the same request left.
 ///
-/// request  in  one model, the scene as it is, and `load` for the scene with other parameters; methods:
-///              those that fit the axes where it has none; time: the scene's, shortened where the
-///              smallest step would take too many; time limit: 60 s where it has none. Values: "preset"
-///              ("limits" where neither is given) or "over" ("h=1e-4..1e-1,k=1e2..1e8", each with ":lin"
-///              or ":log" behind it if wanted), "columns" and "rows" (24).
+/// request  in  one model, the scene as it is, and `load` for the scene with other parameters;
+///              methods: those that fit the axes where it has none; time: the scene's, shortened
+///              where the smallest step would take too many; time limit: 60 s where it has none.
+///              Values: "preset" or "over" ("h=1e-4..1e-1,k=1e2..1e8", each with ":lin" or ":log"
+///              behind it if wanted), "columns" and "rows" (24).
 /// Returns owned in *out. The model and the texts of the request must outlive the map.
 /// Fails:   HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO. All reported in diags.
 HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags);
@@ -88,20 +89,10 @@ int hn_map_n_methods(const hn_map *map);
 const char *hn_map_method(const hn_map *map, int m);
 const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);
 const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column);
-hn_map_agreement hn_map_agrees(const hn_map *map, int m);
-/// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
-void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
 double hn_map_time(const hn_map *map);
 int hn_map_resumed(const hn_map *map);
 int hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
 double hn_map_elapsed(const hn_map *map); ///< [s]
 
 // documents
-void hn_map_json(hn_strbuf *b, const hn_map *map);
-void hn_map_csv(hn_strbuf *b, const hn_map *map); ///< one row a cell
-void hn_map_svg(hn_strbuf *b, const hn_map *map); ///< light theme, all methods one below the other
-void hn_map_html(
-    hn_strbuf *b,
-    const hn_map *map); ///< one file without network; a cell tells its outcome when pointed at
-HN_MUST_CHECK hn_status hn_map_png(hn_strbuf *png, const hn_map *map, hn_diag *diag);
 #endif

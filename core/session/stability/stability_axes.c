@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a map is asked for: axes from text or from a preset, methods, and how long a trial lasts.
+#include "session/stability/stability_axes.h"
+
 #include "session/stability/stability_internal.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ static const char *const STANDARD[] = {"projection@rk4", "projection@dop853:h=1e
                                        "projection@symplectic-euler"};
 static const char *const STABILISED[] = {"baumgarte@rk4", "baumgarte@symplectic-euler"};
 
-// axes -------------------------------------------------------------------------------------------------------------
+// axes ----
 
 static void fill_axis(hn_map_axis *a, double low, double high, int n) {
     a->n = n;
@@ -128,7 +129,7 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
     return HN_OK;
 }
 
-// presets ----------------------------------------------------------------------------------------------------------
+// presets ----
 
 // modulus of the fastest eigenvalue at the start of a model; 0 when it has none
 static double fastest_rate(const hn_model *model) {
@@ -174,14 +175,18 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
             diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
             "nothing vibrates or creeps at the start, so no range of steps follows");
     }
-    const double low = FINEST / fast, high = fmin(100, COARSEST / (slow > 0 ? slow : fast));
+    // the present step is on the axis too
+    const double present = hn_model_scene(map->model)->step;
+    const double low = present > 0 ? fmin(FINEST / fast, present) : FINEST / fast;
+    const double high = fmax(present, fmin(100, COARSEST / (slow > 0 ? slow : fast)));
     if (map->shortens) {
         map->T = fmin(map->T, PRESET_STEPS * low);
     }
     return make_axis(map, &map->y, "h", low, fmax(high, 40 * low), n, 'l', diags);
 }
 
-// a parameter of one of these units over its range, and the steps that the spectra at both ends ask for
+// a parameter of one of these units over its range, and the steps that the spectra at both ends ask
+// for
 static hn_status over_param(hn_map *map, const char *what, const char *const *units, int n_units,
                             hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(map->model);
@@ -275,7 +280,7 @@ static hn_status take_preset(hn_map *map, hn_diags *diags) {
                         "there is no preset called '%.40s'", map->preset);
 }
 
-// methods ----------------------------------------------------------------------------------------------------------
+// methods ----
 
 /// The methods of the request, or those that fit the axes.
 static hn_status take_methods(hn_map *map, hn_diags *diags) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a column says: the boundary predicted, the boundary observed, and whether they are the same.
+#include "session/stability/stability_column.h"
+
 #include "session/stability/stability_internal.h"
+#include "session/stability/stability_store.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +10,10 @@
 static const double WITHIN =
     0.95; // of a margin of 1: cells closer to the boundary are not compared
 
-// the prediction ---------------------------------------------------------------------------------------------------
+// a trial of fewer steps than this says nothing of their stability
+enum { LEAST_IN_TRIAL = 10 };
+
+// the prediction ----
 
 // log of h over the limit, bounded so that limits of 0 and infinity can stand between others
 static double log_margin(double margin) {
@@ -83,10 +88,46 @@ void hn_map_predict_column(hn_map *map, int m, int column) {
     }
 }
 
-// the observation --------------------------------------------------------------------------------------------------
+// the observation ----
 
 static int is_over(hn_stability_class kind) {
     return kind == HN_STABILITY_GREW || kind == HN_STABILITY_STOPPED;
+}
+
+/// Tries one step of a column; 0 when stopped. `over`: 1 unstable, 0 stable, -1 nothing observed.
+static int try_step(hn_map *map, int m, int column, int row, double h, int *over,
+                    hn_map_column *c) {
+    hn_stability_trial trial;
+    const hn_method_spec spec = hn_map_spec_at(map, m, column, h);
+    if (!hn_map_try(map, hn_map_scene_of(map, column, row), &spec, &trial)) {
+        return 0;
+    }
+    *over = hn_stability_is_stable(trial.kind) ? 0 : is_over(trial.kind) ? 1 : -1;
+    if (*over == 1) {
+        snprintf(c->how, sizeof c->how, "%s", trial.reason);
+    }
+    return 1;
+}
+
+/// Beyond the ends of a single column: steps halved or doubled until the boundary lies between two
+/// of them, or a trial would take too many steps or too few. 0 when stopped.
+static int search_beyond(hn_map *map, int m, double *low, double *high, hn_map_column *c) {
+    int over = isinf(*high) ? 0 : 1;
+    while (over == 1 && *low == 0 && map->T / (*high / 2) <= HN_MAP_STEPS) {
+        const double h = *high / 2;
+        if (!try_step(map, m, 0, 0, h, &over, c)) {
+            return 0;
+        }
+        *(over == 1 ? high : low) = over >= 0 ? h : *low;
+    }
+    while (over == 0 && isinf(*high) && 2 * *low <= map->T / LEAST_IN_TRIAL) {
+        const double h = 2 * *low;
+        if (!try_step(map, m, 0, map->y.n - 1, h, &over, c)) {
+            return 0;
+        }
+        *(over == 1 ? high : low) = over >= 0 ? h : *low;
+    }
+    return 1;
 }
 
 int hn_map_observe_column(hn_map *map, int m, int column) {
@@ -94,30 +135,38 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
     if (!isnan(c->unstable)) {
         return 1; // taken up from before
     }
+
+    // between which rows, or beyond which end of the column
     int j = 0;
     while (j < map->y.n && hn_stability_is_stable(hn_map_cell_at(map, m, column, j)->trial.kind)) {
         j++;
     }
-    if (j == map->y.n || !is_over(hn_map_cell_at(map, m, column, j)->trial.kind)) {
-        return 1; // stable throughout, or no observation there
+    if (j < map->y.n && !is_over(hn_map_cell_at(map, m, column, j)->trial.kind)) {
+        return 1; // no observation there
     }
-    double low = j > 0 ? map->y.value[j - 1] : 0, high = map->y.value[j];
-    hn_stability_trial trial = hn_map_cell_at(map, m, column, j)->trial;
-    snprintf(c->how, sizeof c->how, "%s", trial.reason);
+    double low = j > 0 ? map->y.value[j - 1] : 0, high = j < map->y.n ? map->y.value[j] : HUGE_VAL;
+    if (j < map->y.n) {
+        snprintf(c->how, sizeof c->how, "%s", hn_map_cell_at(map, m, column, j)->trial.reason);
+    }
+    if (map->x.n == 1 && !search_beyond(map, m, &low, &high, c)) {
+        return 0;
+    }
+    if (isinf(high)) {
+        return 1; // stable throughout
+    }
+
+    // halved until the interval is narrow
+    const int row = j < map->y.n ? j : map->y.n - 1;
     while (low > 0 && high / low > HN_MAP_REFINED) {
         const double middle = sqrt(low * high);
-        const hn_method_spec spec = hn_map_spec_at(map, m, column, middle);
-        if (!hn_map_try(map, hn_map_scene_of(map, column, j), &spec, &trial)) {
+        int over;
+        if (!try_step(map, m, column, row, middle, &over, c)) {
             return 0;
         }
-        if (hn_stability_is_stable(trial.kind)) {
-            low = middle;
-        } else if (!is_over(trial.kind)) {
+        if (over < 0) {
             break; // no observation there
-        } else {
-            high = middle;
-            snprintf(c->how, sizeof c->how, "%s", trial.reason);
         }
+        *(over ? &high : &low) = middle;
     }
     c->stable = low;
     c->unstable = high;
@@ -129,7 +178,9 @@ void hn_map_judge_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     const double limit = c->n_predicted ? c->predicted[0] : (double)NAN;
     c->verdict = HN_MAP_UNTOLD;
-    if (!map->y.is_step || !(limit >= map->y.value[0]) || !(limit <= map->y.value[map->y.n - 1])) {
+    const bool inside = limit >= map->y.value[0] && limit <= map->y.value[map->y.n - 1];
+    const bool found = c->stable > 0 && isfinite(c->unstable); // wherever the search ended
+    if (!map->y.is_step || !(limit > 0) || (!inside && !found)) {
         return;
     }
     const double seen = isnan(c->unstable) ? HUGE_VAL : sqrt(c->stable * c->unstable);
@@ -151,7 +202,7 @@ void hn_map_judge_column(hn_map *map, int m, int column) {
     }
 }
 
-// agreement --------------------------------------------------------------------------------------------------------
+// agreement ----
 
 static void count_columns(const hn_map *map, int m, hn_map_agreement *a) {
     for (int i = 0; i < map->x.n; i++) {
@@ -190,7 +241,10 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
         count_cells(map, m, &a);
     }
     if (a.compared == 0 && !a.why) {
-        a.why = "no boundary was both predicted and tried inside this map";
+        const hn_map_column *c = hn_map_get_column(map, m, 0);
+        a.why = map->x.n == 1 && c->stable == 0
+                    ? "no step was stable, down to the smallest that a trial may take"
+                    : "no boundary was both predicted and tried inside this map";
     }
     a.why = a.compared ? NULL : a.why;
     return a;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/stability/stability_doc.h"
+
 #include "session/store/csv.h"
 #include "session/stability/stability.h"
+#include "session/stability/stability_column.h"
 
 #include <math.h>
 

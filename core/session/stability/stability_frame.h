@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_FRAME_H
 #define HN_SESSION_STABILITY_FRAME_H
-// Where things stand in a picture of a map, and how a class looks: for the SVG and for the PNG alike.
+// Where things stand in a picture of a map, and how a class looks: for the SVG and for the PNG
+// alike.
 
 #include "render/look.h"
 #include "session/stability/stability.h"
@@ -30,7 +31,8 @@ int hn_map_height(const hn_map *map);
 double hn_map_field_top(int m);
 enum { HN_MAP_SAID_LINES = 3, HN_MAP_SAID_COLUMNS = 124, HN_MAP_SAID_HEIGHT = 16 };
 typedef char hn_map_said_line[HN_MAP_SAID_COLUMNS + 4];
-/// What is said of a method (hn_map_agreement_text), broken into lines as wide as the picture; returns how many. What needs more
+/// What is said of a method (hn_map_agreement_text), broken into lines as wide as the picture;
+/// returns how many. What needs more
 /// ends in "...". The last line stands right above the field, the method's name above the first.
 int hn_map_said(const hn_map *map, int m, hn_map_said_line lines[HN_MAP_SAID_LINES]);
 /// Left edge of column i (0 .. n), top edge of row j counted from below (0 .. n).
@@ -38,9 +40,11 @@ double hn_map_column_edge(const hn_map *map, int i);
 double hn_map_row_edge(const hn_map *map, int m, int j);
 /// Height of a value on the vertical axis: rows stand for their values at their middle.
 double hn_map_height_of(const hn_map *map, int m, double value);
-/// Where the predicted boundary passes between columns i and i + 1 of row j, on maps whose vertical axis is no step; 0: it does not.
+/// Where the predicted boundary passes between columns i and i + 1 of row j, on maps whose vertical
+/// axis is no step; 0: it does not.
 int hn_map_crossing_x(const hn_map *map, int m, int i, int j, double *x);
-/// Ticks: values at rows or columns that label an axis; at most 8, returns how many. `at` is the index.
+/// Ticks: values at rows or columns that label an axis; at most 8, returns how many. `at` is the
+/// index.
 int hn_map_ticks(const hn_map_axis *a, int at[8]);
 /// "h [s]"
 void hn_map_axis_title(const hn_map_axis *a, char out[96]);

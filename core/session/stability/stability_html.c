@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A map as SVG, on its own and inside one HTML file: no network, no script. A cell's outcome is its title, which a browser shows
-// when the cell is pointed at.
+#include "session/stability/stability_html.h"
+
 #include "session/stability/stability_frame.h"
 #include "session/precision/study_page.h"
+#include "session/precision/study_html.h"
+#include "session/stability/stability_column.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_INTERNAL_H
 #define HN_SESSION_STABILITY_INTERNAL_H
-// The inside of a map: stability.c (life and running), stability_axes.c (what is asked for), stability_column.c (what a column says),
-// stability_store.c (what is kept of an unfinished one), and the documents.
+// The inside of a map: stability.c (life and running), stability_axes.c (what is asked for),
+// stability_column.c (what a column says), stability_store.c (what is kept of an unfinished one),
+// and the documents.
 
 #include "session/store/journal.h"
 #include "session/stability/stability.h"
@@ -49,17 +50,4 @@ int hn_map_must_end(hn_map *map);
 int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
                hn_stability_trial *out);
 
-/// Axes, methods and time from the request.
-HN_MUST_CHECK hn_status hn_map_set_up(hn_map *map, hn_diags *diags);
-
-/// Margins and predicted boundary of a column; the scenes must be there.
-void hn_map_predict_column(hn_map *map, int m, int column);
-/// Step axis: halves the interval between the last stable and the first other step. 0 when stopped.
-int hn_map_observe_column(hn_map *map, int m, int column);
-void hn_map_judge_column(hn_map *map, int m, int column);
-
-/// Opens the journal of this map and reads what it holds into the map. Fails as hn_journal_open().
-HN_MUST_CHECK hn_status hn_map_open_journal(hn_map *map, hn_diags *diags);
-void hn_map_keep_cell(hn_map *map, int m, int column, int row);
-void hn_map_keep_column(hn_map *map, int m, int column);
 #endif

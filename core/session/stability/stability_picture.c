@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A map as a PNG file, drawn as the SVG is.
+#include "session/stability/stability_picture.h"
+
 #include "render/canvas.h"
 #include "session/stability/stability_frame.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of an unfinished map: a line a cell, a line a column's observed boundary.
+#include "session/stability/stability_store.h"
+
 #include "session/stability/stability_internal.h"
 #include "session/store/stored_json.h"
 

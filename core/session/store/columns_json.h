@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_COLUMNS_JSON_H
 #define HN_SESSION_COLUMNS_JSON_H
-// Members of an open JSON object that several documents have in common: names of columns, and tables row by row.
+// Members of an open JSON object that several documents have in common: names of columns, and
+// tables row by row.
 
 #include "base/strbuf.h"
 #include "dynamics/compile/system.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_CSV_H
 #define HN_SESSION_CSV_H
-// Cells of tables as comma-separated values (RFC 4180). Between them the writer of a row puts its own commas.
+// Cells of tables as comma-separated values (RFC 4180). Between them the writer of a row puts its
+// own commas.
 
 #include "base/strbuf.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STORED_JSON_H
 #define HN_SESSION_STORED_JSON_H
-// Reading back what the program has written as JSON: each returns 1 when the member is there and fits. A null is a NaN that was written.
+// Reading back what the program has written as JSON: each returns 1 when the member is there and
+// fits. A null is a NaN that was written.
 
 #include <cjson/cJSON.h>
 #include <stddef.h>

@@ -15,6 +15,8 @@ static const double WANDER =
     0.1; // errors at a floor differ by less than this factor from the first there
 // no error below it is trusted to have a slope: what thousands of steps in double add up to
 static const double ROUNDING = 1e-13;
+// errors below it may be near what rounding adds up to over a long motion
+static const double BENDS_BELOW = 1e-8;
 static const double LEAST_ORDER = 0.5; // below it nothing converges
 
 static const char *const names[HN_CLASS_COUNT] = {
@@ -93,20 +95,9 @@ static int find_floor(const ladder *l, double theory, double known) {
     return l->n;
 }
 
-/// The finest points above the floor that have a slope.
-static void fit(const ladder *l, int n, int most, hn_class *c) {
+/// Puts the order of points first..last, and the slopes between neighbours, into c.
+static void fit_points(const ladder *l, int first, int last, hn_class *c) {
     double x[HN_WP_LEVELS], e[HN_WP_LEVELS];
-    const double lowest = isnan(c->floor) ? ROUNDING : fmax(ROUNDING, ABOVE_FLOOR * c->floor);
-    int last = n - 1, first, used = 0;
-    while (last >= 0 && l->e[last] <= lowest) {
-        last--;
-    }
-    for (first = last + 1; first > 0 && used < most && l->e[first - 1] < SATURATED; used++) {
-        first--;
-    }
-    if (used < 2) {
-        return;
-    }
     c->first = l->level[first];
     c->last = l->level[last];
     c->low = HUGE_VAL;
@@ -119,7 +110,65 @@ static void fit(const ladder *l, int n, int most, hn_class *c) {
             c->high = fmax(c->high, slope(l, i));
         }
     }
-    c->order = hn_fit_order(used, x, e);
+    c->order = hn_fit_order(last - first + 1, x, e);
+}
+
+/// Returns the first of at most `most` points up to `last` that have a slope.
+static int first_of(const ladder *l, int last, int most) {
+    int first = last + 1;
+    for (int used = 0; first > 0 && used < most && l->e[first - 1] < SATURATED; used++) {
+        first--;
+    }
+    return first;
+}
+
+/// Rounding bends the fine end of a ladder before it stops the fall. Looks for the finest straight
+/// part above: errors small enough for rounding to show behind it, and only flatter slopes there.
+static void fit_above_rounding(const ladder *l, int last, int most, hn_class *c) {
+    const hn_class bent = *c;
+    double steepest = -HUGE_VAL;
+    for (int end = last - 1; end >= 2 && l->e[end] < BENDS_BELOW; end--) {
+        const int first = first_of(l, end, most);
+        steepest = fmax(steepest, slope(l, end + 1));
+        if (end - first < 2) {
+            break;
+        }
+        fit_points(l, first, end, c);
+        if (c->high - c->low <= HN_CLASS_SPREAD && steepest < c->low) {
+            c->rounding = l->level[end + 1];
+            return;
+        }
+    }
+    *c = bent;
+}
+
+/// The finest points above the floor that have a slope.
+static void fit(const ladder *l, int n, int most, hn_class *c) {
+    const double lowest = isnan(c->floor) ? ROUNDING : fmax(ROUNDING, ABOVE_FLOOR * c->floor);
+    int last = n - 1;
+    while (last >= 0 && l->e[last] <= lowest) {
+        last--;
+    }
+    const int first = first_of(l, last, most);
+    if (last - first < 1) {
+        return;
+    }
+    fit_points(l, first, last, c);
+    if (c->high - c->low > HN_CLASS_SPREAD) {
+        fit_above_rounding(l, last, most, c);
+    }
+}
+
+/// Why slopes are not those of an order, and what to try.
+static const char *why_unsettled(const hn_class *c) {
+    const int above = c->high > c->theory + HN_CLASS_SPREAD,
+              below = c->low < c->theory - HN_CLASS_SPREAD;
+    return above && below ? ": the leading terms of the error cancel at some of these sizes; finer "
+                            "sizes (--levels 10) or a shorter --time show the order"
+           : above ? ": the errors still fall faster than theory, so the steps do not resolve "
+                     "the motion yet; take more --levels or a shorter --time"
+           : below ? ": the errors fall more slowly than theory; take a shorter --time"
+                   : ": the slopes change from size to size; take a shorter --time";
 }
 
 static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *c) {
@@ -143,6 +192,10 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
         snprintf(floor, sizeof floor, "; at its floor of %.1e from %s = %s on", c->floor,
                  wp->methods[m].adaptive ? "rtol" : "h", size);
     }
+    if (c->rounding >= 0) {
+        hn_si_format(wp->methods[m].point[c->rounding].size, "s", 2, size);
+        snprintf(floor, sizeof floor, "; from h = %s on rounding adds to the error", size);
+    }
     if (c->kind == HN_CLASS_CONVERGES && c->as_theory) {
         snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
                  c->theory, floor);
@@ -160,8 +213,8 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
                  c->order, c->theory, floor);
     } else if (c->first >= 0) {
         snprintf(c->text, sizeof c->text,
-                 "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s", c->low,
-                 c->high, c->theory, floor);
+                 "not in the asymptotic range: slopes from %.1f to %.1f (theory %g)%s%s", c->low,
+                 c->high, c->theory, why_unsettled(c), floor);
     } else {
         snprintf(c->text, sizeof c->text,
                  "not in the asymptotic range: fewer than two points between 0.5 and the floor");
@@ -177,7 +230,8 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
                   .order = (double)NAN,
                   .floor = (double)NAN,
                   .first = -1,
-                  .last = -1};
+                  .last = -1,
+                  .rounding = -1};
     *out = c;
     if (l.n < 2) {
         out->kind = HN_CLASS_FAILED;

@@ -37,12 +37,13 @@ typedef struct hn_class {
     double theory;     ///< the integrator's
     int as_theory;     ///< 1: observed within the bounds above
     int first, last;   ///< points the order was fitted to, -1: none
+    int rounding;      ///< first point behind the fitted ones that rounding bends; -1: none
     double low, high;  ///< slopes between neighbours that were met there
     double floor;      ///< largest error of the flat end; NaN: there is none
     double floor_size; ///< coarsest size there
     double offset;     ///< elsewhere: distance of the limit from the reference
     double own;        ///< elsewhere: distance of the finest points from each other
-    char text[256];    ///< in words
+    char text[320];    ///< in words
 } hn_class;
 
 /// Of the coordinates' largest error over the run; beyond the horizon nothing is said.

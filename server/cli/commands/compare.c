@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // holonom compare: several methods on one clock, and a table of where they part.
+#include "base/units.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/document.h"
@@ -21,8 +22,8 @@ static hn_status create(const hn_args *args, const hn_model *model, hn_compariso
                         hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(model);
     hn_comparison_opts opts = hn_comparison_opts_default();
-    const char *const *methods = args->methods.n > 0 ? args->methods.word : scene->methods;
-    int n = args->methods.n > 0 ? args->methods.n : scene->n_methods;
+    int n = args->methods.n;
+    const char *const *methods = n > 0 ? args->methods.word : hn_model_methods(model, &n);
     if (!isnan(args->time) && !(args->time > 0)) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/time", NULL,
                             "the end time is %g s; it must be above 0", args->time);
@@ -94,7 +95,17 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     hn_table_cell(t, "%.0f", steps);
     hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
     hn_table_quantity(t, hn_document_number(m, "ops"), "op");
-    hn_table_quantity(t, steps > 0 ? hn_document_number(m, "cpu") / steps : (double)NAN, "s");
+    hn_table_quantity(t, steps > 0 ? hn_document_number(m, "ops") / steps : (double)NAN, "op");
+    const cJSON *cost = hn_document_get(m, "step_cpu");
+    char median[HN_SI_TEXT], low[HN_SI_TEXT], high[HN_SI_TEXT];
+    if (!isfinite(hn_document_number(cost, "median"))) {
+        hn_table_cell(t, "-");
+        return;
+    }
+    hn_si_format(hn_document_number(cost, "median"), "s", 2, median);
+    hn_si_format(hn_document_number(cost, "low"), "s", 2, low);
+    hn_si_format(hn_document_number(cost, "high"), "s", 2, high);
+    hn_table_cell(t, "%s (%s to %s)", median, low, high);
 }
 
 /// What a spelling deserves to be told, and the first few incidents of each method; all of them are
@@ -126,13 +137,13 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
 }
 
 static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary) {
-    static const char *const heads[] = {"method",       "status",        "t",     "worst gap",
-                                        "velocity gap", "energy change", "steps", "evals",
-                                        "ops",          "CPU/step"};
+    static const char *const heads[] = {
+        "method", "status", "t",   "worst gap", "velocity gap",        "energy change",
+        "steps",  "evals",  "ops", "ops/step",  "CPU/step (quartiles)"};
     const hn_scene *scene = hn_model_scene(model);
     hn_table t;
     hn_table_init(&t);
-    for (int c = 0; c < 10; c++) {
+    for (int c = 0; c < 11; c++) {
         hn_table_column(&t, heads[c], c > 1);
     }
     const cJSON *m;

@@ -8,6 +8,7 @@
 #include "cli/shell/print.h"
 #include "import/import.h"
 #include "session/model/model.h"
+#include "session/model/model_json.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -9,6 +9,7 @@
 #include "integrators/method/method_spec.h"
 #include "session/model/lists.h"
 #include "session/model/model.h"
+#include "session/model/model_json.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -74,6 +75,42 @@ static const struct {
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 
+/// One option of a method: "h: step [s], 1e-09 to 1e+06, no default".
+static void put_option(hn_strbuf *b, const cJSON *option) {
+    const cJSON *choices = hn_document_get(option, "choices"), *choice;
+    const cJSON *initial = hn_document_get(option, "default");
+    const char *unit = hn_document_text(option, "unit");
+    hn_strbuf_printf(b, "    %s: %s", hn_document_text(option, "key"),
+                     hn_document_text(option, "about"));
+    if (unit[0] && strcmp(unit, "-") != 0) {
+        hn_strbuf_printf(b, " [%s]", unit);
+    }
+    if (choices) {
+        cJSON_ArrayForEach(choice, choices) {
+            hn_strbuf_printf(b, "%s%s", choice == choices->child ? ", one of " : " ",
+                             choice->valuestring);
+        }
+    } else {
+        hn_strbuf_printf(b, ", %g to %g", hn_document_number(option, "min"),
+                         hn_document_number(option, "max"));
+    }
+    if (cJSON_IsString(initial)) {
+        hn_strbuf_printf(b, "; default %s\n", initial->valuestring);
+    } else if (cJSON_IsNumber(initial)) {
+        hn_strbuf_printf(b, "; default %g\n", initial->valuedouble);
+    } else {
+        hn_strbuf_add(b, "; no default\n");
+    }
+}
+
+static void put_options(hn_strbuf *b, const cJSON *item) {
+    const cJSON *options = hn_document_get(item, "options"), *option;
+    hn_strbuf_add(b, options && options->child ? "  options\n" : "");
+    cJSON_ArrayForEach(option, options) {
+        put_option(b, option);
+    }
+}
+
 static void put_card(hn_strbuf *b, const cJSON *item) {
     hn_strbuf_printf(b, "\n%s: %s\n", hn_document_text(item, "name"),
                      hn_document_text(item, "title"));
@@ -87,6 +124,7 @@ static void put_card(hn_strbuf *b, const cJSON *item) {
             hn_strbuf_printf(b, "  %-9s %s\n", CARD[i].head, hn_document_text(item, CARD[i].key));
         }
     }
+    put_options(b, item);
 }
 
 /// A card for each thing that has one, below the tables.

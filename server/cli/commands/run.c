@@ -7,6 +7,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "session/compare/comparison.h"
+#include "session/compare/run_doc.h"
 #include "terminal/motion_plot.h"
 #include "terminal/width.h"
 
@@ -39,11 +40,11 @@ static int add_parts(column *columns, int n, const cJSON *samples, const char *k
     return n;
 }
 
-/// Three columns for each joint and constraint: "force O1 x".
-static int add_wrenches(column *columns, int n, const cJSON *run, const char *key,
-                        const char *what) {
+/// Three columns for each of the names in run[names]: "force O1 x", "point P x".
+static int add_vectors(column *columns, int n, const cJSON *run, const char *key,
+                       const char *names_key, const char *what) {
     const cJSON *list = hn_document_get(hn_document_get(run, "samples"), key), *name;
-    const cJSON *names = list ? hn_document_get(run, "carriers") : NULL;
+    const cJSON *names = list ? hn_document_get(run, names_key) : NULL;
     int part = 0;
     cJSON_ArrayForEach(name, names) {
         for (int i = 0; i < 3 && n < MAX_RUN_COLUMNS; i++) {
@@ -83,8 +84,8 @@ static int add_measure(column *columns, int n, const cJSON *samples, const char 
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, and the three
-/// measures.
+/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, points, and the
+/// three measures.
 static int find_columns(column *columns, const cJSON *run) {
     static const char *const last[] = {"gap", "velocity_gap", "energy"};
     const cJSON *samples = hn_document_get(run, "samples");
@@ -97,9 +98,10 @@ static int find_columns(column *columns, const cJSON *run) {
                       hn_document_get(run, "rows"));
     }
     n = add_measure(columns, n, samples, "lambda_mark");
-    n = add_wrenches(columns, n, run, "reaction_force", "force");
-    n = add_wrenches(columns, n, run, "reaction_moment", "moment");
+    n = add_vectors(columns, n, run, "reaction_force", "carriers", "force");
+    n = add_vectors(columns, n, run, "reaction_moment", "carriers", "moment");
     n = add_efforts(columns, n, run);
+    n = add_vectors(columns, n, run, "points", "points", "point");
     for (int i = 0; i < 3; i++) {
         n = add_measure(columns, n, samples, last[i]);
     }
@@ -247,9 +249,7 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, diags);
     if (status == HN_OK) {
         const hn_scene *scene = hn_model_scene(model);
-        hn_run_request request = {.method = args->method           ? args->method
-                                            : scene->n_methods > 0 ? scene->methods[0]
-                                                                   : "projection@dopri5:rtol=1e-8",
+        hn_run_request request = {.method = args->method ? args->method : hn_model_method(model),
                                   .time = isnan(args->time) ? scene->duration : args->time,
                                   .at = args->at.n > 0 ? args->at.value : NULL,
                                   .n_at = args->at.n,
@@ -258,6 +258,9 @@ static hn_status run_scene(const hn_library *lib, const hn_args *args, hn_strbuf
                                   .reactions = args->reactions,
                                   .progress = tell_progress,
                                   .user = &progress};
+        if (!args->method && !args->json) {
+            fprintf(stderr, "holonom: method %s; --method chooses another\n", request.method);
+        }
 
         // an interval of 0 would mean the default
         if (!isnan(args->every) && !(args->every > 0)) {

@@ -5,6 +5,9 @@
 #include "cli/shell/document.h"
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
+#include "session/model/equations.h"
+#include "session/model/inspect_json.h"
+#include "session/model/terms_json.h"
 
 #include <math.h>
 #include <stdio.h>

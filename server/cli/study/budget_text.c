@@ -64,6 +64,11 @@ static void put_reasons(hn_strbuf *b, const hn_accounts *a) {
             hn_strbuf_printf(b, "  %s: %s, %s\n", row->spelling, hn_account_state(row),
                              row->reason);
         }
+        char note[HN_ACCOUNT_NOTE];
+        hn_account_note(hn_accounts_model(a), row, note);
+        if (note[0]) {
+            hn_strbuf_printf(b, "  %s: %s\n", row->spelling, note);
+        }
     }
 }
 

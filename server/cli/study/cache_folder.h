@@ -5,7 +5,7 @@
 
 #include "cli/shell/args.h"
 
-/// Returns HOLONOM_CACHE, or holonom in the user's folder for cached files, in `out`; made when it is not
-/// there. NULL, with a line on standard error, when there is none.
+/// Returns HOLONOM_CACHE, or holonom in the user's folder for cached files, in `out`; made when it
+/// is not there. NULL, with a line on standard error, when there is none.
 const char *hn_cache_folder(const hn_args *args, char out[400]);
 #endif

@@ -18,6 +18,7 @@
 #include "cli/study/stability_text.h"
 #include "cli/study/study_part.h"
 #include "cli/study/work_precision_text.h"
+#include "session/references/reference_store.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -194,7 +195,8 @@ static void report_end(const command *c, const hn_job_end *end) {
     }
 }
 
-/// Beside the forms of a kind: a part of a study, the plots of a report, a reference as it is shipped.
+/// Beside the forms of a kind: a part of a study, the plots of a report, a reference as it is
+/// shipped.
 static hn_exit write_job(const command *c, const hn_job *job) {
     const hn_args *args = c->args;
     const void *work = hn_job_work(job);

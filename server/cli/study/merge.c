@@ -7,6 +7,7 @@
 #include "cli/study/work_precision_text.h"
 #include "session/kinds/job.h"
 #include "session/precision/study.h"
+#include "session/precision/study_merge.h"
 
 enum {
     MOST_BYTES = 64 << 20

@@ -2,6 +2,7 @@
 #include "cli/study/reference_text.h"
 
 #include "cli/shell/table.h"
+#include "session/references/reference_store.h"
 
 #include <math.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_REFERENCE_TEXT_H
 #define HN_CLI_REFERENCE_TEXT_H
-// The reference solution for people at a terminal: its two means, and the digits they share over time.
+// The reference solution for people at a terminal: its two means, and the digits they share over
+// time.
 
 #include "session/kinds/kind_reference.h"
 

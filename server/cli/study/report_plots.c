@@ -3,6 +3,7 @@
 
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
+#include "session/report/report_plot.h"
 
 #include <errno.h>
 #include <spawn.h>

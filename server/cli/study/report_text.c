@@ -2,6 +2,7 @@
 #include "cli/study/report_text.h"
 
 #include "cli/shell/table.h"
+#include "session/report/report_words.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "cli/shell/table.h"
 #include "cli/study/stability_text.h"
 #include "session/stability/stability_frame.h"
+#include "session/stability/stability_column.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,7 +75,12 @@ static void put_limit(hn_table *t, const hn_map *map, int m) {
         hn_stability_is_stable(hn_map_get(map, m, 0, hn_map_y(map)->n - 1)->trial.kind);
     hn_table_cell(t, "%s", hn_map_method(map, m));
     hn_table_quantity(t, predicted, "s");
-    hn_table_quantity(t, stable_all ? hn_map_y(map)->value[hn_map_y(map)->n - 1] : c->stable, "s");
+    if (c->stable == 0) {
+        hn_table_cell(t, "%s", "none");
+    } else {
+        hn_table_quantity(t, stable_all ? hn_map_y(map)->value[hn_map_y(map)->n - 1] : c->stable,
+                          "s");
+    }
     hn_table_quantity(t, c->unstable, "s");
     if (predicted > 0 && c->stable > 0) {
         hn_table_cell(t, "%.3f", sqrt(c->stable * c->unstable) / predicted);

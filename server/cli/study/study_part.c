@@ -4,6 +4,7 @@
 #include "cli/shell/forms.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
+#include "session/precision/study_part.h"
 
 /// The points of a part, counted, for people.
 static void put_part_text(hn_strbuf *b, const hn_args *args, const hn_study *study) {

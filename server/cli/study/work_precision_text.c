@@ -101,7 +101,7 @@ static void put_verdicts(hn_strbuf *b, const hn_study *study) {
     }
 }
 
-// the plot -------------------------------------------------------------------------------------------------------
+// the plot ----
 
 /// Logarithmic ranges over all finished points, whole decades for the error.
 typedef struct range {
@@ -210,7 +210,7 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp) {
                      high);
 }
 
-// answers --------------------------------------------------------------------------------------------------------
+// answers ----
 
 static void put_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
     const size_t before = b->n;
@@ -310,7 +310,8 @@ static void shorten_size(char spelling[HN_SPEC_MAX]) {
     }
 }
 
-/// Everything that did not come to the end, with why; what never began for the same reason once per method.
+/// Everything that did not come to the end, with why; what never began for the same reason once per
+/// method.
 static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     int any = 0;
     for (int m = 0; m < wp->n_methods; m++) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_WORK_PRECISION_TEXT_H
 #define HN_CLI_WORK_PRECISION_TEXT_H
-// A work-precision study for people at a terminal: verdicts, a plot, who is cheapest for which accuracy, what equal cost buys.
+// A work-precision study for people at a terminal: verdicts, a plot, who is cheapest for which
+// accuracy, what equal cost buys.
 
 #include "session/precision/study.h"
 

@@ -2,6 +2,7 @@
 #include "base/clock.h"
 #include "http/live/session_internal.h"
 #include "http/live/stream.h"
+#include "session/model/model_json.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -16,6 +16,9 @@
 #include "session/model/lists.h"
 #include "session/model/model.h"
 #include "session/references/references.h"
+#include "session/model/model_json.h"
+#include "session/references/reference_doc.h"
+#include "session/references/reference_store.h"
 #include "study/incidents/kinds.h"
 
 #include <math.h>

@@ -9,6 +9,11 @@
 #include "http/request/scene_request.h"
 #include "session/compare/comparison.h"
 #include "session/compare/picture.h"
+#include "session/compare/run_doc.h"
+#include "session/model/equations.h"
+#include "session/model/inspect_json.h"
+#include "session/model/model_json.h"
+#include "session/model/terms_json.h"
 
 #include <string.h>
 

@@ -9,6 +9,7 @@
 #include "http/request/request.h"
 #include "http/runs/json_scan.h"
 #include "http/runs/runs.h"
+#include "session/compare/run_doc.h"
 
 #include <pthread.h>
 #include <stdio.h>

@@ -38,7 +38,7 @@ struct hn_studies {
     int n, n_threads, stopping;
 };
 
-// ---- one study --------------------------------------------------------------------------------------------------
+// ---- one study ----
 
 static void free_study(study *s) {
     if (s) {
@@ -95,7 +95,8 @@ static const char *state_name(const study *s) {
     return names[s->done ? s->result.state : HN_STUDY_RUNNING];
 }
 
-/// Seconds to go, by what was done so far and never beyond the time limit; NaN when too little is known.
+/// Seconds to go, by what was done so far and never beyond the time limit; NaN when too little is
+/// known.
 static double time_left(const study *s, double share, double elapsed) {
     if (s->done) {
         return 0;
@@ -145,7 +146,7 @@ static void put_study(hn_strbuf *b, const study *s) {
     hn_json_end_object(b);
 }
 
-// ---- all of them ------------------------------------------------------------------------------------------------
+// ---- all of them ----
 
 hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib) {
     hn_studies *all = calloc(1, sizeof *all);
@@ -167,7 +168,8 @@ static study *take_out(hn_studies *all, int i) {
     return s;
 }
 
-/// Gives up one reference with the lock held; the study itself goes to `*dead` when it was the last.
+/// Gives up one reference with the lock held; the study itself goes to `*dead` when it was the
+/// last.
 static void drop(study *s, study **dead, int *n_dead) {
     atomic_store(&s->work.stop, 1);
     if (--s->refs == 0) {
@@ -185,7 +187,8 @@ static void expire(hn_studies *all, study **dead, int *n_dead) {
     }
 }
 
-/// Room for one more among the kept: the finished one that was longest untouched goes. With the lock held.
+/// Room for one more among the kept: the finished one that was longest untouched goes. With the
+/// lock held.
 static void make_room(hn_studies *all, study **dead, int *n_dead) {
     int oldest = -1;
     for (int i = 0; i < all->n; i++) {
@@ -240,7 +243,8 @@ static void name_study(study *s) {
     snprintf(s->id, sizeof s->id, "%016llx", (unsigned long long)name);
 }
 
-/// A thread's place; 0 with a problem as reply. A study that was deleted holds its place until its thread has ended.
+/// A thread's place; 0 with a problem as reply. A study that was deleted holds its place until its
+/// thread has ended.
 static int reserve(hn_studies *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
     const int stopping = all->stopping, full = all->n_threads >= all->opts->max_studies;
@@ -263,7 +267,8 @@ static void give_back(hn_studies *all) {
     pthread_mutex_unlock(&all->lock);
 }
 
-/// Puts it among the others and starts its thread, which has a reference of its own; the caller keeps one too.
+/// Puts it among the others and starts its thread, which has a reference of its own; the caller
+/// keeps one too.
 static hn_status start(hn_studies *all, study *s) {
     study *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
@@ -286,7 +291,7 @@ static hn_status start(hn_studies *all, study *s) {
     return status;
 }
 
-// ---- handlers ---------------------------------------------------------------------------------------------------
+// ---- handlers ----
 
 /// The study of the request's path, with a reference for the caller; NULL with a problem as reply.
 static study *find_study(hn_request *r) {

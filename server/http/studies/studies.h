@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_HTTP_STUDIES_H
 #define HN_HTTP_STUDIES_H
-// Studies as resources: what takes seconds is done on a thread of its own, asked for progress while it lasts and for its document
-// afterwards. Bounded in number and in computing time; finished ones go when nobody touched them for long, or to make room.
+// Studies as resources: what takes seconds is done on a thread of its own, asked for progress while
+// it lasts and for its document afterwards. Bounded in number and in computing time; finished ones
+// go when nobody touched them for long, or to make room.
 
 #include "http/ground/http_opts.h"
 #include "session/model/library.h"

@@ -7,7 +7,8 @@
 
 enum { HN_STUDY_FIELDS = 24 };
 
-/// Ends with a row without a name. Filled by hn_study_fields_fill() before the server answers anything.
+/// Ends with a row without a name. Filled by hn_study_fields_fill() before the server answers
+/// anything.
 extern hn_field hn_study_fields[HN_STUDY_FIELDS];
 /// Fills the table from the registry of jobs (session/kinds/job.h).
 void hn_study_fields_fill(void);

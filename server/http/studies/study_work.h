@@ -39,13 +39,13 @@ typedef struct hn_study_result {
     char reason[HN_DIAG_MESSAGE], hint[HN_DIAG_HINT];
 } hn_study_result;
 
-/// Reads and checks a body and loads its scene; start from a zeroed work with `lib` set. Fails: HN_ERR_INPUT,
-/// HN_ERR_LIMIT and what the kind refuses before its computation; reported in diags with pointers into
-/// the body. hn_study_work_reset() afterwards in any case.
+/// Reads and checks a body and loads its scene; start from a zeroed work with `lib` set. Fails:
+/// HN_ERR_INPUT, HN_ERR_LIMIT and what the kind refuses before its computation; reported in diags
+/// with pointers into the body. hn_study_work_reset() afterwards in any case.
 HN_MUST_CHECK hn_status hn_study_work_read(hn_study_work *w, const cJSON *body,
                                            const hn_http_opts *opts, hn_diags *diags);
-/// Computes until the end, the time limit, `cpu_seconds` of this thread, or w->stop. The document is
-/// complete JSON whatever the end, but not when the study failed.
+/// Computes until the end, the time limit, `cpu_seconds` of this thread, or w->stop. The document
+/// is complete JSON whatever the end, but not when the study failed.
 void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *out);
 void hn_study_work_reset(hn_study_work *w);
 #endif

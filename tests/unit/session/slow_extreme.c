@@ -2,6 +2,8 @@
 // The extreme matrix but for its longest cases: no prediction fails, and it is the same each time.
 
 #include "session/extreme/extreme.h"
+#include "session/extreme/extreme_doc.h"
+#include "session/extreme/extreme_files.h"
 #include "support/near.h"
 
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "support/near.h"
 
 #include "session/compare/comparison.h"
+#include "session/compare/run_doc.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -54,6 +55,55 @@ static double number(const cJSON *object, const char *key) {
 static const char *const FIVE[] = {"index1@rk4:h=0.01", "baumgarte:alpha=5,beta=5@rk4:h=0.01",
                                    "projection@rk4:h=0.01", "nullspace@rk4:h=0.01",
                                    "reduced@rk4:h=0.01"};
+
+static void the_cost_of_a_step_is_a_median_over_warm_frames(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar");
+    hn_comparison *c = compare(model, FIVE, 5, NULL);
+    for (int frame = 0; frame < 40; frame++) {
+        // too few frames, and the first ones, say nothing
+        if (frame < HN_STEP_COST_FRAMES) {
+            assert_true(isnan(hn_comparison_step_cost(c, 0).median));
+        }
+        hn_comparison_next(c);
+    }
+    for (int i = 0; i < 5; i++) {
+        const hn_step_cost cost = hn_comparison_step_cost(c, i);
+        assert_int_equal(cost.frames, 37); // three cold ones are left out
+        assert_true(cost.low > 0 && cost.low <= cost.median && cost.median <= cost.high);
+    }
+    hn_comparison_reset(c);
+    assert_true(isnan(hn_comparison_step_cost(c, 0).median));
+    hn_comparison_free(c);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
+
+static void a_scene_without_methods_gets_some(void **state) {
+    (void)state;
+    hn_library *lib = open_library();
+    hn_model *model = load(lib, "four-bar"), *plain = NULL;
+    hn_diags diags = {0};
+    cJSON *scene = cJSON_Parse(hn_model_scene(model)->text);
+    cJSON_DeleteItemFromObjectCaseSensitive(scene, "methods");
+    char *text = cJSON_PrintUnformatted(scene);
+    const hn_model_source source = {.text = text, .n_text = strlen(text)};
+    assert_int_equal(hn_model_load(lib, &source, &plain, &diags), HN_OK);
+    int n = 0;
+    const char *const *methods = hn_model_methods(plain, &n);
+    assert_int_equal(n, 3);
+    // the first alone drifts, so a run without a method takes the second
+    assert_string_equal(hn_model_method(plain), methods[1]);
+    hn_comparison *c = compare(plain, methods, n, NULL);
+    hn_comparison_next(c);
+    hn_comparison_free(c);
+    cJSON_free(text);
+    cJSON_Delete(scene);
+    hn_model_free(plain);
+    hn_model_free(model);
+    hn_library_free(lib);
+}
 
 static void all_methods_share_one_clock_and_one_start(void **state) {
     (void)state;
@@ -340,6 +390,8 @@ static void bad_requests_name_their_field(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_cost_of_a_step_is_a_median_over_warm_frames),
+        cmocka_unit_test(a_scene_without_methods_gets_some),
         cmocka_unit_test(all_methods_share_one_clock_and_one_start),
         cmocka_unit_test(a_short_run_has_hundreds_of_frames),
         cmocka_unit_test(a_second_comparison_and_a_reset_give_the_same_bits),

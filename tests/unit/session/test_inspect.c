@@ -2,6 +2,7 @@
 // What the compiler kept and left out, told of scenes for which it can be counted by hand.
 #include "session/model/lists.h"
 #include "session/model/model.h"
+#include "session/model/inspect_json.h"
 
 #include "support/near.h"
 

@@ -6,6 +6,9 @@
 #include "session/model/envelope.h"
 #include "session/model/model.h"
 #include "session/compare/picture.h"
+#include "session/model/equations.h"
+#include "session/model/model_json.h"
+#include "session/model/terms_json.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -2,6 +2,10 @@
 // Maps of stability: the same cells whatever happens on the way, boundaries that agree, requests
 // that are refused.
 #include "session/stability/stability.h"
+#include "session/stability/stability_column.h"
+#include "session/stability/stability_doc.h"
+#include "session/stability/stability_html.h"
+#include "session/stability/stability_picture.h"
 
 #include "support/near.h"
 

@@ -89,6 +89,33 @@ static void rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone(void 
     assert_near(c.order, 4, 0.2);
 }
 
+static void rounding_that_bends_the_fine_end_leaves_the_order_above_it(void **state) {
+    (void)state;
+    written w;
+    // measured: a four-bar ladder by RK4 over 10 s, whose last two halvings meet rounding
+    const double e[7] = {2.1e-5, 1.31e-6, 8.2e-8, 5.1e-9, 3.2e-10, 3.7e-11, 9.7e-12};
+    write_down(&w, 1, 7, 1e-14);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_CONVERGES);
+    assert_near(c.order, 4, 0.05);
+    assert_int_equal(c.rounding, 5);
+    assert_non_null(strstr(c.text, "rounding"));
+}
+
+static void slopes_that_wander_far_above_rounding_are_told_with_the_reason(void **state) {
+    (void)state;
+    written w;
+    // measured: the leading terms of the error cancel at one size
+    const double e[5] = {1.6e-1, 4.4e-3, 1.04e-4, 8.3e-7, 1.2e-7};
+    write_down(&w, 1, 5, 1e-14);
+    set_ladder(&w, 0, e, 0);
+    const hn_class c = class_of(&w, 0);
+    assert_int_equal(c.kind, HN_CLASS_UNSETTLED);
+    assert_non_null(strstr(c.text, "cancel"));
+    assert_non_null(strstr(c.text, "--time"));
+}
+
 static void errors_below_the_references_own_are_a_floor(void **state) {
     (void)state;
     written w;
@@ -546,6 +573,8 @@ int main(void) {
         cmocka_unit_test(a_fourth_order_ladder_converges_with_order_four),
         cmocka_unit_test(an_order_that_is_not_the_integrators_is_told_as_such),
         cmocka_unit_test(rounding_at_the_fine_end_is_a_floor_and_leaves_the_order_alone),
+        cmocka_unit_test(rounding_that_bends_the_fine_end_leaves_the_order_above_it),
+        cmocka_unit_test(slopes_that_wander_far_above_rounding_are_told_with_the_reason),
         cmocka_unit_test(errors_below_the_references_own_are_a_floor),
         cmocka_unit_test(a_limit_that_is_not_the_motion_is_something_else),
         cmocka_unit_test(a_slow_method_that_still_converges_is_not_something_else),

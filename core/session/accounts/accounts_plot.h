@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_ACCOUNTS_ACCOUNTS_PLOT_H
+#define HN_SESSION_ACCOUNTS_ACCOUNTS_PLOT_H
+// The picture of accounts: a bar a method, a block a part.
+
+#include "session/accounts/accounts.h"
+
+/// 1 if one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
+int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
+/// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a
+/// row; colours as in study_plot.h.
+void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,
+                      int energy);
+#endif

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_EXTREME_EXTREME_MEASURE_H
+#define HN_SESSION_EXTREME_EXTREME_MEASURE_H
+// How the quantities of a sweep become one number or one word.
+
+#include "session/extreme/extreme_internal.h"
+
+extern const hn_extreme_measure hn_extreme_measures[];
+extern const int hn_extreme_n_measures;
+/// How a status is called in the files: "finished", "diverged", "refused", ...
+const char *hn_extreme_outcome(hn_status status);
+const char *const *hn_extreme_outcomes(int *n);
+#endif

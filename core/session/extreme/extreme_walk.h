@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_EXTREME_EXTREME_WALK_H
+#define HN_SESSION_EXTREME_EXTREME_WALK_H
+// One run of a point, from its start to its time, with what was seen on the way.
+
+#include "session/extreme/extreme_internal.h"
+
+/// Runs the point to its time. look->run is NULL and status set when it could not begin.
+/// hn_extreme_look_end() in any case.
+void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
+                           hn_extreme_look *look);
+void hn_extreme_look_end(hn_extreme_look *look);
+#endif

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_STABILITY_STABILITY_AXES_H
+#define HN_SESSION_STABILITY_STABILITY_AXES_H
+// What a map is asked for: axes from text or from a preset, methods, and how long a trial lasts.
+
+#include "session/stability/stability.h"
+#include "session/stability/stability_internal.h"
+
+/// Returns preset i; NULL beyond the last.
+const hn_job_preset *hn_map_preset_at(int i);
+/// Axes, methods and time from the request.
+HN_MUST_CHECK hn_status hn_map_set_up(hn_map *map, hn_diags *diags);
+#endif
