@@ -29,7 +29,7 @@ import {
 } from "../../web/state/spelling.js";
 import { arrowScale, namedState, pointAt, zeroOf } from "../../web/state/reactions.js";
 import { incidentOf, limits, readIndex } from "../../web/state/catalogue.js";
-import { groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
+import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
 import { predictionAt } from "../../web/state/words.js";
 import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
@@ -90,6 +90,14 @@ test("a number is read as people type it, and only in its unit", () => {
     ["0", "s", 0],
     ["9.8 m/s^2", "m/s²", 9.8],
     ["20 m", "s", NaN],
+    ["45 cm", "m", 0.45],
+    ["10 in", "m", 0.254],
+    ["30 deg", "rad", Math.PI / 6],
+    ["30°", "rad", Math.PI / 6],
+    ["60 rpm", "rad/s", 2 * Math.PI],
+    ["500 g", "kg", 0.5],
+    ["2 lb", "kg", 0.90718474],
+    ["30 deg", "m", NaN],
     ["two", "s", NaN],
     ["", "s", NaN],
     ["1 2", "s", NaN],
@@ -358,6 +366,45 @@ test("incidents of one cause are one line with a count", () => {
   );
 });
 
+test("of a stopped run the card offers what the engine found, and nothing that has stopped as well", () => {
+  const data = judged({ gap: rounding });
+  const ended = createHistory(2, 1);
+  const state = (gap, failed) => ({
+    ...frame(1, gap).methods[0],
+    points: [0, 0, 0],
+    state: failed ? "failed" : "running",
+  });
+  for (let k = 0; k <= 60; k++) {
+    ended.push({ ...frame(k, 0), methods: [state(1, k > 30), state(1, k > 40)] });
+  }
+  const method = (formulation) => ({
+    formulation,
+    spelling: `${formulation}@rk4:h=0.1`,
+    title: formulation,
+    label: formulation,
+    rule: "",
+    drift: "",
+  });
+  const remedies = ["h=0.025", "projection@rk4:h=0.1", "reduced@rk4:h=0.1"];
+  const card = cardOfMethod(
+    {
+      ...data,
+      catalogue: { formulations: [], integrators: [] },
+      history: ended,
+      duration: 10,
+      methods: [method("index1"), method("projection")],
+      incidents: [{ method: 0, code: "diverged", t: 0.5, remedies, message: "" }],
+    },
+    0,
+    60,
+  );
+  assert.deepEqual(
+    card.remedies.map(({ label }) => label),
+    ["h = 0.025", "reduced@rk4:h=0.1"],
+  );
+  assert.deepEqual(card.tries, [], "no guesses beside them");
+});
+
 test("a remedy becomes a button only when it can be carried out", () => {
   assert.deepEqual(tryOfRemedy("h=0.005"), { label: "h = 0.005", key: "h", value: 0.005 });
   assert.equal(tryOfRemedy("projection@rk4:h=1e-3").method, "projection@rk4:h=1e-3");
@@ -456,6 +503,8 @@ test("the page allows its own import map and no other inline script", () => {
 test("typed powers are printed as such, and spellings stay as they are typed", () => {
   assert.equal(withPowers("grows like h^p t, then h^p t^2"), "grows like hᵖ t, then hᵖ t²");
   assert.equal(withPowers("M^-1; errors of 1e-01 to 1e-09"), "M⁻¹; errors of 10⁻¹ to 10⁻⁹");
+  assert.equal(withPowers("exp(-alpha t), alpha = beta"), "exp(-α t), α = β");
+  assert.equal(withPowers("baumgarte:alpha=5,beta=5@rk4"), "baumgarte:alpha=5,beta=5@rk4");
   assert.equal(withPowers("rk4:h=1e-10, 2.1e-10, a^b"), "rk4:h=1e-10, 2.1e-10, a^b");
 });
 

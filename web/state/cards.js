@@ -131,6 +131,14 @@ function happenedWords(data, m, shown) {
 }
 
 /**
+ * Is it a method that is there already and has stopped as well?
+ * @param {import("./store.js").Data} data
+ * @param {Try} item
+ */
+const hasFailed = ({ history, methods }, { method }) =>
+  methods.some(({ spelling }, m) => spelling === method && !Number.isNaN(history.ended[m]));
+
+/**
  * The card of a method: the verdict, what happened on this run, the rule behind it, what to try.
  * Remedies that the engine found for this run come before those that hold in general.
  * @param {import("./store.js").Data} data
@@ -140,7 +148,10 @@ function happenedWords(data, m, shown) {
 export function cardOfMethod(data, m, shown) {
   const method = data.methods[m];
   const incidents = data.incidents.filter((one) => one.method === m);
-  const remedies = [...new Set(incidents.slice(-1).flatMap((one) => one.remedies))];
+  const remedies = [...new Set(incidents.slice(-1).flatMap((one) => one.remedies))]
+    .map(tryOfRemedy)
+    .filter((item) => !hasFailed(data, item));
+  const stopped = data.history.ended[m] <= data.history.t[shown];
   return {
     title: method.title,
     label: method.label,
@@ -149,7 +160,8 @@ export function cardOfMethod(data, m, shown) {
     groups: groupIncidents(incidents),
     rule: withPowers(method.rule),
     drift: withPowers(method.drift ?? ""),
-    remedies: remedies.map(tryOfRemedy),
-    tries: triesOf(data, m),
+    remedies,
+    // of a run that has stopped the engine knows what helps; the general list is a guess
+    tries: stopped && remedies.length > 0 ? [] : triesOf(data, m),
   };
 }

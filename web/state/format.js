@@ -32,6 +32,10 @@ export function powerOfTen(n) {
   return `10${n < 0 ? "⁻" : ""}${digits}`;
 }
 
+const GREEK = { alpha: "α", beta: "β", gamma: "γ", lambda: "λ", omega: "ω", phi: "φ" };
+/** A Greek letter by its name; not the name of an option, as in alpha=5. */
+const GREEK_WORD = /(?<![\w:,])(alpha|beta|gamma|lambda|omega|phi)(?![\w=])/g;
+
 const RAISED = { ...[...SUPERSCRIPT], p: "ᵖ", k: "ᵏ", n: "ⁿ", "-": "⁻", "+": "" };
 
 /**
@@ -41,6 +45,7 @@ const RAISED = { ...[...SUPERSCRIPT], p: "ᵖ", k: "ᵏ", n: "ⁿ", "-": "⁻", 
 export function withPowers(text) {
   return text
     .replace(/\^(-?\d+|[pkn]\b)/g, (_, power) => [...power].map((c) => RAISED[c]).join(""))
+    .replace(GREEK_WORD, (_, word) => GREEK[word])
     .replace(/(?<![=\w.])1e([-+]\d\d)\b/g, (_, power) => powerOfTen(Number(power)));
 }
 
@@ -117,8 +122,20 @@ export function prettyUnit(unit) {
   return unit.replaceAll("^2", "²").replaceAll("^3", "³").replaceAll("*", "·");
 }
 
+/** Other units that people type, by the unit that is asked for, and how many of it they are. */
+const TYPED = {
+  m: { in: 0.0254, ft: 0.3048, cm: 0.01, dm: 0.1 },
+  kg: { g: 1e-3, t: 1e3, lb: 0.45359237 },
+  N: { lbf: 4.4482216152605 },
+  s: { min: 60 },
+  rad: { deg: Math.PI / 180, "°": Math.PI / 180 },
+  "rad/s": { "deg/s": Math.PI / 180, "°/s": Math.PI / 180, rpm: Math.PI / 30 },
+  "m/s": { "km/h": 1 / 3.6, "cm/s": 0.01 },
+};
+
 /**
- * Reads "0.02", "0,02", "2e-2 s", "20 ms". The unit may be left out; another unit is refused.
+ * Reads "0.02", "0,02", "2e-2 s", "20 ms", "45 cm", "30 deg". The unit may be left out; a unit of
+ * another quantity is refused.
  * @param {string} text
  * @param {string} unit
  * @returns {number} NaN when it is no number in this unit
@@ -132,6 +149,9 @@ export function parseQuantity(text, unit) {
   const tail = prettyUnit(match[2]);
   if (tail === "" || tail === unit) {
     return value;
+  }
+  if (tail in (TYPED[unit] ?? {})) {
+    return value * TYPED[unit][tail];
   }
   const prefix = unit && tail.endsWith(unit) ? tail.slice(0, -unit.length) : null;
   return prefix !== null && prefix in PREFIXES ? value * 10 ** PREFIXES[prefix] : NaN;

@@ -47,7 +47,9 @@ export function createEquations(el, store, actions) {
 
   /** A long subscript has its parts apart: e_{0,top} for e_{0\\_top}. @param {string} latex */
   const tidy = (latex) =>
-    latex.replace(/_\{(\w+)\\_([^{}]+)\}/g, (_, first, rest) => `_{${first},\\mathrm{${rest}}}`);
+    latex
+      .replace(/_\{(\w+)\\_([^{}]+)\}/g, (_, first, rest) => `_{${first},\\mathrm{${rest}}}`)
+      .replace(/_\{([A-Za-z]{2,})\}/g, (_, word) => `_{\\mathrm{${word}}}`);
 
   /** @param {string} latex @param {boolean} display */
   function formula(latex, display) {
@@ -101,9 +103,9 @@ export function createEquations(el, store, actions) {
         { class: "about" },
         `Velocities, in the order of rows and columns: ${answer.speeds.join(", ")}. Matrices M are symmetric and only their lower half is listed; other entries not listed are zero. Numbers belong to the time shown, in SI units.`,
       ),
-      ...(answer.coordinates ?? []).map(({ name, is }) =>
-        h("p", { class: "about" }, `${name}: ${is}.`),
-      ),
+      ...(answer.coordinates ?? [])
+        .filter(({ name, is }) => name !== is)
+        .map(({ name, is }) => h("p", { class: "about" }, `${name} = ${is}`)),
       h("div", { class: "terms" }, ...terms.filter(({ entries }) => entries.length).map(termBlock)),
       reduced.node,
     );
