@@ -40,14 +40,14 @@ def journals(folder, kind):
     return [name for name in os.listdir(folder) if name.startswith(kind)]
 
 
-def interrupt(words, folder, kind):
-    """Ctrl-C once there is a piece in the journal: exit status, what was written and what was told."""
+def interrupt(words, folder, kind, how=signal.SIGINT):
+    """Ctrl-C, or another signal, once there is a piece in the journal: exit status, what was written and what was told."""
     argv, env = command(words, folder)
     with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         deadline = time.monotonic() + 60 * driver.SLOW
         while time.monotonic() < deadline and not any(os.path.getsize(os.path.join(folder, k)) for k in journals(folder, kind)):
             time.sleep(0.005)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(how)
         out, err = process.communicate(timeout=60 * driver.SLOW)
     return process.returncode, out, err.decode()
 

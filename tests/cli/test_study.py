@@ -6,6 +6,7 @@ import io
 import json
 import os
 import re
+import signal
 import resource
 import sys
 import tempfile
@@ -151,16 +152,18 @@ class Study(unittest.TestCase):
 
     def test_an_interrupt_keeps_what_is_done_and_the_same_command_goes_on(self):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "2", "--samples", "3", "--json", "--time-limit", "0"]
-        status, out, err = studies.interrupt(words, self.folder, "study")
-        self.assertEqual(status, ENDED, err)
-        study = strict(out)
-        self.assertTrue(study["stopped"])
-        self.assertIn("goes on from here", err)
-        done = sum(p["state"] == "done" for m in study["methods"] for p in m["points"])
-        text = call([w for w in words if w != "--json"], self.folder)
-        self.assertEqual(text.returncode, DONE)
-        found = re.search(rb"going on with (\d+) points", text.stderr)
-        self.assertEqual(int(found.group(1)) if found else 0, done)
+        for how in (signal.SIGINT, signal.SIGTERM):
+            with tempfile.TemporaryDirectory() as folder:
+                status, out, err = studies.interrupt(words, folder, "study", how)
+                self.assertEqual(status, ENDED, err)
+                study = strict(out)
+                self.assertTrue(study["stopped"])
+                self.assertIn("goes on from here", err)
+                done = sum(p["state"] == "done" for m in study["methods"] for p in m["points"])
+                text = call([w for w in words if w != "--json"], folder)
+                self.assertEqual(text.returncode, DONE)
+                found = re.search(rb"going on with (\d+) points", text.stderr)
+                self.assertEqual(int(found.group(1)) if found else 0, done)
 
     def test_time_left_is_shown_and_again_when_the_study_goes_on(self):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--time-limit", "0"]

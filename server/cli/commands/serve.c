@@ -143,9 +143,16 @@ static void open_browser(const char *address) {
     }
 }
 
+/// How long the server may take to end; sanitised programs are some five times slower.
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+static const struct timespec PATIENCE = {.tv_sec = 13};
+#else
+static const struct timespec PATIENCE = {.tv_sec = 2, .tv_nsec = 700000000};
+#endif
+
 /// Ends the program if the server has not ended by then.
 static void *end_anyway(void *unused) {
-    nanosleep(&(struct timespec){.tv_sec = 2, .tv_nsec = 700000000}, NULL);
+    nanosleep(&PATIENCE, NULL);
     fprintf(stderr, "holonom: the server was ended while some work did not stop\n");
     _exit(HN_EXIT_DONE);
     return unused;

@@ -4,7 +4,10 @@
 #include <signal.h>
 
 static volatile sig_atomic_t interrupted;
-static struct sigaction before;
+/// Ctrl-C, and what a system sends that wants the program to end.
+static const int SIGNALS[] = {SIGINT, SIGTERM};
+enum { N_SIGNALS = sizeof SIGNALS / sizeof *SIGNALS };
+static struct sigaction before[N_SIGNALS];
 
 static void on_interrupt(int signal) {
     (void)signal;
@@ -14,11 +17,15 @@ static void on_interrupt(int signal) {
 void hn_interrupt_begin(void) {
     struct sigaction action = {.sa_handler = on_interrupt};
     interrupted = 0;
-    sigaction(SIGINT, &action, &before);
+    for (int i = 0; i < N_SIGNALS; i++) {
+        sigaction(SIGNALS[i], &action, &before[i]);
+    }
 }
 
 void hn_interrupt_end(void) {
-    sigaction(SIGINT, &before, NULL);
+    for (int i = 0; i < N_SIGNALS; i++) {
+        sigaction(SIGNALS[i], &before[i], NULL);
+    }
 }
 
 int hn_is_interrupted(void *unused) {

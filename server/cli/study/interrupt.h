@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_INTERRUPT_H
 #define HN_CLI_INTERRUPT_H
-// Ctrl-C asks a long job to stop instead of ending the program.
+// Ctrl-C, or SIGTERM, asks a long job to stop instead of ending the program: it says what it kept.
 
 #include "base/status.h"
 
