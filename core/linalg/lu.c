@@ -2,6 +2,7 @@
 #include "linalg/lu.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #define PIVOT_MIN 1e-14 // of a row's largest entry
 
@@ -38,6 +39,17 @@ static void swap_scale(double *scale, int i, int k) {
     scale[k] = keep;
 }
 
+/// Whether a pivot is what cancellation left over of the products that it is a sum of (square.c says
+/// why small pivots alone are no fault). Row k of A holds its factors, column k their partners.
+static bool is_cancelled(int k, size_t w, const double *A, int row) {
+    double size = 0;
+    for (int j = 0; j < k; j++) {
+        size += fabs(A[(size_t)row * w + (size_t)j] * A[(size_t)j * w + (size_t)k]);
+    }
+    const double pivot = fabs(A[(size_t)row * w + (size_t)k]);
+    return !(pivot > PIVOT_MIN * size) || pivot == 0;
+}
+
 hn_status hn_lu_factor(int n, double *A, int *pivot, double *scale) {
     const size_t w = (size_t)n;
     const hn_status status = find_scale(n, A, n, scale);
@@ -52,7 +64,7 @@ hn_status hn_lu_factor(int n, double *A, int *pivot, double *scale) {
                 best = i;
             }
         }
-        if (!(most > PIVOT_MIN)) {
+        if (!(most > PIVOT_MIN) && is_cancelled(k, w, A, best)) {
             return HN_ERR_SINGULAR;
         }
         pivot[k] = best;
@@ -120,6 +132,15 @@ static void subtract_product(hn_complex *x, hn_complex a, hn_complex b) {
     x->im -= a.re * b.im + a.im * b.re;
 }
 
+static bool is_cancelled_complex(int k, size_t w, const hn_complex *A, int row) {
+    double size = 0;
+    for (int j = 0; j < k; j++) {
+        size += size_of(A[(size_t)row * w + (size_t)j]) * size_of(A[(size_t)j * w + (size_t)k]);
+    }
+    const double pivot = size_of(A[(size_t)row * w + (size_t)k]);
+    return !(pivot > PIVOT_MIN * size) || pivot == 0;
+}
+
 hn_status hn_lu_factor_complex(int n, hn_complex *A, int *pivot, double *scale) {
     const size_t w = (size_t)n;
     const hn_status status = find_scale(n, &A[0].re, 2 * n, scale);
@@ -134,7 +155,7 @@ hn_status hn_lu_factor_complex(int n, hn_complex *A, int *pivot, double *scale) 
                 best = i;
             }
         }
-        if (!(most > PIVOT_MIN)) {
+        if (!(most > PIVOT_MIN) && is_cancelled_complex(k, w, A, best)) {
             return HN_ERR_SINGULAR;
         }
         pivot[k] = best;

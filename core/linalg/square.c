@@ -4,6 +4,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 int hn_square_init(hn_square *s, hn_arena *arena, int n_max) {
@@ -89,6 +90,19 @@ static void eliminate(hn_square *s, int k) {
     }
 }
 
+/// Whether pivot k is what cancellation left over: small against the products that it is a sum of.
+/// A pivot that is small because all its terms are is as accurate as any other; where masses are
+/// small and lengths are not, the Newton matrix of a sound mechanism has such pivots.
+static bool is_cancelled(const hn_square *s, int k) {
+    const size_t n = (size_t)s->n;
+    double size = 0;
+    for (int j = 0; j < k; j++) {
+        size += fabs(s->lu[(size_t)k * n + (size_t)j] * s->lu[(size_t)j * n + (size_t)k]);
+    }
+    const double pivot = fabs(s->lu[(size_t)k * n + (size_t)k]);
+    return !(pivot > HN_SQUARE_SINGULAR * size) || pivot == 0;
+}
+
 hn_status hn_square_factor(hn_square *s, int n) {
     HN_ASSERT(n >= 0 && n <= s->n_max);
     s->n = n;
@@ -107,8 +121,13 @@ hn_status hn_square_factor(hn_square *s, int n) {
     for (int k = 0; k < n; k++) {
         swap_rows(s, k, find_pivot(s, k));
         const double size = fabs(s->lu[(size_t)k * n + k]);
-        smallest = fmin(smallest, size);
-        largest = fmax(largest, size);
+        const double least = fmin(smallest, size), most = fmax(largest, size);
+        if (most > 0 && least / most < HN_SQUARE_SINGULAR && !is_cancelled(s, k)) {
+            eliminate(s, k);
+            continue;
+        }
+        smallest = least;
+        largest = most;
         s->pivot_ratio = largest > 0 ? smallest / largest : 0;
         if (s->pivot_ratio < HN_SQUARE_SINGULAR) {
             return HN_ERR_SINGULAR;

@@ -17,11 +17,12 @@
 /// One factorisation and its memory. Plain data: read pivot_ratio.
 typedef struct hn_square {
     int n_max, n;
-    double *lu;         ///< in: A (n x n, row-major); out: L below the diagonal, U on and above it
-    double *row, *col;  ///< R and C of (1)
-    int *perm;          ///< row k of the factor is row perm[k] of A
-    double *work;       ///< n
-    double pivot_ratio; ///< smallest pivot / largest [-]
+    double *lu;        ///< in: A (n x n, row-major); out: L below the diagonal, U on and above it
+    double *row, *col; ///< R and C of (1)
+    int *perm;         ///< row k of the factor is row perm[k] of A
+    double *work;      ///< n
+    /// smallest pivot / largest [-], without small pivots that no cancellation made small
+    double pivot_ratio;
 } hn_square;
 
 /// Below this pivot_ratio the matrix counts as singular.

@@ -88,7 +88,8 @@ def explain(program, name, scene, setting, method, duration, told):
         return "step"
     if method.startswith("index1") and told["status"] == "diverged":
         return "drift"
-    step = scene.get("step", 1e-3) / SMALLER
+    step = scene["step"] if isinstance(scene.get("step"), float) else duration / 2000
+    step /= SMALLER
     for other in OTHERS:
         how = "rtol=1e-9" if other.endswith("radau5") else f"h={step:g}"
         further = run(program, name, setting, f"{other}:{how}", duration)
