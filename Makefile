@@ -39,9 +39,9 @@ ROOMS_dynamics     := compile: evaluate:compile assembly:compile,evaluate analys
 ROOMS_formulations := ground: chart:ground rows:ground,chart list:ground,chart,rows
 ROOMS_integrators  := step: explicit:step implicit:step constrained:step external:step \
                       list:step,explicit,implicit,constrained,external method:step,list
-ROOMS_study        := stepping: incidents:stepping run:stepping,incidents truth:stepping,incidents,run \
-                      account:stepping,incidents,run stability:stepping,incidents,run \
-                      cost:stepping,incidents,run,truth
+ROOMS_study        := spectrum: stepping: incidents:stepping run:spectrum,stepping,incidents \
+                      truth:stepping,incidents,run account:stepping,incidents,run \
+                      stability:spectrum,stepping,incidents,run cost:stepping,incidents,run,truth
 ROOMS_session      := store: model:store job:model compare:store,model references:store,model face:model export:model \
                       precision:store,model,job,compare,references \
                       accounts:store,model,job,references,precision \

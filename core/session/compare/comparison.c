@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/compare/comparison.h"
 #include "session/compare/failure.h"
+#include "study/run/diagnosis.h"
 #include "formulations/list/formulation_list.h"
 
 #include "render/look.h"
@@ -281,6 +282,9 @@ int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     }
     c->in_frame = 0;
     c->frame++;
+    for (int i = 0; i < c->n && hn_comparison_finished(c); i++) {
+        hn_run_diagnose(c->entries[i].run);
+    }
     return 1;
 }
 
@@ -428,8 +432,14 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     hn_json_put_string(b, "message", incident->message);
     hn_json_key(b, "remedies");
     hn_json_array(b);
-    for (int i = 0; i < 3 && incident->remedy[i][0]; i++) {
+    for (int i = 0; i < HN_REMEDIES && incident->remedy[i][0]; i++) {
         hn_json_string(b, incident->remedy[i]);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "tried");
+    hn_json_array(b);
+    for (int i = 0; i < HN_REMEDIES && incident->remedy[i][0]; i++) {
+        hn_json_string(b, incident->tried[i]);
     }
     hn_json_end_array(b);
     hn_json_end_object(b);

@@ -72,8 +72,8 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
 /// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy
 /// change, steps, rejected, evals, ops, cpu, incidents.
 void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
-/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...]};
-/// method -1: left out.
+/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...],
+/// "tried":[...]}; method -1: left out.
 void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
 
 // one run with output, for `holonom run` and POST /runs ----

@@ -8,6 +8,7 @@
 #include "session/compare/failure.h"
 #include "session/model/reactions_json.h"
 #include "study/run/pace.h"
+#include "study/run/diagnosis.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -425,6 +426,7 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     }
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
+        hn_run_diagnose(run);
         put_run(b, model, run, request, warning, *ended, &tab);
         status = b->failed ? HN_ERR_MEMORY : HN_OK;
     }

@@ -7,7 +7,8 @@
 
 #include "linalg/dense.h"
 #include "study/truth/chaos.h"
-#include "study/stability/spectrum.h"
+#include "study/spectrum/region.h"
+#include "study/spectrum/spectrum.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -135,6 +135,7 @@ static void check(hn_watch *w) {
 
 const hn_incident_kind hn_incident_branch_flip = {
     .code = HN_INCIDENT_BRANCH_FLIP,
+    .is_wrong = true,
     .spelling = "branch-flip",
     .name = "jumped to another branch",
     .rule = "The same lengths close in more than one way. A step that is too long can land on "

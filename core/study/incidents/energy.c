@@ -71,20 +71,22 @@ static void check_jump(hn_watch *w) {
 
 const hn_incident_kind hn_incident_energy_drift = {
     .code = HN_INCIDENT_ENERGY_DRIFT,
+    .is_wrong = true,
     .spelling = "energy-drift",
     .name = "the energy drifted",
     .rule = "A mechanism without loads that do work keeps its energy. A slow gain or loss is the "
             "error of the method, and the motion becomes faster or slower with it.",
     .check = check_drift,
-    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}},
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}, {hn_remedy_stiff_closed, 0}},
 };
 
 const hn_incident_kind hn_incident_energy_jump = {
     .code = HN_INCIDENT_ENERGY_JUMP,
+    .is_wrong = true,
     .spelling = "energy-jump",
     .name = "the energy jumped",
     .rule = "A mechanism without loads that do work keeps its energy. A jump within one step means "
             "that the step misses the motion, whether or not the loops are closed.",
     .check = check_jump,
-    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}},
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_right_model, 0}, {hn_remedy_stiff_closed, 0}},
 };

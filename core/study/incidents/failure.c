@@ -44,6 +44,7 @@ void hn_failure_report(hn_watch *w, hn_status status, const char *reason) {
 
 const hn_incident_kind hn_incident_chart_lost = {
     .code = HN_INCIDENT_CHART_LOST,
+    .is_wrong = true,
     .spelling = "chart-lost",
     .name = "the independent coordinates no longer determine the configuration",
     .rule = "A set of independent coordinates serves one part of the motion. At a turning point of "
@@ -53,6 +54,7 @@ const hn_incident_kind hn_incident_chart_lost = {
 
 const hn_incident_kind hn_incident_projection_failed = {
     .code = HN_INCIDENT_PROJECTION_FAILED,
+    .is_wrong = true,
     .spelling = "projection-failed",
     .name = "the projection did not close the loop",
     .rule = "Projection searches for the nearest closed configuration. From too far away, or where "
@@ -62,6 +64,7 @@ const hn_incident_kind hn_incident_projection_failed = {
 
 const hn_incident_kind hn_incident_newton_failed = {
     .code = HN_INCIDENT_NEWTON_FAILED,
+    .is_wrong = true,
     .spelling = "newton-failed",
     .name = "Newton's method did not converge",
     .rule = "An implicit step is found by iteration. The iteration does not converge from a step "
@@ -71,6 +74,7 @@ const hn_incident_kind hn_incident_newton_failed = {
 
 const hn_incident_kind hn_incident_step_underflow = {
     .code = HN_INCIDENT_STEP_UNDERFLOW,
+    .is_wrong = true,
     .spelling = "step-underflow",
     .name = "the step became too small",
     .rule = "The tolerance cannot be met with any step that the arithmetic can resolve.",
@@ -79,14 +83,16 @@ const hn_incident_kind hn_incident_step_underflow = {
 
 const hn_incident_kind hn_incident_diverged = {
     .code = HN_INCIDENT_DIVERGED,
+    .is_wrong = true,
     .spelling = "diverged",
     .name = "diverged",
     .rule = "An explicit step beyond its stability limit multiplies the error at every step.",
-    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_close, 0}},
+    .remedies = {{hn_remedy_finer, 0.25}, {hn_remedy_stiff_closed, 0}, {hn_remedy_close, 0}},
 };
 
 const hn_incident_kind hn_incident_mass = {
     .code = HN_INCIDENT_MASS,
+    .is_wrong = true,
     .spelling = "mass-singular",
     .name = "the mass matrix has no inverse",
     .rule = "A link without mass makes M singular. The constraints may still determine the motion, "

@@ -47,6 +47,7 @@ typedef struct hn_incident {
     double value, limit;
     char message[400];             ///< what happened in this run, with numbers and units
     hn_remedy remedy[HN_REMEDIES]; ///< what to try, best first; "" ends the list
+    hn_remedy tried[HN_REMEDIES];  ///< what each of them gave in a trial; "": not tried
     /// Rises each time a report is written or completed; a reader that keeps the newest one it saw knows what is new.
     unsigned revision;
 } hn_incident;
@@ -71,6 +72,7 @@ typedef struct hn_incident_kind {
     /// end of a run).
     void (*check)(hn_watch *w);
     hn_remedy_rule remedies[4]; ///< what is offered, best first
+    bool is_wrong;              ///< what the run shows from here on is wrong, or it ends
 } hn_incident_kind;
 
 #endif

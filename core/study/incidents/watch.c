@@ -145,6 +145,7 @@ static void forget(hn_watch *w) {
     w->held = w->released = 0;
     w->restarts = 0;
     w->failure = HN_OK;
+    w->diagnosed = 0;
     w->start_rank = 0;
 }
 

@@ -87,6 +87,7 @@ struct hn_watch {
     double length;       ///< characteristic length [m]
     hn_incident_log log;
     int every;     ///< a check every so many steps
+    int diagnosed; ///< reports whose cause and remedies have been looked into
     bool at_start; ///< the start is being checked, no step has been made
 
     // of the state checked last

@@ -320,6 +320,14 @@ hn_engine *hn_run_side_engine(hn_run *run) {
     return &run->sampling.side;
 }
 
+hn_watch *hn_run_watching(hn_run *run) {
+    return &run->watch;
+}
+
+void hn_run_set_reason(hn_run *run, const char *reason) {
+    snprintf(run->reason, sizeof run->reason, "%.255s", reason);
+}
+
 bool hn_run_is_conservative(const hn_run *run) {
     return run->watch.energy.conservative;
 }

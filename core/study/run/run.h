@@ -87,5 +87,8 @@ const hn_method_spec *hn_run_spec(const hn_run *run);
 /// The inside of a run, for a study that follows its steps: the stepping half and the engine of the samples.
 hn_stepping *hn_run_stepping(hn_run *run);
 hn_engine *hn_run_side_engine(hn_run *run);
+/// The watching half, and the words why the run ended: for the diagnosis.
+hn_watch *hn_run_watching(hn_run *run);
+void hn_run_set_reason(hn_run *run, const char *reason);
 bool hn_run_is_conservative(const hn_run *run);
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/stability/stability.h"
 
+#include "study/spectrum/region.h"
+
 #include "base/clock.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_STABILITY_H
 #define HN_STUDY_STABILITY_H
-// What a fixed step does to a motion: predicted from the spectrum on the loops (study/stability/spectrum.h), and tried.
+// What a fixed step does to a motion: predicted from the spectrum on the loops (study/spectrum/spectrum.h), and tried.
 //
 // A path is a motion that has been computed finely once: looks at equal times, with the state, the energy and the eigenvalues
 // there. Against it a method's trial is classed, and along it the strictest of the predicted limits is found.
 
 #include "integrators/method/method_spec.h"
-#include "study/stability/spectrum.h"
+#include "study/spectrum/spectrum.h"
 #include "study/run/walk.h"
 
 enum { HN_STABILITY_LOOKS = 48, HN_STABILITY_REASON = 256, HN_STABILITY_LEAST_STEPS = 500 };

@@ -34,6 +34,20 @@ static hn_status try_step(hn_stepping *s, double h, double t_new, int *changed) 
     return s->adaptive ? HN_OK : hn_engine_correct(e, t_new, e->y_new, changed);
 }
 
+static void copy_state(const hn_stepping *s, const hn_state_at *from, hn_state_at *to) {
+    to->t = from->t;
+    memcpy(to->q, from->q, (size_t)s->info.nq * sizeof *to->q);
+    memcpy(to->v, from->v, (size_t)s->info.nv * sizeof *to->v);
+}
+
+/// Keeps the start of the present step, for whoever looks back from an event.
+static void keep_state(hn_stepping *s) {
+    const hn_state_at spare = s->earlier;
+    s->earlier = s->recent;
+    s->recent = spare;
+    copy_state(s, &s->before, &s->recent);
+}
+
 static hn_status accept(hn_stepping *s, double h, double t_new, int changed) {
     hn_engine *e = &s->engine;
     const hn_state_at spare = s->before;
@@ -47,6 +61,9 @@ static hn_status accept(hn_stepping *s, double h, double t_new, int changed) {
     s->now = spare;
     s->now.t = t_new;
 
+    if ((s->steps & (s->steps + 1)) == 0) {
+        keep_state(s);
+    }
     s->has_step = true;
     s->corrected = changed;
     s->h = h;
@@ -308,6 +325,8 @@ void hn_stepping_clear(hn_stepping *s) {
     s->now.t = s->start.t = s->t0;
     memcpy(s->now.q, s->start.q, (size_t)s->info.nq * sizeof(double));
     memcpy(s->now.v, s->start.v, (size_t)s->info.nv * sizeof(double));
+    copy_state(s, &s->start, &s->earlier);
+    copy_state(s, &s->start, &s->recent);
     find_corner(s);
 }
 
@@ -318,8 +337,8 @@ hn_status hn_stepping_start_engine(hn_stepping *s, hn_engine *e) {
 static hn_status create_memory(hn_stepping *s) {
     const hn_accel_opts with_lambda = {.want_lambda = 1};
     const size_t nq = (size_t)s->info.nq, nv = (size_t)s->info.nv;
-    hn_state_at *states[] = {&s->start, &s->now, &s->before};
-    for (int i = 0; i < 3; i++) {
+    hn_state_at *states[] = {&s->start, &s->now, &s->before, &s->earlier, &s->recent};
+    for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         states[i]->q = hn_arena_doubles(s->arena, nq);
         states[i]->v = hn_arena_doubles(s->arena, nv);
     }

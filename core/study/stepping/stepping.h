@@ -27,6 +27,9 @@ typedef struct hn_stepping {
     hn_engine engine;
     hn_accel *accel; ///< accelerations at any state: first step sizes, samples, checks
     hn_state_at start, now, before;
+    /// The states after the two latest powers of two of steps: `earlier` lies at most half of the run back and no less than a
+    /// quarter, before whatever went wrong lately.
+    hn_state_at earlier, recent;
 
     bool has_step;    ///< `before` is the start of the last step
     double t_asked;   ///< the step that reaches this time is the one that may be sampled inside

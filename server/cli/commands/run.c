@@ -222,6 +222,15 @@ static void tell_marks(const cJSON *run) {
 }
 
 /// Says what was noticed on the way; samples alone would hide it.
+/// The first remedy that was tried and removes the incident.
+static void tell_remedies(const cJSON *incident) {
+    const cJSON *remedy = hn_document_get(incident, "remedies")->child;
+    const cJSON *tried = hn_document_get(incident, "tried")->child;
+    if (remedy && tried && tried->valuestring[0]) {
+        fprintf(stderr, "holonom:     try %s (%s)\n", remedy->valuestring, tried->valuestring);
+    }
+}
+
 static void tell_incidents(const cJSON *run) {
     enum { MOST = 5 };
     const cJSON *incidents = hn_document_get(run, "incidents"), *incident;
@@ -230,6 +239,7 @@ static void tell_incidents(const cJSON *run) {
         if (n++ < MOST) {
             fprintf(stderr, "holonom: t = %.4g s: %s\n", hn_document_number(incident, "t"),
                     hn_document_text(incident, "message"));
+            tell_remedies(incident);
         }
     }
     if (n > MOST) {

@@ -208,7 +208,7 @@ static const struct {
      "\"message\"],\"properties\":{\"generation\":{\"type\":\"integer\"},\"method\":{\"type\":"
      "\"integer\"},\"code\":" TEXT ",\"t\":{\"type\":\"number\"},\"quantity\":{\"type\":["
      "\"string\",\"null\"]},\"value\":" MAYBE_NUMBER ",\"limit\":" MAYBE_NUMBER ",\"message\":" TEXT
-     ",\"remedies\":" TEXTS "}}"},
+     ",\"remedies\":" TEXTS ",\"tried\":" TEXTS "}}"},
     {"Comparison",
      "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"speed\",\"frame\",\"t\",\"frame_dt\","
      "\"duration\",\"generation\","

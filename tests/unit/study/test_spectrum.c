@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The spectrum of the motion on the loops, and what integrators make of its eigenvalues.
-#include "study/stability/spectrum.h"
+#include "study/spectrum/region.h"
+#include "study/spectrum/spectrum.h"
 #include "integrators/list/stepper_list.h"
 
 #include "support/model.h"

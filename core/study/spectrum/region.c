@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stability regions by trial: a step of length 1 of the integrator itself on a linear problem with the eigenvalue z. Nothing is
 // known here about any integrator but how to call it, so what is said is true of the code that runs.
-#include "study/stability/spectrum.h"
+#include "study/spectrum/region.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/stability/spectrum.h"
+#include "study/spectrum/spectrum.h"
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/eval.h"

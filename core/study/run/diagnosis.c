@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/run/diagnosis.h"
+
+#include "study/spectrum/region.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
+enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, MOST_EIGENVALUES = 256, MOST_SPEEDS = 60 };
+
+/// A pilot runs past the event by this share of the way to it, so that what is only put off comes to light.
+static const double BEYOND = 0.5;
+
+// ---- the cause --------------------------------------------------------------------------------------------------
+
+/// The largest stable step at a state, and the eigenvalue of the motion that is fastest there. HUGE_VAL: none can be told.
+static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_eigenvalue *fastest) {
+    hn_arena *arena = hn_arena_create(0);
+    hn_spectrum *spectrum = NULL;
+    const hn_eigenvalue *found = NULL;
+    hn_eigenvalue all[MOST_EIGENVALUES + 2];
+    double limit = HUGE_VAL;
+    int n = 0;
+    if (arena && hn_spectrum_create(s->sys, arena, &spectrum) == HN_OK &&
+        hn_spectrum_calc(spectrum, at->t, at->q, at->v, &found, &n) == HN_OK && n > 0 &&
+        n <= MOST_EIGENVALUES) {
+        memcpy(all, found, (size_t)n * sizeof *all);
+        *fastest = all[0];
+        limit = hn_stability_limit(s->spec.stepper, all, n);
+    }
+    hn_spectrum_free(spectrum);
+    hn_arena_free(arena);
+    return isfinite(limit) ? limit : HUGE_VAL;
+}
+
+/// Writes why the run ended where the step is above the stability limit; false where that is not the cause.
+static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
+    const double h = hn_method_option(&s->spec, "h", 0);
+    const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
+    hn_eigenvalue fastest = {0, 0};
+    if (s->adaptive || !is_ode || s->info.nv > MOST_SPEEDS ||
+        hn_stability_why_not(s->spec.stepper) ||
+        (s->spec.formulation->traits & HN_TRAIT_ADDS_VIBRATIONS)) {
+        return false;
+    }
+    const double limit = stability_limit(s, &s->earlier, &fastest);
+    if (!(h > limit)) {
+        return false;
+    }
+    const bool decays = fabs(fastest.re) > fabs(fastest.im);
+    snprintf(out, size,
+             "h = %.4g s is above the stability limit of %s here, %.3g s: a %s of the mechanism "
+             "%s at %.2g %s",
+             h, s->spec.stepper->name, limit, decays ? "damped motion" : "vibration",
+             decays ? "decays" : "oscillates", decays ? fabs(fastest.re) : fabs(fastest.im),
+             decays ? "1/s" : "rad/s");
+    return true;
+}
+
+static void name_cause(hn_run *run) {
+    hn_watch *w = hn_run_watching(run);
+    char cause[256], message[400];
+    const bool ended = w->failure == HN_ERR_DIVERGED || w->failure == HN_ERR_NO_CONVERGENCE ||
+                       w->failure == HN_ERR_INCONSISTENT || w->failure == HN_ERR_SINGULAR;
+    if (!ended || w->log.n == 0 || !explain_instability(w->run, cause, sizeof cause)) {
+        return;
+    }
+    hn_incident *last = &w->log.list[w->log.n - 1];
+    memcpy(message, last->message, sizeof message);
+    last->message[0] = '\0';
+    hn_incident_append(&w->log, last, "%s; %s", cause, message);
+    hn_run_set_reason(run, last->message);
+}
+
+// ---- remedies -----------------------------------------------------------------------------------------------------
+
+/// The method that a remedy means: a spelling, or the present one with another step or tolerance.
+static bool read_remedy(const hn_stepping *s, const char *text, hn_method_spec *spec) {
+    hn_diag diag = {0};
+    if (strchr(text, '@')) {
+        return hn_method_parse(text, spec, &diag) == HN_OK;
+    }
+    char key[16];
+    double value = 0;
+    *spec = s->spec;
+    if (sscanf(text, "%15[a-z]=%lf", key, &value) != 2) {
+        return false;
+    }
+    double *option = hn_method_find_option(spec, key, NULL);
+    if (!option) {
+        return false;
+    }
+    *option = value;
+    return true;
+}
+
+/// Says whether a pilot run came to its end without an incident that makes a result wrong.
+static bool is_right(const hn_run *pilot, hn_status status) {
+    const hn_incident *list = NULL;
+    const int n = hn_run_incidents(pilot, &list);
+    for (int i = 0; i < n && status == HN_OK; i++) {
+        if (hn_incident_kinds()[list[i].code]->is_wrong) {
+            return false;
+        }
+    }
+    return status == HN_OK;
+}
+
+typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
+
+/// Runs a remedy from the state before the event to a time past it, and says what it gave.
+static outcome try_remedy(const hn_stepping *s, double event, const char *text, hn_remedy said) {
+    hn_run_opts opts = hn_run_opts_default();
+    hn_method_spec spec;
+    hn_run *pilot = NULL;
+    hn_diag diag = {0};
+    const hn_state_at *from = s->earlier.t < event ? &s->earlier : &s->start;
+    const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
+    const double end = event + BEYOND * (event - from->t) + 10 * s->h;
+    opts.t0 = from->t;
+    opts.max_steps = PILOT_STEPS * PILOT_SIZE / size;
+    if (!read_remedy(s, text, &spec)) {
+        return UNKNOWN;
+    }
+    if (hn_run_create(s->sys, &spec, from->q, from->v, &opts, &pilot, &diag) != HN_OK) {
+        return FAILS;
+    }
+    const hn_status status = hn_run_advance(pilot, end);
+    const hn_run_summary sum = hn_run_get_summary(pilot);
+    const bool right = is_right(pilot, status);
+    hn_run_free(pilot);
+    if (status == HN_ERR_BUDGET) {
+        snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
+                 sum.steps, sum.t);
+        return UNKNOWN;
+    }
+    snprintf(said, sizeof(hn_remedy), "tried to t = %.3g s: largest gap %.2g m, energy %.2g J",
+             sum.t, sum.worst_gap, sum.worst_energy_change);
+    return right ? REMOVES : FAILS;
+}
+
+/// Keeps the remedies of a report that remove it, the tried ones first.
+static void try_remedies(hn_run *run, hn_incident *i) {
+    hn_watch *w = hn_run_watching(run);
+    hn_remedy texts[HN_REMEDIES], said[HN_REMEDIES];
+    outcome outcomes[HN_REMEDIES];
+    int n = 0, kept = 0;
+    for (; n < HN_REMEDIES && i->remedy[n][0]; n++) {
+        memcpy(texts[n], i->remedy[n], sizeof texts[n]);
+        said[n][0] = '\0';
+        outcomes[n] = try_remedy(w->run, i->t, texts[n], said[n]);
+    }
+    for (int pass = REMOVES; pass <= UNKNOWN; pass += UNKNOWN - REMOVES) {
+        for (int k = 0; k < n; k++) {
+            if ((int)outcomes[k] == pass) {
+                memcpy(i->remedy[kept], texts[k], sizeof texts[k]);
+                memcpy(i->tried[kept++], said[k], sizeof said[k]);
+            }
+        }
+    }
+    if (kept < HN_REMEDIES) {
+        i->remedy[kept][0] = i->tried[kept][0] = '\0';
+    }
+    hn_incident_append(&w->log, i, "%s",
+                       n > 0 && kept == 0 ? "; none of the remedies that were tried removes it"
+                                          : "");
+}
+
+void hn_run_diagnose(hn_run *run) {
+    hn_watch *w = hn_run_watching(run);
+    if (w->diagnosed < w->log.n) {
+        name_cause(run);
+    }
+    for (; w->diagnosed < w->log.n; w->diagnosed++) {
+        hn_incident *i = &w->log.list[w->diagnosed];
+        if (hn_incident_kinds()[i->code]->is_wrong && i->remedy[0][0]) {
+            try_remedies(run, i);
+        }
+    }
+}

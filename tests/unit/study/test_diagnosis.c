@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is found out after something went wrong: the cause by name, and remedies that were tried.
+#include "study/run/diagnosis.h"
+#include "support/model.h"
+#include "support/motion.h"
+#include "support/near.h"
+
+#include <math.h>
+#include <string.h>
+
+static const hn_incident *last_of(const hn_run *run) {
+    const hn_incident *list = NULL;
+    const int n = hn_run_incidents(run, &list);
+    assert_true(n > 0);
+    return &list[n - 1];
+}
+
+// the stability study of this mechanism predicts 675 us and finds 670 us; kd = 678 decays at 4.1e3 1/s
+static void a_step_above_the_stability_limit_is_named_as_the_cause(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "five-bar", "kd=678 lf=1.42");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-3");
+    assert_true(hn_run_advance(run, 1) != HN_OK);
+    const unsigned revision = last_of(run)->revision;
+    hn_run_diagnose(run);
+    const hn_incident *end = last_of(run);
+    assert_true(end->revision > revision);
+    assert_non_null(strstr(end->message, "above the stability limit of rk4 here, 0.000675 s"));
+    assert_non_null(strstr(end->message, "decays at 4.1e+03 1/s"));
+    assert_non_null(strstr(hn_run_get_summary(run).reason, "above the stability limit"));
+
+    // what is offered was tried, and does what was said
+    assert_string_equal(end->remedy[0], "h=0.00025");
+    assert_non_null(strstr(end->tried[0], "tried to t = "));
+    hn_run *cured = hn_motion_start(&m, "projection@rk4:h=0.00025");
+    assert_int_equal(hn_run_advance(cured, 1), HN_OK);
+    hn_run_free(cured);
+    hn_run_free(run);
+
+    // below the limit nothing of the kind is said
+    run = hn_motion_start(&m, "projection@rk4:h=6e-4");
+    assert_int_equal(hn_run_advance(run, 1), HN_OK);
+    hn_run_diagnose(run);
+    const hn_incident *list = NULL;
+    for (int i = 0, n = hn_run_incidents(run, &list); i < n; i++) {
+        assert_null(strstr(list[i].message, "stability limit"));
+    }
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// finer steps of index-1 drift as well, only later; projection does not
+static void remedies_that_do_not_remove_it_are_not_offered(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "index1@rk4:h=0.02");
+    (void)hn_run_advance(run, 10);
+    hn_run_diagnose(run);
+    const hn_incident *list = NULL;
+    const int n = hn_run_incidents(run, &list);
+    int tried = 0;
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < HN_REMEDIES && list[i].remedy[k][0]; k++) {
+            tried += list[i].tried[k][0] != '\0';
+        }
+        if (strstr(list[i].message, "none of the remedies")) {
+            assert_true(list[i].remedy[0][0] == '\0');
+        }
+    }
+    assert_true(tried > 0);
+    assert_int_equal(list[0].code, HN_INCIDENT_GAP_OPEN);
+    assert_string_equal(list[0].remedy[0], "projection@rk4:h=0.02");
+
+    // asked again nothing changes
+    const unsigned revision = list[n - 1].revision;
+    hn_run_diagnose(run);
+    assert_int_equal(list[n - 1].revision, revision);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+// a vibration that no step of 2.5 ms resolves: only the implicit method is left of three
+static void where_finer_steps_fail_an_implicit_method_is_left(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "stiff-four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=1e-2");
+    assert_true(hn_run_advance(run, 1) != HN_OK);
+    assert_string_equal(last_of(run)->remedy[0], "h=0.0025"); // before it is tried
+    hn_run_diagnose(run);
+    const hn_incident *end = last_of(run);
+    assert_non_null(strstr(end->message, "oscillates at"));
+    for (int k = 0; k < HN_REMEDIES && end->remedy[k][0]; k++) {
+        assert_string_not_equal(end->remedy[k], "h=0.0025");
+    }
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_step_above_the_stability_limit_is_named_as_the_cause),
+        cmocka_unit_test(remedies_that_do_not_remove_it_are_not_offered),
+        cmocka_unit_test(where_finer_steps_fail_an_implicit_method_is_left),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
