@@ -10,7 +10,8 @@
 /// A gap that more than doubles from the first half of the motion to the second grows.
 static const double GROWTH = 1.5;
 static const int EARLIEST = 6;        // [frames] before it there is nothing to judge
-static const double OPEN = 1e-3;      // of the scene's length: a gap that can be seen
+static const double OPEN = 1e-2;      // of the scene's length: a gap that is the first thing to say
+static const double VISIBLE = 1e-3;   // of the scene's length: a gap that can be seen
 static const double WRONG = 1e-2;     // of the scene's length or energy: one digit is right at most
 static const double CLOSED = 1e-12;   // of the scene's length: rounding
 static const double ROUNDING = 1e-13; // [m] some hundred roundings of coordinates of a metre or so
@@ -55,7 +56,7 @@ static void put(hn_verdict *v, hn_tone tone, const char *first, const char *seco
 /// "closed", "closed to 4.2 um", or nothing for a mechanism without loops.
 static void closed_words(const sizes *s, char *out, size_t size) {
     char gap[HN_SI_TEXT];
-    hn_si_format(s->gap, "m", 2, gap);
+    hn_si_format(s->gap, "m", 1, gap);
     if (!s->loops) {
         out[0] = '\0';
     } else if (s->gap <= CLOSED * s->length) {
@@ -94,16 +95,23 @@ static void judge_right(hn_verdict *v, const sizes *s) {
     put(v, tone, first, drift);
 }
 
-static void judge(hn_verdict *v, const sizes *s) {
+/// A gap that grows is said as it is now, one that does not as the largest so far.
+static void judge_open(hn_verdict *v, const sizes *s) {
     char text[96], gap[HN_SI_TEXT];
+    hn_si_format(s->grows ? s->gap_now : s->gap, "m", 2, gap);
+    snprintf(text, sizeof text, "open by %s%s", gap, s->grows ? " and growing" : "");
+    put(v, HN_TONE_BAD, text, "");
+}
+
+static void judge(hn_verdict *v, const sizes *s) {
     if (s->loops && s->gap > OPEN * s->length) {
-        hn_si_format(s->gap_now, "m", 2, gap);
-        snprintf(text, sizeof text, "open by %s%s", gap, s->grows ? " and growing" : "");
-        put(v, HN_TONE_BAD, text, "");
+        judge_open(v, s);
     } else if (s->off > WRONG * s->length) {
         judge_wrong(v, s, s->off, "m", "from the true motion");
     } else if (s->energy_scale > 0 && s->energy > WRONG * s->energy_scale) {
         judge_wrong(v, s, s->energy, "J", "off in energy");
+    } else if (s->loops && s->gap > VISIBLE * s->length) {
+        judge_open(v, s);
     } else {
         judge_right(v, s);
     }
