@@ -4,13 +4,12 @@
 
 #include "base/file.h"
 #include "render/canvas_record.h"
+#include "render/osmesa.h"
 
-#include <stdbool.h>
-#include <GL/osmesa.h>
 #include <png.h>
 #include <pthread.h>
 #include <setjmp.h>
-#include <stdio.h>
+#include <stdbool.h>
 #include <string.h>
 
 // a tile of 256 pixels has 1024 samples a side: 4 MB of colour and 4 MB of stencil, whatever the
@@ -25,23 +24,23 @@ typedef struct tile {
     int x0, y0, x1, y1; ///< [px], always TILE by TILE: the last ones reach over the sheet's edge
 } tile;
 
-static void set_colour(uint32_t rgb, double alpha) {
-    glColor4f((float)(rgb >> 16 & 0xff) / 255.0f, (float)(rgb >> 8 & 0xff) / 255.0f,
-              (float)(rgb & 0xff) / 255.0f, (float)alpha);
+static void set_colour(const hn_osmesa *gl, uint32_t rgb, double alpha) {
+    gl->glColor4f((float)(rgb >> 16 & 0xff) / 255.0f, (float)(rgb >> 8 & 0xff) / 255.0f,
+                  (float)(rgb & 0xff) / 255.0f, (float)alpha);
 }
 
-static void set_view(const tile *t, uint32_t paper) {
-    glViewport(0, 0, SIDE, SIDE);
-    glMatrixMode(GL_PROJECTION);
-    glLoadIdentity();
-    glOrtho(t->x0, t->x1, t->y1, t->y0, -1, 1);
-    glMatrixMode(GL_MODELVIEW);
-    glLoadIdentity();
+static void set_view(const hn_osmesa *gl, const tile *t, uint32_t paper) {
+    gl->glViewport(0, 0, SIDE, SIDE);
+    gl->glMatrixMode(GL_PROJECTION);
+    gl->glLoadIdentity();
+    gl->glOrtho(t->x0, t->x1, t->y1, t->y0, -1, 1);
+    gl->glMatrixMode(GL_MODELVIEW);
+    gl->glLoadIdentity();
 
-    glDisable(GL_SCISSOR_TEST);
-    glClearColor((float)(paper >> 16 & 0xff) / 255.0f, (float)(paper >> 8 & 0xff) / 255.0f,
-                 (float)(paper & 0xff) / 255.0f, 1);
-    glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    gl->glDisable(GL_SCISSOR_TEST);
+    gl->glClearColor((float)(paper >> 16 & 0xff) / 255.0f, (float)(paper >> 8 & 0xff) / 255.0f,
+                     (float)(paper & 0xff) / 255.0f, 1);
+    gl->glClear(GL_COLOR_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 }
 
 static int max_int(int a, int b) {
@@ -53,60 +52,62 @@ static int min_int(int a, int b) {
 }
 
 /// Limits drawing to the shape's rectangle within the tile; 0 if nothing is left.
-static bool set_clip(const hn_canvas_shape *s, const tile *t) {
+static bool set_clip(const hn_osmesa *gl, const hn_canvas_shape *s, const tile *t) {
     const int x0 = max_int(s->clip[0], t->x0), x1 = min_int(s->clip[2], t->x1);
     const int y0 = max_int(s->clip[1], t->y0), y1 = min_int(s->clip[3], t->y1);
     if (x0 >= x1 || y0 >= y1) {
         return false;
     }
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(HN_CANVAS_SAMPLES * (x0 - t->x0), HN_CANVAS_SAMPLES * (t->y1 - y1),
-              HN_CANVAS_SAMPLES * (x1 - x0), HN_CANVAS_SAMPLES * (y1 - y0));
+    gl->glEnable(GL_SCISSOR_TEST);
+    gl->glScissor(HN_CANVAS_SAMPLES * (x0 - t->x0), HN_CANVAS_SAMPLES * (t->y1 - y1),
+                  HN_CANVAS_SAMPLES * (x1 - x0), HN_CANVAS_SAMPLES * (y1 - y0));
     return true;
 }
 
-static void draw_shape(const hn_canvas *c, const hn_canvas_shape *s, const tile *t) {
-    if (s->count > 0 && set_clip(s, t)) {
-        set_colour(s->paint.rgb, s->paint.alpha * c->layers[s->layer]);
-        glDrawArrays(GL_TRIANGLES, s->first, s->count);
+static void draw_shape(const hn_osmesa *gl, const hn_canvas *c, const hn_canvas_shape *s,
+                       const tile *t) {
+    if (s->count > 0 && set_clip(gl, s, t)) {
+        set_colour(gl, s->paint.rgb, s->paint.alpha * c->layers[s->layer]);
+        gl->glDrawArrays(GL_TRIANGLES, s->first, s->count);
     }
 }
 
 /// Every sample of a layer takes its colour from one shape, the last that covers it: shapes are
 /// drawn last to first, and the stencil keeps the layer's number where a sample is taken.
-static void draw_layer(const hn_canvas *c, int first, int end, int number, const tile *t) {
-    glStencilFunc(GL_NOTEQUAL, number, 0xff);
+static void draw_layer(const hn_osmesa *gl, const hn_canvas *c, int first, int end, int number,
+                       const tile *t) {
+    gl->glStencilFunc(GL_NOTEQUAL, number, 0xff);
     for (int i = end - 1; i >= first; i--) {
-        draw_shape(c, &c->shapes[i], t);
+        draw_shape(gl, c, &c->shapes[i], t);
     }
 }
 
-static void draw_tile(const hn_canvas *c, const tile *t) {
-    set_view(t, hn_surface_get(c->theme)->paper);
+static void draw_tile(const hn_osmesa *gl, const hn_canvas *c, const tile *t) {
+    set_view(gl, t, hn_surface_get(c->theme)->paper);
     int number = 0;
     for (int first = 0, end; first < c->n_shapes; first = end) {
         for (end = first + 1; end < c->n_shapes && c->shapes[end].layer == c->shapes[first].layer;
              end++) {}
         if (++number > MAX_STENCIL) {
-            glDisable(GL_SCISSOR_TEST);
-            glClear(GL_STENCIL_BUFFER_BIT);
+            gl->glDisable(GL_SCISSOR_TEST);
+            gl->glClear(GL_STENCIL_BUFFER_BIT);
             number = 1;
         }
-        draw_layer(c, first, end, number, t);
+        draw_layer(gl, c, first, end, number, t);
     }
-    glFinish();
+    gl->glFinish();
 }
 
-static void set_state(const hn_canvas *c) {
-    OSMesaPixelStore(OSMESA_Y_UP, 0);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_DITHER);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glEnable(GL_STENCIL_TEST);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-    glEnableClientState(GL_VERTEX_ARRAY);
-    glVertexPointer(2, GL_FLOAT, 0, c->xy);
+static void set_state(const hn_osmesa *gl, const hn_canvas *c) {
+    gl->OSMesaPixelStore(OSMESA_Y_UP, 0);
+    gl->glDisable(GL_DEPTH_TEST);
+    gl->glDisable(GL_DITHER);
+    gl->glEnable(GL_BLEND);
+    gl->glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    gl->glEnable(GL_STENCIL_TEST);
+    gl->glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    gl->glEnableClientState(GL_VERTEX_ARRAY);
+    gl->glVertexPointer(2, GL_FLOAT, 0, c->xy);
 }
 
 /// Averages squares of samples into the pixels of the tile that are on the sheet.
@@ -132,14 +133,14 @@ static void average(const unsigned char *samples, const tile *t, const hn_canvas
     }
 }
 
-static hn_status paint_tiles(const hn_canvas *c, const unsigned char *samples, unsigned char *rgb,
-                             hn_diag *diag) {
-    set_state(c);
+static hn_status paint_tiles(const hn_osmesa *gl, const hn_canvas *c, const unsigned char *samples,
+                             unsigned char *rgb, hn_diag *diag) {
+    set_state(gl, c);
     for (int y = 0; y < c->height; y += TILE) {
         for (int x = 0; x < c->width; x += TILE) {
             const tile t = {x, y, x + TILE, y + TILE};
-            draw_tile(c, &t);
-            const GLenum fault = glGetError();
+            draw_tile(gl, c, &t);
+            const GLenum fault = gl->glGetError();
             if (fault != GL_NO_ERROR) {
                 return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, NULL,
                                    "OSMesa reports GL fault 0x%04x while drawing", (unsigned)fault);
@@ -151,19 +152,19 @@ static hn_status paint_tiles(const hn_canvas *c, const unsigned char *samples, u
 }
 
 /// Makes a context that draws into the samples, paints, and lets it go.
-static hn_status paint_with_context(const hn_canvas *c, unsigned char *samples, unsigned char *rgb,
-                                    hn_diag *diag) {
-    OSMesaContext context = OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
-    if (context == NULL || !OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
+static hn_status paint_with_context(const hn_osmesa *gl, const hn_canvas *c, unsigned char *samples,
+                                    unsigned char *rgb, hn_diag *diag) {
+    OSMesaContext context = gl->OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
+    if (context == NULL || !gl->OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
         if (context != NULL) {
-            OSMesaDestroyContext(context);
+            gl->OSMesaDestroyContext(context);
         }
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "install libosmesa6",
                            "OSMesa gives no off-screen drawing context, so no picture can be made");
     }
-    const hn_status status = paint_tiles(c, samples, rgb, diag);
-    OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
-    OSMesaDestroyContext(context);
+    const hn_status status = paint_tiles(gl, c, samples, rgb, diag);
+    gl->OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
+    gl->OSMesaDestroyContext(context);
     return status;
 }
 
@@ -172,12 +173,16 @@ hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag)
     if (c->failed) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "memory ran out while drawing");
     }
+    const hn_osmesa *gl = hn_osmesa_get(diag);
+    if (gl == NULL) {
+        return HN_ERR_UNSUPPORTED;
+    }
     unsigned char *samples = malloc((size_t)4 * SIDE * SIDE);
     if (samples == NULL) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
     }
     pthread_mutex_lock(&osmesa_lock);
-    const hn_status status = paint_with_context(c, samples, rgb, diag);
+    const hn_status status = paint_with_context(gl, c, samples, rgb, diag);
     pthread_mutex_unlock(&osmesa_lock);
     free(samples);
     return status;
