@@ -5,6 +5,7 @@
 #include "expr/tape_internal.h"
 
 #include "base/strbuf.h"
+#include "expr/native.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@ void hn_tape_free(hn_tape *tape) {
         free(tape->code);
         free(tape->constants);
         free(tape->outputs);
+        hn_native_state_release(tape->native);
         free(tape);
     }
 }
@@ -107,13 +109,35 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
     if (tape->info.n_inputs > 0) {
         memcpy(work, in, (size_t)tape->info.n_inputs * sizeof *work);
     }
-    run(tape->code, work);
+    hn_tape_run(tape, work);
     for (int k = 0; k < tape->info.n_outputs; k++) {
         out[k] = work[tape->outputs[k]];
     }
 }
 
+/// Counts a run of the interpreter; the queue is asked at two numbers of runs. A load and a store in
+/// place of an atomic increment: threads that share a tape may lose some, which only delays it.
+static void count_run(const hn_tape *tape) {
+    hn_native_state *s = tape->native;
+    const int runs = 1 + atomic_load_explicit(&s->runs, memory_order_relaxed);
+    if (runs > s->build_at) {
+        return;
+    }
+    atomic_store_explicit(&s->runs, runs, memory_order_relaxed);
+    if (runs == s->look_at || runs == s->build_at) {
+        hn_native_ask(tape, runs == s->build_at);
+    }
+}
+
 void hn_tape_run(const hn_tape *tape, double *work) {
+    if (tape->native) {
+        const hn_native_code code = atomic_load_explicit(&tape->native->code, memory_order_acquire);
+        if (code) {
+            code(work, hn_native_calls());
+            return;
+        }
+        count_run(tape);
+    }
     run(tape->code, work);
 }
 
@@ -139,7 +163,7 @@ static const char *name_of(const hn_tape_instruction *i) {
     }
 }
 
-static int operands_of(const hn_tape_instruction *i) {
+int hn_tape_operands(const hn_tape_instruction *i) {
     return i->code == TAPE_CALL2    ? 2
            : i->code >= TAPE_SINCOS ? 1
                                     : hn_tape_get_code_info(i->code).n_operands;
@@ -164,7 +188,7 @@ void hn_tape_list(const hn_tape *tape, hn_strbuf *text) {
             hn_strbuf_printf(text, " s%d", i->v[2]);
         }
         hn_strbuf_printf(text, " = %s :", name_of(i));
-        for (int k = 0; k < operands_of(i); k++) {
+        for (int k = 0; k < hn_tape_operands(i); k++) {
             list_place(tape, i->v[1 + k], text);
         }
         hn_strbuf_add(text, "\n");

@@ -3,6 +3,7 @@
 
 #include "expr/tape_internal.h"
 
+#include "expr/native.h"
 #include "expr/tape_lower.h"
 
 #include <stdlib.h>
@@ -551,6 +552,7 @@ hn_status hn_tape_compile(hn_graph *g, const hn_ex *outputs, int n_out, const in
         hn_tape_free(tape);
         return status;
     }
+    tape->native = hn_native_state_create(tape);
     *out = tape;
     return HN_OK;
 }

@@ -1,0 +1,402 @@
+#include "expr/native.h"
+
+#include "base/clock.h"
+#include "base/strbuf.h"
+#include "expr/native_emit.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+// An interpreted instruction and a call of a tape take about so long [s]; only to decide when the
+// queue is asked.
+static const double PER_INSTRUCTION = 1.5e-9, PER_CALL = 20e-9;
+enum { CHECKS = 8, MOST_INSTRUCTIONS = 400000 };
+
+/// One tape in the queue, with a copy of it: the tape itself may be freed meanwhile.
+typedef struct job {
+    struct job *next;
+    hn_tape *copy;
+    hn_native_state *state;
+    bool build;
+} job;
+
+/// The service. The one mutable state of this layer: compiled code is the process's as the compiler is.
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    pthread_t thread;
+    bool started;
+    atomic_bool ending;
+    bool busy;
+    hn_native_opts opts;
+    hn_native_builder builder;
+    job *first, **end;
+    hn_native_counts counts;
+    char reason[HN_DIAG_MESSAGE];
+} service = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+
+static hn_native_call calls[HN_OP_COUNT];
+
+hn_native_opts hn_native_opts_default(const char *folder) {
+    return (hn_native_opts){
+        .folder = folder, .time_limit = 60, .look_after = 0.002, .build_after = 0.02};
+}
+
+const hn_native_call *hn_native_calls(void) {
+    return calls;
+}
+
+// ---- copies of tapes ----
+
+static void *copy_of(const void *bytes, size_t n) {
+    void *copy = malloc(n + 1);
+    return copy ? memcpy(copy, bytes, n) : NULL;
+}
+
+static hn_tape *copy_tape(const hn_tape *tape) {
+    hn_tape *t = copy_of(tape, sizeof *tape);
+    if (!t) {
+        return NULL;
+    }
+    t->native = NULL;
+    t->code = copy_of(tape->code, ((size_t)tape->info.instructions + 1) * sizeof *t->code);
+    t->constants = copy_of(tape->constants, (size_t)tape->n_constants * sizeof *t->constants);
+    t->outputs = copy_of(tape->outputs, (size_t)tape->info.n_outputs * sizeof *t->outputs);
+    if (!t->code || !t->constants || !t->outputs) {
+        hn_tape_free(t);
+        return NULL;
+    }
+    return t;
+}
+
+// ---- states ----
+
+static int runs_in(double seconds, const hn_tape *tape) {
+    return (int)fmin(1e9, ceil(seconds / (PER_CALL + PER_INSTRUCTION * tape->info.instructions)));
+}
+
+hn_native_state *hn_native_state_create(const hn_tape *tape) {
+    if (!service.started || tape->info.instructions > MOST_INSTRUCTIONS) {
+        return NULL;
+    }
+    hn_native_state *s = calloc(1, sizeof *s);
+    if (s) {
+        s->look_at = runs_in(service.opts.look_after, tape);
+        s->build_at = runs_in(service.opts.build_after, tape);
+        s->look_at = s->look_at > 1 ? s->look_at : 1;
+        s->build_at = s->build_at > s->look_at ? s->build_at : s->look_at + 1;
+        atomic_init(&s->refs, 1);
+    }
+    return s;
+}
+
+void hn_native_state_release(hn_native_state *s) {
+    if (s && atomic_fetch_sub(&s->refs, 1) == 1) {
+        if (s->handle) {
+            dlclose(s->handle);
+        }
+        free(s);
+    }
+}
+
+// ---- checking compiled code ----
+
+static bool same_bits(double a, double b) {
+    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+}
+
+/// Inputs for check number k: 0, 1, then numbers of -4 .. 4 by a congruential generator.
+static void fill_inputs(double *work, int n, int k) {
+    uint64_t x = 88172645463325252ull + (uint64_t)k;
+    for (int i = 0; i < n; i++) {
+        x = x * 6364136223846793005ull + 1442695040888963407ull;
+        work[i] = k < 2 ? k : (double)(x >> 11) * 0x1p-53 * 8 - 4;
+    }
+}
+
+/// Whether compiled code gives the interpreter's bits at CHECKS states.
+static bool agrees(const hn_tape *tape, hn_native_code code) {
+    const size_t n = hn_tape_work_size(tape) + 1;
+    double *w = malloc(2 * n * sizeof *w);
+    bool same = w != NULL;
+    for (int k = 0; k < CHECKS && same; k++) {
+        double *x = w, *y = w + n;
+        hn_tape_prepare(tape, x);
+        fill_inputs(x, tape->info.n_inputs, k);
+        memcpy(y, x, n * sizeof *y);
+        hn_tape_run(tape, x);
+        code(y, calls);
+        for (int i = 0; i < tape->info.n_outputs && same; i++) {
+            same = same_bits(x[tape->outputs[i]], y[tape->outputs[i]]);
+        }
+    }
+    free(w);
+    return same;
+}
+
+// ---- the work ----
+
+static hn_status emit(const hn_tape *tape, hn_strbuf *text, hn_diag *diag) {
+    const hn_status status = hn_native_emit(text, tape);
+    return status == HN_OK
+               ? HN_OK
+               : hn_diag_set(diag, status, NULL, NULL, "the tape cannot be written as C: %s",
+                             hn_status_text(status));
+}
+
+static hn_status load_checked(const hn_tape *tape, const hn_strbuf *text, void **handle,
+                              hn_native_code *code, hn_diag *diag) {
+    const hn_status status = hn_native_load(&service.builder, text->text, text->n, handle, code);
+    if (status != HN_OK) {
+        return hn_diag_set(diag, status, NULL, NULL,
+                           "compiled code could not be loaded from %.200s", service.builder.folder);
+    }
+    if (agrees(tape, *code)) {
+        return HN_OK;
+    }
+    dlclose(*handle);
+    return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, NULL,
+                       "%s makes code that differs from the interpreter", service.builder.compiler);
+}
+
+/// From the folder, or by the compiler where `build` allows it. *cached: it was in the folder.
+static hn_status obtain(const hn_tape *tape, bool build, void **handle, hn_native_code *code,
+                        bool *cached, hn_diag *diag) {
+    double seconds;
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_status status = emit(tape, &text, diag);
+    if (status == HN_OK) {
+        status = load_checked(tape, &text, handle, code, diag);
+        *cached = status == HN_OK;
+    }
+    if (status != HN_OK && build && text.n > 0) {
+        status = hn_native_build(&service.builder, text.text, text.n, &seconds, diag);
+        if (status == HN_OK) {
+            status = load_checked(tape, &text, handle, code, diag);
+        }
+    }
+    hn_strbuf_reset(&text);
+    return status;
+}
+
+static void do_job(const job *j) {
+    hn_diag diag = {0};
+    hn_native_code code = NULL;
+    bool cached = false;
+    if (atomic_load(&j->state->code)) {
+        return; // the look before the build found it
+    }
+    void *handle = NULL;
+    const hn_status status = obtain(j->copy, j->build, &handle, &code, &cached, &diag);
+    pthread_mutex_lock(&service.lock);
+    if (status == HN_OK) {
+        j->state->handle = handle;
+        atomic_store_explicit(&j->state->code, code, memory_order_release);
+        service.counts.ready++;
+        service.counts.from_cache += cached;
+    } else if (j->build) {
+        service.counts.failed++;
+        memcpy(service.reason, diag.message, sizeof service.reason);
+    }
+    pthread_mutex_unlock(&service.lock);
+}
+
+static void free_job(job *j) {
+    hn_native_state_release(j->state);
+    hn_tape_free(j->copy);
+    free(j);
+}
+
+static void *work(void *unused) {
+    (void)unused;
+    pthread_mutex_lock(&service.lock);
+    while (!atomic_load(&service.ending)) {
+        job *j = service.first;
+        if (!j) {
+            pthread_cond_wait(&service.changed, &service.lock);
+            continue;
+        }
+        service.first = j->next;
+        if (!service.first) {
+            service.end = &service.first;
+        }
+
+        // nobody waits for the queue while a compiler runs
+        service.busy = true;
+        pthread_mutex_unlock(&service.lock);
+        do_job(j);
+        free_job(j);
+        pthread_mutex_lock(&service.lock);
+        service.busy = false;
+        pthread_cond_broadcast(&service.changed);
+    }
+    pthread_mutex_unlock(&service.lock);
+    return NULL;
+}
+
+void hn_native_ask(const hn_tape *tape, bool build) {
+    job *j = calloc(1, sizeof *j);
+    hn_tape *copy = j ? copy_tape(tape) : NULL;
+    if (!copy) {
+        free(j);
+        return;
+    }
+    *j = (job){.copy = copy, .state = tape->native, .build = build};
+    atomic_fetch_add(&j->state->refs, 1);
+    pthread_mutex_lock(&service.lock);
+    const bool takes = service.started && !atomic_load(&service.ending);
+    if (takes) {
+        *service.end = j;
+        service.end = &j->next;
+        pthread_cond_broadcast(&service.changed);
+    }
+    pthread_mutex_unlock(&service.lock);
+    if (!takes) {
+        free_job(j);
+    }
+}
+
+// ---- start and end ----
+
+hn_status hn_native_start(const hn_native_opts *opts, hn_diag *diag) {
+    hn_diag own;
+    HN_ASSERT(!service.started);
+    for (int op = 0; op < HN_OP_COUNT; op++) {
+        calls[op] = hn_op_get_info((hn_op)op)->value;
+    }
+    hn_status status = hn_native_builder_init(&service.builder, opts->folder, opts->compiler,
+                                              opts->time_limit, &own);
+    service.builder.ending = &service.ending;
+    service.opts = *opts;
+    service.opts.folder = service.builder.folder;
+    service.end = &service.first;
+    service.counts = (hn_native_counts){0};
+    service.reason[0] = '\0';
+    atomic_store(&service.ending, false);
+    if (status == HN_OK && pthread_create(&service.thread, NULL, work, NULL) != 0) {
+        status = hn_diag_set(&own, HN_ERR_MEMORY, NULL, NULL, "no thread for native tapes");
+    }
+    if (status != HN_OK) {
+        memcpy(service.reason, own.message, sizeof service.reason);
+        if (diag) {
+            *diag = own;
+        }
+        return status;
+    }
+    service.started = true;
+    return HN_OK;
+}
+
+void hn_native_stop(void) {
+    if (!service.started) {
+        return;
+    }
+    pthread_mutex_lock(&service.lock);
+    atomic_store(&service.ending, true);
+    pthread_cond_broadcast(&service.changed);
+    pthread_mutex_unlock(&service.lock);
+    pthread_join(service.thread, NULL);
+    for (job *j = service.first, *next; j; j = next) {
+        next = j->next;
+        free_job(j);
+    }
+    service.first = NULL;
+    service.started = false;
+}
+
+void hn_native_wait(void) {
+    pthread_mutex_lock(&service.lock);
+    while (service.started && (service.first || service.busy)) {
+        pthread_cond_wait(&service.changed, &service.lock);
+    }
+    pthread_mutex_unlock(&service.lock);
+}
+
+hn_native_counts hn_native_get_counts(void) {
+    pthread_mutex_lock(&service.lock);
+    const hn_native_counts counts = service.counts;
+    pthread_mutex_unlock(&service.lock);
+    return counts;
+}
+
+void hn_native_reason(char out[HN_DIAG_MESSAGE]) {
+    pthread_mutex_lock(&service.lock);
+    memcpy(out, service.reason, HN_DIAG_MESSAGE);
+    pthread_mutex_unlock(&service.lock);
+}
+
+// ---- costs ----
+
+enum { BATCHES = 9 };
+static const double BATCH = 2e-4; // [s] of one batch: a hundred times the clock's grain
+
+/// Smallest time of one evaluation over BATCHES batches [s]; code NULL: the interpreter.
+static double time_of(const hn_tape *tape, hn_native_code code, double *w) {
+    double best = (double)INFINITY;
+    const int n = 1 + runs_in(BATCH, tape);
+    for (int k = 0; k < BATCHES; k++) {
+        const double start = hn_clock_thread();
+        for (int i = 0; i < n; i++) {
+            if (code) {
+                code(w, calls);
+            } else {
+                hn_tape_run(tape, w);
+            }
+        }
+        best = fmin(best, (hn_clock_thread() - start) / n);
+    }
+    return best;
+}
+
+static hn_status compile_measured(const hn_tape *tape, const hn_strbuf *text,
+                                  hn_native_costs *costs, void **handle, hn_native_code *code,
+                                  hn_diag *diag) {
+    double start = hn_clock_wall();
+    hn_status status = load_checked(tape, text, handle, code, diag);
+    if (status != HN_OK) {
+        HN_TRY(
+            hn_native_build(&service.builder, text->text, text->n, &costs->compile_seconds, diag));
+        start = hn_clock_wall();
+        status = load_checked(tape, text, handle, code, diag);
+    }
+    costs->load_seconds = hn_clock_wall() - start;
+    return status;
+}
+
+hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag *diag) {
+    *costs = (hn_native_costs){.instructions = tape->info.instructions};
+    if (!service.started) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s",
+                           service.reason[0] ? service.reason : "native tapes are switched off");
+    }
+    void *handle = NULL;
+    hn_native_code code = NULL;
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_tape *copy = copy_tape(tape);
+    double *w = malloc((hn_tape_work_size(tape) + 1) * sizeof *w);
+    double start = hn_clock_wall();
+    hn_status status = copy && w ? emit(copy, &text, diag) : HN_ERR_MEMORY;
+    costs->emit_seconds = hn_clock_wall() - start;
+    if (status == HN_OK) {
+        status = compile_measured(copy, &text, costs, &handle, &code, diag);
+    }
+    if (status == HN_OK) {
+        // at a state that is no multiple of anything, so that no function takes a short cut
+        hn_tape_prepare(copy, w);
+        fill_inputs(w, copy->info.n_inputs, 2);
+        costs->interpreter_ns = 1e9 * time_of(copy, NULL, w);
+        costs->native_ns = 1e9 * time_of(copy, code, w);
+        const double saved = 1e-9 * (costs->interpreter_ns - costs->native_ns),
+                     spent = costs->emit_seconds + costs->compile_seconds + costs->load_seconds;
+        costs->break_even = saved > 0 ? ceil(spent / saved) : (double)INFINITY;
+        dlclose(handle);
+    }
+    hn_strbuf_reset(&text);
+    hn_tape_free(copy);
+    free(w);
+    return status;
+}

@@ -1,0 +1,83 @@
+#ifndef HN_EXPR_NATIVE_H
+#define HN_EXPR_NATIVE_H
+// Native tapes: tapes that are evaluated often are compiled by the system's C compiler in the
+// background and replace the interpreter when they are ready, bit for bit (but for which NaN).
+//
+// One service for the process, off until hn_native_start(): it owns a thread and a queue. The
+// interpreter serves until then, and for ever where there is no compiler, the compilation fails or
+// takes too long, or the folder cannot be used. A tape is looked up in the folder after 2 ms of
+// interpretation and compiled after 20 ms, so short runs start nothing. Before compiled code is
+// taken it is run beside the interpreter at several states; one different bit, and it is dropped.
+
+#include "base/diag.h"
+#include "expr/native_build.h"
+
+#include <stdatomic.h>
+
+struct hn_tape;
+
+typedef struct hn_native_opts {
+    const char *folder;   ///< where compiled tapes are kept
+    const char *compiler; ///< NULL: the first of gcc, clang, tcc in PATH
+    double time_limit;    ///< [s] for one compilation; 60
+    double look_after;    ///< [s] of interpretation before the folder is searched; 0.002
+    double build_after;   ///< [s] of interpretation before the compiler is started; 0.02
+} hn_native_opts;
+
+hn_native_opts hn_native_opts_default(const char *folder);
+
+/// Starts the service for tapes compiled from now on. Call it once, before other threads exist.
+/// Fails as hn_native_builder_init(); everything then goes on without it, and hn_native_reason()
+/// gives the sentence of `diag`.
+HN_MUST_CHECK hn_status hn_native_start(const hn_native_opts *opts, hn_diag *diag);
+/// Stops the thread and a compilation under way. Tapes keep the code they have.
+void hn_native_stop(void);
+/// Waits until nothing is queued or under way.
+void hn_native_wait(void);
+
+/// What the service has done so far; all zero while it is off.
+typedef struct hn_native_counts {
+    int ready;      ///< tapes that run natively
+    int from_cache; ///< of these, found in the folder
+    int failed;     ///< tapes that stay with the interpreter
+} hn_native_counts;
+hn_native_counts hn_native_get_counts(void);
+/// Why the last tape stayed with the interpreter, or why the service did not start; "" if nothing
+/// went wrong. Copied to `out`.
+void hn_native_reason(char out[HN_DIAG_MESSAGE]);
+
+/// Costs of one tape, measured here and now.
+typedef struct hn_native_costs {
+    int instructions;
+    double emit_seconds;    ///< writing the C text
+    double compile_seconds; ///< wall clock of the compiler; 0: it was in the folder
+    double load_seconds;    ///< loading and checking against the interpreter
+    double interpreter_ns;  ///< one evaluation
+    double native_ns;       ///< one evaluation
+    double break_even;      ///< evaluations after which compilation has paid; inf: never
+} hn_native_costs;
+
+/// Compiles a tape now, waiting for it, and measures. Fails as the compilation does, and with
+/// HN_ERR_UNSUPPORTED while the service is off; `diag` says why.
+HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_costs *costs,
+                                          hn_diag *diag);
+
+// ---- for tape.c and tape_compile.c ----
+
+/// What a tape has of the service. Shared by the tape and the queue.
+typedef struct hn_native_state {
+    _Atomic(hn_native_code) code; ///< NULL: the interpreter serves
+    atomic_int runs;              ///< interpreted so far; loses some where threads share the tape
+    int look_at, build_at;        ///< numbers of runs at which the queue is asked
+    atomic_int refs;
+    void *handle;
+} hn_native_state;
+
+/// Returns the state of a new tape, or NULL while the service is off or memory is out.
+hn_native_state *hn_native_state_create(const struct hn_tape *tape);
+void hn_native_state_release(hn_native_state *s); ///< NULL is legal
+/// Queues the tape (a copy of what is needed); nothing happens where memory is out.
+void hn_native_ask(const struct hn_tape *tape, bool build);
+/// The functions of the operator table, as compiled code takes them.
+const hn_native_call *hn_native_calls(void);
+#endif

@@ -1,0 +1,19 @@
+#ifndef HN_EXPR_NATIVE_EMIT_H
+#define HN_EXPR_NATIVE_EMIT_H
+// A tape written out as straight-line C.
+//
+// Each instruction becomes one constant with the very expression of the interpreter, so that a
+// compiler without fused multiply-add gives the same bits. Functions of the operator table are
+// called through the same pointers. Long tapes are cut into functions of some hundred instructions,
+// since compilers take quadratic time; what crosses a cut goes through the workspace.
+
+#include "base/strbuf.h"
+#include "expr/tape_internal.h"
+
+/// The name of the function that the C text defines: hn_native_code.
+#define HN_NATIVE_SYMBOL "hn_tape_native"
+
+/// Adds the C text to `b`. It needs no header and no library but libm.
+/// Fails: HN_ERR_UNSUPPORTED where a constant is not a number, HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_native_emit(hn_strbuf *b, const hn_tape *tape);
+#endif
