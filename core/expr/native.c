@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "expr/native.h"
 
 #include "base/clock.h"
@@ -7,6 +8,8 @@
 #include <dlfcn.h>
 #include <math.h>
 #include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
 #include <string.h>
 
 // An interpreted instruction and a call of a tape take about so long [s]; only to decide when the
@@ -27,10 +30,12 @@ static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     pthread_t thread;
-    bool started;
+    bool started;            // tapes are to be compiled
+    bool is_open, is_broken; // folder, compiler and thread are there, or one of them is not
     atomic_bool ending;
     bool busy;
     hn_native_opts opts;
+    char folder[HN_NATIVE_PATH];
     hn_native_builder builder;
     job *first, **end;
     hn_native_counts counts;
@@ -38,6 +43,7 @@ static struct {
 } service = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static hn_native_call calls[HN_OP_COUNT];
+static _Thread_local int suspended;
 
 hn_native_opts hn_native_opts_default(const char *folder) {
     return (hn_native_opts){
@@ -78,7 +84,7 @@ static int runs_in(double seconds, const hn_tape *tape) {
 }
 
 hn_native_state *hn_native_state_create(const hn_tape *tape) {
-    if (!service.started || tape->info.instructions > MOST_INSTRUCTIONS) {
+    if (!service.started || suspended > 0 || tape->info.instructions > MOST_INSTRUCTIONS) {
         return NULL;
     }
     hn_native_state *s = calloc(1, sizeof *s);
@@ -99,6 +105,15 @@ void hn_native_state_release(hn_native_state *s) {
         }
         free(s);
     }
+}
+
+void hn_native_suspend(void) {
+    suspended++;
+}
+
+void hn_native_resume(void) {
+    HN_ASSERT(suspended > 0);
+    suspended--;
 }
 
 // ---- checking compiled code ----
@@ -237,6 +252,54 @@ static void *work(void *unused) {
     return NULL;
 }
 
+// ---- start and end ----
+
+void hn_native_start(const hn_native_opts *opts) {
+    HN_ASSERT(!service.started && opts->folder);
+    for (int op = 0; op < HN_OP_COUNT; op++) {
+        calls[op] = hn_op_get_info((hn_op)op)->value;
+    }
+    service.opts = *opts;
+    snprintf(service.folder, sizeof service.folder, "%s", opts->folder);
+    service.opts.folder = service.folder;
+    service.end = &service.first;
+    service.counts = (hn_native_counts){0};
+    service.reason[0] = '\0';
+    service.is_open = service.is_broken = false;
+    atomic_store(&service.ending, false);
+    service.started = true;
+}
+
+/// Starts the thread. It takes no signals: they belong to the threads that wait for them.
+static bool start_thread(void) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const bool runs = pthread_create(&service.thread, NULL, work, NULL) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return runs;
+}
+
+/// Looks for folder and compiler and starts the thread, once; with the lock held.
+static bool open_service(void) {
+    if (service.is_open || service.is_broken || atomic_load(&service.ending)) {
+        return service.is_open;
+    }
+    hn_diag diag = {0};
+    hn_status status = hn_native_builder_init(
+        &service.builder, service.folder, service.opts.compiler, service.opts.time_limit, &diag);
+    service.builder.ending = &service.ending;
+    if (status == HN_OK && !start_thread()) {
+        status = hn_diag_set(&diag, HN_ERR_MEMORY, NULL, NULL, "no thread for native tapes");
+    }
+    service.is_open = status == HN_OK;
+    service.is_broken = !service.is_open;
+    if (service.is_broken) {
+        memcpy(service.reason, diag.message, sizeof service.reason);
+    }
+    return service.is_open;
+}
+
 void hn_native_ask(const hn_tape *tape, bool build) {
     job *j = calloc(1, sizeof *j);
     hn_tape *copy = j ? copy_tape(tape) : NULL;
@@ -247,7 +310,7 @@ void hn_native_ask(const hn_tape *tape, bool build) {
     *j = (job){.copy = copy, .state = tape->native, .build = build};
     atomic_fetch_add(&j->state->refs, 1);
     pthread_mutex_lock(&service.lock);
-    const bool takes = service.started && !atomic_load(&service.ending);
+    const bool takes = service.started && open_service();
     if (takes) {
         *service.end = j;
         service.end = &j->next;
@@ -259,37 +322,6 @@ void hn_native_ask(const hn_tape *tape, bool build) {
     }
 }
 
-// ---- start and end ----
-
-hn_status hn_native_start(const hn_native_opts *opts, hn_diag *diag) {
-    hn_diag own;
-    HN_ASSERT(!service.started);
-    for (int op = 0; op < HN_OP_COUNT; op++) {
-        calls[op] = hn_op_get_info((hn_op)op)->value;
-    }
-    hn_status status = hn_native_builder_init(&service.builder, opts->folder, opts->compiler,
-                                              opts->time_limit, &own);
-    service.builder.ending = &service.ending;
-    service.opts = *opts;
-    service.opts.folder = service.builder.folder;
-    service.end = &service.first;
-    service.counts = (hn_native_counts){0};
-    service.reason[0] = '\0';
-    atomic_store(&service.ending, false);
-    if (status == HN_OK && pthread_create(&service.thread, NULL, work, NULL) != 0) {
-        status = hn_diag_set(&own, HN_ERR_MEMORY, NULL, NULL, "no thread for native tapes");
-    }
-    if (status != HN_OK) {
-        memcpy(service.reason, own.message, sizeof service.reason);
-        if (diag) {
-            *diag = own;
-        }
-        return status;
-    }
-    service.started = true;
-    return HN_OK;
-}
-
 void hn_native_stop(void) {
     if (!service.started) {
         return;
@@ -298,13 +330,15 @@ void hn_native_stop(void) {
     atomic_store(&service.ending, true);
     pthread_cond_broadcast(&service.changed);
     pthread_mutex_unlock(&service.lock);
-    pthread_join(service.thread, NULL);
+    if (service.is_open) {
+        pthread_join(service.thread, NULL);
+    }
     for (job *j = service.first, *next; j; j = next) {
         next = j->next;
         free_job(j);
     }
     service.first = NULL;
-    service.started = false;
+    service.started = service.is_open = false;
 }
 
 void hn_native_wait(void) {
@@ -368,7 +402,10 @@ static hn_status compile_measured(const hn_tape *tape, const hn_strbuf *text,
 
 hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag *diag) {
     *costs = (hn_native_costs){.instructions = tape->info.instructions};
-    if (!service.started) {
+    pthread_mutex_lock(&service.lock);
+    const bool is_open = service.started && open_service();
+    pthread_mutex_unlock(&service.lock);
+    if (!is_open) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s",
                            service.reason[0] ? service.reason : "native tapes are switched off");
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_NATIVE_H
 #define HN_EXPR_NATIVE_H
 // Native tapes: tapes that are evaluated often are compiled by the system's C compiler in the
@@ -26,12 +27,16 @@ typedef struct hn_native_opts {
 
 hn_native_opts hn_native_opts_default(const char *folder);
 
-/// Starts the service for tapes compiled from now on. Call it once, before other threads exist.
-/// Fails as hn_native_builder_init(); everything then goes on without it, and hn_native_reason()
-/// gives the sentence of `diag`.
-HN_MUST_CHECK hn_status hn_native_start(const hn_native_opts *opts, hn_diag *diag);
+/// Switches the service on for tapes compiled from now on. Call it once, before other threads exist.
+/// The folder, the compiler and the thread are looked for when the first tape asks; where one is
+/// missing, everything goes on without, and hn_native_reason() says why.
+void hn_native_start(const hn_native_opts *opts);
 /// Stops the thread and a compilation under way. Tapes keep the code they have.
 void hn_native_stop(void);
+/// Tapes that this thread compiles between these two stay with the interpreter: for work that
+/// compares the times of methods, which must all run the same way. May be nested.
+void hn_native_suspend(void);
+void hn_native_resume(void);
 /// Waits until nothing is queued or under way.
 void hn_native_wait(void);
 
@@ -42,8 +47,8 @@ typedef struct hn_native_counts {
     int failed;     ///< tapes that stay with the interpreter
 } hn_native_counts;
 hn_native_counts hn_native_get_counts(void);
-/// Why the last tape stayed with the interpreter, or why the service did not start; "" if nothing
-/// went wrong. Copied to `out`.
+/// Why the last tape stayed with the interpreter, or why the service cannot work; "" if nothing went
+/// wrong. Copied to `out`.
 void hn_native_reason(char out[HN_DIAG_MESSAGE]);
 
 /// Costs of one tape, measured here and now.
@@ -58,7 +63,7 @@ typedef struct hn_native_costs {
 } hn_native_costs;
 
 /// Compiles a tape now, waiting for it, and measures. Fails as the compilation does, and with
-/// HN_ERR_UNSUPPORTED while the service is off; `diag` says why.
+/// HN_ERR_UNSUPPORTED while the service is off or cannot work; `diag` says why.
 HN_MUST_CHECK hn_status hn_native_measure(const struct hn_tape *tape, hn_native_costs *costs,
                                           hn_diag *diag);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #define _GNU_SOURCE // environ
 #include "expr/native_build.h"
 
@@ -117,6 +118,9 @@ hn_status hn_native_builder_init(hn_native_builder *b, const char *folder, const
 _Noreturn static void become_compiler(const hn_native_builder *b, char *const argv[]) {
     const struct rlimit cpu = {(rlim_t)b->time_limit + 1, (rlim_t)b->time_limit + 2},
                         size = {MOST_BYTES, MOST_BYTES}, core = {0, 0};
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setrlimit(RLIMIT_CPU, &cpu);
@@ -218,9 +222,21 @@ static bool is_sound(int fd, uint64_t key) {
     return sound;
 }
 
+/// A name for an open file that no other call gives: the dynamic linker takes a name it knows for the
+/// library it has. A running number stands in it in binary, "/" for 0 and "/./" for 1.
+static void unique_name(int fd, char out[160]) {
+    static atomic_uint calls;
+    unsigned bits = atomic_fetch_add(&calls, 1);
+    char middle[100] = "";
+    for (size_t n = 0; bits > 0; bits /= 2) {
+        n += (size_t)snprintf(middle + n, sizeof middle - n, bits % 2 ? "/." : "/");
+    }
+    snprintf(out, 160, "/proc/self%s/fd/%d", middle, fd);
+}
+
 hn_status hn_native_load(const hn_native_builder *b, const char *text, size_t n, void **handle,
                          hn_native_code *code) {
-    char path[2 * HN_NATIVE_PATH], open_file[64];
+    char path[2 * HN_NATIVE_PATH], open_file[160];
     const uint64_t key = key_of(b, text, n);
     path_of(b, key, ".so", path);
     const int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -232,7 +248,7 @@ hn_status hn_native_load(const hn_native_builder *b, const char *text, size_t n,
     }
 
     // the very file that was checked, whatever stands under its name by now
-    snprintf(open_file, sizeof open_file, "/proc/self/fd/%d", fd);
+    unique_name(fd, open_file);
     *handle = dlopen(open_file, RTLD_NOW | RTLD_LOCAL);
     close(fd);
     void *symbol = *handle ? dlsym(*handle, HN_NATIVE_SYMBOL) : NULL;

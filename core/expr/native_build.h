@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_NATIVE_BUILD_H
 #define HN_EXPR_NATIVE_BUILD_H
 // The system's C compiler as a child process with limits, and the folder that keeps what it made.

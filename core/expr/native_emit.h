@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_EXPR_NATIVE_EMIT_H
 #define HN_EXPR_NATIVE_EMIT_H
 // A tape written out as straight-line C.

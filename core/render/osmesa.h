@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_RENDER_OSMESA_H
 #define HN_RENDER_OSMESA_H
 // OSMesa, loaded when the first picture is painted and kept. Linked in the usual way it would bring

@@ -9,6 +9,8 @@
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
+#include "cli/shell/cache_folder.h"
+#include "expr/native.h"
 #include "session/job/job_request.h"
 
 #include <stdbool.h>
@@ -205,6 +207,17 @@ static int needs_library(const hn_command *command) {
     return command->run != print_help && command->run != print_version;
 }
 
+/// Native tapes for everything that follows, unless --no-native or HOLONOM_NATIVE=0 says otherwise.
+static void start_native(const hn_args *args) {
+    const char *wanted = getenv("HOLONOM_NATIVE");
+    char cache[400], folder[HN_NATIVE_PATH];
+    if (!args->no_native && !(wanted && strcmp(wanted, "0") == 0) && hn_cache_folder_find(cache)) {
+        snprintf(folder, sizeof folder, "%s/native", cache);
+        const hn_native_opts opts = hn_native_opts_default(folder);
+        hn_native_start(&opts);
+    }
+}
+
 static hn_exit run_command(const hn_command *command, const hn_args *args) {
     hn_library *lib = NULL;
     hn_diag diag = {0};
@@ -222,8 +235,10 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
     // no command writes over what it reads
     hn_diags diags = {0};
     const hn_status status = hn_cli_protect_inputs(args, &diags);
+    start_native(args);
     const hn_exit result =
         status == HN_OK ? command->run(lib, args) : hn_report_diags(args, status, &diags);
+    hn_native_stop();
     hn_library_free(lib);
     return result;
 }

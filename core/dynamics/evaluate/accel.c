@@ -606,6 +606,14 @@ hn_tape_info hn_accel_tape_info(const hn_accel *s) {
     return s->available ? hn_tape_get_info(s->in.tape) : hn_eval_info(s->terms);
 }
 
+hn_status hn_accel_measure_native(const hn_accel *s, hn_native_costs *costs, hn_diag *diag) {
+    if (!s->available) {
+        return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
+                           "the solve is dense and has no tape");
+    }
+    return hn_native_measure(s->in.tape, costs, diag);
+}
+
 long long hn_accel_count(const hn_accel *s) {
     return s->count;
 }

@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
+#include "expr/native.h"
 #include "expr/tape.h"
 
 /// The solvers of K. "auto" is the tape, corrected by iterative refinement with the sparse factor
@@ -94,6 +95,10 @@ extern const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS];
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info);
 hn_tape_info hn_accel_tape_info(const hn_accel *s);
+/// Compiles the tape of the sparse solve natively, waits for it and measures (expr/native.h).
+/// Fails as hn_native_measure(), and with HN_ERR_UNSUPPORTED where the solve has no tape.
+HN_MUST_CHECK hn_status hn_accel_measure_native(const hn_accel *s, hn_native_costs *costs,
+                                                hn_diag *diag);
 long long hn_accel_count(const hn_accel *s);
 long long hn_accel_fallbacks(const hn_accel *s);   ///< dense solves in place of the tape's
 long long hn_accel_refinements(const hn_accel *s); ///< answers corrected with the sparse factor

@@ -7,11 +7,27 @@
 #include "cli/shell/scene_word.h"
 #include "session/model/equations.h"
 #include "session/model/inspect_json.h"
+#include "session/model/native_costs.h"
 #include "session/model/terms_json.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/// Adds the member "native" to the finished object in `b`: measured here, so no part of the facts
+/// that the model states.
+static void add_native(hn_strbuf *b, const hn_model *model) {
+    hn_strbuf costs;
+    hn_strbuf_init(&costs);
+    hn_model_native_put(&costs, model);
+    HN_ASSERT(b->failed || (b->n > 2 && b->text[b->n - 1] == '}'));
+    if (!b->failed) {
+        b->n--;
+        hn_strbuf_printf(b, ",\"native\":%s}", hn_strbuf_text(&costs));
+    }
+    b->failed |= costs.failed;
+    hn_strbuf_reset(&costs);
+}
 
 hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
     hn_model *model = NULL;
@@ -21,6 +37,9 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags);
     if (status == HN_OK) {
         status = hn_model_inspect_json(&b, model, &diags);
+    }
+    if (status == HN_OK) {
+        add_native(&b, model);
     }
     hn_model_free(model);
     if (status != HN_OK) {

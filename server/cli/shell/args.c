@@ -30,6 +30,8 @@ typedef struct option {
 static const option OPTIONS[] = {
     {"--json", NULL, OPTION_FLAG, AT(json), "one JSON object on standard output"},
     {"--help", NULL, OPTION_FLAG, AT(help), "this help"},
+    {"--no-native", NULL, OPTION_FLAG, AT(no_native),
+     "interpret everything; no background compilation"},
     {"--set", "NAME=VALUE", OPTION_WORD, AT(set),
      "a parameter that differs from the scene's; may be repeated"},
     {"--method", "METHOD", OPTION_TEXT, AT(method),
@@ -115,7 +117,7 @@ static int lists(const char *list, const char *name) {
 
 static int is_offered(const hn_command *command, const option *o) {
     return strcmp(o->name, "--json") == 0 || strcmp(o->name, "--help") == 0 ||
-           lists(command->options, o->name);
+           strcmp(o->name, "--no-native") == 0 || lists(command->options, o->name);
 }
 
 static const option *find_option(const hn_command *command, const char *name, size_t n) {

@@ -36,7 +36,7 @@ typedef struct hn_args {
         keep_alive;
     int guests;
     int json, csv, open, help, raw_lambda, reactions;
-    int once, ascii, blocks, plot;
+    int once, ascii, blocks, plot, no_native;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;
 

@@ -9,7 +9,7 @@
 #include "cli/shell/progress.h"
 #include "cli/shell/scene_word.h"
 #include "cli/study/budget_text.h"
-#include "cli/study/cache_folder.h"
+#include "cli/shell/cache_folder.h"
 #include "cli/study/extreme_text.h"
 #include "cli/study/interrupt.h"
 #include "cli/study/reference_text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/near.h"
 
 #include "base/clock.h"
@@ -49,10 +50,7 @@ static hn_native_opts eager(const char *compiler) {
 
 static void start(const char *compiler) {
     const hn_native_opts opts = eager(compiler);
-    hn_diag diag = {0};
-    if (hn_native_start(&opts, &diag) != HN_OK) {
-        fail_msg("%s", diag.message);
-    }
+    hn_native_start(&opts);
 }
 
 static hn_tape *compile(hn_graph *g, const hn_ex *out, int n_out) {
@@ -339,7 +337,7 @@ static void a_compiler_that_hangs_is_killed(void **state) {
     hn_native_opts opts = eager(script("#!/bin/sh\nsleep 100\n"));
     opts.time_limit = 0.2;
     const double before = hn_clock_wall();
-    assert_int_equal(hn_native_start(&opts, NULL), HN_OK);
+    hn_native_start(&opts);
     assert_interpreter_serves("was killed after 0.2 s");
     assert_true(hn_clock_wall() - before < 20);
 }
@@ -373,18 +371,30 @@ static void code_that_differs_in_a_bit_is_dropped(void **state) {
 
 static void no_compiler_and_a_folder_of_others_are_reported(void **state) {
     (void)state;
-    hn_native_opts opts = eager("/nowhere/cc");
-    hn_diag diag = {0};
-    assert_int_equal(hn_native_start(&opts, &diag), HN_ERR_UNSUPPORTED);
-    assert_non_null(strstr(diag.message, "there is no C compiler at /nowhere/cc"));
-    assert_interpreter_serves("there is no C compiler");
-    opts.compiler = NULL;
-    assert_int_equal(chmod(folder, 0777), 0);
-    assert_int_equal(hn_native_start(&opts, &diag), HN_ERR_IO);
-    assert_non_null(strstr(diag.message, "only this user may write"));
-    opts.folder = "/proc/nowhere";
-    assert_int_equal(hn_native_start(&opts, &diag), HN_ERR_IO);
-    assert_non_null(strstr(diag.message, "cannot make the folder"));
+    const struct {
+        const char *compiler, *folder, *reason;
+        unsigned mode;
+    } rows[] = {{"/nowhere/cc", folder, "there is no C compiler at /nowhere/cc", 0700},
+                {NULL, folder, "only this user may write", 0777},
+                {NULL, "/proc/nowhere", "cannot make the folder", 0700}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        hn_native_opts opts = eager(rows[i].compiler);
+        opts.folder = rows[i].folder;
+        chmod(folder, rows[i].mode);
+        hn_native_start(&opts);
+        assert_interpreter_serves(rows[i].reason);
+        hn_native_stop();
+    }
+}
+
+static void a_suspended_thread_compiles_no_native_tapes(void **state) {
+    (void)state;
+    start(NULL);
+    hn_native_suspend();
+    hn_native_counts counts = run_small();
+    assert_int_equal(counts.ready + counts.failed, 0);
+    hn_native_resume();
+    assert_int_equal(run_small().ready, 1);
 }
 
 static void a_full_disk_leaves_the_interpreter(void **state) {
@@ -411,7 +421,7 @@ static void a_full_disk_leaves_the_interpreter(void **state) {
 static void a_short_run_asks_for_nothing(void **state) {
     (void)state;
     const hn_native_opts opts = hn_native_opts_default(folder);
-    assert_int_equal(hn_native_start(&opts, NULL), HN_OK);
+    hn_native_start(&opts);
     const hn_native_counts counts = run_small(); // 40 evaluations of some 30 instructions
     assert_int_equal(counts.ready + counts.failed, 0);
     DIR *d = opendir(folder);
@@ -436,6 +446,19 @@ static void costs_are_measured(void **state) {
     assert_int_equal(hn_native_measure(tape, &costs, &diag), HN_OK);
     assert_true(costs.compile_seconds == 0); // the folder has it now
     hn_tape_free(tape);
+}
+
+static void two_tapes_at_once_have_each_its_own_code(void **state) {
+    (void)state;
+    start(NULL);
+    hn_tape *tape[2] = {long_tape(5), long_tape(6)};
+    double out[4 * STATES];
+    eval_all(tape[0], out);
+    eval_all(tape[1], out);
+    hn_native_wait();
+    assert_int_equal(hn_native_get_counts().ready, 2);
+    hn_tape_free(tape[0]);
+    hn_tape_free(tape[1]);
 }
 
 static void a_tape_may_be_freed_while_it_is_compiled(void **state) {
@@ -465,9 +488,11 @@ int main(void) {
         ROW(a_compiler_that_writes_rubbish_leaves_the_interpreter),
         ROW(code_that_differs_in_a_bit_is_dropped),
         ROW(no_compiler_and_a_folder_of_others_are_reported),
+        ROW(a_suspended_thread_compiles_no_native_tapes),
         ROW(a_full_disk_leaves_the_interpreter),
         ROW(a_short_run_asks_for_nothing),
         ROW(costs_are_measured),
+        ROW(two_tapes_at_once_have_each_its_own_code),
         ROW(a_tape_may_be_freed_while_it_is_compiled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

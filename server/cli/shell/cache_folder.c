@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/study/cache_folder.h"
+#include "cli/shell/cache_folder.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
-static int find_cache(char out[400]) {
+bool hn_cache_folder_find(char out[400]) {
     const char *own = getenv("HOLONOM_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
                *home = getenv("HOME");
     char base[360] = "";
@@ -19,14 +19,14 @@ static int find_cache(char out[400]) {
         snprintf(base, sizeof base, "%s/.cache", home);
     }
     if (!base[0] || (mkdir(base, 0700) != 0 && errno != EEXIST)) {
-        return 0;
+        return false;
     }
     snprintf(out, 400, "%s/holonom", base);
     return mkdir(out, 0700) == 0 || errno == EEXIST;
 }
 
 const char *hn_cache_folder(const hn_args *args, char out[400]) {
-    const int found = find_cache(out);
+    const bool found = hn_cache_folder_find(out);
     if (!found && !args->json) {
         fprintf(stderr, "holonom: no folder to keep unfinished work in; HOLONOM_CACHE names one\n");
     }
