@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run costs beside hand-written C, all in one process: evaluation and Runge-Kutta step of the
+// reference four-bar FB0, interpreted and native, without and with the watch that every run has, and
+// the ladder of 40 loops. Prints CSV: medians of batches that take turns, their quartiles, ratios.
+#include "hand_fourbar.h"
+
+#include "base/clock.h"
+#include "dynamics/assembly/assemble.h"
+#include "dynamics/compile/compile.h"
+#include "dynamics/evaluate/accel.h"
+#include "expr/native.h"
+#include "study/run/run.h"
+
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { BATCHES = 21, EVALS = 10000, STEPS = 500, LADDER = 40 };
+static const double H = 1e-4; // [s] step; BATCHES * STEPS of them stay clear of any dead point
+static const double START[6] = {1, 0.498324904142577, 1.516841745037813, 2, -0.3, 0.9};
+
+static void give_up(const char *what, const char *why) {
+    fprintf(stderr, "%s: %s\n", what, why);
+    exit(3);
+}
+
+// ---- what is timed: each returns the seconds of one batch per item ----
+
+typedef struct subject {
+    const char *name, *code;
+    double (*batch)(struct subject *);
+    hn_system *sys;
+    hn_accel *accel;
+    hn_run *run;
+    hn_arena *arena;
+    double *q, *v, *a, *lambda;
+    int n, evals;
+    double t, sample[BATCHES];
+} subject;
+
+static double time_hand(subject *s) {
+    static double q[3] = {1, 0.498324904142577, 1.516841745037813}, v[3] = {2, -0.3, 0.9};
+    double a[3], lambda[2];
+    (void)s;
+    const double start = hn_clock_thread();
+    for (int k = 0; k < EVALS; k++) {
+        hn_hand_fourbar(q, v, a, lambda);
+        for (int i = 0; i < 3; i++) {
+            v[i] += 1e-12 * a[i];
+        }
+    }
+    return (hn_clock_thread() - start) / EVALS;
+}
+
+static double time_accel(subject *s) {
+    const double start = hn_clock_thread();
+    for (int k = 0; k < s->evals; k++) {
+        hn_accel_info info;
+        if (hn_accel_eval(s->accel, 0, s->q, s->v, 0, 0, s->a, s->lambda, &info) != HN_OK ||
+            info.fallback) {
+            give_up(s->name, "the tape did not answer");
+        }
+        for (int i = 0; i < s->n; i++) {
+            s->v[i] += 1e-12 * s->a[i];
+        }
+    }
+    return (hn_clock_thread() - start) / s->evals;
+}
+
+/// The classical Runge-Kutta step by hand.
+__attribute__((noinline)) static void hand_step(double *y) {
+    static const double c[4] = {0, 0.5, 0.5, 1}, w[4] = {1, 2, 2, 1};
+    double k[4][6], lambda[2];
+    for (int s = 0; s < 4; s++) {
+        double at[6];
+        for (int i = 0; i < 6; i++) {
+            at[i] = s ? y[i] + H * c[s] * k[s - 1][i] : y[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            k[s][i] = at[3 + i];
+        }
+        hn_hand_fourbar(at, at + 3, k[s] + 3, lambda);
+    }
+    for (int i = 0; i < 6; i++) {
+        y[i] += H / 6 * (w[0] * k[0][i] + w[1] * k[1][i] + w[2] * k[2][i] + w[3] * k[3][i]);
+    }
+}
+
+static double time_hand_step(subject *s) {
+    const double start = hn_clock_thread();
+    for (int k = 0; k < STEPS; k++) {
+        hand_step(s->q);
+    }
+    return (hn_clock_thread() - start) / STEPS;
+}
+
+static double time_run(subject *s) {
+    s->t += STEPS * H;
+    const double start = hn_clock_thread();
+    if (hn_run_advance(s->run, s->t) != HN_OK) {
+        give_up(s->name, hn_run_get_summary(s->run).reason);
+    }
+    return (hn_clock_thread() - start) / STEPS;
+}
+
+// ---- making them ----
+
+static hn_system *compile(const char *path, const hn_setting *setting) {
+    hn_diags diags = {0};
+    hn_scene *scene = NULL; // kept to the end: the system looks into it
+    hn_system *sys = NULL;
+    if (hn_scene_load_file(path, setting, setting ? 1 : 0, &scene, &diags) != HN_OK ||
+        hn_system_compile(scene, NULL, &sys, &diags) != HN_OK) {
+        give_up(path, diags.item[0].message);
+    }
+    return sys;
+}
+
+static void make_arrays(subject *s) {
+    const hn_system_info info = hn_system_get_info(s->sys);
+    s->arena = hn_arena_create(0);
+    s->n = info.nv;
+    double **arrays[] = {&s->q, &s->v, &s->a};
+    for (int i = 0; i < 3; i++) {
+        *arrays[i] = hn_arena_doubles(s->arena, (size_t)info.nq + (size_t)info.nv);
+    }
+    s->lambda = hn_arena_doubles(s->arena, (size_t)info.nc + 1);
+}
+
+/// Tapes compiled natively are those made while the service is not suspended.
+static void make_accel(subject *s, int native) {
+    const hn_accel_opts opts = {.want_lambda = 1};
+    make_arrays(s);
+    for (int i = 0; i < s->n; i++) { // the ladder's verticals lean, its couplers lie: not flat
+        s->q[i] = s->n == 3 ? START[i] : i <= LADDER ? 1.2 : 0;
+        s->v[i] = s->n == 3 ? START[3 + i] : i <= LADDER ? -1 : 0;
+    }
+    if (!native) {
+        hn_native_suspend();
+    }
+    if (hn_accel_create(s->sys, &opts, s->arena, &s->accel) != HN_OK) {
+        give_up(s->name, "no solver");
+    }
+    if (!native) {
+        hn_native_resume();
+    }
+    s->evals = s->n == 3 ? EVALS : EVALS / LADDER;
+}
+
+static void make_run(subject *s, const char *formulation, int native, int watched) {
+    char text[HN_SPEC_MAX];
+    hn_method_spec spec;
+    hn_diag diag = {0};
+    make_arrays(s);
+    snprintf(text, sizeof text, "%s@rk4:h=1e-4", formulation);
+    if (!native) {
+        hn_native_suspend();
+    }
+    if (hn_method_parse(text, &spec, &diag) != HN_OK ||
+        hn_run_create(s->sys, &spec, START, START + 3, NULL, &s->run, &diag) != HN_OK) {
+        give_up(text, diag.message);
+    }
+    if (!native) {
+        hn_native_resume();
+    }
+    hn_run_watch(s->run, watched);
+}
+
+// ---- the table ----
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Batches in turn, so that whatever slows the machine slows all of them.
+static void measure(subject *s, int n) {
+    for (int i = 0; i < n; i++) { // native tapes are compiled after their first runs
+        s[i].batch(&s[i]);
+    }
+    hn_native_wait();
+    for (int k = 0; k < BATCHES; k++) {
+        for (int i = 0; i < n; i++) {
+            s[i].sample[k] = 1e9 * s[i].batch(&s[i]);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        qsort(s[i].sample, BATCHES, sizeof *s[i].sample, ascending);
+    }
+}
+
+/// Each row beside the one it is compared with, `base`.
+static void print(const subject *s, int n, int base) {
+    const double beside = s[base].sample[BATCHES / 2];
+    for (int i = 0; i < n; i++) {
+        const double *x = s[i].sample;
+        printf("%s,%s,%.1f,%.1f,%.1f,%.2f\n", s[i].name, s[i].code, x[BATCHES / 2], x[BATCHES / 4],
+               x[3 * BATCHES / 4], x[BATCHES / 2] / beside);
+    }
+}
+
+static void bench_evaluation(hn_system *sys) {
+    subject s[] = {
+        {.name = "fb0 evaluation", .code = "hand", .batch = time_hand},
+        {.name = "fb0 evaluation", .code = "interpreter", .batch = time_accel, .sys = sys},
+        {.name = "fb0 evaluation", .code = "native", .batch = time_accel, .sys = sys}};
+    make_accel(&s[1], 0);
+    make_accel(&s[2], 1);
+    measure(s, 3);
+    print(s, 3, 0);
+}
+
+static void bench_steps(hn_system *sys) {
+    static const char *const formulations[] = {"index1", "projection", "reduced"};
+    static const char *const codes[] = {"interpreter", "native", "interpreter watched",
+                                        "native watched"};
+    enum { N = 1 + 3 * 4 };
+    subject s[N] = {{.name = "fb0 rk4 step", .code = "hand", .batch = time_hand_step}};
+    double y[6];
+    for (int i = 0; i < 6; i++) {
+        y[i] = START[i];
+    }
+    s[0].q = y;
+    for (int i = 1; i < N; i++) {
+        const int f = (i - 1) / 4, code = (i - 1) % 4;
+        static char names[N][64];
+        snprintf(names[i], sizeof names[i], "fb0 %s@rk4 step", formulations[f]);
+        s[i] = (subject){.name = names[i], .code = codes[code], .batch = time_run, .sys = sys};
+        make_run(&s[i], formulations[f], code % 2, code / 2);
+    }
+    measure(s, N);
+    print(s, N, 0);
+}
+
+static void bench_ladder(hn_system *sys) {
+    subject s[] = {{.name = "ladder of 40", .code = "interpreter", .batch = time_accel, .sys = sys},
+                   {.name = "ladder of 40", .code = "native", .batch = time_accel, .sys = sys}};
+    make_accel(&s[0], 0);
+    make_accel(&s[1], 1);
+    measure(s, 2);
+    print(s, 2, 0);
+}
+
+int main(void) {
+    char folder[] = "/tmp/holonom-bench-XXXXXX", pattern[64], why[HN_DIAG_MESSAGE];
+    glob_t files;
+    hn_native_opts opts = hn_native_opts_default(mkdtemp(folder));
+    opts.look_after = opts.build_after = 0;
+    hn_native_start(&opts);
+    hn_system *sys = compile("lessons/01-closed-loops/scenes/fb0.json", NULL),
+              *ladder = compile("lessons/01-closed-loops/scenes/n-four-bar.json",
+                                &(hn_setting){"N", LADDER});
+    printf("case,code,ns_median,ns_quartile_1,ns_quartile_3,ratio_to_first_row\n");
+    bench_evaluation(sys);
+    bench_steps(sys);
+    bench_ladder(ladder);
+    hn_native_reason(why);
+    if (why[0]) {
+        fprintf(stderr, "native: %s\n", why);
+    }
+
+    // what was compiled for this table goes
+    hn_native_stop();
+    snprintf(pattern, sizeof pattern, "%s/*", folder);
+    if (glob(pattern, 0, NULL, &files) == 0) {
+        for (size_t i = 0; i < files.gl_pathc; i++) {
+            unlink(files.gl_pathv[i]);
+        }
+        globfree(&files);
+    }
+    return rmdir(folder);
+}
