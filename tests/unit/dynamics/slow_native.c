@@ -70,7 +70,7 @@ static void assert_bits(const char *scene, const double *a, const double *b, siz
 /// Three passes: interpreted; with the service on, where code comes in at some state; all native.
 static void check_scene(const char *name, const char *folder) {
     subject s;
-    hn_model_open(&s.m, name, NULL);
+    hn_model_begin(&s.m, name, NULL);
     const size_t n = STATES * ((size_t)s.m.info.nv + (size_t)s.m.info.nc + 2);
     double *expected = malloc(n * sizeof *expected), *out = malloc(n * sizeof *out);
     open_accel(&s);
