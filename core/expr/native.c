@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/strbuf.h"
 #include "expr/native_emit.h"
+#include "expr/tape_interpret.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -25,7 +26,8 @@ typedef struct job {
     bool build;
 } job;
 
-/// The service. The one mutable state of this layer: compiled code is the process's as the compiler is.
+/// The service. The one mutable state of this layer: compiled code is the process's as the compiler
+/// is.
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -61,6 +63,21 @@ static void *copy_of(const void *bytes, size_t n) {
     return copy ? memcpy(copy, bytes, n) : NULL;
 }
 
+static void free_copy(hn_tape *t) {
+    if (t) {
+        free(t->code);
+        free(t->constants);
+        free(t->outputs);
+        free(t);
+    }
+}
+
+/// Constants in their places, everything else zero.
+static void prepare(const hn_tape *t, double *work) {
+    memset(work, 0, (size_t)t->info.slots * sizeof *work);
+    memcpy(work + t->info.n_inputs, t->constants, (size_t)t->n_constants * sizeof *work);
+}
+
 static hn_tape *copy_tape(const hn_tape *tape) {
     hn_tape *t = copy_of(tape, sizeof *tape);
     if (!t) {
@@ -71,7 +88,7 @@ static hn_tape *copy_tape(const hn_tape *tape) {
     t->constants = copy_of(tape->constants, (size_t)tape->n_constants * sizeof *t->constants);
     t->outputs = copy_of(tape->outputs, (size_t)tape->info.n_outputs * sizeof *t->outputs);
     if (!t->code || !t->constants || !t->outputs) {
-        hn_tape_free(t);
+        free_copy(t);
         return NULL;
     }
     return t;
@@ -133,15 +150,15 @@ static void fill_inputs(double *work, int n, int k) {
 
 /// Whether compiled code gives the interpreter's bits at CHECKS states.
 static bool agrees(const hn_tape *tape, hn_native_code code) {
-    const size_t n = hn_tape_work_size(tape) + 1;
+    const size_t n = (size_t)tape->info.slots + 1;
     double *w = malloc(2 * n * sizeof *w);
     bool same = w != NULL;
     for (int k = 0; k < CHECKS && same; k++) {
         double *x = w, *y = w + n;
-        hn_tape_prepare(tape, x);
+        prepare(tape, x);
         fill_inputs(x, tape->info.n_inputs, k);
         memcpy(y, x, n * sizeof *y);
-        hn_tape_run(tape, x);
+        hn_tape_interpret(tape, x);
         code(y, calls);
         for (int i = 0; i < tape->info.n_outputs && same; i++) {
             same = same_bits(x[tape->outputs[i]], y[tape->outputs[i]]);
@@ -221,7 +238,7 @@ static void do_job(const job *j) {
 
 static void free_job(job *j) {
     hn_native_state_release(j->state);
-    hn_tape_free(j->copy);
+    free_copy(j->copy);
     free(j);
 }
 
@@ -377,7 +394,7 @@ static double time_of(const hn_tape *tape, hn_native_code code, double *w) {
             if (code) {
                 code(w, calls);
             } else {
-                hn_tape_run(tape, w);
+                hn_tape_interpret(tape, w);
             }
         }
         best = fmin(best, (hn_clock_thread() - start) / n);
@@ -414,7 +431,7 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_tape *copy = copy_tape(tape);
-    double *w = malloc((hn_tape_work_size(tape) + 1) * sizeof *w);
+    double *w = malloc(((size_t)tape->info.slots + 1) * sizeof *w);
     double start = hn_clock_wall();
     hn_status status = copy && w ? emit(copy, &text, diag) : HN_ERR_MEMORY;
     costs->emit_seconds = hn_clock_wall() - start;
@@ -423,7 +440,7 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     }
     if (status == HN_OK) {
         // at a state that is no multiple of anything, so that no function takes a short cut
-        hn_tape_prepare(copy, w);
+        prepare(copy, w);
         fill_inputs(w, copy->info.n_inputs, 2);
         costs->interpreter_ns = 1e9 * time_of(copy, NULL, w);
         costs->native_ns = 1e9 * time_of(copy, code, w);
@@ -433,7 +450,7 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
         dlclose(handle);
     }
     hn_strbuf_reset(&text);
-    hn_tape_free(copy);
+    free_copy(copy);
     free(w);
     return status;
 }

@@ -27,9 +27,9 @@ typedef struct hn_native_opts {
 
 hn_native_opts hn_native_opts_default(const char *folder);
 
-/// Switches the service on for tapes compiled from now on. Call it once, before other threads exist.
-/// The folder, the compiler and the thread are looked for when the first tape asks; where one is
-/// missing, everything goes on without, and hn_native_reason() says why.
+/// Switches the service on for tapes compiled from now on. Call it once, before other threads
+/// exist. The folder, the compiler and the thread are looked for when the first tape asks; where
+/// one is missing, everything goes on without, and hn_native_reason() says why.
 void hn_native_start(const hn_native_opts *opts);
 /// Stops the thread and a compilation under way. Tapes keep the code they have.
 void hn_native_stop(void);
@@ -47,8 +47,8 @@ typedef struct hn_native_counts {
     int failed;     ///< tapes that stay with the interpreter
 } hn_native_counts;
 hn_native_counts hn_native_get_counts(void);
-/// Why the last tape stayed with the interpreter, or why the service cannot work; "" if nothing went
-/// wrong. Copied to `out`.
+/// Why the last tape stayed with the interpreter, or why the service cannot work; "" if nothing
+/// went wrong. Copied to `out`.
 void hn_native_reason(char out[HN_DIAG_MESSAGE]);
 
 /// Costs of one tape, measured here and now.

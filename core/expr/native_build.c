@@ -222,8 +222,8 @@ static bool is_sound(int fd, uint64_t key) {
     return sound;
 }
 
-/// A name for an open file that no other call gives: the dynamic linker takes a name it knows for the
-/// library it has. A running number stands in it in binary, "/" for 0 and "/./" for 1.
+/// A name for an open file that no other call gives: the dynamic linker takes a name it knows for
+/// the library it has. A running number stands in it in binary, "/" for 0 and "/./" for 1.
 static void unique_name(int fd, char out[160]) {
     static atomic_uint calls;
     unsigned bits = atomic_fetch_add(&calls, 1);
@@ -271,7 +271,8 @@ static hn_status publish(const char *object, const char *path, uint64_t key, hn_
         footer f = {.key = key, .checksum = hn_hash_bytes(HN_HASH_START, bytes.text, bytes.n)};
         memcpy(f.magic, MAGIC, sizeof MAGIC);
         hn_strbuf_add_n(&bytes, (const char *)&f, sizeof f);
-        // what stands under the name is not to be taken, or there is nothing: a link is not followed
+        // what stands under the name is not to be taken, or there is nothing: a link is not
+        // followed
         unlink(path);
         status = bytes.failed ? HN_ERR_MEMORY : hn_file_write(path, bytes.text, bytes.n, diag);
         if (status == HN_OK && chmod(path, 0600) != 0) {

@@ -34,15 +34,16 @@ HN_MUST_CHECK hn_status hn_native_builder_init(hn_native_builder *b, const char 
                                                hn_diag *diag);
 
 /// Loads what an earlier compilation of this text left in the folder.
-/// A file is taken only if it is a regular file of this user that nobody else may write, ends in the
-/// checksum of its bytes, and was made for this text by this compiler.
+/// A file is taken only if it is a regular file of this user that nobody else may write, ends in
+/// the checksum of its bytes, and was made for this text by this compiler.
 /// Returns owned in *handle (dlclose). Fails: HN_ERR_IO: there is none, or none that may be taken.
 HN_MUST_CHECK hn_status hn_native_load(const hn_native_builder *b, const char *text, size_t n,
                                        void **handle, hn_native_code *code);
 
 /// Compiles the text and puts the result into the folder, as a whole or not at all; several
 /// processes may do so at once. *seconds: wall clock of the compiler.
-/// Fails: HN_ERR_BUDGET (time limit), HN_ERR_UNSUPPORTED (the compiler reports an error), HN_ERR_IO.
+/// Fails: HN_ERR_BUDGET (time limit), HN_ERR_UNSUPPORTED (the compiler reports an error),
+/// HN_ERR_IO.
 HN_MUST_CHECK hn_status hn_native_build(const hn_native_builder *b, const char *text, size_t n,
                                         double *seconds, hn_diag *diag);
 #endif

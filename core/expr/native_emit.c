@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "expr/native_emit.h"
 
+#include "expr/tape_interpret.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-// One function up to WHOLE instructions (about 0.3 s of gcc), pieces of PIECE beyond: 3 s in place of
-// 30 for 25,000 instructions, at the same speed of the code.
+// One function up to WHOLE instructions (about 0.3 s of gcc), pieces of PIECE beyond: 3 s in place
+// of 30 for 25,000 instructions, at the same speed of the code.
 enum { WHOLE = 1500, PIECE = 500 };
 
 typedef struct emitter {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tape at work: evaluation and what can be read from it.
-#define _GNU_SOURCE // sincos
-
 #include "expr/tape_internal.h"
 
 #include "base/strbuf.h"
 #include "expr/native.h"
+#include "expr/tape_interpret.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,76 +32,7 @@ void hn_tape_prepare(const hn_tape *tape, double *work) {
     memcpy(work + tape->info.n_inputs, tape->constants, (size_t)tape->n_constants * sizeof *work);
 }
 
-hn_tape_code_info hn_tape_get_code_info(int code) {
-    static const hn_tape_code_info table[TAPE_SINCOS] = {
-#define TAPE_ROW(name, key, n, expression) {#expression, key, n},
-        HN_TAPE_OPS(TAPE_ROW)
-#undef TAPE_ROW
-    };
-    return code >= 0 && code < TAPE_SINCOS ? table[code] : (hn_tape_code_info){0};
-}
-
 // ---- evaluation ----
-
-// operands of the instruction at `i`
-#define a (w[i->v[1]])
-#define b (w[i->v[2]])
-#define c (w[i->v[3]])
-#define d (w[i->v[4]])
-#define e (w[i->v[5]])
-#define f (w[i->v[6]])
-
-/// One jump per instruction, from the end of the one before, so that the processor learns each
-/// one's successor.
-static void run(const hn_tape_instruction *i, double *w) {
-#define LABEL(code, key, n, expression) &&run_##code,
-#define NEXT \
-    i++;     \
-    __extension__({ goto *label[i->code]; })
-#define RUN(code, key, n, expression)       \
-    run_##code : w[i->v[0]] = (expression); \
-    NEXT;
-#define TAPE_ARITHMETIC(X) HN_TAPE_OPS_BUT_END(X)
-
-    // one label per instruction, in the order of the codes
-    __extension__ static const void *const label[TAPE_CODES] = {
-        HN_TAPE_OPS(LABEL) && run_sincos, &&run_sin, &&run_cos, &&run_call1, &&run_call2};
-    __extension__({ goto *label[i->code]; });
-
-    TAPE_ARITHMETIC(RUN)
-run_sincos:
-    sincos(a, &w[i->v[0]], &w[i->v[2]]);
-    NEXT;
-run_sin:
-    w[i->v[0]] = sin(a);
-    NEXT;
-run_cos:
-    w[i->v[0]] = cos(a);
-    NEXT;
-run_call1 : {
-    const double x = a;
-    w[i->v[0]] = hn_op_get_info((hn_op)i->v[6])->value(&x);
-    NEXT;
-}
-run_call2 : {
-    const double x[2] = {a, b};
-    w[i->v[0]] = hn_op_get_info((hn_op)i->v[6])->value(x);
-    NEXT;
-}
-run_TAPE_END:
-    return;
-#undef LABEL
-#undef NEXT
-#undef RUN
-#undef TAPE_ARITHMETIC
-}
-
-#undef a
-#undef b
-#undef c
-#undef d
-#undef e
-#undef f
 
 void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *work) {
     if (tape->info.n_inputs > 0) {
@@ -115,8 +44,8 @@ void hn_tape_eval(const hn_tape *tape, const double *in, double *out, double *wo
     }
 }
 
-/// Counts a run of the interpreter; the queue is asked at two numbers of runs. A load and a store in
-/// place of an atomic increment: threads that share a tape may lose some, which only delays it.
+/// Counts a run of the interpreter; the queue is asked at two numbers of runs. A load and a store
+/// in place of an atomic increment: threads that share a tape may lose some, which only delays it.
 static void count_run(const hn_tape *tape) {
     hn_native_state *s = tape->native;
     const int runs = 1 + atomic_load_explicit(&s->runs, memory_order_relaxed);
@@ -138,7 +67,7 @@ void hn_tape_run(const hn_tape *tape, double *work) {
         }
         count_run(tape);
     }
-    run(tape->code, work);
+    hn_tape_interpret(tape, work);
 }
 
 const uint16_t *hn_tape_output_slots(const hn_tape *tape) {
@@ -161,12 +90,6 @@ static const char *name_of(const hn_tape_instruction *i) {
     default:
         return hn_tape_get_code_info(i->code).text;
     }
-}
-
-int hn_tape_operands(const hn_tape_instruction *i) {
-    return i->code == TAPE_CALL2    ? 2
-           : i->code >= TAPE_SINCOS ? 1
-                                    : hn_tape_get_code_info(i->code).n_operands;
 }
 
 /// "in 3" for an input, the number for a constant, "s12" for a slot.

@@ -4,6 +4,7 @@
 #include "expr/tape_internal.h"
 
 #include "expr/native.h"
+#include "expr/tape_interpret.h"
 #include "expr/tape_lower.h"
 
 #include <stdlib.h>

@@ -82,15 +82,4 @@ struct hn_tape {
     struct hn_native_state *native; ///< NULL: the interpreter alone, see native.h
 };
 
-typedef struct hn_tape_code_info {
-    const char *text; ///< what is stored, in terms of a .. f
-    int key, n_operands;
-} hn_tape_code_info;
-
-/// Operands that an instruction reads: v[1] and those behind it.
-int hn_tape_operands(const hn_tape_instruction *i);
-
-/// The row of an instruction; for TAPE_SINCOS and the calls `text` is NULL.
-hn_tape_code_info hn_tape_get_code_info(int code);
-
 #endif
