@@ -106,13 +106,13 @@ void hn_model_caption(const hn_model *model, char *out, size_t size) {
     double lengths[4];
     const char *kind =
         four_bar_lengths(hn_model_scene(model), lengths) ? four_bar_kind(lengths) : NULL;
-    int n = snprintf(out, size, "%s%s%d freedom%s", kind ? kind : "", kind ? ", " : "", a->freedoms,
-                     a->freedoms == 1 ? "" : "s");
+    int n = snprintf(out, size, "%s%s%d degree%s of freedom", kind ? kind : "", kind ? ", " : "",
+                     a->freedoms, a->freedoms == 1 ? "" : "s");
     if (info.nc > 0 && n > 0 && (size_t)n < size) {
         n += snprintf(out + n, size - (size_t)n, " (%d \xe2\x88\x92 %d)", info.nv, a->rank);
     }
     if (a->redundant > 0 && n > 0 && (size_t)n < size) {
-        snprintf(out + n, size - (size_t)n, ", %d redundant row%s", a->redundant,
+        snprintf(out + n, size - (size_t)n, ", %d redundant constraint%s", a->redundant,
                  a->redundant == 1 ? "" : "s");
     }
 }

@@ -197,7 +197,7 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
     }
     fprintf(
         stderr,
-        "holonom: assembled with a gap of %.2g: %d freedoms; of the rows that close loops %d are "
+        "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close loops %d are "
         "redundant, and %d are 0 whatever the pose\n",
         a->gap, a->freedoms, a->redundant, hn_system_get_info(hn_model_system(model)).rows_dropped);
 }
