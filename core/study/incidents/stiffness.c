@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/incidents/stiffness.h"
 
+#include "study/incidents/failure.h"
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
@@ -56,7 +57,23 @@ static void check_restarts(hn_watch *w) {
                        restarts, steps, stepper->name, w->run->h);
 }
 
+// steps that shrink without advancing the motion, whatever holds them
+static void check_progress(hn_watch *w) {
+    const hn_progress *p = &w->run->progress;
+    if (!(p->needed > HN_PROGRESS_MANY)) {
+        return;
+    }
+    char cause[160];
+    hn_progress_describe(w->run, cause, sizeof cause);
+    hn_incident_report(w, &hn_incident_step_underflow, "steps needed", p->needed,
+                       (double)w->run->max_steps,
+                       "the steps collapse: %lld trial steps advanced the motion by %.2g s, and "
+                       "%.2g more are needed to t = %.6g s; %s",
+                       p->tried, p->advance, p->needed, w->run->t_asked, cause);
+}
+
 void hn_stiffness_check_step(hn_watch *w) {
+    check_progress(w);
     check_stiff(w);
     if (w->run->corrected) {
         check_restarts(w);

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a method ends, and why: charts that change, driven mechanisms, steps that collapse."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
+import driver  # noqa: E402
+
+# links for which the crank turns back, so that each of its extremes is a dead point of its own angle
+TURNING_BACK = ["--set", "l2=0.859496", "--set", "l3=0.625323"]
+
+
+def run(scene, method, *words):
+    call = [driver.PROGRAM, "run", scene, "--method", method, "--json", *words]
+    done = subprocess.run(call, capture_output=True, timeout=60 * driver.SLOW)
+    document = json.loads(done.stdout)
+    return {**document, **document.get("samples", {})}
+
+
+def leg(folder):
+    """A walking leg of seven links whose crank turns at 6 rad/s: no degree of freedom is left (T. Jansen's lengths)."""
+    a, b, c, d, e, f, g, i_, j, k, l, m = (0.38, 0.415, 0.393, 0.401, 0.558, 0.394, 0.367, 0.49, 0.5, 0.619, 0.078, 0.15)
+
+    def bar(name, length):
+        return {"name": name, "mass": 1, "com": [length / 2, 0, 0], "inertia": {"zz": length * length / 12}}
+
+    def pin(name, parent, at, child, child_at, angle, **more):
+        return {"name": name, "type": "revolute", "parent": {"body": parent, "at": at}, "child": {"body": child, "at": child_at},
+                "coordinate": angle, "rate": "w_" + angle, **more}
+
+    # the third corner of the upper triangle, from its sides b, d and e
+    x = (b * b + d * d - e * e) / (2 * b)
+    corner = [x, math.sqrt(d * d - x * x), 0]
+    start = {"th1": 0, "thj": 2.3255, "thu": 1.7262, "thk": 3.7566, "thc": 4.6019, "thf": 2.9924, "thl": -1.2686}
+    scene = {
+        "holonom": 1, "name": "leg", "title": "leg", "gravity": [0, -9.81, 0],
+        "bodies": [bar("crank", m), bar("j", j), bar("upper", b), bar("k", k), bar("c", c), bar("f", f), bar("lower", g)],
+        "joints": [
+            pin("O1", "ground", [0, 0, 0], "crank", [0, 0, 0], "th1", actuated=True),
+            pin("A1", "crank", [m, 0, 0], "j", [0, 0, 0], "thj"), pin("C1", "ground", [-a, -l, 0], "upper", [0, 0, 0], "thu"),
+            pin("A2", "crank", [m, 0, 0], "k", [0, 0, 0], "thk"), pin("C2", "ground", [-a, -l, 0], "c", [0, 0, 0], "thc"),
+            pin("D", "upper", corner, "f", [0, 0, 0], "thf"), pin("G1", "c", [c, 0, 0], "lower", [0, 0, 0], "thl"),
+            pin("B", "j", [j, 0, 0], "upper", [b, 0, 0], "b1", cut=True), pin("G", "k", [k, 0, 0], "c", [c, 0, 0], "g1", cut=True),
+            pin("F", "f", [f, 0, 0], "lower", [g, 0, 0], "f1", cut=True)],
+        "constraints": [{"name": "drive", "motion": {"joint": "O1", "value": "6*t"}}],
+        "start": {"positions": {name: {"guess": value} for name, value in start.items()}, "rates": {"th1": {"guess": 6}}},
+        "duration": 5, "step": 0.001, "methods": ["partitioning@dop853"]}
+    path = os.path.join(folder, "leg.json")
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(scene, file)
+    return path
+
+
+class Charts(unittest.TestCase):
+    def test_the_end_of_a_chart_is_not_the_end_of_the_motion(self):
+        reference = run("four-bar", "projection@dop853:rtol=1e-11", "--time", "1.4", "--at", "1.4", *TURNING_BACK)
+        for formulation in ("nullspace", "partitioning"):
+            # the dead point of the crank is passed at 0.49 s, where a single chart ends
+            coarse = run("four-bar", formulation + "@rk4:h=0.01", "--time", "0.6", "--at", "0.6", *TURNING_BACK)
+            self.assertEqual((coarse["status"], coarse["t"][-1]), ("ok", 0.6), formulation)
+            fine = run("four-bar", formulation + "@dop853:rtol=1e-9", "--time", "1.4", "--at", "1.4", *TURNING_BACK)
+            self.assertEqual(fine["status"], "ok", formulation)
+            for q, exact in zip(fine["q"][-1], reference["q"][-1]):
+                # 1e-5: a rate of 300 /s beside the dead point takes 1e-9 of the tolerance up to 1e-6
+                self.assertAlmostEqual(q, exact, delta=1e-5, msg=formulation)
+
+    def test_a_pivot_of_a_stale_order_is_no_dead_point(self):
+        for formulation in ("nullspace", "partitioning", "reduced"):
+            for h in ("0.01", "0.001"):
+                self.assertEqual(run("quick-return", f"{formulation}@rk4:h={h}", "--time", "5", "--at", "5")["status"], "ok", formulation)
+
+    def test_reduced_ends_at_the_dead_point_of_its_coordinate_and_names_another(self):
+        document = run("four-bar", "reduced:coordinate=1@rk4:h=0.01", "--time", "2", "--at", "2", *TURNING_BACK)
+        self.assertEqual(document["status"], "chart-lost")
+        self.assertIn("coordinate=3 (th3) passes this configuration", document["reason"])
+        self.assertEqual(run("four-bar", "reduced:coordinate=3@rk4:h=0.01", "--time", "0.6", "--at", "0.6", *TURNING_BACK)["status"], "ok")
+
+
+class DrivenMechanisms(unittest.TestCase):
+    def test_without_degrees_of_freedom_the_drive_bounds_the_step_and_the_branch_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = leg(folder)
+            reference = run(scene, "partitioning@rk4:h=1e-3", "--time", "5", "--at", "5")
+            self.assertEqual(reference["status"], "ok")
+            for method in ("partitioning@dop853", "partitioning@dopri5", "reduced@dopri5", "reduced@dop853", "nullspace-tangent@dopri5",
+                           "partitioning@rk4:h=0.5"):
+                document = run(scene, method, "--time", "5", "--at", "5")
+                self.assertEqual(document["status"], "ok", method)
+                self.assertNotIn("branch-flip", [i["code"] for i in document["incidents"]], method)
+                for q, exact in zip(document["q"][-1], reference["q"][-1]):
+                    # 1e-9: positions are closed to rounding, 30 rad of the crank included
+                    self.assertAlmostEqual(q, exact, delta=1e-9, msg=method)
+                if "rk4" not in method:
+                    # 4.8 turns in steps of at most a quarter of a radian of the fastest link
+                    self.assertGreater(document["cost"]["steps"], 100, method)
+
+
+class CollapsingSteps(unittest.TestCase):
+    def test_more_steps_than_are_allowed_are_refused_before_the_first(self):
+        document = run("four-bar", "projection@rk4:h=1e-12", "--time", "1", "--at", "1")
+        self.assertEqual((document["status"], document["cost"]["steps"]), ("budget", 0))
+        self.assertIn("needs 1e+12 steps", document["reason"])
+
+    def test_steps_that_collapse_end_within_a_second_with_the_cause(self):
+        for scene, method in (("fb0", "index3@ida:rtol=1e-8,h0=-1"), ("four-bar", "index3@ida:rtol=1e-8,loosen=1")):
+            document = run(scene, method, "--time", "1", "--at", "1")
+            self.assertEqual(document["status"], "step-underflow", method)
+            self.assertIn("step-underflow", [i["code"] for i in document["incidents"]], method)
+            self.assertIn("the steps collapsed", document["reason"])
+            self.assertLess(document["cost"]["cpu_seconds"], 1 * driver.SLOW, method)
+
+
+if __name__ == "__main__":
+    unittest.main()
