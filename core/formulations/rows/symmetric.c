@@ -183,8 +183,12 @@ static hn_status land(symmetric *s, double t1, double *y, double *q1, double *wo
     move(s, y, s->N1_mu, s->push);
     memcpy(q1, y, (size_t)nq * sizeof *q1);
     hn_eval_run(s->terms, t1, y, NULL);
-    const double unit_q = ROUNDING * (1 + hn_norm_max(nq, y)) * s->length;
-    const double unit_v = ROUNDING * (1 + s->length) * hn_norm_max(nv, y + nq) + DBL_MIN;
+
+    // an angle of many turns is known to fewer digits, and so are the rows of J that depend on it
+    const double largest = hn_norm_max(nq, y);
+    const double unit_q = ROUNDING * (1 + largest) * s->length;
+    const double unit_v =
+        ROUNDING * (1 + s->length) * fmax(1, largest) * hn_norm_max(nv, y + nq) + DBL_MIN;
     *worst = 0;
     for (int k = 0; k < nc; k++) {
         s->rate[k] = hn_dot(nv, s->J + (size_t)k * nv, y + nq) + s->phi_t[k];
