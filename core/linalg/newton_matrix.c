@@ -2,11 +2,13 @@
 #include "linalg/newton_matrix.h"
 
 #include "linalg/compressed.h"
+#include "linalg/curtis_reid.h"
 #include "linalg/dense.h"
 #include "linalg/square.h"
 
 #include <suitesparse/klu.h>
 
+#include <math.h>
 #include <string.h>
 
 static const double GROWTH = 1e-8; // of entries against factors, below which pivots are chosen anew
@@ -31,6 +33,12 @@ struct hn_newton_matrix {
     klu_common common;
     klu_symbolic *symbolic;
     klu_numeric *numeric;
+    // scales of a matrix that looks singular in its own units, see curtis_reid.h
+    int is_scaled;
+    double *kept;            // the entries of a dense matrix, which its factor overwrites
+    double *by_row, *by_col; // exponents of two
+    double *sum;
+    int *count;
     double factor_ops, solve_ops;
     long long nnz;
 };
@@ -57,6 +65,16 @@ static int allocate_sparse(hn_newton_matrix *m, hn_arena *arena, int entries_max
     return good && m->values && hn_compressed_init(&m->places, arena, m->n_max, entries_max);
 }
 
+static int allocate_scales(hn_newton_matrix *m, hn_arena *arena) {
+    const size_t n = (size_t)m->n_max;
+    m->by_row = hn_arena_doubles(arena, n);
+    m->by_col = hn_arena_doubles(arena, n);
+    m->sum = hn_arena_doubles(arena, n);
+    m->count = hn_arena_ints(arena, n);
+    m->kept = m->sparse ? NULL : hn_arena_doubles(arena, (size_t)m->parts * n * n);
+    return m->by_row && m->by_col && m->sum && m->count && (m->sparse || m->kept);
+}
+
 hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field, int sparse,
                                           int n_max, int entries_max) {
     hn_newton_matrix *m = hn_arena_get(arena, sizeof *m);
@@ -65,7 +83,7 @@ hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field
     }
     *m = (hn_newton_matrix){.parts = field == HN_COMPLEX ? 2 : 1, .n_max = n_max, .sparse = sparse};
     const int good = sparse ? allocate_sparse(m, arena, entries_max) : allocate_dense(m, arena);
-    return good ? m : NULL;
+    return good && allocate_scales(m, arena) ? m : NULL;
 }
 
 static void free_numeric(hn_newton_matrix *m) {
@@ -191,8 +209,7 @@ static int is_singular(hn_newton_matrix *m) {
     return !good || !(m->common.rcond > SINGULAR);
 }
 
-static hn_status factor_sparse(hn_newton_matrix *m) {
-    const int known = hn_compressed_end(&m->places, m->parts, m->values);
+static hn_status factor_sparse(hn_newton_matrix *m, int known) {
     if (!hn_all_finite(m->parts * m->places.start[m->n], m->values)) {
         return HN_ERR_DIVERGED;
     }
@@ -213,18 +230,59 @@ static hn_status factor_sparse(hn_newton_matrix *m) {
     return is_singular(m) ? HN_ERR_SINGULAR : HN_OK;
 }
 
+static double *entries_of_dense(hn_newton_matrix *m) {
+    return m->parts == 1 ? m->square.lu : (double *)(void *)m->dense;
+}
+
+static hn_status factor_as_is(hn_newton_matrix *m) {
+    if (m->sparse) {
+        return factor_sparse(m, hn_compressed_end(&m->places, m->parts, m->values));
+    }
+    const size_t size = (size_t)m->parts * (size_t)m->n * (size_t)m->n;
+    memcpy(m->kept, entries_of_dense(m), size * sizeof *m->kept);
+    return factor_dense(m);
+}
+
+// The same matrix in units in which its entries are of size 1. In tiny or huge units a regular
+// saddle matrix has masses that look like rounding beside the constraints.
+static hn_status factor_scaled(hn_newton_matrix *m) {
+    const int *start = m->sparse ? m->places.start : NULL;
+    double *values = m->sparse ? m->values : entries_of_dense(m);
+    const double *from = m->sparse ? m->values : m->kept;
+    hn_curtis_reid(m->n, m->parts, start, m->places.row, from, m->by_row, m->by_col, m->sum,
+                   m->count);
+    for (int j = 0; j < m->n; j++) {
+        const int first = start ? start[j] : 0, end = start ? start[j + 1] : m->n;
+        for (int k = first; k < end; k++) {
+            const int i = start ? m->places.row[k] : k;
+            const size_t at = start ? (size_t)k : (size_t)i * (size_t)m->n + (size_t)j;
+            for (int part = 0; part < m->parts; part++) {
+                const size_t e = at * (size_t)m->parts + (size_t)part;
+                values[e] = ldexp(from[e], (int)(m->by_row[i] + m->by_col[j]));
+            }
+        }
+    }
+    m->is_scaled = 1;
+    return m->sparse ? factor_sparse(m, 1) : factor_dense(m);
+}
+
+static void scale(const hn_newton_matrix *m, const double *exponents, double *x) {
+    for (int i = 0; i < m->parts * m->n; i++) {
+        x[i] = ldexp(x[i], (int)exponents[i / m->parts]);
+    }
+}
+
 hn_status hn_newton_matrix_factor(hn_newton_matrix *m) {
     if (m->n == 0) {
         return HN_OK;
     }
-    return m->sparse ? factor_sparse(m) : factor_dense(m);
+    m->is_scaled = 0;
+    const hn_status status = factor_as_is(m);
+    return status == HN_ERR_SINGULAR ? factor_scaled(m) : status;
 }
 
-void hn_newton_matrix_solve(hn_newton_matrix *m, double *x) {
+static void solve_factored(hn_newton_matrix *m, double *x) {
     const double n = m->n;
-    if (m->n == 0) {
-        return;
-    }
     if (!m->sparse) {
         m->ops += (m->parts == 1 ? 1 : COMPLEX_WEIGHT) * 2 * n * n;
         if (m->parts == 1) {
@@ -239,6 +297,19 @@ void hn_newton_matrix_solve(hn_newton_matrix *m, double *x) {
         klu_solve(m->symbolic, m->numeric, m->n, 1, x, &m->common);
     } else {
         klu_z_solve(m->symbolic, m->numeric, m->n, 1, x, &m->common);
+    }
+}
+
+void hn_newton_matrix_solve(hn_newton_matrix *m, double *x) {
+    if (m->n == 0) {
+        return;
+    }
+    if (m->is_scaled) {
+        scale(m, m->by_row, x);
+    }
+    solve_factored(m, x);
+    if (m->is_scaled) {
+        scale(m, m->by_col, x);
     }
 }
 
