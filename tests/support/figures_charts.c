@@ -90,7 +90,7 @@ void hn_figures_nullspace(hn_figures *f) {
          HN_FIGURE_ERROR,
          {.what = "largest error of an angle, basis not tracked [rad]",
           .printed = "4.3",
-          .instead = "3.1",
+          .instead = "3.3",
           .note = "where the basis flips follows from its factorisation, and so does the way the "
                   "motion turns round"}},
         {"nullspace:basis=orthonormal@rk4:h=1e-3",

@@ -5,6 +5,7 @@
 
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "formulations/ground/unit_scales.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -137,24 +138,9 @@ static void sort_choice(hn_chart *chart) {
     }
 }
 
-// What a coordinate counts as one, so that columns can be compared: a radian, the characteristic
-// length of the mechanism, and where a coordinate is neither, 1 / sqrt(M_jj). Masses would be no
-// measure for the others: of a light crank and a heavy slider the slider would be kept up to the
-// very neighbourhood of its dead points, where the crank follows from it a hundred times as fast.
 static void scale_columns(hn_chart *chart, double t, const double *q, const double *no_speed) {
-    const hn_scene *scene = hn_system_scene(chart->sys);
-    const int n_user = hn_system_get_info(chart->sys).n_user;
     hn_eval_run(chart->full, t, q, no_speed);
-    const double *M = hn_eval_get(chart->full, HN_TERM_M);
-    for (int j = 0; j < chart->nv; j++) {
-        const hn_unit_kind kind =
-            j < n_user ? scene->coordinates[hn_system_user_coordinate(chart->sys, j)].kind
-                       : HN_OTHER;
-        const double mass = M[j * chart->nv + j];
-        // a massless coordinate keeps its own unit
-        const double by_mass = mass > 0 ? 1 / sqrt(mass) : 1;
-        chart->scale[j] = kind == HN_ANGLE ? 1 : kind == HN_LENGTH ? chart->length : by_mass;
-    }
+    hn_unit_scales(chart->sys, hn_eval_get(chart->full, HN_TERM_M), chart->scale);
 }
 
 // 1 when all speeds of balls are dependent, or may be independent

@@ -4,6 +4,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "formulations/ground/unit_scales.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -99,11 +100,7 @@ static double smallest_pivot(const hn_qr *qr) {
 
 static void measure(hn_tspace *ts, double t, const double *q) {
     hn_eval_run(ts->mass, t, q, NULL);
-    const double *M = hn_eval_get(ts->mass, HN_TERM_M);
-    for (int j = 0; j < ts->nv; j++) {
-        const double mass = M[(size_t)j * (size_t)ts->nv + (size_t)j];
-        ts->new_scale[j] = mass > 0 ? 1 / sqrt(mass) : 1; // a massless one keeps its own unit
-    }
+    hn_unit_scales(ts->sys, hn_eval_get(ts->mass, HN_TERM_M), ts->new_scale);
 }
 
 // QR of W^1/2 J' at (t, q)

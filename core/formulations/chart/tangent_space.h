@@ -2,16 +2,16 @@
 #ifndef HN_FORMULATIONS_TANGENT_SPACE_H
 #define HN_FORMULATIONS_TANGENT_SPACE_H
 // The tangent space of the closed mechanism at one state, with an orthonormal basis, and what lies
-// near it. At the state (t0, q0), the base, with W^-1 = diag(M_jj) for measure (metres and radians
-// become comparable):
+// near it. At the state (t0, q0), the base, with W^1/2 = diag(scale_j), unit_scales.h, for measure
+// (metres and radians become comparable):
 //
 //     J N0 = 0,   N0' W^-1 N0 = I,   Y0' W^-1 Y0 = I,   N0' W^-1 Y0 = 0                       (1)
 //
 // by pivoted QR of W^1/2 J'. Elsewhere speeds are written with the basis that keeps its part along
 // N0:
 //
-//  v = N u + s,   N = N0 - Y0 (J Y0)^-1 J N0,   s = -Y0 (J Y0)^-1 phi_t,  so  u = N0' W^-1 v  (2)
-//  a = N u' + c,  c = -Y0 (J Y0)^-1 gamma,      (N' M N) u' = N' (f - M c)                 (3)
+// v = N u + s,   N = N0 - Y0 (J Y0)^-1 J N0,   s = -Y0 (J Y0)^-1 phi_t,  so  u = N0' W^-1 v  (2) a
+// = N u' + c,  c = -Y0 (J Y0)^-1 gamma,      (N' M N) u' = N' (f - M c)                 (3)
 //
 // At the base N is orthonormal and turns by no more than it must, N0' W^-1 N' = 0: parallel
 // transport. Aligning an orthonormal basis at each stage instead, by Procrustes, differs from (2)

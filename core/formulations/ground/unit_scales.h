@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_FORMULATIONS_UNIT_SCALES_H
+#define HN_FORMULATIONS_UNIT_SCALES_H
+// What counts as one for each velocity, so that metres and radians can be compared: a radian, the
+// characteristic length of the mechanism, and 1 / sqrt(M_jj) for a coordinate that is neither. The
+// same mechanism in other units of length, mass and time then has the same numbers.
+//
+// Masses would be no measure for the others: of a light crank and a heavy slider the slider would
+// be kept as independent coordinate up to the very neighbourhood of its dead points, where the
+// crank follows from it a hundred times as fast.
+
+#include "dynamics/compile/system.h"
+
+/// scale (nv) for a system with mass matrix M (nv x nv, row-major) at the present configuration.
+void hn_unit_scales(const hn_system *sys, const double *M, double *scale);
+
+#endif
