@@ -58,13 +58,13 @@ static void check_restarts(hn_watch *w) {
 }
 
 // steps that shrink without advancing the motion, whatever holds them
-static void check_progress(hn_watch *w) {
-    const hn_progress *p = &w->run->progress;
-    if (!(p->needed > HN_PROGRESS_MANY)) {
+static void check_headway(hn_watch *w) {
+    const hn_headway *p = &w->run->headway;
+    if (!(p->needed > HN_HEADWAY_MANY)) {
         return;
     }
     char cause[160];
-    hn_progress_describe(w->run, cause, sizeof cause);
+    hn_headway_describe(w->run, cause, sizeof cause);
     hn_incident_report(w, &hn_incident_step_underflow, "steps needed", p->needed,
                        (double)w->run->max_steps,
                        "the steps collapse: %lld trial steps advanced the motion by %.2g s, and "
@@ -73,7 +73,7 @@ static void check_progress(hn_watch *w) {
 }
 
 void hn_stiffness_check_step(hn_watch *w) {
-    check_progress(w);
+    check_headway(w);
     check_stiff(w);
     if (w->run->corrected) {
         check_restarts(w);

@@ -110,7 +110,7 @@ static hn_status step_and_check(hn_run *run, bool *ticking) {
         *ticking = true;
     }
     HN_TRY(hn_stepping_step(&run->stepping));
-    const hn_status pace = hn_progress_step(&run->stepping);
+    const hn_status pace = hn_headway_step(&run->stepping);
     hn_watch_step(&run->watch);
     HN_TRY(pace);
     if (run->watch.every == 0 || ++run->since < run->watch.every) {
@@ -132,7 +132,7 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
     }
     run->state = HN_RUN_RUNNING;
     s->t_asked = t_end;
-    if (hn_progress_check_budget(s, t_end) != HN_OK) {
+    if (hn_headway_check_budget(s, t_end) != HN_OK) {
         return fail(run, HN_ERR_BUDGET);
     }
     do {

@@ -320,7 +320,7 @@ void hn_stepping_clear(hn_stepping *s) {
     s->steps = s->rejected = s->grid = 0;
     s->h = 0;
     s->reason[0] = '\0';
-    s->progress = (hn_progress){.t = s->t0};
+    s->headway = (hn_headway){.t = s->t0};
     s->control = (hn_step_control){.last = 1};
     s->h_next = s->adaptive ? 0 : hn_method_option(&s->spec, "h", 0);
     s->now.t = s->start.t = s->t0;

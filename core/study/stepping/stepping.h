@@ -10,7 +10,7 @@
 
 #include "integrators/step/control.h"
 #include "study/stepping/engine.h"
-#include "study/stepping/progress.h"
+#include "study/stepping/headway.h"
 
 /// A grid point this near to the end asked for counts as the end: share of a step.
 #define HN_STEPPING_LANDING 1e-9
@@ -45,7 +45,7 @@ typedef struct hn_stepping {
     bool iterating;   ///< the last of them was an iteration that did not converge
     hn_step_control control;
     long long steps, rejected;
-    hn_progress progress;
+    hn_headway headway;
     char reason[256]; ///< why the last step failed where that needs words of its own, else ""
     double *work;     ///< nq + nv
 } hn_stepping;

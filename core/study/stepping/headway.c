@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/stepping/progress.h"
+#include "study/stepping/headway.h"
 
 #include "study/stepping/stepping.h"
 
@@ -10,7 +10,7 @@
 // no accident of one corner of the motion.
 enum { WINDOW = 1000, WINDOWS_TO_END = 4 };
 
-hn_status hn_progress_check_budget(hn_stepping *s, double t_end) {
+hn_status hn_headway_check_budget(hn_stepping *s, double t_end) {
     const double h = s->h_next;
     const double allowed = (double)(s->max_steps - s->steps);
     if (s->adaptive || !(h > 0) || (t_end - s->now.t) / h <= allowed + 1) {
@@ -23,8 +23,8 @@ hn_status hn_progress_check_budget(hn_stepping *s, double t_end) {
     return HN_ERR_BUDGET;
 }
 
-void hn_progress_describe(const hn_stepping *s, char *out, size_t size) {
-    const hn_progress *p = &s->progress;
+void hn_headway_describe(const hn_stepping *s, char *out, size_t size) {
+    const hn_headway *p = &s->headway;
     const char *why = hn_engine_why(&s->engine);
     if (why && why[0]) {
         snprintf(out, size, "%s", why);
@@ -36,8 +36,8 @@ void hn_progress_describe(const hn_stepping *s, char *out, size_t size) {
     }
 }
 
-hn_status hn_progress_step(hn_stepping *s) {
-    hn_progress *p = &s->progress;
+hn_status hn_headway_step(hn_stepping *s) {
+    hn_headway *p = &s->headway;
     const long long attempts = s->steps + s->rejected;
     if (!s->adaptive || attempts - p->attempts < WINDOW) {
         return HN_OK;
@@ -59,7 +59,7 @@ hn_status hn_progress_step(hn_stepping *s) {
         return HN_OK;
     }
     char cause[160];
-    hn_progress_describe(s, cause, sizeof cause);
+    hn_headway_describe(s, cause, sizeof cause);
     snprintf(s->reason, sizeof s->reason,
              "the steps collapsed at t = %.6g s: %.2g s in %lld trial steps; %s", s->now.t,
              p->advance, p->tried, cause);
