@@ -251,6 +251,8 @@ help:
 	@echo 'make orders       orders of every formulation with every fixed-step integrator, beside theory, kept in tests/orders/results.txt'
 	@echo 'make every-method every shipped scene by every method: tests/tables/every_method.csv, and a summary'
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
+	@echo 'make similarity   similar mechanisms of 1 nm to 1000 km by every method: tests/tables/similarity.txt'
+	@echo 'make long-runs    10,000 s of a turning crank: tests/tables/long_runs.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
@@ -262,7 +264,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings extreme figures references report pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -331,6 +333,16 @@ rings: build/.packages-test
 	@cp build/ring.txt tests/tables/ring.txt && cat tests/tables/ring.txt
 
 # a quarter of an hour on one processor, most of it in runs of ten million steps
+similarity: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/tables/similarity.py $(PROGRAM) >build/similarity.txt && cp build/similarity.txt tests/tables/similarity.txt
+	@cat tests/tables/similarity.txt
+
+long-runs: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/tables/long_runs.py $(PROGRAM) >build/long_runs.txt && cp build/long_runs.txt tests/tables/long_runs.txt
+	@cat tests/tables/long_runs.txt
+
 figures: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(TABLES)
 	@$(OUT)/tests/tables/figures >build/figures.txt || { cat build/figures.txt; exit 1; }

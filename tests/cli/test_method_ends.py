@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a method ends, and why: charts that change, driven mechanisms, steps that collapse."""
+"""Where a method ends, and why: charts that change, driven mechanisms, steps that collapse; one mechanism in other units."""
 
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -11,6 +12,9 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "tables"))
+import similarity  # noqa: E402
 
 # links for which the crank turns back, so that each of its extremes is a dead point of its own angle
 TURNING_BACK = ["--set", "l2=0.859496", "--set", "l3=0.625323"]
@@ -99,6 +103,71 @@ class DrivenMechanisms(unittest.TestCase):
                 if "rk4" not in method:
                     # 4.8 turns in steps of at most a quarter of a radian of the fastest link
                     self.assertGreater(document["cost"]["steps"], 100, method)
+
+
+class OneMechanismInOtherUnits(unittest.TestCase):
+    def test_similar_mechanisms_have_the_same_angles_by_every_method(self):
+        # 1e-12: rounding, in any units; the penalty multiplies it by its weight, an adaptive step follows its tolerance
+        bounds = {"penalty": 1e-7, "rtol": 1e-5, "ali3p": 1e-10}
+        with tempfile.TemporaryDirectory() as folder:
+            for scene in ("four-bar", "slider-crank"):
+                for method in ("projection@rk4", "nullspace-tangent@rk4", "penalty:omega={w}@rk4", "symmetric-projection@midpoint",
+                               "partitioning@gauss2", "index2@hem4", "ggl@radau5", "index3@genalpha", "index3@rattle", "ali3p@trapezoidal",
+                               "nullspace-tangent@dopri5:rtol=1e-9", "index1@ida:rtol=1e-8"):
+                    bound = next((b for word, b in bounds.items() if word in method), 1e-12)
+                    states = []
+                    for s in (1, 1e-9, 1e-4, 1e6):
+                        path = similarity.scaled(scene, s, folder)
+                        status, q, names = similarity.run(driver.PROGRAM, path, similarity.spelled(method, s, scene), 0.2 * math.sqrt(s))
+                        self.assertEqual(status, "ok", (scene, method, s))
+                        states.append([x / s if similarity.is_length(n) else x for n, x in zip(names, q)])
+                    for state in states[1:]:
+                        self.assertLess(max(abs(a - b) for a, b in zip(state, states[0])), bound, (scene, method))
+
+    def test_two_thousand_turns_ahead_is_the_same_mechanism(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(similarity.LESSONS, "01-closed-loops", "scenes", "four-bar.json"), encoding="utf-8") as file:
+                scene = json.load(file)
+            scene["parameters"]["th1_0"].update({"min": -1e9, "max": 1e9})
+            path = os.path.join(folder, "four-bar.json")
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(scene, file)
+            turns = 2000 * 2 * math.pi
+            for method in ("symmetric-projection@midpoint:h=0.002", "symmetric-projection@gauss2:h=0.002", "projection@rk4:h=0.002",
+                           "index3@rattle:h=0.002", "partitioning@gauss2:h=0.002", "ggl@radau5:h=0.002"):
+                here, there = (run(path, method, "--time", "3", "--at", "3", "--set", f"th1_0={1 + t!r}") for t in (0, turns))
+                self.assertEqual((here["status"], there["status"]), ("ok", "ok"), method)
+                # 1e-7: an angle of 12,600 rad is known to 2e-12, which the motion of three seconds takes up
+                self.assertAlmostEqual(there["q"][-1][2], here["q"][-1][2], delta=1e-7, msg=method)
+
+
+class Tolerances(unittest.TestCase):
+    CART_AND_POLE = {
+        "holonom": 1, "name": "cart", "title": "A pole on a cart", "gravity": [0, -9.81, 0],
+        "bodies": [{"name": "cart", "mass": 1}, {"name": "pole", "mass": 0.3, "com": [0.5, 0, 0], "inertia": {"zz": 0.025}}],
+        "joints": [{"name": "rail", "type": "prismatic", "axis": [1, 0, 0], "parent": {"body": "ground"}, "child": {"body": "cart"},
+                    "coordinate": "x", "rate": "vx"},
+                   {"name": "pin", "type": "revolute", "parent": {"body": "cart"}, "child": {"body": "pole"}, "coordinate": "th",
+                    "rate": "w"}],
+        "start": {"positions": {"x": 0, "th": 1.2}, "rates": {"x": 0, "th": 0}},
+        "duration": 5, "step": 0.001, "methods": ["index1@rk4:h=1e-3"]}
+
+    def test_cards_say_what_a_tolerance_is_worth_to_the_reader(self):
+        catalogue = json.loads(subprocess.run([driver.PROGRAM, "list", "methods", "--json"], capture_output=True).stdout)
+        cards = {card["name"]: card["about"] for card in catalogue["integrators"]}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "cart.json")
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(self.CART_AND_POLE, file)
+            samples = ["--time", "5", "--every", "0.013"]
+            reference = run(path, "index1@dop853:rtol=1e-13", *samples)["q"]
+            for integrator, formulation in (("radau5", "ggl"), ("ida", "index1"), ("dopri5", "index1"), ("dop853", "index1")):
+                said = float(re.search(r"off by about (\d+) rtol", cards[integrator])[1])
+                motion = run(path, f"{formulation}@{integrator}:rtol=1e-8", *samples)["q"]
+                error = max(abs(a - b) for p, q in zip(motion, reference) for a, b in zip(p, q))
+                # the samples between the steps included; a factor of three is what "about" allows
+                self.assertLess(error, 3e-8 * said, integrator)
+                self.assertGreater(error, 1e-8 * said / 3, integrator)
 
 
 class CollapsingSteps(unittest.TestCase):

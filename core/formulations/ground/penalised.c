@@ -76,9 +76,40 @@ hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys, const double 
     p->scale = hn_arena_doubles(arena, nv);
     p->pull = hn_arena_doubles(arena, nc);
     p->work = hn_arena_doubles(arena, nc);
+    p->size = hn_arena_doubles(arena, nc);
     return hn_arena_failed(arena) || !make_pattern(p, arena)
                ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory")
                : HN_OK;
+}
+
+static double median(int n, double *x) {
+    for (int i = 1; i < n; i++) {
+        const double value = x[i];
+        int j = i;
+        for (; j > 0 && x[j - 1] > value; j--) {
+            x[j] = x[j - 1];
+        }
+        x[j] = value;
+    }
+    return n > 0 ? x[n / 2] : 0;
+}
+
+double hn_penalised_typical_mobility(hn_penalised *p) {
+    const hn_dense_ode *ode = &p->ode;
+    const size_t nv = (size_t)ode->base.nv;
+    memset(p->size, 0, (size_t)ode->base.nc * sizeof *p->size);
+    for (int e = 0; e < ode->n_J; e++) {
+        const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
+        const double m = ode->M[j * nv + j], entry = ode->J[i * nv + j];
+        p->size[i] += m > 0 ? entry * entry / m : 0;
+    }
+    int n = 0;
+    for (int k = 0; k < ode->base.nc; k++) {
+        if (p->size[k] > 0) {
+            p->size[n++] = p->size[k];
+        }
+    }
+    return median(n, p->size);
 }
 
 static void fill(hn_penalised *p, double weight) {

@@ -22,11 +22,15 @@ typedef struct hn_penalised {
     double *G, *scale;       ///< n_G, nv: D G D = L L' with unit diagonal
     double *pull;            ///< nc: gamma + 2 xi omega (J v + phi_t) + omega^2 phi
     double *work;            ///< nc
+    double *size;            ///< nc
 } hn_penalised;
 
 /// Memory and terms; `options` begin with the three above.
 HN_MUST_CHECK hn_status hn_penalised_init(hn_penalised *p, const hn_system *sys,
                                           const double *options, hn_arena *arena, hn_diag *diag);
+/// Returns the median of J_i diag(M)^-1 J_i' at the terms last evaluated, the scale of J M^-1 J'
+/// without a solve: one over the typical mass at the loops. 0 where no constraint moves a mass.
+double hn_penalised_typical_mobility(hn_penalised *p);
 /// Factors M + weight J' J at the terms last evaluated. Fails: HN_ERR_SINGULAR, told in
 /// ode.base.why.
 HN_MUST_CHECK hn_status hn_penalised_factor(hn_penalised *p, double t, double weight);

@@ -26,41 +26,15 @@ enum { OPT_ITERATIONS = HN_PENALISED_OPTIONS, N_OPTIONS };
 typedef struct augmented {
     hn_penalised p; // first
     int iterations;
-    double *lambda, *size; // nc each
-    double *residual;      // nv
+    double *lambda;   // nc
+    double *residual; // nv
 } augmented;
 
-static double median(int n, double *x) {
-    for (int i = 1; i < n; i++) {
-        const double value = x[i];
-        int j = i;
-        for (; j > 0 && x[j - 1] > value; j--) {
-            x[j] = x[j - 1];
-        }
-        x[j] = value;
-    }
-    return n > 0 ? x[n / 2] : 0;
-}
-
 static double choose_weight(augmented *al) {
-    const hn_dense_ode *ode = &al->p.ode;
     if (al->p.a > 0) {
         return al->p.a;
     }
-    const size_t nv = (size_t)ode->base.nv;
-    memset(al->size, 0, (size_t)ode->base.nc * sizeof *al->size);
-    for (int e = 0; e < ode->n_J; e++) {
-        const size_t i = (size_t)ode->J_row[e], j = (size_t)ode->J_col[e];
-        const double m = ode->M[j * nv + j], entry = ode->J[i * nv + j];
-        al->size[i] += m > 0 ? entry * entry / m : 0;
-    }
-    int n = 0;
-    for (int k = 0; k < ode->base.nc; k++) {
-        if (al->size[k] > 0) {
-            al->size[n++] = al->size[k];
-        }
-    }
-    const double typical = median(n, al->size);
+    const double typical = hn_penalised_typical_mobility(&al->p);
     return typical > 0 ? AUTO_WEIGHT / typical : AUTO_WEIGHT;
 }
 
@@ -128,7 +102,6 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     HN_TRY(hn_penalised_init(&al->p, sys, options, arena, diag));
     al->lambda = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);
     al->residual = hn_arena_doubles(arena, (size_t)al->p.ode.base.nv);
-    al->size = hn_arena_doubles(arena, (size_t)al->p.ode.base.nc);
     return hn_arena_failed(arena) ? hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory")
                                   : HN_OK;
 }

@@ -6,6 +6,7 @@
 #include "formulations/ground/accel_ode.h"
 #include "formulations/ground/flops.h"
 #include "formulations/ground/formulation.h"
+#include "formulations/ground/unit_scales.h"
 
 #include <float.h>
 #include <math.h>
@@ -40,6 +41,7 @@ typedef struct symmetric {
     double *mu, *nu, *rate, *x;                  // nc
     double *N0_mu, *N0_nu, *N1_mu, *push, *zero; // nv
     double *L, *L0, *J0; // nv x nv, nv x nv, nc x nv: factors of M here and at the start, J there
+    double *unit;        // nv: see unit_scales.h
     double *start, *q1;  // nq + nv; nq
 } symmetric;
 
@@ -83,6 +85,7 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     s->L = hn_arena_doubles(arena, nv * nv);
     s->L0 = hn_arena_doubles(arena, nv * nv);
     s->J0 = hn_arena_doubles(arena, nc * nv);
+    s->unit = hn_arena_doubles(arena, nv);
     s->q1 = hn_arena_doubles(arena, (size_t)s->ode.base.nq);
     s->start = hn_arena_doubles(arena, (size_t)s->ode.base.nq + nv);
     s->saddle = hn_saddle_ws_create(arena, (int)nv, (int)nc);
@@ -173,6 +176,24 @@ static void move(const symmetric *s, double *y, const double *dq, const double *
     hn_axpy(s->ode.base.nv, 1, dv, y + s->ode.base.nq);
 }
 
+// largest coordinate and velocity, in radians and lengths of the mechanism
+static double largest_position(const symmetric *s, const double *q) {
+    double largest = 0;
+    for (int i = 0; i < s->ode.base.nv; i++) {
+        const int at = hn_system_position_of(s->ode.base.sys, i);
+        largest = at >= 0 ? fmax(largest, fabs(q[at]) / s->unit[i]) : fmax(largest, 1);
+    }
+    return largest;
+}
+
+static double largest_velocity(const symmetric *s, const double *v) {
+    double largest = 0;
+    for (int i = 0; i < s->ode.base.nv; i++) {
+        largest = fmax(largest, fabs(v[i]) / s->unit[i]);
+    }
+    return largest;
+}
+
 // the last line of (1), with N1 at the point that the last turn found; then (2)'s residuals as
 // fractions of rounding
 static hn_status land(symmetric *s, double t1, double *y, double *q1, double *worst) {
@@ -185,10 +206,9 @@ static hn_status land(symmetric *s, double t1, double *y, double *q1, double *wo
     hn_eval_run(s->terms, t1, y, NULL);
 
     // an angle of many turns is known to fewer digits, and so are the rows of J that depend on it
-    const double largest = hn_norm_max(nq, y);
+    const double largest = largest_position(s, y), fastest = largest_velocity(s, y + nq);
     const double unit_q = ROUNDING * (1 + largest) * s->length;
-    const double unit_v =
-        ROUNDING * (1 + s->length) * fmax(1, largest) * hn_norm_max(nv, y + nq) + DBL_MIN;
+    const double unit_v = 2 * ROUNDING * s->length * fmax(1, largest) * fastest + DBL_MIN;
     *worst = 0;
     for (int k = 0; k < nc; k++) {
         s->rate[k] = hn_dot(nv, s->J + (size_t)k * nv, y + nq) + s->phi_t[k];
@@ -235,6 +255,7 @@ static hn_status begin(symmetric *s, double t, const double *y) {
     HN_TRY(look(s, t, y));
     memcpy(s->L0, s->L, (size_t)nv * nv * sizeof *s->L);
     memcpy(s->J0, s->J, (size_t)nc * nv * sizeof *s->J);
+    hn_unit_scales(s->ode.base.sys, s->M, s->unit);
     memset(s->mu, 0, (size_t)nc * sizeof *s->mu);
     memset(s->nu, 0, (size_t)nc * sizeof *s->nu);
     memset(s->N0_mu, 0, (size_t)nv * sizeof *s->N0_mu);

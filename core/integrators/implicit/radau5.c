@@ -49,7 +49,9 @@ const hn_stepper hn_stepper_radau5 = {
     .about =
         "Order 5, every stiff motion damped; chooses its own step from rtol and atol, or takes "
         "h as it is. The choice for stiff springs and dampers and for the "
-        "differential-algebraic forms.",
+        "differential-algebraic forms."
+        " rtol bounds the error of a step, not of the motion: a pole on a cart is off by about 60 "
+        "rtol after 5 s, by index3 500 rtol.",
     .source = "Hairer & Wanner 1996, IV.5 and IV.8",
     .order = 5,
     .control_order = 4,
