@@ -15,6 +15,8 @@ static const double GROWTH = 1e-8; // of entries against factors, below which pi
 static const double THRESHOLD = 0.1;  // of the largest entry of a column: what may be its pivot
 static const double SINGULAR = 1e-15; // smallest pivot over the largest, rows of length one
 // a complex product and sum are eight operations against two
+// of pivots: below this other units may show more digits
+static const double DOUBTFUL = 1e-11;
 static const double COMPLEX_WEIGHT = 4;
 
 struct hn_newton_matrix {
@@ -272,13 +274,24 @@ static void scale(const hn_newton_matrix *m, const double *exponents, double *x)
     }
 }
 
+// pivots that pass for regular and yet hold few digits
+static int is_doubtful(const hn_newton_matrix *m) {
+    if (m->sparse) {
+        return m->common.rcond < DOUBTFUL;
+    }
+    return m->parts == 1 && m->square.pivot_ratio < DOUBTFUL;
+}
+
 hn_status hn_newton_matrix_factor(hn_newton_matrix *m) {
     if (m->n == 0) {
         return HN_OK;
     }
     m->is_scaled = 0;
     const hn_status status = factor_as_is(m);
-    return status == HN_ERR_SINGULAR ? factor_scaled(m) : status;
+    if (status == HN_ERR_SINGULAR || (status == HN_OK && is_doubtful(m))) {
+        return factor_scaled(m);
+    }
+    return status;
 }
 
 static void solve_factored(hn_newton_matrix *m, double *x) {

@@ -3,6 +3,7 @@
 
 #include "linalg/dense.h"
 #include "formulations/ground/flops.h"
+#include "formulations/ground/unit_scales.h"
 
 #include <math.h>
 #include <string.h>
@@ -77,6 +78,7 @@ static hn_status allocate(hn_implicit_linear *l, hn_arena *arena) {
     l->kept = hn_arena_ints(arena, nc);
     l->place = hn_arena_ints(arena, nc);
     l->unit = hn_arena_doubles(arena, nc);
+    l->mass_unit = hn_arena_doubles(arena, nv);
     l->seen = hn_arena_doubles(arena, nc);
 
     // the projection M^-1 J' of the ggl form
@@ -108,6 +110,7 @@ hn_status hn_implicit_linear_init(hn_implicit_linear *l, const hn_system *sys, h
     const unsigned terms =
         HN_LINEAR_RESIDUAL | HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J | HN_LINEAR_V;
     *l = (hn_implicit_linear){.form = form, .nv = info.nv, .nc = info.nc};
+    l->sys = sys;
     HN_TRY(hn_linear_create(sys, terms, arena, &l->terms));
     l->M = hn_linear_get(l->terms, HN_LINEAR_M);
     l->K = hn_linear_get(l->terms, HN_LINEAR_K);
@@ -186,10 +189,22 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
     return hn_qr_pivot_ratio(&l->qr);
 }
 
+// Powers of two that bring the masses of angles and lengths to one unit: a length is measured in
+// lengths of the mechanism. Whether a coordinate moves no mass is then the same question at any
+// size; scaling by powers of two is exact.
+static void find_units(hn_implicit_linear *l) {
+    hn_unit_scales(l->sys, l->M, l->mass_unit);
+    for (int i = 0; i < l->nv; i++) {
+        l->mass_unit[i] = exp2(rint(log2(l->mass_unit[i])));
+    }
+}
+
 static hn_status factor_mass(hn_implicit_linear *l) {
     double largest = 0;
+    find_units(l);
     for (int k = 0; k < l->n_lower; k++) {
-        l->lower_values[k] = l->M[l->lower[k]];
+        const int i = l->lower[k] / l->nv, j = l->lower[k] % l->nv;
+        l->lower_values[k] = l->M[l->lower[k]] * l->mass_unit[i] * l->mass_unit[j];
         largest = fmax(largest, fabs(l->lower_values[k]));
     }
     l->ops += hn_sparse_spd_factor_ops(l->mass_factor);
@@ -206,10 +221,13 @@ static hn_status prepare_stabiliser(hn_implicit_linear *l) {
               hn_flops_product(nk, nv, nk) + hn_flops_cholesky(nk);
 
     // factor of M
-    memcpy(l->mass, l->M, (size_t)(nv * nv) * sizeof *l->mass);
     double largest = 0;
+    find_units(l);
     for (int i = 0; i < nv; i++) {
-        largest = fmax(largest, fabs(l->M[i * nv + i]));
+        for (int j = 0; j < nv; j++) {
+            l->mass[i * nv + j] = l->M[i * nv + j] * l->mass_unit[i] * l->mass_unit[j];
+        }
+        largest = fmax(largest, fabs(l->mass[i * nv + i]));
     }
     if (hn_cholesky(nv, l->mass, nv, 1e-14 * largest) != HN_OK) {
         return HN_ERR_SINGULAR;
@@ -219,8 +237,12 @@ static hn_status prepare_stabiliser(hn_implicit_linear *l) {
     memset(l->Y, 0, (size_t)(nv * l->nc) * sizeof *l->Y);
     for (int k = 0; k < nk; k++) {
         memcpy(column, l->J + (size_t)l->kept[k] * (size_t)nv, (size_t)nv * sizeof *column);
+        for (int i = 0; i < nv; i++) {
+            column[i] *= l->mass_unit[i];
+        }
         hn_cholesky_solve(nv, l->mass, nv, column);
         for (int i = 0; i < nv; i++) {
+            column[i] *= l->mass_unit[i];
             l->Y[i * l->nc + l->kept[k]] = column[i];
         }
         for (int i = 0; i < nk; i++) {
@@ -596,7 +618,13 @@ void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out
         return;
     }
     hn_linear_apply_transposed(l->terms, HN_LINEAR_J, m, out);
+    for (int i = 0; i < l->nv; i++) {
+        out[i] *= l->mass_unit[i];
+    }
     hn_sparse_spd_solve(l->mass_factor, out);
+    for (int i = 0; i < l->nv; i++) {
+        out[i] *= l->mass_unit[i];
+    }
     l->ops +=
         2.0 * hn_linear_entries(l->terms, HN_LINEAR_J) + hn_sparse_spd_solve_ops(l->mass_factor);
 }

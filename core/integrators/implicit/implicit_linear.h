@@ -49,7 +49,9 @@ typedef struct hn_implicit_linear {
     double *seen;        ///< nc: the longest it has been
     hn_qr qr;
     double *Y, *S, *damped; ///< GGL, dense: nv x nc; n_kept x n_kept factored; C Y S^-1 V (nv x nv)
-    double *mass;           ///< nv x nv factored
+    const hn_system *sys;
+    double *mass_unit;          ///< nv: powers of two, see implicit_linear.c
+    double *mass;               ///< nv x nv factored
     hn_sparse_spd *mass_factor; ///< GGL, sparse
     int *lower;                 ///< entries of M's pattern in its lower triangle
     int n_lower;
