@@ -315,8 +315,12 @@ static void act_wrenches(sums *s, const hn_wrench *joints, const hn_wrench *cons
         const hn_constraint *c = &s->scene->constraints[k];
         const hn_wrench *w = &constraints[k];
         if (c->kind != HN_CONSTRAINT_GEAR && c->kind != HN_CONSTRAINT_FORMULA) {
-            act(s, s->scene->points[c->p].body, 1, w->force, w->place, w->moment);
-            act(s, s->scene->points[c->q].body, -1, w->force, w->place, w->moment);
+            // on the guided point's body; of a distance, on that of its second point
+            const int second = c->kind == HN_CONSTRAINT_DISTANCE;
+            const int on = s->scene->points[second ? c->q : c->p].body;
+            const int by = s->scene->points[second ? c->p : c->q].body;
+            act(s, on, 1, w->force, w->place, w->moment);
+            act(s, by, -1, w->force, w->place, w->moment);
         }
     }
     for (int i = 0; i < 3; i++) {

@@ -26,6 +26,8 @@ hn_status hn_pilot_create(const hn_system *sys, hn_arena *arena, hn_pilot **out)
         return HN_ERR_MEMORY;
     }
     *p = (hn_pilot){.sys = sys, .nq = info.nq, .nv = info.nv};
+
+    // room for two states and a stage between them
     double **of_nq[] = {&p->q, &p->q_before, &p->q_stage};
     double **of_nv[] = {&p->v,  &p->v_before, &p->way,  &p->v_stage, &p->a,
                         &p->dq, &p->dv,       &p->move, &p->unit};
@@ -38,6 +40,7 @@ hn_status hn_pilot_create(const hn_system *sys, hn_arena *arena, hn_pilot **out)
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
     for (int i = 0; i < info.nv; i++) {
         const int user = hn_system_user_coordinate(sys, i);
         const int is_length = hn_system_scene(sys)->coordinates[user].kind == HN_LENGTH;

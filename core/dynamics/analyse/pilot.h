@@ -21,7 +21,8 @@ double hn_pilot_half_turn(const hn_pilot *p, const double *v);
 
 /// Starts at the state q (nq), v (nv) at time t.
 void hn_pilot_start(hn_pilot *p, double t, const double *q, const double *v);
-/// One step of h [s]. Allocates nothing. Fails as hn_accel_eval() does; the state is then unchanged.
+/// One step of h [s]. Allocates nothing. Fails as hn_accel_eval() does; the state is then
+/// unchanged.
 HN_MUST_CHECK hn_status hn_pilot_step(hn_pilot *p, double h);
 double hn_pilot_time(const hn_pilot *p);
 const double *hn_pilot_q(const hn_pilot *p); ///< nq, of the present state

@@ -69,8 +69,8 @@ hn_vec3 hn_vec3_scale(hn_graph *g, hn_ex k, hn_vec3 a) {
     return a;
 }
 
-/// a b - c d, the second product made first. The order of arguments of a call is the compiler's, and
-/// with it the numbers of the nodes; a temporary settles it.
+/// a b - c d, the second product made first. The order of arguments of a call is the compiler's,
+/// and with it the numbers of the nodes; a temporary settles it.
 static hn_ex difference(hn_graph *g, hn_ex a, hn_ex b, hn_ex c, hn_ex d) {
     const hn_ex second = hn_neg(mul(g, c, d));
     const hn_ex first = mul(g, a, b);

@@ -364,8 +364,9 @@ static void find_undetermined(hn_reactions *r, hn_wrench *joints, hn_wrench *con
 
 // ---- what is handed out ----
 
-static void hand_out(hn_wrench *out, const hn_reaction_wrench *w, const double place[3],
+static void hand_out(hn_wrench *out, int body, const hn_reaction_wrench *w, const double place[3],
                      const double axes[3][3]) {
+    out->body = body;
     memcpy(out->force, w->f, sizeof out->force);
     memcpy(out->moment, w->n, sizeof out->moment);
     memcpy(out->place, place, sizeof out->place);
@@ -383,42 +384,25 @@ static void axes_of(const hn_reactions *r, const hn_joint *joint, double axes[3]
     hn_reaction_to_world(r, joint->parent, joint->parent_axis, axes[2]);
 }
 
-/// A constraint on coordinates: its effort along the first that a joint has, on the child of that
-/// joint.
-static void effort_of(hn_reactions *r, int constraint, const double *lambda, hn_wrench *out) {
-    const hn_system *sys = r->sys;
-    for (int k = 0; k < sys->efforts.n; k++) {
-        const hn_entry *e = &sys->efforts.at[k];
-        if (sys->loops[sys->rows[e->row].loop].constraint != constraint ||
-            hn_reaction_is_formal(r, e->col)) {
-            continue;
-        }
-        const int index = r->scene->coordinates[e->col].joint;
-        const hn_joint *joint = &r->scene->joints[index];
-        const double tau = lambda[e->row] * hn_reaction_value(r, r->first_effort + k);
-        hn_reaction_wrench w = {0};
-        double axes[3][3], axis[3];
-        const int is_force = hn_reaction_freedom(r, joint, e->col - joint->coordinate, axis);
-        hn_reaction_add_scaled(is_force ? w.f : w.n, tau, axis);
-        axes_of(r, joint, axes);
-        hand_out(out, &w, r->places[index], (const double(*)[3])axes);
-        return;
-    }
-}
-
-/// Axes of a constraint between points are the world's.
-static void hand_out_constraint(hn_reactions *r, int k, const double *lambda, hn_wrench *out) {
+/// A constraint between points, in the world's axes. The balance has the wrench on the body of its
+/// first point; a distance is handed out at its second.
+static void hand_out_constraint(hn_reactions *r, int k, hn_wrench *out) {
     static const double world[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const hn_constraint *c = &r->scene->constraints[k];
-    *out = (hn_wrench){.determined = 1};
+    hn_reaction_wrench w = r->constraints[k];
+    *out = (hn_wrench){.body = HN_GROUND, .determined = 1};
     if (!hn_constraint_has_points(c)) {
-        effort_of(r, k, lambda, out);
         return;
     }
-    const hn_point *p = &r->scene->points[c->p];
+    const int at_second = c->kind == HN_CONSTRAINT_DISTANCE;
+    const hn_point *p = &r->scene->points[at_second ? c->q : c->p];
     double place[3];
+    for (int i = 0; i < 3 && at_second; i++) {
+        w.f[i] = -w.f[i];
+        w.n[i] = -w.n[i]; // a rod gives none
+    }
     hn_reaction_place_of(r, p->body, p->at, place);
-    hand_out(out, &r->constraints[k], place, world);
+    hand_out(out, p->body, &w, place, world);
 }
 
 static int is_finite_state(const hn_reactions *r, const hn_wrench *joints) {
@@ -459,10 +443,11 @@ hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q, const do
     for (int j = 0; j < scene->n_joints; j++) {
         double axes[3][3];
         axes_of(r, &scene->joints[j], axes);
-        hand_out(&joints[j], &r->joints[j], r->places[j], (const double(*)[3])axes);
+        hand_out(&joints[j], scene->joints[j].child, &r->joints[j], r->places[j],
+                 (const double(*)[3])axes);
     }
     for (int k = 0; k < scene->n_constraints && constraints; k++) {
-        hand_out_constraint(r, k, lambda, &constraints[k]);
+        hand_out_constraint(r, k, &constraints[k]);
     }
 
     r->defect = hn_reaction_calc_defect(r);
@@ -489,15 +474,5 @@ hn_effort hn_reactions_effort(const hn_reactions *r, int k) {
 }
 
 bool hn_reactions_has_place(const hn_reactions *r, int constraint) {
-    if (hn_constraint_has_points(&r->scene->constraints[constraint])) {
-        return true;
-    }
-    for (int k = 0; k < r->n_efforts; k++) {
-        const int row = r->efforts[k].row;
-        if (row >= 0 && r->sys->loops[r->sys->rows[row].loop].constraint == constraint &&
-            !hn_reaction_is_formal(r, r->efforts[k].coordinate)) {
-            return true;
-        }
-    }
-    return false;
+    return hn_constraint_has_points(&r->scene->constraints[constraint]);
 }

@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_DYNAMICS_REACTIONS_H
 #define HN_DYNAMICS_REACTIONS_H
-// What every joint carries: the force and moment that the joint's parent exerts on its child, at
-// the joint's place, and the balance of each body with them; and what acts along coordinates, at no
-// place: efforts.
+// The forces and moments of joints and constraints, and generalised forces along coordinates
+// (efforts).
+//
+// Signs. Every wrench acts ON the second of the two partners:
+//     joint                  on its child, by its parent
+//     distance               on the body of `to`, by that of `from`
+//     line, plane, rolling   on the body of the point that is guided, by that of the guide
+// hn_wrench.body names it. A weight that hangs from the ground by a joint (parent: the ground) or
+// by a distance (from: the ground) gets an upward force m g. Constraints on coordinates (gear,
+// motion, formula) act along these and are efforts; they are listed once.
+//
+// A joint's wrench contains everything that acts between its two bodies: beside what the joint
+// itself carries, the drives, springs and other loads along its own coordinates. Along the axis of
+// a prismatic joint the force is therefore that of its drive and loads.
 //
 // Poses, velocities and accelerations of the bodies come from a tape; each body's balance (Newton
 // and Euler) then gives the wrench of its tree joint, leaves first, once loads and the closing
@@ -24,9 +35,10 @@
 #include <stdbool.h>
 
 typedef struct hn_wrench {
-    double force[3];  ///< [N], world axes, on the child
-    double moment[3]; ///< [N m], world axes, about the joint's place on the child
-    double place[3];  ///< [m], world
+    int body;         ///< scene body on which it acts, HN_GROUND: the ground
+    double force[3];  ///< [N], world axes
+    double moment[3]; ///< [N m], world axes, about the place
+    double place[3];  ///< [m], world: of the joint on its child, of the constraint's point
     /// the same in the joint's own axes on its parent: ref, axis x ref, axis
     double in_joint_force[3], in_joint_moment[3];
     int determined; ///< 0: redundant rows, so this is one of many (least-norm multipliers)
@@ -48,17 +60,16 @@ HN_MUST_CHECK hn_status hn_reactions_create(const hn_system *sys, hn_arena *aren
                                             hn_reactions **out, hn_diag *diag);
 void hn_reactions_free(hn_reactions *r); ///< NULL is legal
 /// Per scene joint (n_joints) its wrench, zero for one that only carries a coordinate of formulas;
-/// per constraint beside the joints (n_constraints; NULL: not wanted) the wrench on the body of its
-/// first point. From a state, its accelerations and multipliers (system coordinates). Allocates
-/// nothing.
+/// per constraint beside the joints (n_constraints; NULL: not wanted) the wrench by the rule of
+/// signs above, zero for one on coordinates. From a state, its accelerations and multipliers
+/// (system coordinates). Allocates nothing.
 HN_MUST_CHECK hn_status hn_reactions_eval(hn_reactions *r, double t, const double *q,
                                           const double *v, const double *a, const double *lambda,
                                           hn_wrench *joints, hn_wrench *constraints);
 /// Efforts of the last eval: constraints in the order of their rows, then the energies.
 int hn_reactions_effort_count(const hn_reactions *r);
 hn_effort hn_reactions_effort(const hn_reactions *r, int k);
-/// Whether a constraint beside the joints acts at a place: between points, or along a coordinate of
-/// a joint of bodies. If not, it has efforts only.
+/// Whether a constraint beside the joints acts between points; if not, it has efforts only.
 bool hn_reactions_has_place(const hn_reactions *r, int constraint);
 /// After an eval: largest residual of m a = sum of forces and of the moments about the centre of
 /// mass over all bodies, relative to the largest force [-] and moment. The tree joints are found

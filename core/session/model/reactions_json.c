@@ -118,6 +118,7 @@ static void put_wrench(hn_strbuf *b, const hn_reaction_writer *w, int k) {
     hn_json_object(b);
     hn_json_put_string(b, "name", name_of(w, k));
     hn_json_put_string(b, "kind", joint ? "joint" : "constraint");
+    hn_json_put_string(b, "on", wrench->body < 0 ? "ground" : w->scene->bodies[wrench->body].name);
     hn_json_put_numbers(b, "force", wrench->force, 3);
     hn_json_put_numbers(b, "moment", wrench->moment, 3);
     hn_json_put_numbers(b, "place", wrench->place, 3);

@@ -148,9 +148,12 @@ static void put_reactions(hn_strbuf *b, const cJSON *list) {
     // numbers that are rounding beside the largest are shown as 0
     const double force = largest_of(list, "force"), moment = largest_of(list, "moment");
     const double rounding[] = {1e-12 * force, 1e-12 * fmax(force, moment)};
-    hn_strbuf_add(b, "reactions on the child, world axes\n");
+    hn_strbuf_add(b,
+                  "reactions on the body named, world axes; a joint's contain the drives and loads "
+                  "along its own coordinates\n");
     cJSON_ArrayForEach(item, list) {
-        hn_strbuf_printf(b, "  %-16s", hn_document_text(item, "name"));
+        hn_strbuf_printf(b, "  %-16s on %-12s", hn_document_text(item, "name"),
+                         hn_document_text(item, "on"));
         for (int k = 0; k < 2; k++) {
             const cJSON *part = hn_document_get(item, keys[k]), *number;
             hn_strbuf_add(b, k ? "  moment" : "  force");

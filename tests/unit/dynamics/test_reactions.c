@@ -118,7 +118,8 @@ static void a_pendulum_s_pin_carries_weight_along_the_rod_and_centrifugal_force(
         &model,
         "{\"holonom\":1,\"name\":\"x\",\"gravity\":[0,-9.81],\"bodies\":[{\"name\":\"bob\","
         "\"mass\":2,\"com\":[0,-0.7]}],\"joints\":[{\"name\":\"A\",\"type\":\"revolute\","
-        "\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"bob\"},\"coordinate\":"
+        "\"parent\":{\"body\":\"ground\",\"at\":[0,0,0]},\"child\":{\"body\":\"bob\",\"at\":[0,0,0]"
+        "},\"coordinate\":"
         "\"th\",\"rate\":\"w\"}],\"start\":{\"positions\":{\"th\":0.5},\"rates\":{\"w\":3}}}",
         &c);
     const double up[2] = {-sin(th), cos(th)}; // from the bob to the pin
@@ -141,7 +142,8 @@ static void a_bracket_carries_its_weight_as_statics_says(void **state) {
         "{\"holonom\":1,\"name\":\"x\",\"bodies\":[{\"name\":\"strut\",\"mass\":1,\"com\":[1,0],"
         "\"inertia\":{\"zz\":0.1}},{\"name\":\"tie\",\"mass\":1,\"com\":[0.5,0],\"inertia\":{"
         "\"zz\":"
-        "0.1}}],\"joints\":[{\"name\":\"A\",\"type\":\"revolute\",\"parent\":{\"body\":\"ground\"},"
+        "0.1}}],\"joints\":[{\"name\":\"A\",\"type\":\"revolute\",\"parent\":{\"body\":\"ground\","
+        "\"at\":[0,0,0]},"
         "\"child\":{\"body\":\"strut\"},\"coordinate\":\"s\"},{\"name\":\"B\",\"type\":"
         "\"revolute\","
         "\"parent\":{\"body\":\"ground\",\"at\":[0,1]},\"child\":{\"body\":\"tie\"},\"coordinate\":"
@@ -165,7 +167,8 @@ static void a_bracket_carries_its_weight_as_statics_says(void **state) {
     "\"mass\":1,\"com\":[0.2,0.05],\"inertia\":{\"zz\":0.02}},{\"name\":\"coupler\",\"mass\":2,"   \
     "\"com\":[0.5,0],\"inertia\":{\"zz\":0.1}},{\"name\":\"rocker\",\"mass\":1.5,\"com\":[0.3,0]," \
     "\"inertia\":{\"zz\":0.05}}],\"joints\":[{\"name\":\"A\",\"type\":\"revolute\"" cutA           \
-    ",\"parent\":{\"body\":\"ground\"},\"child\":{\"body\":\"crank\"},\"coordinate\":\"a\"},"      \
+    ",\"parent\":{\"body\":\"ground\",\"at\":[0,0,0]},\"child\":{\"body\":\"crank\"},"             \
+    "\"coordinate\":\"a\"},"                                                                       \
     "{\"name\":\"B\",\"type\":\"revolute\"" cutB                                                   \
     ",\"parent\":{\"body\":\"crank\",\"at\":[0.4,0]},"                                             \
     "\"child\":{\"body\":\"coupler\"},\"coordinate\":\"b\"},{\"name\":\"C\",\"type\":"             \
@@ -225,6 +228,72 @@ static void redundant_rows_are_told_at_the_joints_they_touch(void **state) {
     hn_model_close(&m);
 }
 
+/// A bob of 2 kg that hangs 1 m below the origin, from the ground to the bob or the other way
+/// round.
+static void hang(const char *joints, const char *constraints, carried *c, hn_model *m) {
+    char json[1024];
+    snprintf(
+        json, sizeof json,
+        "{\"holonom\":1,\"name\":\"bob\",\"gravity\":[0,-9.81,0],\"bodies\":[{\"name\":\"bob\","
+        "\"mass\":2,\"inertia\":{\"zz\":0.1}}],\"joints\":[%s]%s%s}",
+        joints, constraints[0] ? ",\"start\":{\"positions\":{\"y\":-1}},\"constraints\":" : "",
+        constraints);
+    open_and_solve(m, json, c);
+}
+
+// one convention: a wrench acts on the second partner
+static void a_hanging_weight_is_held_up_whatever_holds_it(void **state) {
+    (void)state;
+    static const char slide[] =
+        "{\"name\":\"S\",\"type\":\"prismatic\",\"axis\":[0,1,0],\"ref\":[1,0,0],"
+        "\"parent\":{\"body\":\"ground\",\"at\":[0,0,0]},\"child\":{\"body\":\"bob\",\"at\":[0,0,0]"
+        "},"
+        "\"coordinate\":\"y\"}";
+    static const struct {
+        const char *joints, *constraints;
+        double joint, constraint; // upward force on the partner that the convention names
+        int body;
+    } cases[] = {
+        {"{\"name\":\"W\",\"type\":\"fixed\",\"parent\":{\"body\":\"ground\",\"at\":[0,-1,0]},"
+         "\"child\":{\"body\":\"bob\",\"at\":[0,0,0]}}",
+         "", 2 * 9.81, 0, 0},
+        {"{\"name\":\"W\",\"type\":\"fixed\",\"parent\":{\"body\":\"bob\",\"at\":[0,0,0]},"
+         "\"child\":{\"body\":\"ground\",\"at\":[0,-1,0]}}",
+         "", -2 * 9.81, 0, HN_GROUND},
+        {NULL,
+         "[{\"name\":\"rod\",\"distance\":{\"from\":{\"body\":\"ground\",\"at\":[0,0,0]},\"to\":{"
+         "\"body\":\"bob\",\"at\":[0,0,0]}"
+         ","
+         "\"length\":1}}]",
+         0, 2 * 9.81, 0},
+        {NULL,
+         "[{\"name\":\"rod\",\"distance\":{\"from\":{\"body\":\"bob\",\"at\":[0,0,0]},\"to\":{"
+         "\"body\":\"ground\",\"at\":[0,0,0]}"
+         ","
+         "\"length\":1}}]",
+         0, -2 * 9.81, HN_GROUND},
+        {NULL,
+         "[{\"name\":\"shelf\",\"plane\":{\"point\":{\"body\":\"bob\",\"at\":[0,0,0]},\"through\":{"
+         "\"body\":"
+         "\"ground\",\"at\":[0,0,0]},"
+         "\"direction\":[0,1,0],\"offset\":-1}}]",
+         0, 2 * 9.81, 0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        carried c;
+        hn_model m;
+        hang(cases[k].joints ? cases[k].joints : slide, cases[k].constraints, &c, &m);
+        assert_near(c.joints[0].force[1], cases[k].joint, 1e-12);
+        if (cases[k].constraints[0]) {
+            assert_near(c.constraints[0].force[1], cases[k].constraint, 1e-12);
+            assert_int_equal(c.constraints[0].body, cases[k].body);
+        } else {
+            assert_int_equal(c.joints[0].body, cases[k].body);
+        }
+        hn_model_close(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_body_of_random_mechanisms_is_in_balance),
@@ -232,6 +301,7 @@ int main(void) {
         cmocka_unit_test(a_bracket_carries_its_weight_as_statics_says),
         cmocka_unit_test(reactions_do_not_depend_on_which_joint_is_cut),
         cmocka_unit_test(redundant_rows_are_told_at_the_joints_they_touch),
+        cmocka_unit_test(a_hanging_weight_is_held_up_whatever_holds_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -127,8 +127,7 @@ static void a_geared_rotor_is_felt_at_the_pin(void **state) {
     assert_near(effort(&c, "gear", "a"), -25 * 0.03 * al, 1e-12);
     assert_near(effort(&c, "gear", "u"), 5 * 0.03 * al, 1e-12);
     assert_near(c.joints[0].moment[2], -25 * 0.03 * al, 1e-12);
-    assert_near(c.constraints[0].moment[2], -25 * 0.03 * al, 1e-12);
-    assert_int_equal(hn_reactions_has_place(c.r, 0), 1);
+    assert_int_equal(hn_reactions_has_place(c.r, 0), 0); // it is listed once, as efforts
     check_balance(&c);
     end(&c);
 }
