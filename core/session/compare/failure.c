@@ -7,8 +7,8 @@
 /// An incident counts as the end of the run when it was reported no earlier than this share of t.
 static const double AT_END = 1e-9;
 
-/// The incident that ended the run: the one whose message is the reason, else the last one at the end
-/// of the time; NULL when there is none.
+/// The incident that ended the run: the one whose message is the reason, else the last one at the
+/// end of the time; NULL when there is none.
 static const hn_incident *find_cause(const hn_run *run, const char *reason, double t) {
     const hn_incident *list, *cause = NULL;
     const int n = hn_run_incidents(run, &list);

@@ -9,9 +9,9 @@
 /// Puts the member "failure": null where `ended` is HN_OK, otherwise
 /// {"code","quantity","value","limit","t","message","remedies":[...]}.
 ///
-/// Where an incident ended the run, code and figures are those of the incident; otherwise code is the
-/// name of the status, and quantity, value and limit are null. `reason` is the sentence, `t` the time
-/// that was reached [s].
+/// Where an incident ended the run, code and figures are those of the incident; otherwise code is
+/// the name of the status, and quantity, value and limit are null. `reason` is the sentence, `t`
+/// the time that was reached [s].
 void hn_failure_put_json(hn_strbuf *b, const hn_run *run, hn_status ended, const char *reason,
                          double t);
 #endif

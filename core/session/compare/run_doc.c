@@ -267,8 +267,8 @@ static hn_status record(hn_run *run, const schedule *s, table *tab) {
     }
     hn_sample last;
     double t = hn_run_time(run);
-    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) && t <= s->request->time &&
-        hn_run_sample(run, t, &last) == HN_OK) {
+    if (status != HN_OK && tab->n < tab->cap && (tab->n == 0 || t > tab->t[tab->n - 1]) &&
+        t <= s->request->time && hn_run_sample(run, t, &last) == HN_OK) {
         table_add(tab, &last, run);
     }
     return status;

@@ -43,9 +43,6 @@ typedef struct hn_extreme_bench {
 /// Tells how far it is, and asks whether to stop: as the `stop` of a walk.
 int hn_extreme_is_stopped(void *bench);
 
-/// Verdict and words of a trial whose numbers are all there.
-void hn_extreme_conclude(hn_extreme_trial *trial);
-
 /// A run at its end, and what was seen on its way.
 typedef struct hn_extreme_look {
     hn_extreme_bench *bench;

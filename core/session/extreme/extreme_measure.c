@@ -6,6 +6,7 @@
 #include "session/extreme/extreme_solve.h"
 #include "session/extreme/extreme_stable.h"
 #include "session/extreme/extreme_walk.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "study/cost/convergence.h"
 
@@ -13,52 +14,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// outcomes ----
-
-static const struct {
-    hn_status status;
-    const char *word;
-} OUTCOMES[] = {
-    {HN_OK, "finished"},
-    {HN_ERR_INPUT, "refused"},
-    {HN_ERR_LIMIT, "refused"},
-    {HN_ERR_UNSUPPORTED, "refused"},
-    {HN_ERR_UNREACHABLE, "unreachable"},
-    {HN_ERR_INCONSISTENT, "inconsistent"},
-    {HN_ERR_SINGULAR, "singular"},
-    {HN_ERR_NOT_SPD, "singular"},
-    {HN_ERR_MASS, "singular"},
-    {HN_ERR_NO_CONVERGENCE, "no-convergence"},
-    {HN_ERR_CHART, "chart-lost"},
-    {HN_ERR_DIVERGED, "diverged"},
-    {HN_ERR_STEP_UNDERFLOW, "step-underflow"},
-    {HN_ERR_BUDGET, "out-of-steps"},
-};
-enum { N_OUTCOMES = sizeof OUTCOMES / sizeof *OUTCOMES };
-
-const char *hn_extreme_outcome(hn_status status) {
-    for (int i = 0; i < N_OUTCOMES; i++) {
-        if (OUTCOMES[i].status == status) {
-            return OUTCOMES[i].word;
-        }
-    }
-    return "failed";
-}
-
-/// "ended" stands for any way of not coming to the end.
-static const char ENDED[] = "ended";
-
-const char *const *hn_extreme_outcomes(int *n) {
-    static const char *const words[] = {
-        "finished",   "refused",        "unreachable", "inconsistent", "singular", "no-convergence",
-        "chart-lost", "step-underflow", "diverged",    "out-of-steps", ENDED};
-    *n = sizeof words / sizeof *words;
-    return words;
-}
-
 static int fits(const hn_extreme_expect *e, const char *word, const char *reason) {
     const int same = strcmp(e->word, word) == 0 ||
-                     (strcmp(e->word, ENDED) == 0 && strcmp(word, "finished") != 0);
+                     (strcmp(e->word, "ended") == 0 && strcmp(word, "finished") != 0);
     return same && (!e->says || strstr(reason, e->says));
 }
 

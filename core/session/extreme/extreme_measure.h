@@ -7,7 +7,4 @@
 
 extern const hn_extreme_measure hn_extreme_measures[];
 extern const int hn_extreme_n_measures;
-/// How a status is called in the files: "finished", "diverged", "refused", ...
-const char *hn_extreme_outcome(hn_status status);
-const char *const *hn_extreme_outcomes(int *n);
 #endif

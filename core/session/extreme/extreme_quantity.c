@@ -6,6 +6,7 @@
 #include "session/extreme/extreme_model.h"
 #include "session/extreme/extreme_solve.h"
 #include "session/extreme/extreme_walk.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "linalg/dense.h"
 

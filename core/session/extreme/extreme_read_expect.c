@@ -4,6 +4,7 @@
 #include "session/extreme/extreme_reader.h"
 #include "session/extreme/extreme_measure.h"
 #include "session/extreme/extreme_stable.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,6 +4,7 @@
 #include "session/extreme/extreme_internal.h"
 #include "session/extreme/extreme_measure.h"
 #include "session/extreme/extreme_walk.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "linalg/dense.h"
 #include "study/truth/chaos.h"

@@ -3,6 +3,7 @@
 
 #include "session/extreme/extreme_internal.h"
 #include "session/store/stored_json.h"
+#include "session/extreme/extreme_verdict.h"
 
 #include "base/file.h"
 #include "base/hash.h"

@@ -3,6 +3,7 @@
 
 #include "session/stability/stability_internal.h"
 #include "session/stability/stability_store.h"
+#include "session/stability/map_grid.h"
 
 #include <math.h>
 #include <string.h>
@@ -206,7 +207,7 @@ void hn_map_judge_column(hn_map *map, int m, int column) {
 
 static void count_columns(const hn_map *map, int m, hn_map_agreement *a) {
     for (int i = 0; i < map->x.n; i++) {
-        const hn_map_column *c = hn_map_get_column(map, m, i);
+        const hn_map_column *c = hn_map_column_at(map, m, i);
         a->compared += c->verdict != HN_MAP_UNTOLD;
         a->agree += c->verdict == HN_MAP_AGREE;
         a->unseen += c->verdict == HN_MAP_UNSEEN;
@@ -218,7 +219,7 @@ static void count_columns(const hn_map *map, int m, hn_map_agreement *a) {
 static void count_cells(const hn_map *map, int m, hn_map_agreement *a) {
     for (int i = 0; i < map->x.n; i++) {
         for (int j = 0; j < map->y.n; j++) {
-            const hn_map_cell *cell = hn_map_get(map, m, i, j);
+            const hn_map_cell *cell = hn_map_cell_at(map, m, i, j);
             const int over = is_over(cell->trial.kind),
                       stable = hn_stability_is_stable(cell->trial.kind);
             const int beyond = cell->margin > 1 / WITHIN, below = cell->margin < WITHIN;
@@ -241,7 +242,7 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
         count_cells(map, m, &a);
     }
     if (a.compared == 0 && !a.why) {
-        const hn_map_column *c = hn_map_get_column(map, m, 0);
+        const hn_map_column *c = hn_map_column_at(map, m, 0);
         a.why = map->x.n == 1 && c->stable == 0
                     ? "no step was stable, down to the smallest that a trial may take"
                     : "no boundary was both predicted and tried inside this map";
@@ -253,7 +254,7 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
 // what ended the first of the columns that ended earlier
 static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     for (int i = 0; i < map->x.n; i++) {
-        const hn_map_column *c = hn_map_get_column(map, m, i);
+        const hn_map_column *c = hn_map_column_at(map, m, i);
         if (c->verdict == HN_MAP_EARLIER) {
             hn_strbuf_add(b, ", as ");
             if (map->x.name[0]) {

@@ -3,6 +3,7 @@
 
 #include "session/stability/stability_internal.h"
 #include "session/store/stored_json.h"
+#include "session/stability/map_grid.h"
 
 #include "base/hash.h"
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/stability/map_grid.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+
+// of the time limit, for the motion of one scene; its computing time where there is no limit [s]
+enum { PATH_SHARE = 10 };
+static const double PATH_SECONDS = 5;
+
+hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row) {
+    return &map->cells[(m * map->y.n + row) * map->x.n + column];
+}
+
+hn_map_column *hn_map_column_at(const hn_map *map, int m, int column) {
+    return &map->columns[m * map->x.n + column];
+}
+
+static int ask_to_stop(void *user) {
+    return hn_map_must_end(user);
+}
+
+static hn_status load_scene(hn_map *map, hn_map_scene *s, int column, int row, hn_diags *diags) {
+    hn_setting settings[2];
+    int n = 0;
+    if (map->x.is_param) {
+        settings[n++] = (hn_setting){map->x.name, map->x.value[column]};
+    }
+    if (map->y.is_param) {
+        settings[n++] = (hn_setting){map->y.name, map->y.value[row]};
+    }
+    return n ? map->request.load(map->request.load_user, settings, n, &s->model, diags) : HN_OK;
+}
+
+static void make_scene(hn_map *map, hn_map_scene *s, int column, int row) {
+    hn_diags diags = {0};
+    hn_diag diag = {0};
+    const double limit = map->request.limits.time_limit;
+    const hn_walk_limits limits = {limit > 0 ? limit / PATH_SHARE : PATH_SECONDS, ask_to_stop, map};
+    hn_status status = load_scene(map, s, column, row, &diags);
+    if (status != HN_OK && diags.n > 0) {
+        diag = diags.item[0];
+    }
+    if (status == HN_OK) {
+        const hn_model *model = s->model ? s->model : map->model;
+        status = hn_stability_path_create(hn_model_system(model), hn_model_q(model),
+                                          hn_model_v(model), map->T, &limits, &s->path, &diag);
+    }
+    if (status != HN_OK) {
+        snprintf(s->why, sizeof s->why, "no motion to compare with: %.200s",
+                 diag.message[0] ? diag.message : hn_status_text(status));
+    }
+    s->tried = !map->stopped && !map->out_of_time;
+}
+
+hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
+    const int at = (map->y.is_param ? row : 0) * (map->x.is_param ? map->x.n : 1) +
+                   (map->x.is_param ? column : 0);
+    hn_map_scene *s = &map->scenes[at];
+    // what was cut short is left as it is: no motion is begun for what nobody waits for
+    if (!s->tried && !s->path && !map->stopped && !map->out_of_time) {
+        make_scene(map, s, column, row);
+    }
+    return s;
+}
+
+hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
+    hn_method_spec spec = map->specs[m];
+    if (map->x.name[0] && !map->x.is_param) {
+        *hn_method_find_option(&spec, map->x.name, NULL) = map->x.value[column];
+    }
+    if (!map->y.is_param) {
+        *hn_method_find_option(&spec, map->y.name, NULL) = y;
+    }
+    return spec;
+}
+
+int hn_map_must_end(hn_map *map) {
+    const double limit = map->request.limits.time_limit;
+    map->stopped |= hn_job_must_stop(&map->request.limits);
+    map->out_of_time |= limit > 0 && hn_clock_wall() - map->started > limit;
+    return map->stopped || map->out_of_time;
+}
+
+int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
+               hn_stability_trial *out) {
+    const hn_walk_limits limits = {HN_MAP_CELL_SECONDS, ask_to_stop, map};
+    if (!scene->path) {
+        *out = (hn_stability_trial){.kind = HN_STABILITY_REFUSED, .status = HN_ERR_UNSUPPORTED};
+        snprintf(out->reason, sizeof out->reason, "%s", scene->why);
+        return scene->tried;
+    }
+    return hn_stability_try(scene->path, spec, &limits, out);
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_SESSION_STABILITY_MAP_GRID_H
+#define HN_SESSION_STABILITY_MAP_GRID_H
+// The grid of a stability map: cells and columns, the scene and the method of a cell, one trial.
+
+#include "session/stability/stability_internal.h"
+
+hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row);
+hn_map_column *hn_map_column_at(const hn_map *map, int m, int column);
+/// The scene of a cell, with its motion if it has one.
+hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row);
+/// The method of a cell; `y` in place of the row's value.
+hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y);
+/// 1 when asked to stop or out of the budget; then noted.
+int hn_map_must_end(hn_map *map);
+/// One trial within the limits of a cell; 0 when it was stopped.
+int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
+               hn_stability_trial *out);
+#endif
