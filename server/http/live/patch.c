@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What PATCH can change. Everything that can fail is tried before anything is changed, so that a
 // request at fault leaves the comparison as it was.
+#include "http/live/patch.h"
+
 #include "base/clock.h"
 #include "session/job/field.h"
-#include "http/live/session_internal.h"
 
 #include <string.h>
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "http/live/session.h"
+
 #include "base/clock.h"
-#include "http/live/session_internal.h"
+#include "http/live/patch.h"
+#include "http/live/session_state.h"
 #include "http/live/stream.h"
-#include "session/model/model_json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,266 +16,6 @@
 /// Frames that come later than this are not caught up: the clock is set anew and the loss is told
 /// as `lag`.
 static const double LATE = 0.25; // [s]
-
-// ---- bench ----
-
-void hn_subject_reset(hn_subject *bench) {
-    hn_comparison_free(bench->comparison);
-    hn_model_free(bench->model);
-    hn_scene_request_reset(&bench->scene);
-    *bench = (hn_subject){0};
-}
-
-hn_status hn_subject_compare(const hn_session *session, const hn_model *model,
-                             const char *const *methods, int n_methods, hn_comparison **out,
-                             hn_diags *diags) {
-    hn_comparison_opts opts = hn_comparison_opts_default();
-    opts.frame_dt = session->asked_frame_dt;
-    opts.duration = session->asked_duration;
-    opts.cpu_budget = session->opts->frame_cpu;
-    return hn_comparison_create(model, methods, n_methods, &opts, out, diags);
-}
-
-hn_status hn_subject_create(const hn_session *session, const hn_scene_request *scene,
-                            const char *const *methods, int n_methods, hn_subject *bench,
-                            hn_diags *diags) {
-    *bench = (hn_subject){0};
-    hn_status status = hn_scene_request_copy(&bench->scene, scene);
-    if (status == HN_OK) {
-        status = hn_scene_request_load(scene, session->lib, 0, &bench->model, diags);
-    }
-    if (status == HN_OK) {
-        status = hn_subject_compare(session, bench->model, methods, n_methods, &bench->comparison,
-                                    diags);
-    }
-    if (status != HN_OK) {
-        hn_subject_reset(bench);
-    }
-    return status;
-}
-
-// ---- publishing ----
-
-static const char *state_name(hn_session_state state) {
-    static const char *const names[] = {"paused", "running", "finished"};
-    return names[state];
-}
-
-void hn_session_put_state(hn_strbuf *b, const hn_session *session) {
-    hn_json_put_string(b, "state", state_name(session->state));
-    hn_json_put_number(b, "speed", session->speed);
-}
-
-static void put_raw(hn_strbuf *b, const char *key, const hn_strbuf *json) {
-    hn_json_key(b, key);
-    hn_json_raw(b, json->n ? hn_strbuf_text(json) : "null");
-}
-
-void hn_session_put_json(hn_strbuf *b, const hn_session *session) {
-    char self[64], events[80];
-    snprintf(self, sizeof self, "/api/v1/comparisons/%s", session->id);
-    snprintf(events, sizeof events, "%s/events", self);
-
-    // what changes from frame to frame
-    hn_json_object(b);
-    hn_json_put_string(b, "id", session->id);
-    hn_session_put_state(b, session);
-    hn_json_put_int(b, "frame", session->frame);
-    hn_json_put_number(b, "t", (double)session->frame * session->frame_dt);
-    hn_json_put_number(b, "frame_dt", session->frame_dt);
-    hn_json_put_number(b, "duration", session->duration);
-    hn_json_put_int(b, "generation", session->generation);
-    hn_json_put_number(b, "lag", session->lag);
-    hn_json_put_int(b, "last_event", (long long)session->history.last_id);
-
-    // texts that were written before
-    put_raw(b, "scene", &session->scene_json);
-    put_raw(b, "comparison", &session->comparison_json);
-    put_raw(b, "parameters", &session->settings_json);
-    put_raw(b, "latest", &session->latest);
-    hn_json_key(b, "links");
-    hn_json_object(b);
-    hn_json_put_string(b, "self", self);
-    hn_json_put_string(b, "events", events);
-    hn_json_end_object(b);
-    hn_json_end_object(b);
-}
-
-void hn_session_wake_streams(hn_session *session) {
-    for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
-        hn_stream_wake(s);
-    }
-}
-
-static void swap_text(hn_strbuf *a, hn_strbuf *b) {
-    hn_strbuf t = *a;
-    *a = *b;
-    *b = t;
-}
-
-/// Writes the scene and its parameters, unless they stand there already: drawing one costs seconds
-/// for a mechanism of many bodies.
-static hn_status publish_scene(hn_session *session) {
-    if (session->published == session->bench.model) {
-        return HN_OK;
-    }
-    hn_strbuf scene, settings;
-    hn_strbuf_init(&scene);
-    hn_strbuf_init(&settings);
-    hn_model_json(&scene, session->bench.model);
-    hn_scene_request_settings_json(&settings, &session->bench.scene);
-    const hn_status status = scene.failed || settings.failed ? HN_ERR_MEMORY : HN_OK;
-    if (status == HN_OK) {
-        pthread_mutex_lock(&session->lock);
-        swap_text(&session->scene_json, &scene);
-        swap_text(&session->settings_json, &settings);
-        pthread_mutex_unlock(&session->lock);
-        session->published = session->bench.model;
-    }
-    hn_strbuf_reset(&scene);
-    hn_strbuf_reset(&settings);
-    return status;
-}
-
-hn_status hn_session_publish_setup(hn_session *session) {
-    HN_TRY(publish_scene(session));
-    hn_strbuf comparison;
-    hn_strbuf_init(&comparison);
-    hn_comparison_json(&comparison, session->bench.comparison);
-    const hn_status status = comparison.failed ? HN_ERR_MEMORY : HN_OK;
-    if (status == HN_OK) {
-        pthread_mutex_lock(&session->lock);
-        swap_text(&session->comparison_json, &comparison);
-        session->frame_dt = hn_comparison_frame_dt(session->bench.comparison);
-        session->duration = hn_comparison_duration(session->bench.comparison);
-        pthread_mutex_unlock(&session->lock);
-    }
-    hn_strbuf_reset(&comparison);
-    return status;
-}
-
-/// Writes {"generation":G, and the members of `object`, an object that is not empty.
-static void put_with_generation(hn_strbuf *b, const hn_session *session, const hn_strbuf *object) {
-    hn_strbuf_printf(b, "{\"generation\":%lld,", session->generation);
-    hn_strbuf_add(b, hn_strbuf_text(object) + (object->n > 0));
-    b->failed |= object->failed;
-}
-
-/// Publishes an incident as an event.
-static void publish_incident(hn_session *session, int method, const hn_incident *incident) {
-    hn_strbuf text, event;
-    hn_strbuf_init(&text);
-    hn_strbuf_init(&event);
-    hn_incident_json(&text, method, incident);
-    put_with_generation(&event, session, &text);
-    pthread_mutex_lock(&session->lock);
-    hn_history_add(&session->history, HN_EVENT_INCIDENT, &event);
-    pthread_mutex_unlock(&session->lock);
-    hn_strbuf_reset(&text);
-}
-
-/// Publishes the incidents that were written or completed since the last frame.
-static void publish_incidents(hn_session *session) {
-    for (int i = 0; i < hn_comparison_n_methods(session->bench.comparison); i++) {
-        const hn_incident *list;
-        int n = hn_run_incidents(hn_comparison_run(session->bench.comparison, i), &list);
-        unsigned newest = session->bench.published[i];
-        for (int k = 0; k < n; k++) {
-            if (list[k].revision > session->bench.published[i]) {
-                newest = list[k].revision > newest ? list[k].revision : newest;
-                publish_incident(session, i, &list[k]);
-            }
-        }
-        session->bench.published[i] = newest;
-    }
-}
-
-static void publish_end(hn_session *session) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_json_object(&b);
-    hn_json_put_int(&b, "generation", session->generation);
-    hn_json_key(&b, "summary");
-    hn_comparison_summary_json(&b, session->bench.comparison);
-    hn_json_end_object(&b);
-    pthread_mutex_lock(&session->lock);
-    hn_history_add(&session->history, HN_EVENT_END, &b);
-    session->state = HN_SESSION_FINISHED;
-    hn_session_wake_streams(session);
-    pthread_mutex_unlock(&session->lock);
-}
-
-void hn_session_publish_frame(hn_session *session) {
-    hn_strbuf frame, event, latest;
-    hn_strbuf_init(&frame);
-    hn_strbuf_init(&event);
-    hn_strbuf_init(&latest);
-    hn_comparison_frame_json(&frame, session->bench.comparison);
-    put_with_generation(&event, session, &frame);
-    hn_strbuf_add_n(&latest, hn_strbuf_text(&event), event.n);
-
-    // the frame is there for all at once
-    pthread_mutex_lock(&session->lock);
-    session->frame = hn_comparison_frame(session->bench.comparison);
-    if (!latest.failed) {
-        swap_text(&session->latest, &latest);
-    }
-    hn_history_add(&session->history, HN_EVENT_FRAME, &event);
-    hn_session_wake_streams(session);
-    pthread_mutex_unlock(&session->lock);
-
-    // then what happened in it
-    publish_incidents(session);
-    if (hn_comparison_finished(session->bench.comparison)) {
-        publish_end(session);
-    }
-    hn_strbuf_reset(&frame);
-    hn_strbuf_reset(&latest);
-}
-
-static int must_yield(void *user) {
-    hn_session *session = user;
-    const int interrupt = atomic_load(&session->interrupt);
-    return interrupt == HN_INTERRUPT_END ||
-           (interrupt == HN_INTERRUPT_REQUEST && hn_clock_wall() > session->undisturbed);
-}
-
-/// What waits. With the lock held.
-static void set_interrupt(hn_session *session) {
-    atomic_store(&session->interrupt, session->ending    ? HN_INTERRUPT_END
-                                      : session->patches ? HN_INTERRUPT_REQUEST
-                                                         : HN_INTERRUPT_NONE);
-}
-
-int hn_session_advance(hn_session *session) {
-    if (!hn_comparison_work(session->bench.comparison, must_yield, session)) {
-        return 0;
-    }
-    hn_session_publish_frame(session);
-    return 1;
-}
-
-void hn_session_set_anchor(hn_session *session) {
-    session->anchor_time = hn_clock_wall();
-    session->anchor_frame = session->frame;
-}
-
-void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason) {
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    pthread_mutex_lock(&session->lock);
-    session->state = state;
-    hn_session_set_anchor(session);
-    hn_json_object(&b);
-    hn_session_put_state(&b, session);
-    if (reason) {
-        hn_json_put_string(&b, "reason", reason);
-    }
-    hn_json_end_object(&b);
-    hn_history_add(&session->history, HN_EVENT_STATE, &b);
-    hn_session_wake_streams(session);
-    pthread_mutex_unlock(&session->lock);
-}
 
 // ---- the thread ----
 
@@ -295,7 +37,7 @@ static hn_request *take_patch(hn_session *session) {
     if (!session->patches) {
         session->patches_end = &session->patches;
     }
-    set_interrupt(session);
+    hn_session_set_interrupt(session);
     return r;
 }
 
@@ -379,34 +121,6 @@ static void *work(void *arg) {
 
 // ---- life ----
 
-static void free_session(hn_session *session) {
-    hn_subject_reset(&session->bench);
-    hn_history_reset(&session->history);
-    hn_strbuf_reset(&session->scene_json);
-    hn_strbuf_reset(&session->comparison_json);
-    hn_strbuf_reset(&session->settings_json);
-    hn_strbuf_reset(&session->latest);
-    pthread_cond_destroy(&session->wake);
-    pthread_mutex_destroy(&session->lock);
-    free(session);
-}
-
-hn_session *hn_session_retain(hn_session *session) {
-    pthread_mutex_lock(&session->lock);
-    session->refs++;
-    pthread_mutex_unlock(&session->lock);
-    return session;
-}
-
-void hn_session_release(hn_session *session) {
-    pthread_mutex_lock(&session->lock);
-    int left = --session->refs;
-    pthread_mutex_unlock(&session->lock);
-    if (left == 0) {
-        free_session(session);
-    }
-}
-
 static hn_session *new_session(const hn_http_opts *opts, const hn_library *lib,
                                const hn_session_request *order) {
     hn_session *session = calloc(1, sizeof *session);
@@ -489,17 +203,6 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
     return HN_OK;
 }
 
-const char *hn_session_id(const hn_session *session) {
-    return session->id;
-}
-
-void hn_session_json(hn_strbuf *b, hn_session *session) {
-    pthread_mutex_lock(&session->lock);
-    session->touched = hn_clock_wall();
-    hn_session_put_json(b, session);
-    pthread_mutex_unlock(&session->lock);
-}
-
 void hn_session_patch(hn_session *session, hn_request *r) {
     pthread_mutex_lock(&session->lock);
     session->touched = hn_clock_wall();
@@ -509,7 +212,7 @@ void hn_session_patch(hn_session *session, hn_request *r) {
         r->next = NULL;
         *session->patches_end = r;
         session->patches_end = &r->next;
-        set_interrupt(session);
+        hn_session_set_interrupt(session);
         pthread_cond_signal(&session->wake);
     }
     pthread_mutex_unlock(&session->lock);
@@ -518,15 +221,11 @@ void hn_session_patch(hn_session *session, hn_request *r) {
 void hn_session_end(hn_session *session, int deleted) {
     pthread_mutex_lock(&session->lock);
     session->ending = 1;
-    set_interrupt(session);
+    hn_session_set_interrupt(session);
     session->deleted |= deleted;
     pthread_cond_signal(&session->wake);
     hn_session_wake_streams(session);
     pthread_mutex_unlock(&session->lock);
-}
-
-hn_client hn_session_client(const hn_session *session) {
-    return session->client;
 }
 
 double hn_session_untouched(hn_session *session) {
@@ -544,8 +243,8 @@ int hn_session_tick(hn_session *session) {
                                 ? fmin(session->opts->orphan_expiry, session->opts->expiry)
                                 : session->opts->expiry;
     int expired = session->n_streams == 0 && !session->patches && now - session->touched > patience;
-    for (hn_stream *s = session->streams; s; s = hn_stream_next(s)) {
-        hn_stream_tick(s, now);
+    for (hn_reader *r = session->readers; r; r = r->next) {
+        hn_stream_tick(r, now);
     }
     pthread_mutex_unlock(&session->lock);
     return expired;

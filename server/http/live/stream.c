@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "build.h"
-#include "http/live/session_internal.h"
+#include "http/live/session_state.h"
 #include "http/request/context.h"
 
 #include <poll.h>
@@ -14,44 +14,32 @@
 enum { CHUNK = 1 << 16, SCHEMA = 1 };
 
 struct hn_stream {
+    hn_reader reader; ///< first: the session lists it
     hn_session *session;
-    struct MHD_Connection *connection;
     int fd;            ///< of the connection, to notice that the reader has gone
     int gone;          ///< 1: it has
     hn_shares *places; ///< its own is given back at the end
     hn_client client;
-    hn_stream *next;
     uint64_t cursor; ///< id of the event that comes next
     int skips;       ///< mode=live: frames may be left out
-    int waiting;     ///< the connection is suspended
     int said_hello, said_end;
     double last_sent;
     hn_strbuf text; ///< what is being sent, from `at` on; only the connection's thread touches it
     size_t at;
 };
 
-hn_stream *hn_stream_next(const hn_stream *s) {
-    return s->next;
-}
-
-void hn_stream_wake(hn_stream *s) {
-    if (s->waiting) {
-        s->waiting = 0;
-        MHD_resume_connection(s->connection);
-    }
-}
-
 /// 1 when the reader has closed the connection. A suspended one is not looked at by the HTTP
 /// library.
 static int has_gone(const hn_stream *s) {
     struct pollfd look = {.fd = s->fd, .events = POLLRDHUP};
-    return s->waiting && poll(&look, 1, 0) > 0 && look.revents;
+    return s->reader.waiting && poll(&look, 1, 0) > 0 && look.revents;
 }
 
-void hn_stream_tick(hn_stream *s, double now) {
+void hn_stream_tick(hn_reader *reader, double now) {
+    hn_stream *s = (hn_stream *)reader;
     s->gone |= has_gone(s);
     if (s->gone || now - s->last_sent >= s->session->opts->keep_alive) {
-        hn_stream_wake(s);
+        hn_reader_wake(reader);
     }
 }
 
@@ -145,8 +133,8 @@ static ssize_t read_stream(void *cls, uint64_t pos, char *out, size_t size) {
         int ended = s->text.n == 0 && is_at_end(s);
         if (s->text.n == 0 && !ended) {
             // under the lock: whoever has news wakes a connection that is already suspended
-            s->waiting = 1;
-            MHD_suspend_connection(s->connection);
+            s->reader.waiting = 1;
+            MHD_suspend_connection(s->reader.connection);
         } else {
             s->last_sent = hn_clock_wall();
         }
@@ -170,11 +158,11 @@ static void close_stream(void *cls) {
     hn_stream *s = cls;
     hn_session *session = s->session;
     pthread_mutex_lock(&session->lock);
-    hn_stream **place = &session->streams;
-    while (*place != s) {
+    hn_reader **place = &session->readers;
+    while (*place != &s->reader) {
         place = &(*place)->next;
     }
-    *place = s->next;
+    *place = s->reader.next;
     session->n_streams--;
     session->touched = hn_clock_wall();
     pthread_mutex_unlock(&session->lock);
@@ -243,8 +231,8 @@ static int attach(hn_stream *s, hn_request *r) {
         session->refs++;
         session->n_streams++;
         session->had_streams = 1;
-        s->next = session->streams;
-        session->streams = s;
+        s->reader.next = session->readers;
+        session->readers = &s->reader;
     }
     pthread_mutex_unlock(&session->lock);
     return open;
@@ -269,7 +257,7 @@ static hn_stream *create_stream(hn_session *session, hn_request *r, int skips) {
 
     // it joins the session's list later
     *s = (hn_stream){.session = session,
-                     .connection = r->connection,
+                     .reader = {.connection = r->connection},
                      .fd = hn_request_socket(r),
                      .places = places,
                      .client = r->client,

@@ -4,7 +4,7 @@
 // A reader of a comparison's events (server-sent events). Its connection is suspended while there
 // is nothing to say.
 
-#include "http/live/session.h"
+#include "http/live/session_state.h"
 
 typedef struct hn_stream hn_stream;
 
@@ -12,9 +12,6 @@ typedef struct hn_stream hn_stream;
 /// server's until it is closed.
 void hn_stream_open(hn_session *session, struct hn_request *r);
 
-// for the comparison, with its lock held
-hn_stream *hn_stream_next(const hn_stream *s);
-void hn_stream_wake(hn_stream *s);
-void hn_stream_tick(hn_stream *s,
-                    double now); ///< wakes it when its reader should hear a comment line
+/// Wakes it when its reader should hear a comment line, or has gone. With the session's lock held.
+void hn_stream_tick(hn_reader *reader, double now);
 #endif

@@ -8,6 +8,7 @@
 #include "http/routes/routes.h"
 #include "http/routes/static_files.h"
 #include "http/runs/run_store.h"
+#include "http/runs/runs.h"
 #include "http/studies/studies.h"
 
 #include <stdio.h>
@@ -76,7 +77,7 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     c->streams = hn_shares_create(o->max_streams, hn_http_opts_share(o, o->max_streams));
     c->comparisons = hn_comparisons_create(o, c->lib);
     c->studies = hn_studies_create(o, c->lib);
-    c->runs = hn_runs_create(o, c->lib);
+    c->runs = hn_runs_create(o, c->lib, hn_run_reply);
     if (!s->dispatch.heavy || !s->dispatch.quick || !s->dispatch.connections || !c->streams ||
         !c->comparisons || !c->studies || !c->runs) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");

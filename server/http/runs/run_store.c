@@ -8,7 +8,6 @@
 #include "http/request/gzip.h"
 #include "http/request/request.h"
 #include "http/runs/json_scan.h"
-#include "http/runs/runs.h"
 #include "session/compare/run_doc.h"
 
 #include <pthread.h>
@@ -27,6 +26,7 @@ struct hn_runs {
     pthread_cond_t wake; ///< of the thread that looks at those who wait
     const hn_http_opts *opts;
     const hn_library *lib;
+    hn_run_answer answer;
     hn_jobs *jobs;
     hn_kept_run *first;
     int n, stop, n_waiting;
@@ -237,7 +237,7 @@ static hn_request *take_waiting(hn_runs *all, hn_kept_run *run, double now, int 
 static void answer_all(hn_runs *all, hn_kept_run *run, hn_request *due) {
     while (due) {
         hn_request *next = due->next;
-        hn_run_reply(due, run);
+        all->answer(due, run);
         hn_reply_compress(due, MOST_ZIPPED);
         hn_request_finish(due);
         hn_runs_release(all, run);
@@ -257,7 +257,7 @@ void hn_runs_await(hn_runs *all, hn_kept_run *run, hn_request *r, double seconds
     }
     pthread_mutex_unlock(&all->lock);
     if (!waits) {
-        hn_run_reply(r, run);
+        all->answer(r, run);
         hn_reply_compress(r, MOST_ZIPPED);
         hn_request_finish(r);
     }
@@ -386,7 +386,7 @@ static void compute(void *arg) {
 
 // ---- the store ----
 
-hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib) {
+hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_answer answer) {
     hn_runs *all = calloc(1, sizeof *all);
     if (!all) {
         return NULL;
@@ -395,6 +395,7 @@ hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib) {
     pthread_cond_init(&all->wake, NULL);
     all->opts = opts;
     all->lib = lib;
+    all->answer = answer;
     all->jobs =
         hn_jobs_create(opts->pool, opts->queue, hn_http_opts_share(opts, opts->queue), compute);
     all->has_thread = all->jobs && pthread_create(&all->thread, NULL, look, all) == 0;

@@ -42,8 +42,11 @@ typedef struct hn_kept_run {
     struct hn_kept_run *next;
 } hn_kept_run;
 
+/// Fills in the reply to a request that has waited for this run. On any thread, with no lock held.
+typedef void (*hn_run_answer)(struct hn_request *r, const hn_kept_run *run);
+
 /// NULL when memory or threads are out. `opts` and `lib` must outlive it.
-hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib);
+hn_runs *hn_runs_create(const hn_http_opts *opts, const hn_library *lib, hn_run_answer answer);
 /// Stops what computes, answers who waits, and joins the threads. NULL is legal.
 void hn_runs_stop(hn_runs *all);
 void hn_runs_free(hn_runs *all);

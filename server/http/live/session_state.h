@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_HTTP_SESSION_INTERNAL_H
-#define HN_HTTP_SESSION_INTERNAL_H
-// Shared by live.c (thread and publishing), patch.c (changes) and stream.c (readers).
+#ifndef HN_HTTP_SESSION_STATE_H
+#define HN_HTTP_SESSION_STATE_H
+// What a session holds, and what is published of it: for its thread (session.c), its changes
+// (patch.c) and its readers (stream.c).
 
 #include "http/live/session.h"
 #include "http/request/request.h"
@@ -17,6 +18,13 @@ typedef struct hn_subject {
     /// Per method, the revision of the newest incident that was published.
     unsigned published[HN_COMPARISON_MAX_METHODS];
 } hn_subject;
+
+/// A reader of the events, as far as the session knows it; the first member of a stream.
+typedef struct hn_reader {
+    struct MHD_Connection *connection;
+    int waiting; ///< the connection is suspended
+    struct hn_reader *next;
+} hn_reader;
 
 /// Why the thread should leave the frame that it computes.
 enum { HN_INTERRUPT_NONE, HN_INTERRUPT_REQUEST, HN_INTERRUPT_END };
@@ -50,7 +58,7 @@ struct hn_session {
 
     // under the lock, by anybody
     hn_request *patches, **patches_end; ///< queue
-    struct hn_stream *streams;          ///< list
+    hn_reader *readers;                 ///< list
     int n_streams, had_streams;
     hn_client client;     ///< who made it
     atomic_int interrupt; ///< what the frame that is being computed is left for
@@ -76,12 +84,12 @@ void hn_session_publish_frame(hn_session *session);
 /// One frame further; 0 when a request, or the end, came before the frame was complete.
 int hn_session_advance(hn_session *session);
 void hn_session_set_state(hn_session *session, hn_session_state state, const char *reason);
-/// Carries out the body of a PATCH and fills in the reply.
-void hn_session_apply(hn_session *session, hn_request *r);
 
 // with the lock held
 void hn_session_put_json(hn_strbuf *b, const hn_session *session);
 void hn_session_put_state(hn_strbuf *b, const hn_session *session); ///< members "state" and "speed"
 void hn_session_wake_streams(hn_session *session);
 void hn_session_set_anchor(hn_session *session);
+void hn_session_set_interrupt(hn_session *session); ///< by what waits
+void hn_reader_wake(hn_reader *r);
 #endif
