@@ -181,6 +181,8 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
     if (!command) {
         return;
     }
+
+    // what the last word is decides what may stand there
     const char *option = option_before(command, words, n);
     if (last[0] == '-') {
         offer_options(&c, command);

@@ -38,7 +38,8 @@ void hn_cells_clear(hn_cells *c) {
 
 // ---- characters ----
 
-/// Bytes of the character at text: 1 to 4; 0 at the end. Bytes that are no UTF-8 count as one character each.
+/// Bytes of the character at text: 1 to 4; 0 at the end. Bytes that are no UTF-8 count as one
+/// character each.
 static int character_bytes(const char *text) {
     const unsigned char first = (unsigned char)text[0];
     const int n = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : first != 0;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TERMINAL_CELLS_H
 #define HN_TERMINAL_CELLS_H
-// A page of character cells. Every view of the terminal workbench and every plot of the command line draws into one; what becomes
-// of it (a screen, or lines of text) is decided afterwards, so that a frame can be tested without a terminal.
+// A page of character cells. Every view of the terminal workbench and every plot of the command
+// line draws into one; what becomes of it (a screen, or lines of text) is decided afterwards, so
+// that a frame can be tested without a terminal.
 
 #include "base/strbuf.h"
 
@@ -35,20 +36,24 @@ bool hn_cells_resize(hn_cells *c, int columns, int rows);
 void hn_cells_free(hn_cells *c);
 void hn_cells_clear(hn_cells *c);
 
-/// Writes one line of UTF-8 at (x, y) of an area, cut at its right edge; characters that take no column join the one before.
+/// Writes one line of UTF-8 at (x, y) of an area, cut at its right edge; characters that take no
+/// column join the one before.
 /// Returns the columns used. Control characters become blanks.
 int hn_cells_put(hn_cells *c, hn_area area, int x, int y, int colour, int style, const char *text);
 int hn_cells_printf(hn_cells *c, hn_area area, int x, int y, int colour, int style,
                     const char *format, ...) HN_PRINTF(7, 8);
-/// Writes text in lines no longer than the area, broken at blanks, from row y on; returns the row after the last one.
+/// Writes text in lines no longer than the area, broken at blanks, from row y on; returns the row
+/// after the last one.
 int hn_cells_fold(hn_cells *c, hn_area area, int y, int colour, const char *text);
 /// A frame with a title along the edge of the area; returns what is inside.
 hn_area hn_cells_frame(hn_cells *c, hn_area area, const char *title);
 /// The columns that a text takes.
 int hn_text_columns(const char *text);
 
-/// The page as lines, blanks at their ends left out. `colours`: with ANSI sequences for bold, reverse and 256 colours.
+/// The page as lines, blanks at their ends left out. `colours`: with ANSI sequences for bold,
+/// reverse and 256 colours.
 void hn_cells_text(hn_strbuf *b, const hn_cells *c, bool colours);
-/// The colour as one of the 256 of a terminal, in the given theme (hn_theme); -1 for ink: the terminal's own.
+/// The colour as one of the 256 of a terminal, in the given theme (hn_theme); -1 for ink: the
+/// terminal's own.
 int hn_cell_colour_256(int colour, int theme);
 #endif

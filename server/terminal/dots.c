@@ -101,6 +101,8 @@ static const char *ascii(unsigned mask) {
     if (right_top && left_bottom && !left_top && !right_bottom) {
         return "/";
     }
+
+    // else by the rows that are set
     switch (rows) {
     case 1:
         return "'";

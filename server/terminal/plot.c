@@ -11,7 +11,8 @@ typedef struct range {
     double low, high;
 } range;
 
-/// The height of a value in the units of the axis: its logarithm, or itself; NaN where it cannot be shown.
+/// The height of a value in the units of the axis: its logarithm, or itself; NaN where it cannot be
+/// shown.
 static double height_of(const hn_plot *plot, double y) {
     return plot->logarithmic ? log10(fmax(fabs(y), plot->floor)) : y;
 }
@@ -27,6 +28,8 @@ static range find_range(const hn_plot *plot) {
             }
         }
     }
+
+    // nothing to show yet: an axis all the same
     if (!(r.low <= r.high)) {
         return plot->logarithmic ? (range){log10(plot->floor), 0} : (range){-1, 1};
     }

@@ -25,7 +25,7 @@ typedef struct hn_plot {
     hn_series series[HN_PLOT_SERIES];
 } hn_plot;
 
-/// Draws into the area: labels to the left, time below, lines between. An area too small for axes stays blank.
-/// Allocates its dots; without memory the lines are left out.
+/// Draws into the area: labels to the left, time below, lines between. An area too small for axes
+/// stays blank. Allocates its dots; without memory the lines are left out.
 void hn_plot_draw(hn_cells *c, hn_area area, const hn_plot *plot, hn_dot_form form);
 #endif

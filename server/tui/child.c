@@ -28,7 +28,8 @@ bool hn_child_start(hn_child *child, const char *const *arguments) {
     fcntl(pipe_ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(pipe_ends[1], F_SETFD, FD_CLOEXEC);
 
-    // standard output and errors into the pipe, no input, a group of its own so that all of it can be stopped
+    // standard output and errors into the pipe, no input, a group of its own so that all of it can
+    // be stopped
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&actions);

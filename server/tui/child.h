@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_CHILD_H
 #define HN_TUI_CHILD_H
-// This very program, run beside the workbench for a study: its text arrives as it is written, and it can be stopped.
+// This very program, run beside the workbench for a study: its text arrives as it is written, and
+// it can be stopped.
 
 #include "base/strbuf.h"
 
@@ -13,7 +14,8 @@ typedef struct hn_child {
     int output;
 } hn_child;
 
-/// Starts `holonom` with these arguments (NULL ends them; without the program's name). false: it could not be started.
+/// Starts `holonom` with these arguments (NULL ends them; without the program's name). false: it
+/// could not be started.
 bool hn_child_start(hn_child *child, const char *const *arguments);
 /// Adds what has arrived to the text; false when the program has ended (and is forgotten then).
 bool hn_child_read(hn_child *child, hn_strbuf *text);

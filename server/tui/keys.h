@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_KEYS_H
 #define HN_TUI_KEYS_H
-// The keys of the workbench as one table: the loop obeys it, the help shows it. Letters are those of the page (web/state/keys.js).
+// The keys of the workbench as one table: the loop obeys it, the help shows it. Letters are those
+// of the page (web/state/keys.js).
 
 #include <stdbool.h>
 

@@ -71,6 +71,8 @@ static void support(const placing *p, int point) {
 
 static void draw_shape(const placing *p, const hn_shape *s, int colour, bool full) {
     const int on = full ? 1 : 2, off = full ? 0 : 2;
+
+    // a shape of the selected method is a full line, a ghost's is dashed
     switch (s->kind) {
     case HN_SHAPE_BAR:
         line(p, s->p, s->q, colour, on, off);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_MECHANISM_VIEW_H
 #define HN_TUI_MECHANISM_VIEW_H
-// The mechanism in dots: one configuration a method, the selected one on top, the reference in grey beneath.
+// The mechanism in dots: one configuration a method, the selected one on top, the reference in grey
+// beneath.
 
 #include "tui/workbench.h"
 

@@ -154,6 +154,8 @@ static void run_study(hn_workbench *w, const char *kind, const char *option, con
         arguments[n++] = "--set";
         arguments[n++] = settings[i];
     }
+
+    // the panel names it; Esc stops it
     char title[HN_TUI_LINE];
     snprintf(title, sizeof title, "%s of %.180s: Esc stops and goes back", kind, w->scene);
     begin_text(w, title);
@@ -170,7 +172,8 @@ static void begin_prompt(hn_workbench *w, hn_prompt_kind kind, const char *initi
     w->n_input = snprintf(w->input, sizeof w->input, "%s", initial);
 }
 
-/// Writes the value of `key` behind the integrator of a spelling, in place of the one that stands there.
+/// Writes the value of `key` behind the integrator of a spelling, in place of the one that stands
+/// there.
 static void set_integrator_option(char spelling[HN_SPEC_MAX], const char *key, double value) {
     char head[HN_SPEC_MAX], rest[2 * HN_SPEC_MAX] = "", find[32];
     snprintf(find, sizeof find, "%s=", key);
@@ -264,6 +267,8 @@ static void accept_export(hn_workbench *w) {
         fprintf(file, ",\"gap %s\",\"energy change %s\",\"error %s\"", s, s, s);
     }
     fprintf(file, "\n");
+
+    // one row a frame; what is not known stays empty
     const int n = hn_recording_frames(w->recording);
     for (int k = 0; k < n; k++) {
         fprintf(file, "%.17g", k * hn_recording_frame_dt(w->recording));
@@ -276,6 +281,8 @@ static void accept_export(hn_workbench *w) {
         }
         fprintf(file, "\n");
     }
+
+    // only a file that was closed well is complete
     const bool good = fclose(file) == 0;
     hn_workbench_say(w, good ? "%.200s: %d frames written" : "%.200s: the disk is full; %d frames",
                      w->input, n);
@@ -286,6 +293,8 @@ void hn_prompt_key(hn_workbench *w, int key) {
                                                      [HN_PROMPT_METHOD] = accept_method,
                                                      [HN_PROMPT_PARAMETER] = accept_parameter,
                                                      [HN_PROMPT_EXPORT] = accept_export};
+
+    // Escape forgets the line, Enter hands it over
     if (key == HN_KEY_ESCAPE) {
         w->prompt = HN_PROMPT_NONE;
     } else if (key == HN_KEY_ENTER) {

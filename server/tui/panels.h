@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_PANELS_H
 #define HN_TUI_PANELS_H
-// The panels over the main view: lists to choose from, texts to read, and the line where something is typed.
+// The panels over the main view: lists to choose from, texts to read, and the line where something
+// is typed.
 
 #include "tui/keys.h"
 #include "tui/workbench.h"

@@ -54,6 +54,8 @@ static void take_motion(hn_recording *r, const cJSON *document, int stride) {
     const cJSON *energy = cJSON_GetObjectItem(motion, "energy");
     const cJSON *value = energy ? energy->child : NULL;
     const double start = value ? value->valuedouble : 0;
+
+    // a row of points for every stride-th frame
     int frame = 0;
     cJSON_ArrayForEach(row, cJSON_GetObjectItem(motion, "points")) {
         int k = 0;
@@ -80,7 +82,8 @@ static double number_of(const cJSON *object, const char *name) {
     return cJSON_IsNumber(item) ? item->valuedouble : 0;
 }
 
-/// The stored reference of the scene with these parameters, if there is one; without it there is no error to show.
+/// The stored reference of the scene with these parameters, if there is one; without it there is no
+/// error to show.
 static void fetch_reference(hn_recording *r) {
     hn_ref_request request = hn_ref_request_default();
     request.only_stored = 1;
@@ -90,6 +93,8 @@ static void fetch_reference(hn_recording *r) {
     if (hn_reference_get(r->model, &request, &ref, &source, &diags) != HN_OK) {
         return;
     }
+
+    // its motion at the frames of this recording
     const int stride = 1 + r->last / 1000;
     const hn_walk_limits limits = {0};
     hn_strbuf text;
@@ -279,6 +284,8 @@ hn_status hn_recording_create(const hn_model *model, const char *const *methods,
     r->model = model;
     pthread_mutex_init(&r->lock, NULL);
     pthread_cond_init(&r->more, NULL);
+
+    // nothing runs before all memory is there
     hn_status status = open_comparison(r, methods, n_methods, duration, diags);
     if (status == HN_OK && !allocate(r)) {
         status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -302,6 +309,8 @@ void hn_recording_free(hn_recording *r) {
     if (!r) {
         return;
     }
+
+    // the thread ends after the frame that it is at
     if (r->started) {
         atomic_store(&r->stop, true);
         pthread_mutex_lock(&r->lock);
@@ -319,6 +328,8 @@ void hn_recording_free(hn_recording *r) {
         free(s->evaluations);
         free(s->points);
     }
+
+    // nobody reads any more
     hn_comparison_free(r->comparison);
     free(r->reference);
     free(r->reference_energy);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_RECORDING_H
 #define HN_TUI_RECORDING_H
-// A comparison that is recorded: a thread steps it ahead of the viewer, every frame is kept, and nothing is computed twice.
+// A comparison that is recorded: a thread steps it ahead of the viewer, every frame is kept, and
+// nothing is computed twice.
 //
 //   worker thread:  reference motion -> frame 0, 1, 2 ... up to the wanted one -> waits
-//   viewer:         wants a frame; reads all frames below hn_recording_frames(), which never change again
+//   viewer:         wants a frame; reads frames below hn_recording_frames(), which never change
 
 #include "session/compare/comparison.h"
 
@@ -12,7 +13,8 @@
 
 typedef struct hn_recording hn_recording;
 
-/// One method over all frames. Numbers at frames below hn_recording_frames() are final; NaN: the method had ended.
+/// One method over all frames. Numbers at frames below hn_recording_frames() are final; NaN: the
+/// method had ended.
 typedef struct hn_track {
     char spelling[HN_SPEC_MAX];
     const char *name, *rule; ///< short name, sentence on its drift; static
@@ -20,10 +22,11 @@ typedef struct hn_track {
     bool model_error;        ///< a counter-example: it solves other equations
     const double *gap, *velocity_gap;
     const double *energy; ///< change since the start [J]
-    const double
-        *energy_error; ///< the same less that of the reference [J]; NaN: no reference there
-    const double *
-        error; ///< largest distance of a drawn point from the reference [m]; NaN: no reference there, and at frame 0
+    /// the same less that of the reference [J]; NaN: no reference there
+    const double *energy_error;
+    /// largest distance of a drawn point from the reference [m]; NaN: no reference there, and at
+    /// frame 0
+    const double *error;
     const double *points;      ///< 3 n_points a frame
     const double *evaluations; ///< since the start
 } hn_track;
@@ -35,7 +38,8 @@ typedef struct hn_track_end {
     char reason[256];
 } hn_track_end;
 
-/// Starts recording; the model must outlive it. duration 0: the scene's. Faults of a spelling are in diags ("/methods/2").
+/// Starts recording; the model must outlive it. duration 0: the scene's. Faults of a spelling are
+/// in diags ("/methods/2").
 HN_MUST_CHECK hn_status hn_recording_create(const hn_model *model, const char *const *methods,
                                             int n_methods, double duration, hn_recording **out,
                                             hn_diags *diags);
@@ -60,6 +64,7 @@ hn_recording_truth hn_recording_get_truth(const hn_recording *r);
 const double *hn_recording_reference(const hn_recording *r, int frame);
 /// Incidents of all methods so far, copied: at most `most`; method[i] is whose. Returns how many.
 int hn_recording_incidents(const hn_recording *r, hn_incident *out, int *method, int most);
-/// Seconds of wall time that the last frame took; above frame_dt the methods are slower than the clock.
+/// Seconds of wall time that the last frame took; above frame_dt the methods are slower than the
+/// clock.
 double hn_recording_frame_seconds(const hn_recording *r);
 #endif

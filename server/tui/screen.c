@@ -71,7 +71,8 @@ static void make_colours(int theme) {
 
 bool hn_screen_open(int theme, bool colours) {
     screen.have_modes = tcgetattr(STDIN_FILENO, &screen.modes) == 0;
-    // a fresh description of the terminal rather than initscr(), which ends the program where there is none
+    // a fresh description of the terminal rather than initscr(), which ends the program where there
+    // is none
     SCREEN *made = newterm(NULL, stdout, stdin);
     if (!made) {
         return false;
@@ -81,6 +82,8 @@ bool hn_screen_open(int theme, bool colours) {
     if (screen.colours) {
         make_colours(theme);
     }
+
+    // keys one by one and unseen; an escape is not waited for
     set_escdelay(25);
     cbreak();
     noecho();

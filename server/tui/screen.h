@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_SCREEN_H
 #define HN_TUI_SCREEN_H
-// A terminal by wide ncurses: shows pages of cells, reads keys and the mouse, and is as it was before after any end.
+// A terminal by wide ncurses: shows pages of cells, reads keys and the mouse, and is as it was
+// before after any end.
 //
-// ncurses rather than notcurses: it is on every Debian machine, starts in a millisecond, sends only what has changed, and works over
-// slow lines and old terminals. The finer dots of braille and quadrants are characters here as there.
+// ncurses rather than notcurses: it is on every Debian machine, starts in a millisecond, sends only
+// what has changed, and works over slow lines and old terminals. The finer dots of braille and
+// quadrants are characters here as there.
 
 #include "terminal/cells.h"
 
@@ -14,13 +16,15 @@ typedef struct hn_mouse {
 
 enum { HN_KEY_NONE = -1, HN_KEY_MOUSE = 0x110100, HN_KEY_RESIZE };
 
-/// Takes over the terminal; `theme`: hn_theme of its background; `colours` false: none at all. false: this is no terminal that
-/// ncurses can drive. Undone by hn_screen_close(), at exit, and by every signal that ends the program.
+/// Takes over the terminal; `theme`: hn_theme of its background; `colours` false: none at all.
+/// false: this is no terminal that ncurses can drive. Undone by hn_screen_close(), at exit, and by
+/// every signal that ends the program.
 bool hn_screen_open(int theme, bool colours);
 void hn_screen_close(void);
 void hn_screen_size(int *columns, int *rows);
 void hn_screen_show(const hn_cells *c, bool ascii);
-/// The next key within the time [s]: a character, HN_KEY_* of keys.h or of this file; HN_KEY_NONE: none came.
+/// The next key within the time [s]: a character, HN_KEY_* of keys.h or of this file; HN_KEY_NONE:
+/// none came.
 int hn_screen_key(double seconds, hn_mouse *mouse);
 /// Hands the text to the terminal's clipboard (OSC 52); terminals that do not know it show nothing.
 void hn_screen_copy(const char *text);

@@ -14,7 +14,8 @@ typedef struct hn_tui_opts {
     int frames;        ///< hn_tui_run(): ends after so many frames; 0: when the user does
 } hn_tui_opts;
 
-/// Works on the terminal until the user quits. false: standard output is no terminal that can be driven.
+/// Works on the terminal until the user quits. false: standard output is no terminal that can be
+/// driven.
 bool hn_tui_run(hn_workbench *w, const hn_tui_opts *opts);
 /// One frame as text, at time t: everything up to it is computed first.
 void hn_tui_frame(hn_strbuf *b, hn_workbench *w, const hn_tui_opts *opts);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_VERDICT_H
 #define HN_TUI_VERDICT_H
-// The verdict on a method: one phrase from its loop gap, its error against the reference and its energy, by the same rules and in
-// the same words as the page (web/state/verdict.js).
+// The verdict on a method: one phrase from its loop gap, its error against the reference and its
+// energy, by the same rules and in the same words as the page (web/state/verdict.js).
 
 #include "tui/recording.h"
 

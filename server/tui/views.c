@@ -83,6 +83,8 @@ static void draw_notice(hn_cells *c, const hn_workbench *w) {
         hn_cells_put(c, area, 0, 0, HN_CELL_INK, HN_CELL_BOLD, w->message);
         return;
     }
+
+    // the last one so far, of the selected method if it has any
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     int last = -1;
     for (int i = 0; i < n; i++) {
@@ -133,6 +135,7 @@ static void draw_row(hn_cells *c, hn_area area, const hn_workbench *w, int m, in
                     track->name);
     x += 1 + NAME_COLUMNS;
     x += put_quantity(c, area, x, m, "gap", track->gap[frame], "m");
+
     // narrow terminals leave out the energy, then the error
     if (area.columns >= 124) {
         x += put_quantity(c, area, x, m, "energy", track->energy[frame], "J");
@@ -167,6 +170,8 @@ static void draw_plot(hn_cells *c, hn_area area, const hn_workbench *w) {
                     .logarithmic = true,
                     .floor = 1e-17,
                     .unit = w->plot == HN_TUI_ENERGY ? "J" : "m"};
+
+    // one line a method that is shown, up to the present frame
     for (int m = 0; m < w->n_methods; m++) {
         const hn_track *t = hn_recording_track(w->recording, m);
         const double *const columns[] = {t->gap, t->error, t->energy};
@@ -197,6 +202,8 @@ static void draw_why(hn_cells *c, hn_area area, const hn_workbench *w) {
     if (end.failed) {
         y = hn_cells_fold(c, in, y, HN_CELL_ALARM, end.reason);
     }
+
+    // every incident of the method, with what to try
     const int n = hn_recording_incidents(w->recording, list, whose, MOST_INCIDENTS);
     int same = 0;
     for (int i = 0; i < n && y < in.rows; i++) {
@@ -255,6 +262,8 @@ static void draw_text(hn_cells *c, hn_area area, const hn_workbench *w) {
 void hn_views_draw(hn_cells *c, const hn_workbench *w) {
     hn_cells_clear(c);
     draw_header(c, w);
+
+    // a panel takes the place of the views
     const hn_area whole = {0, 1, c->columns, c->rows - 3};
     if (w->panel == HN_PANEL_LIST) {
         draw_list(c, whole, w);

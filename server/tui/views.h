@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_VIEWS_H
 #define HN_TUI_VIEWS_H
-// One frame of the workbench, drawn into cells: header, mechanism, plot, method table, notice, keys.
+// One frame of the workbench, drawn into cells: header, mechanism, plot, method table, notice,
+// keys.
 //
 //    holonom  four-bar  t 3.42 s of 10 s  x1  running
 //   +- mechanism -----------+- loop gap [m] -----------------+

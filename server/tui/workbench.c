@@ -65,6 +65,8 @@ static void keep_settings(hn_workbench *w, const hn_setting *settings, int n) {
 hn_status hn_workbench_open(hn_workbench *w, const hn_library *library, const char *scene,
                             const hn_setting *settings, int n_settings, const char *const *methods,
                             int n_methods, hn_diags *diags) {
+
+    // what is not given comes from the scene
     *w = (hn_workbench){.library = library, .speed = 1, .playing = true};
     hn_strbuf_init(&w->text);
     snprintf(w->scene, sizeof w->scene, "%s", scene);
@@ -120,6 +122,8 @@ void hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *s
         hn_workbench_say_fault(w, &diags);
         return;
     }
+
+    // how it is shown stays as it was
     fresh.form = w->form;
     fresh.plot = w->plot;
     fresh.speed = w->speed;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_WORKBENCH_H
 #define HN_TUI_WORKBENCH_H
-// What the terminal workbench knows: a model, its recording, what is shown, and the panel that lies over it. Keys change it, time
-// moves it on, views (views.h) draw it; it knows neither a screen nor a clock.
+// What the terminal workbench knows: a model, its recording, what is shown, and the panel that lies
+// over it. Keys change it, time moves it on, views (views.h) draw it; it knows neither a screen nor
+// a clock.
 
 #include "session/model/envelope.h"
 #include "terminal/dots.h"
@@ -73,8 +74,8 @@ typedef struct hn_workbench {
     int n_input;
 } hn_workbench;
 
-/// Opens a scene by its name or path, with changed parameters (copied). methods: n spellings; 0: the scene's own.
-/// On failure nothing is open and diags say why.
+/// Opens a scene by its name or path, with changed parameters (copied). methods: n spellings; 0:
+/// the scene's own. On failure nothing is open and diags say why.
 HN_MUST_CHECK hn_status hn_workbench_open(hn_workbench *w, const hn_library *library,
                                           const char *scene, const hn_setting *settings,
                                           int n_settings, const char *const *methods, int n_methods,
@@ -83,13 +84,15 @@ void hn_workbench_close(hn_workbench *w);
 
 /// A key of hn_tui_keys() or a character, or one of HN_KEY_*.
 void hn_workbench_key(hn_workbench *w, int key);
-/// Time goes on by `seconds`: the recording is asked for what comes, and the clock moves as far as there are frames.
+/// Time goes on by `seconds`: the recording is asked for what comes, and the clock moves as far as
+/// there are frames.
 void hn_workbench_tick(hn_workbench *w, double seconds);
 /// The frame shown.
 int hn_workbench_frame(const hn_workbench *w);
 /// The address of the page's link to what is shown: "http://127.0.0.1:8080/#scene=...".
 void hn_workbench_link(const hn_workbench *w, hn_strbuf *b);
-/// Where the scene and its methods come from in a link of the page (the part after #, or the whole address); false: no link.
+/// Where the scene and its methods come from in a link of the page (the part after #, or the whole
+/// address); false: no link.
 bool hn_workbench_read_link(const char *link, char scene[HN_TUI_LINE], hn_setting *settings,
                             char (*names)[64], int *n_settings, char (*methods)[HN_SPEC_MAX],
                             int *n_methods);

@@ -195,11 +195,12 @@ static void tell_assembly(const hn_model *model, const hn_diags *why) {
                 open->message, open->hint);
         return;
     }
-    fprintf(
-        stderr,
-        "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close loops %d are "
-        "redundant, and %d are 0 whatever the pose\n",
-        a->gap, a->freedoms, a->redundant, hn_system_get_info(hn_model_system(model)).rows_dropped);
+    fprintf(stderr,
+            "holonom: assembled with a gap of %.2g: %d degrees of freedom; of the rows that close "
+            "loops %d are "
+            "redundant, and %d are 0 whatever the pose\n",
+            a->gap, a->freedoms, a->redundant,
+            hn_system_get_info(hn_model_system(model)).rows_dropped);
 }
 
 static void tell_summary(const hn_import *im) {

@@ -80,6 +80,8 @@ static hn_exit show(const hn_args *args, hn_workbench *w, hn_tui_opts *opts) {
         fprintf(stderr, "holonom: the terminal '%s' cannot be driven; this is one frame as text\n",
                 getenv("TERM") ? getenv("TERM") : "");
     }
+
+    // no terminal, or one frame was asked for
     hn_strbuf b;
     hn_strbuf_init(&b);
     opts->t = isnan(args->t) ? hn_recording_duration(w->recording) : args->t;
@@ -104,6 +106,8 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
                         .blocks = args->blocks};
     opts.ascii =
         args->ascii || hn_plain_wanted(getenv("LC_ALL"), getenv("LC_CTYPE"), getenv("LANG"));
+
+    // everything is read before anything is opened
     hn_status status = read_size(args->size, &opts, &diags);
     status = status == HN_OK ? read_opening(args, &o, &diags) : status;
     if (status == HN_OK) {
