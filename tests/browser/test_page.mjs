@@ -413,7 +413,7 @@ test("where no coordinates can be independent, the reduced terms say so", async 
   await page.click(".equation-panel summary");
   await page.click(".reduced-panel summary");
   await page.waitForFunction(() =>
-    /There are no such coordinates here: .*ball/.test(
+    /No independent coordinates exist here: .*ball/.test(
       document.querySelector(".reduced-panel").textContent,
     ),
   );

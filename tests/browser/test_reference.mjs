@@ -100,7 +100,7 @@ test("the error in the table of methods and in its curve is the distance from th
   await until(page, isReady);
   await playTo(page, 2);
   const figure = page.locator("figure.plot").first();
-  assert.equal(await figure.locator("select").inputValue(), "off");
+  assert.equal(await figure.locator("select").first().inputValue(), "off");
   assert.ok(await figure.locator(".no-curve").isHidden());
   await figure.getByRole("button", { name: "table" }).click();
   const heads = await figure.locator("thead th").allTextContents();

@@ -53,7 +53,9 @@ export function createWhyCard(el, store, actions) {
   function makeCard(m) {
     const card = cardOfMethod(data, m, shownIndex(data));
     const drift =
-      card.drift && !card.rule.includes(card.drift) ? ` ${sentenceCase(card.drift)}` : "";
+      card.drift && !card.rule.includes(card.drift)
+        ? ` ${sentenceCase(`drift: ${card.drift}`)}`
+        : "";
     const closeButton = h(
       "button",
       { type: "button", class: "tool small", "aria-label": "Close", onclick: close },
