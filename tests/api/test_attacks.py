@@ -13,7 +13,7 @@ import driver
 
 RK4 = "index1@rk4:h=1e-3"
 BESIDE = 0.2 * driver.SLOW  # the longest answer of healthz beside an attack [s]
-RING = {"scene": "ring", "parameters": {"n": 30}}
+RING = {"scene": "ring", "parameters": {"n": 12}}
 
 
 def beside(server, attack):
