@@ -6,22 +6,57 @@
 
 #include <math.h>
 
+/// Of the largest sigma_min: a configuration this close counts as the one that was announced.
+static const double REACHED = 0.02;
+
+/// A prediction whose time has passed: withdrawn in words where the run did not get there.
+static void conclude(hn_watch *w) {
+    hn_singular_record *s = &w->singular;
+    hn_incident *i = s->announced <= w->log.n ? &w->log.list[s->announced - 1] : NULL;
+    s->announced = 0;
+    hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
+    if (!i || s->lowest < REACHED * s->largest) {
+        return;
+    }
+    // the pilot run and a step across say the same: look for a report of the configuration
+    for (int k = 0; k < w->log.n; k++) {
+        const hn_incident *other = &w->log.list[k];
+        const bool singular =
+            other->code == HN_INCIDENT_NEAR_SINGULAR || other->code == HN_INCIDENT_RANK_LOSS;
+        if (singular && other->t >= i->t) {
+            return;
+        }
+    }
+    hn_incident_append(
+        &w->log, i,
+        "; withdrawn at t = %.4g s: the run did not get there, sigma_min was %.2g or "
+        "more",
+        w->run->now.t, s->lowest);
+}
+
 static void check(hn_watch *w) {
-    const hn_singular_record *s = &w->singular;
+    hn_singular_record *s = &w->singular;
     if (w->run->info.nc == 0) {
         return;
     }
+    s->lowest = fmin(s->lowest, s->info.sigma_min);
+
+    // what was announced is judged some steps after its time, when a step across it has been seen
+    if (s->announced && w->run->now.t > s->info.predicted + 2 * w->run->h) {
+        conclude(w);
+    }
     if (!(s->info.ahead < HUGE_VAL)) {
-        if (w->run->now.t > s->info.predicted) {
-            hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
-        }
         return;
     }
-    hn_incident_report(w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
-                       "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a "
-                       "singular configuration then; sigma_min is %.2g of %.2g now",
-                       s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min,
-                       s->info.sigma_max);
+    const hn_incident *i = hn_incident_report(
+        w, &hn_incident_rank_ahead, "time to go", s->info.ahead, 0,
+        "J loses rank in %.3g s, at t = %.4g s: a pilot run from here reaches a singular "
+        "configuration then; sigma_min is %.2g of %.2g now",
+        s->info.ahead, w->run->now.t + s->info.ahead, s->info.sigma_min, s->info.sigma_max);
+    if (i) {
+        s->announced = 1 + (int)(i - w->log.list);
+        s->lowest = s->info.sigma_min;
+    }
 }
 
 const hn_incident_kind hn_incident_rank_ahead = {

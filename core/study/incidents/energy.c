@@ -4,6 +4,7 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
+#include <float.h>
 #include <math.h>
 
 bool hn_energy_is_conservative(const hn_system *sys) {
@@ -18,12 +19,29 @@ bool hn_energy_is_conservative(const hn_system *sys) {
     return !hn_system_get_info(sys).has_time;
 }
 
+/// Energies are sums of terms as large as weights times lengths, whatever their sum is: rounding changes them by some eps of
+/// that. ROUNDINGS is what 1e5 steps of a swinging chain leave at most.
+static double rounding_of(const hn_watch *w) {
+    enum { ROUNDINGS = 10000 };
+    const hn_scene *scene = hn_system_scene(w->run->sys);
+    double mass = 0, gravity = 0;
+    for (int i = 0; i < scene->n_bodies; i++) {
+        mass += scene->bodies[i].mass.value;
+    }
+    for (int i = 0; i < 3; i++) {
+        gravity = hypot(gravity, scene->gravity[i].value);
+    }
+    const double size = fabs(w->measure.potential) + w->measure.kinetic;
+    return ROUNDINGS * DBL_EPSILON * (size + mass * gravity * w->length);
+}
+
 void hn_energy_start(hn_watch *w) {
     hn_energy_record *e = &w->energy;
     e->v_min = e->v_max = w->measure.potential;
     e->t_max = w->measure.kinetic;
     e->start = e->last = w->measure.kinetic + w->measure.potential;
     e->change = 0;
+    e->noise = rounding_of(w);
 }
 
 void hn_energy_record_state(hn_watch *w) {
@@ -38,7 +56,7 @@ void hn_energy_record_state(hn_watch *w) {
 
 /// Says whether a change of energy is worth a report.
 static bool is_large(const hn_watch *w, double change, double limit) {
-    return w->energy.conservative && limit != 0 && fabs(change) > limit;
+    return w->energy.conservative && limit != 0 && fabs(change) > fmax(limit, w->energy.noise);
 }
 
 // little by little, a method can lose all the energy there is without a jump

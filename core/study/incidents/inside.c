@@ -33,7 +33,8 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
     const double range = fmax(e->v_max, m->potential) - fmin(e->v_min, m->potential);
     // against the energies of the steps: a state that is wrong may hold any amount itself
     const double limit = HN_RUN_WARN_ENERGY * (e->t_max + range);
-    if (e->conservative && limit > 0 && fabs(change) > limit && fabs(energy - e->start) > limit) {
+    if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
+        fabs(energy - e->start) > limit) {
         set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
                                     "the output between two steps has another energy: it changes "
                                     "by %.3g J up to t = %.6g s, more than %.3g J",

@@ -19,7 +19,9 @@ static void report_stiff(hn_watch *w, double size, double h) {
     const hn_stepper *stepper = w->run->spec.stepper;
     hn_incident *i = hn_incident_report(
         w, &hn_incident_stiff, "|h lambda|", size, stepper->real_limit,
-        "stability, not accuracy, holds the steps at %.2g s: something dies away at %.3g 1/s, and "
+        "stability, not accuracy, holds the steps at %.2g s: the fastest part of the motion, "
+        "damped "
+        "or vibrating, has a rate of %.3g 1/s, and "
         "%s is stable up to |h lambda| = %.3g; an implicit method takes the steps that the motion "
         "needs",
         h, size / h, stepper->name, stepper->real_limit);
@@ -107,8 +109,8 @@ const hn_incident_kind hn_incident_stiff = {
     .code = HN_INCIDENT_STIFF,
     .spelling = "stiff",
     .name = "a stiff part limits the step",
-    .rule = "Some part of the motion decays much faster than the mechanism moves. An explicit "
-            "method must take steps as short as that decay; an implicit method need not.",
+    .rule = "Some part of the motion is much faster than the mechanism, and too small to see. An "
+            "explicit method must take steps that follow it; an implicit method need not.",
     .remedies = {{hn_remedy_stiff_closed, 0},
                  {hn_remedy_stiff_same, 0},
                  {hn_remedy_stiff_multistep, 0}},

@@ -139,6 +139,7 @@ static void forget(hn_watch *w) {
     s->largest = s->multiplier = 0;
     s->fallbacks = 0;
     s->passing = 0;
+    s->announced = 0;
     memset(w->row_size, 0, (size_t)w->run->info.nc * sizeof *w->row_size);
     memset(w->beyond, 0, (size_t)hn_limits_count(w->limits));
     w->worst_gap = w->worst_velocity_gap = w->worst_energy_change = w->swiftest = 0;

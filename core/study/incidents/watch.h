@@ -45,6 +45,7 @@ typedef struct hn_energy_record {
     double start, last,
         change; ///< total energy at the start and now, and its change in the last step
     double v_min, v_max, t_max; ///< range of the potential, largest kinetic energy
+    double noise;               ///< changes up to this are rounding [J]
     bool conservative;          ///< no load does work that the energy does not contain
 } hn_energy_record;
 
@@ -73,6 +74,9 @@ typedef struct hn_singular_record {
     double largest;           ///< sigma_min so far
     double multiplier;        ///< largest |lambda| away from singular configurations
     long long fallbacks;      ///< of the method, as reported so far
+    /// The latest prediction: 1 + number of its report, 0: none is open; the lowest sigma_min since.
+    int announced;
+    double lowest;
     int passing; ///< 1 + number of the report on the configuration being passed, 0: none
     // a state inside the last step
     double *inside_q;       ///< nq
