@@ -250,6 +250,7 @@ help:
 	@echo 'make steps        steps and evaluations of adaptive integrators beside GSL and IDA, kept in tests/reference/steps.txt'
 	@echo 'make orders       orders of every formulation with every fixed-step integrator, beside theory, kept in tests/orders/results.txt'
 	@echo 'make every-method every shipped scene by every method: tests/tables/every_method.csv, and a summary'
+	@echo 'make sweep        every shipped scene over its sliders: no run ends without a reason'
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make similarity   similar mechanisms of 1 nm to 1000 km by every method: tests/tables/similarity.txt'
 	@echo 'make long-runs    10,000 s of a turning crank: tests/tables/long_runs.txt'
@@ -264,7 +265,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -326,6 +327,11 @@ extreme: all
 report: all
 	@$(PROGRAM) report --time-limit 225 --out build/report.html --plots build/report
 	@echo 'report: build/report.html, plots in build/report/'
+
+# half an hour on two processors; fails where a run ends without a reason
+sweep: build/.packages-test
+	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
+	@python3 tests/tables/sweep.py $(PROGRAM)
 
 rings: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)

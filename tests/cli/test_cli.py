@@ -106,13 +106,16 @@ class CommandLine(unittest.TestCase):
 
     def test_inspect_says_why_a_loop_stays_open(self):
         # crank 3 at 1 rad and ground 1 are sqrt(3^2 + 1^2 - 2*3*cos(1)) = 2.59965 apart, coupler and rocker reach 1.2 + 0.8
-        text = self.assert_exit(call("inspect", "four-bar", "--set", "l1=3"), DONE)
+        text = self.assert_exit(call("inspect", "four-bar", "--set", "l1=3"), INPUT)
         self.assertIn("0.599651 m are missing", text)
         self.assertIn("make rocker 1.39965 m", text)
-        start = strict(self.assert_exit(call("inspect", "four-bar", "--set", "l1=3", "--json"), DONE))["start"]
+        start = strict(self.assert_exit(call("inspect", "four-bar", "--set", "l1=3", "--json"), INPUT))["start"]
         self.assertFalse(start["ok"])
         self.assertIn("loop B cannot be closed", start["reason"])
         closed = strict(self.assert_exit(call("inspect", "four-bar", "--json"), DONE))["start"]
+        for scene, driven in (("car-axis", True), ("pantograph", True), ("ring", False)):
+            reading = strict(self.assert_exit(call("inspect", scene, "--json"), DONE))["actuation"]["reading"]
+            self.assertEqual("nothing is driven" not in reading, driven)
         self.assertTrue(closed["ok"])
         self.assertNotIn("reason", closed)
 
@@ -435,8 +438,10 @@ class CommandLine(unittest.TestCase):
             done = call("run", "parallelogram", "--method", "projection@dop853:rtol=1e-6", "--time", "0.6", "--at", "0.6", "--format", form)
             self.assert_exit(done, DONE)
             said = done.stderr.decode().splitlines()
-            self.assertEqual(len(said), 1, said)  # flat at 0.345 s and next at 0.679 s
-            self.assertRegex(said[0], r"^holonom: t = 0\.34\d* s: one step of .* 2 degrees of freedom there instead of 1")
+            self.assertEqual(len(said), 3, said)  # flat at 0.345 s, announced before, and next at 0.679 s
+            self.assertRegex(said[0], r"^holonom: t = 0\.20\d* s: J loses rank in .* at t = 0\.3448 s")
+            self.assertRegex(said[1], r"^holonom: t = 0\.34\d* s: one step of .* 2 degrees of freedom there instead of 1")
+            self.assertRegex(said[2], r"^holonom: t = 0\.60\d* s: J loses rank in .* at t = 0\.6786 s")
 
     def test_malformed_scenes_never_crash_it(self):
         for text in ("{", "[]", "null", '{"a": 1}', "\x00", "[" * 10000, '{"bodies": 1}', "é", '{"title": "\\ud800"}'):

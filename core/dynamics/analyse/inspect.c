@@ -186,13 +186,25 @@ static void put_limits(hn_strbuf *b, const hn_system *sys) {
     hn_json_end_array(b);
 }
 
+/// Whether something beside motors drives the scene: a follower, a table, or a formula of time.
+static bool is_driven(const hn_system *sys) {
+    bool driven = sys->info.has_time;
+    for (int k = 0; k < sys->scene->n_loads; k++) {
+        const hn_load_kind kind = sys->scene->loads[k].kind;
+        driven |= kind == HN_LOAD_FOLLOW || kind == HN_LOAD_TABLE;
+    }
+    return driven;
+}
+
 void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
     int n = 0;
     for (int i = 0; i < sys->scene->n_coordinates; i++) {
         n += sys->scene->coordinates[i].actuated != 0;
     }
     const char *reading = "fully actuated: as many motors as degrees of freedom";
-    if (n == 0) {
+    if (n == 0 && is_driven(sys)) {
+        reading = "no motors: driven by loads or motions that are given over time";
+    } else if (n == 0) {
         reading = "passive: nothing is driven";
     } else if (n < freedoms) {
         reading = "under-actuated: fewer motors than degrees of freedom";

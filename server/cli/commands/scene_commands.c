@@ -41,21 +41,24 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
     if (status == HN_OK) {
         add_native(&b, model);
     }
+    const int assembled = status == HN_OK && hn_model_assembly(model)->ok;
     hn_model_free(model);
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
 
-    // the document, or its outline for people
+    // the document, or its outline for people; a scene that cannot be assembled is at fault
     if (args->json) {
-        return hn_cli_print(&b);
+        const hn_exit printed = hn_cli_print(&b);
+        return printed == HN_EXIT_DONE && !assembled ? HN_EXIT_INPUT : printed;
     }
     cJSON *document = hn_document_parse(&b);
     hn_document_outline(&b, document, 0);
     b.failed |= document == NULL;
     cJSON_Delete(document);
-    return hn_cli_print_text(&b);
+    const hn_exit printed = hn_cli_print_text(&b);
+    return printed == HN_EXIT_DONE && !assembled ? HN_EXIT_INPUT : printed;
 }
 
 static hn_status choose_form(const hn_args *args, hn_equation_form *form, hn_diags *diags) {
