@@ -31,7 +31,7 @@ static const option OPTIONS[] = {
     {"--json", NULL, OPTION_FLAG, AT(json), "one JSON object on standard output"},
     {"--help", NULL, OPTION_FLAG, AT(help), "this help"},
     {"--no-native", NULL, OPTION_FLAG, AT(no_native),
-     "interpret everything; no background compilation"},
+     "interpret everything, compile nothing in the background; so does HOLONOM_NATIVE=0"},
     {"--set", "NAME=VALUE", OPTION_WORD, AT(set),
      "a parameter that differs from the scene's; may be repeated"},
     {"--method", "METHOD", OPTION_TEXT, AT(method),
