@@ -161,7 +161,7 @@ static void compare_costs(hn_minimal_state *s, double t) {
     s->n_settled = 0;
 }
 
-// the rest of a start or a change of chart, once the columns are chosen; s->q and s->v hold the state
+// the rest of a start or a change of chart, once the columns are chosen; s->q, s->v hold the state
 static hn_status settle_in(hn_minimal_state *s, double t, double *y) {
     hn_chart *chart = &s->chart;
     HN_TRY(hn_chart_close(chart, &chart->here, t, s->q, HN_CHART_TOL_FINE));
