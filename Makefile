@@ -254,6 +254,7 @@ help:
 	@echo 'make rings        the closed ring of 3 to 100 links by every formulation: tests/tables/ring.txt'
 	@echo 'make similarity   similar mechanisms of 1 nm to 1000 km by every method: tests/tables/similarity.txt'
 	@echo 'make long-runs    10,000 s of a turning crank: tests/tables/long_runs.txt'
+	@echo 'make reports      predictions of singular configurations that came true or not: tests/tables/reports.txt'
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
@@ -265,7 +266,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench
+.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench reports
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -348,6 +349,10 @@ long-runs: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/tables/long_runs.py $(PROGRAM) >build/long_runs.txt && cp build/long_runs.txt tests/tables/long_runs.txt
 	@cat tests/tables/long_runs.txt
+
+reports: build/.packages-test
+	@python3 tests/tables/reports.py $(PROGRAM) > build/reports.txt && cp build/reports.txt tests/tables/reports.txt
+	@cat tests/tables/reports.txt
 
 figures: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(TABLES)
