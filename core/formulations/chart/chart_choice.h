@@ -7,19 +7,19 @@
 
 /// Which column has to be independent: the number of one, or
 enum {
-    HN_CHART_PREFERRED =
-        -1, ///< the actuated coordinates and then the first ones, as long as |det J_d| is at least
-            ///< HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide
-    HN_CHART_BEST =
-        -2 ///< when an earlier choice has become poor: columns change places while |det J_d| grows
+    /// the actuated coordinates and then the first ones, as long as |det J_d| is at least
+    /// HN_CHART_TAU times the best found by pivoting, otherwise the pivots decide
+    HN_CHART_PREFERRED = -1,
+    /// when an earlier choice has become poor: columns change places while |det J_d| grows
+    HN_CHART_BEST = -2
 };
 /// Chooses dependent and independent columns at (t, q). Fails with HN_ERR_CHART when column `first`
 /// cannot be independent or the rank differs from the one of an earlier choice, HN_ERR_UNSUPPORTED
 /// when the turning of a ball would have to be independent (plain_only).
 HN_MUST_CHECK hn_status hn_chart_choose(hn_chart *chart, double t, const double *q, int first);
 /// Chooses better columns at `base`, where a step from it has met the end of the present choice.
-/// Fails: HN_ERR_CHART, with nothing changed, where the present choice is the best one; otherwise as
-/// hn_chart_choose().
+/// Fails: HN_ERR_CHART, with nothing changed, where the present choice is the best one; otherwise
+/// as hn_chart_choose().
 HN_MUST_CHECK hn_status hn_chart_choose_other(hn_chart *chart);
 /// The end of the chart was passed: HN_ERR_CHART with `what`; where nothing but the turning of a
 /// ball could have taken over since `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name,

@@ -26,8 +26,9 @@ typedef struct hn_step_control {
 /// embedded order + 1.
 double hn_step_factor(hn_step_control *control, double err, int k);
 
-/// [rad], or of the characteristic length: the largest displacement of a coordinate in one step of a
-/// mechanism without degrees of freedom. Its state is empty and its error 0, so the drive bounds the
+/// [rad], or of the characteristic length: the largest displacement of a coordinate in one step of
+/// a mechanism without degrees of freedom. Its state is empty and its error 0, so the drive bounds
+/// the
 /// step: about 25 steps in a turn of the fastest part show the motion and keep each position solve
 /// near its prediction.
 #define HN_DRIVE_STEP 0.25

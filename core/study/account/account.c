@@ -41,7 +41,7 @@ const char *hn_bill_about(hn_bill_item item) {
     return bill_names[item][1];
 }
 
-// --- the equations of motion as index 1, defined off the loops too ---------------------------------------------
+// ---- the equations of motion as index 1, defined off the loops too ----
 
 static hn_status plain_rhs(void *self, double t, const double *y, double *ydot) {
     hn_books *b = self;
@@ -71,7 +71,8 @@ static hn_status loop_power(hn_books *b, double t, const double *y, double *powe
     return status;
 }
 
-/// The flow I over one step, into b->flowed, and the work of the loop forces on the way, by Gauss quadrature of order 6.
+/// The flow I over one step, into b->flowed, and the work of the loop forces on the way, by Gauss
+/// quadrature of order 6.
 static hn_status follow(hn_books *b, double t, double h, const double *y, double *work) {
     static const double at[NODES] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
     static const double weight[NODES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -92,7 +93,7 @@ static hn_status follow(hn_books *b, double t, double h, const double *y, double
                : status;
 }
 
-// --- one step --------------------------------------------------------------------------------------------------
+// ---- one step ----
 
 static int is_ode(const hn_books *b) {
     const hn_method_spec *spec = hn_run_spec(b->run);
@@ -112,9 +113,8 @@ static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const
         return HN_ERR_CHART; // the rank has changed, and with it the number of unknowns
     }
     const hn_status status = hn_flow_run(b->own_flow, &e->ode, FLOW_TOL, t, h, y, b->y_own);
-    return status == HN_OK
-               ? hn_engine_read(e, t + h, b->y_own, b->owned, b->owned + b->info.nq)
-               : status;
+    return status == HN_OK ? hn_engine_read(e, t + h, b->y_own, b->owned, b->owned + b->info.nq)
+                           : status;
 }
 
 /// B for a step that has been made: of a copy of the formulation started at its beginning.
@@ -168,9 +168,10 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     double *r = hn_books_record(b, b->kept), *y = r + 2, *part = y + b->ny, work = 0;
     const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
     hn_books_present(b, y);
-    // with a fixed step the formulation's own chart or basis is still the one the step will be made in
-    int owned =
-        is_ode(b) && planned > 0 && follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
+    // with a fixed step the formulation's own chart or basis is still the one the step will be made
+    // in
+    int owned = is_ode(b) && planned > 0 &&
+                follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
     status = hn_run_step(b->run);
     if (status != HN_OK) {
         return status;
@@ -235,7 +236,7 @@ static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
     return status;
 }
 
-// --- the whole -------------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 static hn_status create_memory(hn_books *b) {
     hn_arena *arena = b->arena;

@@ -3,20 +3,25 @@
 #define HN_STUDY_ACCOUNT_H
 // Where the error of a run comes from, and the energy: an account of every step, that adds up.
 //
-// Step k takes y_k = (q, v) to y_k+1. Beside it two flows start from the same y_k and are followed to all digits: B of the formulation's own
-// differential equation, and I of the equations of motion as index 1, which are defined off the loops too. Then
+// Step k takes y_k = (q, v) to y_k+1. Beside it two flows start from the same y_k and are followed
+// to all digits: B of the formulation's own differential equation, and I of the equations of motion
+// as index 1, which are defined off the loops too. Then
 //
-//     y_k+1 - I(y_k) = [before mending - B(y_k)] + [B(y_k) - I(y_k)] + [y_k+1 - before mending]                       (1)
+//     y_k+1 - I(y_k) = [before mending - B(y_k)] + [B(y_k) - I(y_k)] + [y_k+1 - before mending] (1)
 //                        truncation                formulation          projection
-//     y_N - exact(T) = sum over k of  DI_(T - t_k+1) (1),   to first order                                            (2)
+//     y_N - exact(T) = sum over k of  DI_(T - t_k+1) (1),   to first order                      (2)
 //
-// with DI the derivative of I by its start, carried backwards from T: one row of it, transposed step by step from exact derivatives (flow.h). Each part is split at y_k+1 into what lies along the loops' motion and what leads off
-// the loops; what leads off them is summed as drift, where projection takes back what truncation did. Rounding and the linear solve are
-// measured by a second run with compensated sums, and one with another solver, and are then taken off truncation.
+// with DI the derivative of I by its start, carried backwards from T: one row of it, transposed
+// step by step from exact derivatives (flow.h). Each part is split at y_k+1 into what lies along
+// the loops' motion and what leads off the loops; what leads off them is summed as drift, where
+// projection takes back what truncation did. Rounding and the linear solve are measured by a second
+// run with compensated sums, and one with another solver, and are then taken off truncation.
 //
-// The same for energy, where the flow I itself may do work: through the loops, as lambda'(J v + phi_t), when they are not closed at
-// speed level, and from outside (dampers, drives). In a conservative scene nothing may come from outside: that checks the rest.
-// Source: Hairer, Norsett and Wanner 1993, section II.3 (the error as a sum of transported local errors).
+// The same for energy, where the flow I itself may do work: through the loops, as lambda'(J v +
+// phi_t), when they are not closed at speed level, and from outside (dampers, drives). In a
+// conservative scene nothing may come from outside: that checks the rest.
+// Source: Hairer, Norsett and Wanner 1993, section II.3 (the error as a sum of transported local
+// errors).
 
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
@@ -63,27 +68,31 @@ typedef struct hn_account {
     double error;   ///< of it, signed: the run's value less the reference's [rad or m]
     double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: cannot be told for this method
     double sum;                  ///< of the parts: equals `error` as far as first order holds
-    int has_equations; ///< 0: the integrator takes the constraints as they are: formulation and truncation are one
+    /// 0: the integrator takes the constraints as they are: formulation and truncation are one
+    int has_equations;
     double energy;              ///< E(end) - E(start) [J]
     double bill[HN_BILL_COUNT]; ///< [J], adds up to `energy`
-    double
-        loop_work_abs; ///< sum of |work of the loop forces| over the steps [J]: what cancelled in the bill
+    /// sum of |work of the loop forces| over the steps [J]: what cancelled in the bill
+    double loop_work_abs;
     double swing;     ///< largest T plus range of V [J]: what energies are judged by
     int conservative; ///< nothing should come from outside
 } hn_account;
 
 typedef struct hn_account_opts {
     long long max_steps; ///< 0: 200,000
-    const double *
-        exact; ///< n_user: the exact motion at T, in user coordinates; NULL: found here, by a run at tight tolerance
+    /// n_user: the exact motion at T, in user coordinates; NULL: found here, by a run at tight
+    /// tolerance
+    const double *exact;
     int (*stop)(void *user); ///< asked now and then; NULL: never
     void (*progress)(void *user, double share);
     void *user;
 } hn_account_opts;
 
-/// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some 100 times the run, whatever the number of its freedoms. Fails: HN_ERR_LIMIT (more steps than
-/// can be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run, or
-/// the exact motion, could not be followed: where J loses rank on the way, neighbours off the loops cannot be), HN_ERR_MEMORY; and as hn_run_create().
+/// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some
+/// 100 times the run, whatever the number of its freedoms. Fails: HN_ERR_LIMIT (more steps than can
+/// be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the
+/// flows beside the run, or the exact motion, could not be followed: where J loses rank on the way,
+/// neighbours off the loops cannot be), HN_ERR_MEMORY; and as hn_run_create().
 HN_MUST_CHECK hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec,
                                         const double *q, const double *v, double T,
                                         const hn_account_opts *opts, hn_account *out,

@@ -12,7 +12,8 @@
 #define TRANSPORT_TOL 1e-9 // of flows whose derivative carries parts to the end
 #define REFERENCE "projection@dop853:rtol=1e-13"
 
-/// Splits a displacement at the state of `linear` and `saddle`: what leads off the loops replaces `d`'s copy in b->split, the rest stays in d.
+/// Splits a displacement at the state of `linear` and `saddle`: what leads off the loops replaces
+/// `d`'s copy in b->split, the rest stays in d.
 static hn_status split_off(hn_books *b, double *d) {
     const int nv = b->info.nv, nc = b->info.nc;
     double *off = b->split;
@@ -49,7 +50,8 @@ static hn_status prepare_split(hn_books *b, double t, const double *y) {
                             hn_linear_get(b->linear, HN_LINEAR_J), &info, &opts, b->saddle);
 }
 
-/// Adds what the parts of step k have become at T, w being the derivative of the coordinate there by the state at the step's end.
+/// Adds what the parts of step k have become at T, w being the derivative of the coordinate there
+/// by the state at the step's end.
 static hn_status settle(hn_books *b, size_t k, const double *y_end) {
     static const hn_cause cause_of[HN_PARTS] = {HN_CAUSE_TRUNCATION, HN_CAUSE_FORMULATION,
                                                 HN_CAUSE_PROJECTION};
@@ -105,14 +107,16 @@ static hn_status settle_all(hn_books *b, hn_diag *diag) {
                                          at, hn_status_text(status));
 }
 
-/// The end of another run to the same time, user coordinates into `out`; 0 when it did not get there, and then *t is where it got [s].
+/// The end of another run to the same time, user coordinates into `out`; 0 when it did not get
+/// there, and then *t is where it got [s].
 static int end_of(const hn_books *b, const hn_method_spec *spec, double T, double *out, double *t) {
     hn_run *run = NULL;
     hn_sample sample;
     const hn_run_opts opts = hn_run_opts_default();
     int arrived = 0;
     *t = 0;
-    if (hn_run_create(b->sys, spec, b->steps->start.q, b->steps->start.v, &opts, &run, NULL) == HN_OK) {
+    if (hn_run_create(b->sys, spec, b->steps->start.q, b->steps->start.v, &opts, &run, NULL) ==
+        HN_OK) {
         hn_run_watch(run, 0);
         const double early = hn_method_is_adaptive(spec) ? 0 : 1e-9 * hn_run_stepping(run)->h_next;
         arrived =
@@ -126,7 +130,8 @@ static int end_of(const hn_books *b, const hn_method_spec *spec, double T, doubl
     return arrived;
 }
 
-/// Error of every user coordinate at the end, its largest as the account's; w begins as that coordinate's derivative.
+/// Error of every user coordinate at the end, its largest as the account's; w begins as that
+/// coordinate's derivative.
 static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag *diag) {
     const int n = b->info.n_user, nv = b->info.nv;
     double *q = b->up, *delta = b->split, *user = b->column;
@@ -158,8 +163,8 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
     return HN_OK;
 }
 
-/// The same run with one setting changed: how far apart the ends are in the coordinate; NaN where there is no such setting or the
-/// run chooses its steps, which would change with it.
+/// The same run with one setting changed: how far apart the ends are in the coordinate; NaN where
+/// there is no such setting or the run chooses its steps, which would change with it.
 static double told_by(const hn_books *b, const char *key, double value, double T) {
     hn_method_spec spec = *hn_run_spec(b->run);
     double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;
@@ -191,7 +196,8 @@ static void separate_rounding(hn_books *b, double T) {
     }
 }
 
-/// User coordinates of the exact motion at the run's end. The caller's are for the end that was asked for, which fixed steps may miss.
+/// User coordinates of the exact motion at the run's end. The caller's are for the end that was
+/// asked for, which fixed steps may miss.
 static hn_status find_exact(const hn_books *b, double T, double *out, hn_diag *diag) {
     hn_method_spec spec;
     if (b->opts->exact && fabs(T - b->asked) <= HN_BOOKS_ARRIVED * b->asked) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ACCOUNT_INTERNAL_H
 #define HN_STUDY_ACCOUNT_INTERNAL_H
-// The inside of an account: account.c books the steps, account_back.c carries their parts to the end.
+// The inside of an account: account.c books the steps, account_back.c carries their parts to the
+// end.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/linearise.h"

@@ -13,8 +13,9 @@ enum { MOST_TRIALS = 10000 };
 #define SMALLEST \
     1e-5 // of the time asked for: shorter ones are for a pose where the motion breaks off
 #define LANDED 1e-12 // of the time asked for
-// A shorter trial whose error has hardly shrunk, where order 8 would have made it 2^-8 at half the size, shows rounding
-// of the right-hand side: no step is better. Of one that is hardly shorter the error may have been left as large as the square of that.
+// A shorter trial whose error has hardly shrunk, where order 8 would have made it 2^-8 at half the
+// size, shows rounding of the right-hand side: no step is better. Of one that is hardly shorter the
+// error may have been left as large as the square of that.
 #define NO_BETTER 0.25
 
 struct hn_flow {
@@ -78,7 +79,8 @@ static double factor_of(double err, int order) {
                : HN_STEP_SHRINK;
 }
 
-/// The rest of a flow in equal steps of at most `size`: a last one that is left over costs as much as the others.
+/// The rest of a flow in equal steps of at most `size`: a last one that is left over costs as much
+/// as the others.
 static double even_part(double rest, double size) {
     return size < rest ? rest / ceil(rest / size) : rest;
 }
@@ -135,7 +137,7 @@ hn_status hn_flow_run(hn_flow *f, const hn_ode *ode, double tol, double t, doubl
     return status;
 }
 
-// --- derivatives, carried back ---------------------------------------------------------------------------------
+// ---- derivatives, carried back ----
 
 struct hn_flow_carrier {
     hn_flow *flow;
@@ -187,9 +189,12 @@ static hn_status find_stages(hn_flow_carrier *c, const hn_ode *ode, double t, do
     return status;
 }
 
-// With u' = A u carried along by the same step, u_new = u + h sum b_i A_i U_i, U_i = u + h sum_j a_ij A_j U_j, so that
+// With u' = A u carried along by the same step, u_new = u + h sum b_i A_i U_i, U_i = u + h sum_j
+// a_ij A_j U_j, so that
 //
-//     w <- w + sum g_i,     g_i = A_i' (h b_i w + h sum_{j > i} a_ji g_j),     from the last i to the first        (2)
+//     w <- w + sum g_i,     g_i = A_i' (h b_i w + h sum_{j > i} a_ji g_j),                   (2)
+//
+// from the last i to the first
 static hn_status carry_step(hn_flow_carrier *c, const hn_flow_slopes *slopes, double t, double h,
                             double *w) {
     const hn_tableau *tab = &hn_tableau_dop853;

@@ -58,7 +58,8 @@ static double slope(const ladder *l, int i) {
     return dx > 1e-3 && l->e[i] > 0 && l->e[i - 1] > 0 ? log(l->e[i - 1] / l->e[i]) / dx : 0;
 }
 
-/// A tolerance that is passed on unchanged makes the same steps: then neither error nor distance says anything.
+/// A tolerance that is passed on unchanged makes the same steps: then neither error nor distance
+/// says anything.
 static int goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
     if (l->n < 3) {
         return 0;
@@ -82,7 +83,8 @@ static int find_floor(const ladder *l, double theory, double known) {
     for (int i = 0; i < l->n; i++) {
         if (l->e[i] > sure &&
             (i == 0 || slope(l, i) >= FLAT * theory || l->e[i] > HN_CLASS_OFFSET)) {
-            continue; // still falling; or not small: that is no floor but a method that has not settled
+            // still falling; or not small: that is no floor but a method that has not settled
+            continue;
         }
         int stays = 1;
         for (int j = i + 1; j < l->n; j++) {

@@ -3,9 +3,10 @@
 #define HN_STUDY_CLASSING_H
 // What a ladder of sizes says about a method: model error or discretisation error?
 //
-// A method that converges to something else is caught by comparing two numbers of its finest points: how far they are from
-// the reference, and how far they are from each other. Where the second falls and the first stays, the method has a limit,
-// and the limit is not the motion of the scene. Where both stay, rounding or an inner tolerance is the floor.
+// A method that converges to something else is caught by comparing two numbers of its finest
+// points: how far they are from the reference, and how far they are from each other. Where the
+// second falls and the first stays, the method has a limit, and the limit is not the motion of the
+// scene. Where both stay, rounding or an inner tolerance is the floor.
 
 #include "study/cost/workprecision.h"
 

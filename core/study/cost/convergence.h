@@ -5,7 +5,8 @@
 
 #include "study/run/run.h"
 
-/// Slope of the least-squares line through (log x_i, log y_i); NaN for fewer than two positive pairs.
+/// Slope of the least-squares line through (log x_i, log y_i); NaN for fewer than two positive
+/// pairs.
 double hn_fit_order(int n, const double *x, const double *y);
 
 enum { HN_CONVERGENCE_MAX = 12 };
@@ -23,9 +24,10 @@ typedef struct hn_convergence {
     double floor; ///< errors below this are the reference's own and were left out of the fit
 } hn_convergence;
 
-/// Runs `spec` from (q, v) to time T with n step sizes (tolerances), each the last one times `ratio`. `ref_q`, `ref_v` in user
-/// coordinates, right to `floor`. Runs that fail stay in the table with their status. Fails: HN_ERR_INPUT (n, T, ratio),
-/// HN_ERR_UNSUPPORTED, HN_ERR_MEMORY, with diag.
+/// Runs `spec` from (q, v) to time T with n step sizes (tolerances), each the last one times
+/// `ratio`. `ref_q`, `ref_v` in user coordinates, right to `floor`. Runs that fail stay in the
+/// table with their status. Fails: HN_ERR_INPUT (n, T, ratio), HN_ERR_UNSUPPORTED, HN_ERR_MEMORY,
+/// with diag.
 HN_MUST_CHECK hn_status hn_convergence_run(const hn_system *sys, const hn_method_spec *spec,
                                            const double *q, const double *v, double T, int n,
                                            double ratio, const double *ref_q, const double *ref_v,

@@ -90,9 +90,10 @@ static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind
     return best;
 }
 
-// what may be said of times ----------------------------------------------------------------------------------------
+// ---- what may be said of times ----
 
-/// Smallest and largest that was met of a point's time, over its median: quartiles, and medians of the halves.
+/// Smallest and largest that was met of a point's time, over its median: quartiles, and medians of
+/// the halves.
 static void widen(const hn_wp_point *p, double *low, double *high) {
     *low = fmin(*low, fmin(p->low, fmin(p->half[0], p->half[1])) / p->median);
     *high = fmax(*high, fmax(p->high, fmax(p->half[0], p->half[1])) / p->median);
@@ -230,7 +231,7 @@ int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error
     return 1;
 }
 
-// the race -------------------------------------------------------------------------------------------------------
+// ---- the race ----
 
 /// The error at a cost; *is_bound when the cost is more than any point's.
 static double error_at(const hn_wp *wp, const hn_class *classes, hn_error_kind error, int m,
@@ -261,7 +262,8 @@ static double round_2(double x) {
     return round(x / unit) * unit;
 }
 
-/// Costs at which most methods have points: between the median of their cheapest points and that of their dearest.
+/// Costs at which most methods have points: between the median of their cheapest points and that of
+/// their dearest.
 static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
                       double cost[HN_RACE_COSTS]) {
     double low[HN_WP_METHODS], high[HN_WP_METHODS];
@@ -301,7 +303,7 @@ void hn_wp_race(const hn_wp *wp, const hn_class *classes, hn_error_kind error, h
     }
 }
 
-// words ----------------------------------------------------------------------------------------------------------
+// ---- words ----
 
 /// The methods that share the first place, a bit each.
 static unsigned winners(const hn_band *band) {
@@ -333,7 +335,8 @@ static const char *spelling_of(const hn_wp *wp, hn_place place) {
     return wp->methods[place.method].spelling;
 }
 
-/// "A, 1.0 s to 4.0 s; next B at 2 times that": who is cheapest from one band to another, and by how much at the finer one.
+/// "A, 1.0 s to 4.0 s; next B at 2 times that": who is cheapest from one band to another, and by
+/// how much at the finer one.
 static void put_ranking(hn_strbuf *b, const hn_wp *wp, const hn_band *coarse, const hn_band *fine,
                         hn_cost_kind cost) {
     hn_strbuf_add(b, spelling_of(wp, coarse->best));

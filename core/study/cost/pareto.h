@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PARETO_H
 #define HN_STUDY_PARETO_H
-// Which method for which accuracy: the cheapest finished point per band, the front over all points, and what each method
-// reaches for the same cost. A method that converges to something else takes no part.
+// Which method for which accuracy: the cheapest finished point per band, the front over all points,
+// and what each method reaches for the same cost. A method that converges to something else takes
+// no part.
 //
-// Counts are exact; times are ranked only where a second measurement would say the same: the two halves of the samples of both
-// methods agree, and the methods differ by more than 10 % and by more than all that was met in either. Otherwise the sentence says
-// why, and ranks by operations.
+// Counts are exact; times are ranked only where a second measurement would say the same: the two
+// halves of the samples of both methods agree, and the methods differ by more than 10 % and by more
+// than all that was met in either. Otherwise the sentence says why, and ranks by operations.
 //
-// Where neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no error along the motion is ranked:
-// only gaps and energy, which every motion nearby keeps too, still say something of a method.
+// Where neighbouring motions part exponentially and the study ends beyond the horizon (chaos.h), no
+// error along the motion is ranked: only gaps and energy, which every motion nearby keeps too,
+// still say something of a method.
 
 #include "study/cost/classing.h"
 
@@ -19,7 +21,8 @@ double hn_wp_cost(const hn_wp_point *p, hn_cost_kind kind); ///< NaN where it wa
 
 /// Medians within 10 %, or ranges (quartiles and halves' medians) that overlap, are not ranked.
 #define HN_PARETO_CLOSE 1.10
-/// Nor are times whose two halves have medians further apart than this, nor parts whose yardsticks are.
+/// Nor are times whose two halves have medians further apart than this, nor parts whose yardsticks
+/// are.
 #define HN_PARETO_STEADY 1.10
 enum { HN_PARETO_BANDS = 14, HN_RACE_COSTS = 3 };
 
@@ -41,8 +44,9 @@ typedef enum hn_ranking {
 } hn_ranking;
 const char *hn_ranking_name(hn_ranking ranking);
 
-/// Who reaches an accuracy for the least. What just reaching it costs is read off between the points around it, by a straight line in the
-/// logarithms, so that the grain of a ladder decides nothing; the coarsest point of a method is never undercut.
+/// Who reaches an accuracy for the least. What just reaching it costs is read off between the
+/// points around it, by a straight line in the logarithms, so that the grain of a ladder decides
+/// nothing; the coarsest point of a method is never undercut.
 typedef struct hn_band {
     double accuracy;
     hn_place best; ///< -1: nobody reaches it
@@ -51,8 +55,8 @@ typedef struct hn_band {
     hn_ranking ranking;
     int n_close; ///< other methods that cannot be told from the best
     hn_place close[HN_WP_METHODS];
-    hn_place
-        unsteady; ///< the point, of the best or of the next, whose halves are furthest apart; -1: they agree
+    /// the point, of the best or of the next, whose halves are furthest apart; -1: they agree
+    hn_place unsteady;
 } hn_band;
 
 typedef struct hn_pareto {
@@ -60,23 +64,26 @@ typedef struct hn_pareto {
     hn_error_kind error;
     int few; ///< 1: points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
     int clocks_differ; ///< 1: nor are those of parts whose yardsticks are apart, or unknown
-    int beyond_horizon; ///< 1: the study ends where errors of this kind say nothing: there are no bands
-    int n_bands;        ///< 1e-1, 1e-2, ... down to the best error reached
+    /// 1: the study ends where errors of this kind say nothing: there are no bands
+    int beyond_horizon;
+    int n_bands; ///< 1e-1, 1e-2, ... down to the best error reached
     hn_band band[HN_PARETO_BANDS];
     hn_band counted[HN_PARETO_BANDS]; ///< of times: the same bands by operations
 } hn_pareto;
 
 /// What methods are ranked by first: the coordinates; beyond the horizon the energy.
 hn_error_kind hn_wp_ranked_error(const hn_wp *wp);
-/// `classes` one per method. Errors below the reference's own count as HN_WP_ABOVE_REFERENCE times that.
+/// `classes` one per method. Errors below the reference's own count as HN_WP_ABOVE_REFERENCE times
+/// that.
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                   hn_pareto *out);
 /// 1 if no point is both cheaper and more accurate.
 int hn_wp_on_front(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
                    int m, int k);
 
-/// What each method reaches for the same number of operations: between two of its points by a straight line in the logarithms,
-/// never before them (NaN). Behind the dearest point the smallest error so far is a bound.
+/// What each method reaches for the same number of operations: between two of its points by a
+/// straight line in the logarithms, never before them (NaN). Behind the dearest point the smallest
+/// error so far is a bound.
 typedef struct hn_race {
     int n;
     double cost[HN_RACE_COSTS]; ///< operations

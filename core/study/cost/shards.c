@@ -36,7 +36,8 @@ typedef struct load {
     int index;
 } load;
 
-/// Dear ones first; the order of the study among equals, so that sorting is never a matter of the library.
+/// Dear ones first; the order of the study among equals, so that sorting is never a matter of the
+/// library.
 static int dearest_first(const void *a, const void *b) {
     const load *x = a, *y = b;
     if (x->seconds != y->seconds) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SHARDS_H
 #define HN_STUDY_SHARDS_H
-// A study in parts that several processes or machines can take: every point belongs to one part, by a rule that knows the request
-// and nothing of a clock, so that whoever splits it splits it alike.
+// A study in parts that several processes or machines can take: every point belongs to one part, by
+// a rule that knows the request and nothing of a clock, so that whoever splits it splits it alike.
 //
-// The dearest point first, each to the part that has least to do so far (longest processing time first, R. L. Graham, SIAM J.
-// Appl. Math. 17 (1969) 416: the longest part is at most 4/3 of the shortest possible). What a point costs is an estimate
-// from its steps and stages; a poor one makes parts unequal, never wrong.
+// The dearest point first, each to the part that has least to do so far (longest processing time
+// first, R. L. Graham, SIAM J. Appl. Math. 17 (1969) 416: the longest part is at most 4/3 of the
+// shortest possible). What a point costs is an estimate from its steps and stages; a poor one makes
+// parts unequal, never wrong.
 
 #include "study/cost/workprecision.h"
 

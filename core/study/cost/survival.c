@@ -98,7 +98,7 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
     return 1;
 }
 
-// by the reference solution ------------------------------------------------------------------------------------------
+// ---- by the reference solution ----
 
 typedef struct beside {
     const hn_ref *ref;

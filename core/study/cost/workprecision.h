@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WORKPRECISION_H
 #define HN_STUDY_WORKPRECISION_H
-// Error against cost: each method over a ladder of steps (fixed) or tolerances (adaptive), every finished point with six
-// errors against the reference solution, what it counted, and its CPU time.
+// Error against cost: each method over a ladder of steps (fixed) or tolerances (adaptive), every
+// finished point with six errors against the reference solution, what it counted, and its CPU time.
 //
-// First every method's coarsest point, then the next finer ones, so that a budget that runs out has served all alike. Then
-// time: samples are taken in rounds over all points (ABAB, not AABB), each a batch of runs that lasts 20 ms or more, so
-// that what disturbs the machine for a while disturbs all alike. A sample whose wall time exceeds its CPU time by 5 % is
-// taken again. Halfway all runs are made anew: the first half of the samples and the second are two measurements, apart in
-// time and in memory, and what they disagree on is not ranked (pareto.h). A point that fails, or that the budget leaves
+// First every method's coarsest point, then the next finer ones, so that a budget that runs out has
+// served all alike. Then
+// time: samples are taken in rounds over all points (ABAB, not AABB), each a batch of runs that
+// lasts 20 ms or more, so that what disturbs the machine for a while disturbs all alike. A sample
+// whose wall time exceeds its CPU time by 5 % is taken again. Halfway all runs are made anew: the
+// first half of the samples and the second are two measurements, apart in time and in memory, and
+// what they disagree on is not ranked (pareto.h). A point that fails, or that the budget leaves
 // out, stays with its reason.
 //
-// A study may be one part of several (shards.h): then only its own points are run, and one more run is timed in every round, the
-// yardstick. It is the same in all parts, so that parts whose clocks ran differently are found out.
+// A study may be one part of several (shards.h): then only its own points are run, and one more run
+// is timed in every round, the yardstick. It is the same in all parts, so that parts whose clocks
+// ran differently are found out.
 
 #include "study/truth/errors.h"
 #include "study/truth/reference.h"
@@ -38,8 +41,8 @@ typedef struct hn_wp_point {
     double t_reached;             ///< [s]
     double worst[HN_ERROR_COUNT]; ///< over the reference's times
     double end[HN_ERROR_COUNT];
-    double
-        own; ///< how far the end's coordinates are from those of the next coarser point; NaN: there is none
+    /// how far the end's coordinates are from those of the next coarser point; NaN: there is none
+    double own;
     double *end_q;   ///< n_user
     long long steps; ///< accepted
     long long rejected;
@@ -63,8 +66,9 @@ typedef struct hn_wp_method {
 typedef struct hn_wp_opts {
     int n_levels;  ///< 2..HN_WP_LEVELS; 0: 7
     int n_samples; ///< of time; 0: HN_WP_SAMPLES; -1: none
-    double
-        step; ///< the coarsest fixed step is the next below this that divides the reference's intervals [s]; 0: the scene's, times 4
+    /// the coarsest fixed step is the next below this that divides the reference's intervals [s];
+    /// 0: the scene's, times 4
+    double step;
     double budget;       ///< wall time [s]; 0: none
     int shard, n_shards; ///< part 1..n_shards; 0, 0: the whole
 } hn_wp_opts;
@@ -93,31 +97,35 @@ typedef struct hn_wp {
     hn_wp_point yardstick; ///< of a part: samples of a run that is the same in all parts
     int yardstick_method;
     hn_run *yardstick_run;
-    double
-        clocks_apart; ///< put together from parts: the slowest yardstick over the fastest; NaN: not known; 1: one clock
-    double
-        horizon; ///< from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
+    /// put together from parts: the slowest yardstick over the fastest; NaN: not known; 1: one
+    /// clock
+    double clocks_apart;
+    /// from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
+    double horizon;
     int out_of_time; ///< 1: the budget left something out
     int stopped;     ///< 1: stopped on request
     double elapsed;  ///< wall time of hn_wp_run() [s]
 } hn_wp;
 
-/// A study of n methods to the end of the reference. Sizes in the specs are replaced by the ladder. Nothing runs yet. The system, the state and the
-/// reference must outlive it. Fails: HN_ERR_INPUT (numbers of methods and levels), HN_ERR_MEMORY, HN_ERR_LIMIT; told in diag.
+/// A study of n methods to the end of the reference. Sizes in the specs are replaced by the ladder.
+/// Nothing runs yet. The system, the state and the reference must outlive it. Fails: HN_ERR_INPUT
+/// (numbers of methods and levels), HN_ERR_MEMORY, HN_ERR_LIMIT; told in diag.
 HN_MUST_CHECK hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v,
                                      const hn_ref *ref, const hn_method_spec *specs, int n,
                                      const hn_wp_opts *opts, hn_wp **out, hn_diag *diag);
 void hn_wp_free(hn_wp *wp); ///< NULL is legal
-/// Runs what is pending: points that are done, failed or timed already (as read from a file) are left as they are. Returns 1 when nothing is
-/// left, 0 when stopped or out of time.
+/// Runs what is pending: points that are done, failed or timed already (as read from a file) are
+/// left as they are. Returns 1 when nothing is left, 0 when stopped or out of time.
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
 /// 1 if the point is run here: of the whole, or of this part.
 int hn_wp_is_mine(const hn_wp *wp, int m, int k);
 /// Median, quartiles, spread and the halves' medians from the samples.
 void hn_wp_point_statistics(hn_wp_point *p);
-/// The larger of the halves' medians over the smaller; NaN while there are fewer than HN_WP_ENOUGH samples.
+/// The larger of the halves' medians over the smaller; NaN while there are fewer than HN_WP_ENOUGH
+/// samples.
 double hn_wp_point_halves_apart(const hn_wp_point *p);
-/// `own` of every point, from the ends: how far each is from the next coarser one that came to its end.
+/// `own` of every point, from the ends: how far each is from the next coarser one that came to its
+/// end.
 void hn_wp_compare_ends(hn_wp *wp);
 /// Method m with a step or tolerance of one's own.
 hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size);
@@ -125,6 +133,7 @@ hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size);
 void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]);
 /// 1 if the study ends where errors along the motion say nothing.
 int hn_wp_is_beyond_horizon(const hn_wp *wp);
-/// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own; otherwise it is a bound.
+/// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own;
+/// otherwise it is a bound.
 int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error);
 #endif

@@ -12,9 +12,10 @@
 /// Of the largest sigma_min so far: a singular configuration has been passed.
 static const double RANGE = 0.35;
 
-// ---- the assembly mode ------------------------------------------------------------------------------------------
+// ---- the assembly mode ----
 
-/// The loop whose mode changed its sign by most since the last check, -1: none changed it by more than is reported.
+/// The loop whose mode changed its sign by most since the last check, -1: none changed it by more
+/// than is reported.
 static int find_flipped_loop(const hn_watch *w) {
     double most = HN_RUN_WARN_MODE;
     int loop = -1;
@@ -28,7 +29,8 @@ static int find_flipped_loop(const hn_watch *w) {
     return loop;
 }
 
-// A change of sign in smooth motion is a dead point that was passed; with a jump it is the other branch.
+// A change of sign in smooth motion is a dead point that was passed; with a jump it is the other
+// branch.
 static void check_mode(hn_watch *w) {
     const hn_system *sys = w->run->sys;
     hn_mode_watch_values(w->mode, w->run->now.t, w->run->now.q, w->modes);
@@ -48,7 +50,7 @@ static void check_mode(hn_watch *w) {
     w->modes = seen;
 }
 
-// ---- velocities that turn round -----------------------------------------------------------------------------------
+// ---- velocities that turn round ----
 
 // A motion turns back where its velocities are small, and there its accelerations explain it.
 static void check_turn(hn_watch *w) {
@@ -72,9 +74,10 @@ static void check_turn(hn_watch *w) {
     }
 }
 
-// ---- the direction of motion ----------------------------------------------------------------------------------------
+// ---- the direction of motion ----
 
-/// Completes the report on the configuration that has been passed. `angle` HUGE_VAL: the headings cannot be compared.
+/// Completes the report on the configuration that has been passed. `angle` HUGE_VAL: the headings
+/// cannot be compared.
 static void finish_passing(hn_watch *w, double angle) {
     const int passing = w->singular.passing;
     w->singular.passing = 0;

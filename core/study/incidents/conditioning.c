@@ -30,7 +30,8 @@ static void check_multipliers(hn_watch *w) {
     }
 }
 
-// the condition of K grows as the square of what sigma loses; it is estimated only where it can matter
+// the condition of K grows as the square of what sigma loses; it is estimated only where it can
+// matter
 static void check_condition(hn_watch *w) {
     const hn_stepping *run = w->run;
     const double ratio = w->singular.info.ratio;

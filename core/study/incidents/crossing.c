@@ -12,10 +12,11 @@
 #include <string.h>
 
 static const double STRIDE = 0.1; // of the length: sigma_min is probed as often along the way
-// sigma_min changes by no more than this much of its largest on a way of one length: lever arms turn by an angle that large
+// sigma_min changes by no more than this much of its largest on a way of one length: lever arms
+// turn by an angle that large
 static const double STEEP = 3;
-// of the largest sigma_min: reported as a configuration that was passed. A cubic across a stride of half a length is off by
-// about 1e-3 of it
+// of the largest sigma_min: reported as a configuration that was passed. A cubic across a stride of
+// half a length is off by about 1e-3 of it
 static const double SINGULAR = 0.02;
 static const double GOLDEN = 0.6180339887498949;
 enum { MOST = 16, CUTS = 12 };
@@ -35,7 +36,8 @@ static double sigma_at(hn_watch *w, double x) {
     return hn_singularity_probe(r->monitor, s->before.t + x * h, r->inside_q);
 }
 
-/// Of the ends and n probes between them, evenly apart: the share of the step with the lowest sigma_min.
+/// Of the ends and n probes between them, evenly apart: the share of the step with the lowest
+/// sigma_min.
 static double find_lowest(hn_watch *w, int n, double *lowest, double *ends) {
     const double start = w->singular.info.sigma_min, end = sigma_at(w, 1);
     double at = start < end ? 0 : 1;

@@ -5,7 +5,8 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
-/// Whose iteration did not converge: where the integrator gives the reason it was its own, else the formulation's projection.
+/// Whose iteration did not converge: where the integrator gives the reason it was its own, else the
+/// formulation's projection.
 static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
     const hn_method_spec *spec = &w->run->spec;
     const bool is_ode = hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;
@@ -16,7 +17,8 @@ static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
 static const hn_incident_kind *kind_of(const hn_watch *w, hn_status status) {
     switch (status) {
     case HN_ERR_CHART:
-    case HN_ERR_UNSUPPORTED: // no choice of coordinates serves: at the start, or where another was to take over
+    // no choice of coordinates serves: at the start, or where another was to take over
+    case HN_ERR_UNSUPPORTED:
         return &hn_incident_chart_lost;
     case HN_ERR_NO_CONVERGENCE:
         return kind_of_iteration(w);

@@ -7,9 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-// With one degree of freedom the direction of motion is a line, since a motion may turn back. A mechanism without degrees of
-// freedom that is driven has its velocities by configuration and time, whose direction belongs to it: there the heading has time
-// as one more entry, as long as the fastest velocities seen, and it is an arrow.
+// With one degree of freedom the direction of motion is a line, since a motion may turn back. A
+// mechanism without degrees of freedom that is driven has its velocities by configuration and time,
+// whose direction belongs to it: there the heading has time as one more entry, as long as the
+// fastest velocities seen, and it is an arrow.
 
 static const double CLOSE =
     0.1; // of the largest sigma_min so far: headings are not taken from here
@@ -75,7 +76,8 @@ static void align(int n, const double *with, double *e) {
     }
 }
 
-/// The heading that continues the last two smoothly to the present time, in `smooth`; returns how far it moved from the last.
+/// The heading that continues the last two smoothly to the present time, in `smooth`; returns how
+/// far it moved from the last.
 static double continue_heading(hn_heading_record *r, int n) {
     const double share = (r->now.t - r->last.t) / (r->last.t - r->older.t);
     double change = 0;
@@ -87,10 +89,12 @@ static double continue_heading(hn_heading_record *r, int n) {
     return change;
 }
 
-/// Whether the heading is to be compared: past a singular configuration, or when the step itself looks like a jump.
+/// Whether the heading is to be compared: past a singular configuration, or when the step itself
+/// looks like a jump.
 static bool is_suspect(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
-    // where a motion turns back it hardly moves, and half of that is no jump: one goes as far as a step does elsewhere
+    // where a motion turns back it hardly moves, and half of that is no jump: one goes as far as a
+    // step does elsewhere
     const double way = w->swiftest * (w->run->now.t - w->run->before.t);
     return s->passing || s->info.sigma_min < RANGE * s->largest ||
            hn_motion_unexplained(w, way) > HN_RUN_WARN_JUMP;
@@ -125,8 +129,9 @@ double hn_heading_check(hn_watch *w) {
     return angle;
 }
 
-// Configurations where J loses rank lie apart on the way of a mechanism of one degree of freedom. One that moves on and stays
-// singular has turned off into a motion that consists of them: some of its links folded onto each other.
+// Configurations where J loses rank lie apart on the way of a mechanism of one degree of freedom.
+// One that moves on and stays singular has turned off into a motion that consists of them: some of
+// its links folded onto each other.
 bool hn_heading_stays_singular(hn_watch *w, double *way) {
     hn_heading_record *r = &w->heading;
     if (r->driven || hn_motion_dof(w) != 1 ||

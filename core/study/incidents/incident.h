@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_INCIDENT_H
 #define HN_STUDY_INCIDENT_H
-// Incidents: what can happen to a run and is worth a report. Each kind is one row of a table: code, spelling in JSON, name for
-// people, the rule behind it, the check that finds it and the remedies that are offered. A new kind is a code here, a row in
-// the file of its family and a line in kinds.c.
+// Incidents: what can happen to a run and is worth a report. Each kind is one row of a table: code,
+// spelling in JSON, name for people, the rule behind it, the check that finds it and the remedies
+// that are offered. A new kind is a code here, a row in the file of its family and a line in
+// kinds.c.
 
 #include <stdbool.h>
 
@@ -48,7 +49,8 @@ typedef struct hn_incident {
     char message[400];             ///< what happened in this run, with numbers and units
     hn_remedy remedy[HN_REMEDIES]; ///< what to try, best first; "" ends the list
     hn_remedy tried[HN_REMEDIES];  ///< what each of them gave in a trial; "": not tried
-    /// Rises each time a report is written or completed; a reader that keeps the newest one it saw knows what is new.
+    /// Rises each time a report is written or completed; a reader that keeps the newest one it saw
+    /// knows what is new.
     unsigned revision;
 } hn_incident;
 
@@ -68,8 +70,8 @@ typedef struct hn_incident_kind {
     const char *spelling; ///< as in JSON: "gap-open"
     const char *name;     ///< for people: "the loop has opened"
     const char *rule;     ///< the mechanics or numerics behind it, in one or two sentences
-    /// Checks the state that the run has reached, and reports. NULL: reported at another moment (a chart that changes, the
-    /// end of a run).
+    /// Checks the state that the run has reached, and reports. NULL: reported at another moment (a
+    /// chart that changes, the end of a run).
     void (*check)(hn_watch *w);
     hn_remedy_rule remedies[4]; ///< what is offered, best first
     bool is_wrong;              ///< what the run shows from here on is wrong, or it ends

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_INCIDENT_LOG_H
 #define HN_STUDY_INCIDENT_LOG_H
-// The reports of one run. A condition is reported when it begins to hold, not at every step while it does.
+// The reports of one run. A condition is reported when it begins to hold, not at every step while
+// it does.
 
 #include "base/status.h"
 #include "study/incidents/incident.h"
@@ -20,9 +21,11 @@ void hn_incident_log_clear(hn_incident_log *log);
 bool hn_incident_holds(const hn_incident_log *log, hn_incident_code code);
 /// The condition has ceased: the next time it begins it is reported again.
 void hn_incident_over(hn_incident_log *log, hn_incident_code code);
-/// Adds a report without remedies. Returns NULL where the condition is known already or no room is left.
+/// Adds a report without remedies. Returns NULL where the condition is known already or no room is
+/// left.
 hn_incident *hn_incident_add(hn_incident_log *log, const hn_incident *report);
-/// Makes room for a report of this kind whatever has been reported before: the end of a run is always reported.
+/// Makes room for a report of this kind whatever has been reported before: the end of a run is
+/// always reported.
 void hn_incident_make_room(hn_incident_log *log, hn_incident_code code);
 /// Appends to a message; the report counts as new from then on.
 void hn_incident_append(hn_incident_log *log, hn_incident *i, const char *format, ...)

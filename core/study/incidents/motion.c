@@ -39,8 +39,8 @@ double hn_motion_way(const hn_watch *w, const double *from, double *step) {
     return most;
 }
 
-// Where all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured against its own row, do not
-// see that.
+// Where all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured
+// against its own row, do not see that.
 double hn_motion_shortest_row(const hn_watch *w) {
     const size_t nv = (size_t)w->run->info.nv;
     const double *J = hn_eval_get(w->eval, HN_TERM_J);

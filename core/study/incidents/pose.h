@@ -5,8 +5,8 @@
 
 #include "study/incidents/watch.h"
 
-/// Appends to report i what is there: constraints, bodies, degrees of freedom, branches. The report will be completed with the way
-/// on which the run leaves.
+/// Appends to report i what is there: constraints, bodies, degrees of freedom, branches. The report
+/// will be completed with the way on which the run leaves.
 void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, double sigma_min);
 /// Appends to the reason of a failure that the configuration is singular, where it is.
 void hn_pose_explain(const hn_watch *w, char why[256]);

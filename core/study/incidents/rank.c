@@ -48,8 +48,8 @@ static void check_near(hn_watch *w) {
         return;
     }
 
-    // J M^-1 J' has singular values squared. A pivot that is lost where J is not says only that the order of elimination does
-    // not suit the configuration
+    // J M^-1 J' has singular values squared. A pivot that is lost where J is not says only that the
+    // order of elimination does not suit the configuration
     const double row = hn_motion_shortest_row(w), ratio = w->singular.info.ratio;
     const double pivot = w->accel_status == HN_OK && w->accel_info.fallback
                              ? ratio * ratio

@@ -9,7 +9,8 @@
 
 /// Of the largest sigma_min so far.
 static const double CLOSE = 0.1;
-/// [s]: goes through the singular configurations of the ladder of four-bars for every step up to twice this.
+/// [s]: goes through the singular configurations of the ladder of four-bars for every step up to
+/// twice this.
 static const double LONGEST = 0.01;
 
 enum {
@@ -60,7 +61,7 @@ bool hn_remedy_finer(const hn_watch *w, double factor, hn_remedy out) {
     return w->failure != HN_ERR_UNSUPPORTED;
 }
 
-// ---- other formulations -------------------------------------------------------------------------------------------
+// ---- other formulations ----
 
 bool hn_remedy_close(const hn_watch *w, double factor, hn_remedy out) {
     (void)factor;
@@ -119,7 +120,8 @@ bool hn_remedy_singular_mass(const hn_watch *w, double factor, hn_remedy out) {
     (void)factor;
     const hn_formulation *f = formulation_of(w);
     if (f->traits & HN_TRAIT_NEEDS_MASS_INVERSE) {
-        // the form next to this one: velocities closed by a differential-algebraic integrator, or the closing formulation
+        // the form next to this one: velocities closed by a differential-algebraic integrator, or
+        // the closing formulation
         return write_formulation(
             w,
             f->form == HN_FORM_ODE
@@ -131,7 +133,7 @@ bool hn_remedy_singular_mass(const hn_watch *w, double factor, hn_remedy out) {
            write_formulation(w, f, out);
 }
 
-// ---- feedback against the step ----------------------------------------------------------------------------------
+// ---- feedback against the step ----
 
 // Of s^2 + 2 damping s + rate^2 the larger root, or its size alone when the pair is complex.
 double hn_pulling_rate(const hn_method_spec *spec) {
@@ -173,7 +175,7 @@ bool hn_remedy_step_of_run(const hn_watch *w, double factor, hn_remedy out) {
     return true;
 }
 
-// ---- other integrators --------------------------------------------------------------------------------------------
+// ---- other integrators ----
 
 bool hn_remedy_stiff_closed(const hn_watch *w, double factor, hn_remedy out) {
     (void)factor;

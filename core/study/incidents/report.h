@@ -5,8 +5,8 @@
 
 #include "study/incidents/watch.h"
 
-/// Reports that a condition holds, with the remedies of the row that apply to this run. Returns NULL where it is known already
-/// or no room is left.
+/// Reports that a condition holds, with the remedies of the row that apply to this run. Returns
+/// NULL where it is known already or no room is left.
 hn_incident *hn_incident_report(hn_watch *w, const hn_incident_kind *kind, const char *quantity,
                                 double value, double limit, const char *format, ...)
     HN_PRINTF(6, 7);

@@ -10,12 +10,14 @@
 /// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
 enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, MOST_EIGENVALUES = 256, MOST_SPEEDS = 60 };
 
-/// A pilot runs past the event by this share of the way to it, so that what is only put off comes to light.
+/// A pilot runs past the event by this share of the way to it, so that what is only put off comes
+/// to light.
 static const double BEYOND = 0.5;
 
-// ---- the cause --------------------------------------------------------------------------------------------------
+// ---- the cause ----
 
-/// The largest stable step at a state, and the eigenvalue of the motion that is fastest there. HUGE_VAL: none can be told.
+/// The largest stable step at a state, and the eigenvalue of the motion that is fastest there.
+/// HUGE_VAL: none can be told.
 static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_eigenvalue *fastest) {
     hn_arena *arena = hn_arena_create(0);
     hn_spectrum *spectrum = NULL;
@@ -35,7 +37,8 @@ static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_ei
     return isfinite(limit) ? limit : HUGE_VAL;
 }
 
-/// Writes why the run ended where the step is above the stability limit; false where that is not the cause.
+/// Writes why the run ended where the step is above the stability limit; false where that is not
+/// the cause.
 static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
     const double h = hn_method_option(&s->spec, "h", 0);
     const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
@@ -74,7 +77,7 @@ static void name_cause(hn_run *run) {
     hn_run_set_reason(run, last->message);
 }
 
-// ---- remedies -----------------------------------------------------------------------------------------------------
+// ---- remedies ----
 
 /// The method that a remedy means: a spelling, or the present one with another step or tolerance.
 static bool read_remedy(const hn_stepping *s, const char *text, hn_method_spec *spec) {

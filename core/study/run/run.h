@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_RUN_H
 #define HN_STUDY_RUN_H
-// A run: one method on one scene. It steps, keeps time as t0 + n h, samples, counts, and reports incidents. A run that fails
-// keeps its last good state and says why. The work is done by its three halves: stepping (study/stepping), watching
-// (study/incidents) and sampling.
+// A run: one method on one scene. It steps, keeps time as t0 + n h, samples, counts, and reports
+// incidents. A run that fails keeps its last good state and says why. The work is done by its three
+// halves: stepping (study/stepping), watching (study/incidents) and sampling.
 
 #include "study/incidents/kinds.h"
 #include "study/run/sampling.h"
@@ -41,31 +41,35 @@ typedef struct hn_run_summary {
 
 typedef struct hn_run hn_run;
 
-/// Makes a run from the assembled state (q, v) in system coordinates. The system must outlive it. Nothing allocates after this.
-/// A formulation that cannot start at this state (a dead point, a lost rank) gives a run that has failed already, so that a
-/// table can show it with its reason.
+/// Makes a run from the assembled state (q, v) in system coordinates. The system must outlive it.
+/// Nothing allocates after this. A formulation that cannot start at this state (a dead point, a
+/// lost rank) gives a run that has failed already, so that a table can show it with its reason.
 /// Fails: HN_ERR_UNSUPPORTED with the formulation's reason, HN_ERR_INPUT, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec,
                                       const double *q, const double *v, const hn_run_opts *opts,
                                       hn_run **out, hn_diag *diag);
 void hn_run_free(hn_run *run);
-/// Steps until t >= t_end: a fixed-step run lands on its own grid (t0 + n h); an adaptive run steps past, and samples are
-/// interpolated. Where a load given as a table has a corner a step ends and the integrator starts anew; a fixed-step run then
-/// goes on with a shorter step to its next grid point.
-/// Returns HN_OK or the failure, which is also kept in the summary; calling again returns the same failure.
+/// Steps until t >= t_end: a fixed-step run lands on its own grid (t0 + n h); an adaptive run steps
+/// past, and samples are interpolated. Where a load given as a table has a corner a step ends and
+/// the integrator starts anew; a fixed-step run then goes on with a shorter step to its next grid
+/// point.
+/// Returns HN_OK or the failure, which is also kept in the summary; calling again returns the same
+/// failure.
 hn_status hn_run_advance(hn_run *run, double t_end);
 /// Makes exactly one accepted step.
 hn_status hn_run_step(hn_run *run);
-/// Makes one accepted step on the way to `t_sample`: only the step that reaches that time will be sampled inside, so the others
-/// are spared what dense output alone needs. A sample inside such a step is a side step.
+/// Makes one accepted step on the way to `t_sample`: only the step that reaches that time will be
+/// sampled inside, so the others are spared what dense output alone needs. A sample inside such a
+/// step is a side step.
 hn_status hn_run_step_towards(hn_run *run, double t_sample);
 double hn_run_time(const hn_run *run);
-/// The sample at time t: the present time, a time within the last step (dense output where the integrator has it, else a side
-/// step of the same integrator from that step's start, which leaves the run as it was), or, with fixed steps, less than one
-/// step ahead of the present time (a side step). With raw multipliers asked for it is always a side step.
+/// The sample at time t: the present time, a time within the last step (dense output where the
+/// integrator has it, else a side step of the same integrator from that step's start, which leaves
+/// the run as it was), or, with fixed steps, less than one step ahead of the present time (a side
+/// step). With raw multipliers asked for it is always a side step.
 hn_status hn_run_sample(hn_run *run, double t, hn_sample *out);
-/// What the multipliers of the last sample are worth; near a singular configuration at the cost of a dense solve. Allocates
-/// nothing.
+/// What the multipliers of the last sample are worth; near a singular configuration at the cost of
+/// a dense solve. Allocates nothing.
 hn_multiplier_mark hn_run_sample_mark(hn_run *run);
 /// Why the last sample that failed could not be taken, in words. Borrowed, until the run goes on.
 const char *hn_run_sample_why(const hn_run *run, hn_status status);
@@ -77,14 +81,16 @@ int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; bo
 int hn_run_passed_singular(const hn_run *run, double *t);
 /// Sets the run back to the start; counters and incidents are forgotten.
 hn_status hn_run_reset(hn_run *run);
-/// A check (gap, energy, ...) costs an extra evaluation that is not counted as the method's cost; 0 switches checks off, n:
-/// every n-th step.
+/// A check (gap, energy, ...) costs an extra evaluation that is not counted as the method's cost; 0
+/// switches checks off, n: every n-th step.
 void hn_run_watch(hn_run *run, int every);
-/// Changes an option of the formulation ("alpha") while running, kept over a reset. Fails with the reason in diag:
-/// HN_ERR_INPUT: unknown key or bad value; HN_ERR_UNSUPPORTED: fixed once the run is made (an integrator's option, a basis).
+/// Changes an option of the formulation ("alpha") while running, kept over a reset. Fails with the
+/// reason in diag: HN_ERR_INPUT: unknown key or bad value; HN_ERR_UNSUPPORTED: fixed once the run
+/// is made (an integrator's option, a basis).
 hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag);
 const hn_method_spec *hn_run_spec(const hn_run *run);
-/// The inside of a run, for a study that follows its steps: the stepping half and the engine of the samples.
+/// The inside of a run, for a study that follows its steps: the stepping half and the engine of the
+/// samples.
 hn_stepping *hn_run_stepping(hn_run *run);
 hn_engine *hn_run_side_engine(hn_run *run);
 /// The watching half, and the words why the run ended: for the diagnosis.

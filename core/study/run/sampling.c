@@ -11,7 +11,7 @@
 #define SAME_TIME 1e-9     // of a step
 #define ROUNDED_TIME 2e-14 // relative
 
-// ---- states between steps ---------------------------------------------------------------------------------------
+// ---- states between steps ----
 
 /// A state of the side engine at time t from its y: corrected as after a step, then read.
 static hn_status finish_side(hn_sampling *s, double t, double *y) {
@@ -108,7 +108,7 @@ static hn_status locate(hn_sampling *s, double t, bool failed) {
     return dense ? interpolate(s, t) : side_step(s, &run->before, t);
 }
 
-// ---- what a sample holds ----------------------------------------------------------------------------------------
+// ---- what a sample holds ----
 
 static void fill_forces(hn_sampling *s, double t, hn_sample *out) {
     const hn_stepping *run = s->run;
@@ -169,7 +169,7 @@ hn_status hn_sampling_at(hn_sampling *s, double t, bool failed, hn_sample *out) 
     return HN_OK;
 }
 
-// ---- life ---------------------------------------------------------------------------------------------------------
+// ---- life ----
 
 hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda, hn_sampling *s,
                              hn_diag *diag) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SAMPLING_H
 #define HN_STUDY_SAMPLING_H
-// The sampling half of a run: states at times between its steps, made by an engine of its own, so that a sample never touches
-// charts, warm starts or kept slopes of the run itself.
+// The sampling half of a run: states at times between its steps, made by an engine of its own, so
+// that a sample never touches charts, warm starts or kept slopes of the run itself.
 
 #include "study/incidents/watch.h"
 
@@ -11,10 +11,11 @@ typedef struct hn_sample {
     double t;
     const double *q, *v; ///< n_user
     const double *a;     ///< n_user accelerations
-    /// nc, recomputed from the saddle system at this state; a and lambda are NaN where it has no solution
+    /// nc, recomputed from the saddle system at this state; a and lambda are NaN where it has no
+    /// solution
     const double *lambda;
-    /// nc: the multipliers that the scheme itself found at the end of its step, which converge with a lower order or not at
-    /// all; NULL: none, or not asked for
+    /// nc: the multipliers that the scheme itself found at the end of its step, which converge with
+    /// a lower order or not at all; NULL: none, or not asked for
     const double *raw_lambda;
     const double *points;                             ///< 3 n_points
     double gap, velocity_gap;                         ///< ||phi||, ||J v + phi_t||
@@ -31,7 +32,8 @@ typedef struct hn_sampling {
     hn_engine side;
     hn_eval *points_eval;
     long long inside; ///< samples between steps that were checked
-    // the state of the last sample, what the solve there said, and the scheme's own multipliers there
+    // the state of the last sample, what the solve there said, and the scheme's own multipliers
+    // there
     double t, *q, *v, *a;
     hn_accel_info info;
     hn_status status;
@@ -43,8 +45,9 @@ typedef struct hn_sampling {
 HN_MUST_CHECK hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
                                            hn_sampling *s, hn_diag *diag);
 void hn_sampling_free(hn_sampling *s);
-/// The sample at time t: the present time, a time within the last step, or one less than a step ahead (fixed steps, `failed`
-/// false). Fails with HN_ERR_INPUT for other times, or as a step of the method does.
+/// The sample at time t: the present time, a time within the last step, or one less than a step
+/// ahead (fixed steps, `failed` false). Fails with HN_ERR_INPUT for other times, or as a step of
+/// the method does.
 HN_MUST_CHECK hn_status hn_sampling_at(hn_sampling *s, double t, bool failed, hn_sample *out);
 
 #endif

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_TIMING_H
 #define HN_STUDY_TIMING_H
-// What a run costs by the clock: samples that are batches above the clock's grain, and what a few of them say.
+// What a run costs by the clock: samples that are batches above the clock's grain, and what a few
+// of them say.
 
 #include "study/run/walk.h"
 
 #define HN_TIMING_BATCH 0.02 ///< shortest sample [s]
 
-/// One batch of whole runs to T, straight through: CPU seconds of one of them, and the batch's wall over CPU time in *load. `first_cpu` is what one
-/// takes, about [s]. Returns 0 when stopped, or when a run failed.
+/// One batch of whole runs to T, straight through: CPU seconds of one of them, and the batch's wall
+/// over CPU time in *load. `first_cpu` is what one takes, about [s]. Returns 0 when stopped, or
+/// when a run failed.
 int hn_timing_batch(hn_run *run, double T, double first_cpu, const hn_walk_limits *limits,
                     double *seconds, double *load);
 /// Sorts the list. A quantile of a sorted one, by linear interpolation between its members.

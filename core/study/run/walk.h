@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WALK_H
 #define HN_STUDY_WALK_H
-// A run taken to its end with a look at equal intervals, within a limit of computing time, and stopped on request.
+// A run taken to its end with a look at equal intervals, within a limit of computing time, and
+// stopped on request.
 
 #include "study/run/run.h"
 
@@ -22,9 +23,11 @@ typedef enum hn_walk_end {
 /// At time number k (1..n) of T k / n, the sample there. Returns 0 to end the walk as failed.
 typedef int (*hn_walk_see)(void *user, int k, const hn_sample *sample);
 
-/// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed steps stay on their own grid.
+/// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed
+/// steps stay on their own grid.
 hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
                     void *user);
-/// Whether what began at `started` (hn_clock_thread()) is within its limits: done while it may go on.
+/// Whether what began at `started` (hn_clock_thread()) is within its limits: done while it may go
+/// on.
 hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started);
 #endif

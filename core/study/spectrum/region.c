@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stability regions by trial: a step of length 1 of the integrator itself on a linear problem with the eigenvalue z. Nothing is
-// known here about any integrator but how to call it, so what is said is true of the code that runs.
+// Stability regions by trial: a step of length 1 of the integrator itself on a linear problem with
+// the eigenvalue z. Nothing is known here about any integrator but how to call it, so what is said
+// is true of the code that runs.
 #include "study/spectrum/region.h"
 
 #include <math.h>
@@ -150,8 +151,9 @@ static double next_trial(double z) {
     return z < FINE_Z ? 2 * z : z < COARSE_Z ? z + FINE_Z : RATIO * z;
 }
 
-// Growth found between h_below and h_above, halved down to the limit. Explicit Euler and its like grow on the imaginary axis
-// by a power of the step that rounding hides near 0: no decay below the limit found and growth that sets in gently tell it.
+// Growth found between h_below and h_above, halved down to the limit. Explicit Euler and its like
+// grow on the imaginary axis by a power of the step that rounding hides near 0: no decay below the
+// limit found and growth that sets in gently tell it.
 static double refine(probe *p, const hn_eigenvalue pair[2], double h_below, double h_above) {
     for (int k = 0; k < 60 && h_above - h_below > 1e-13 * h_above; k++) {
         const double middle = (h_below + h_above) / 2;

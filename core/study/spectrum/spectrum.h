@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_SPECTRUM_H
 #define HN_STUDY_SPECTRUM_H
-// What an integrator will meet at a state, before a step is taken: the spectrum of the motion on the loops.
+// What an integrator will meet at a state, before a step is taken: the spectrum of the motion on
+// the loops.
 //
 //     N spans ker J, N'N = 1
 //     (s^2 M_r + s C_r + K_r) x = 0,   M_r = N'M N,   C_r = N'C N,
-//     K_r = N'((M a)_q - f_q - (J'lambda)_q) N    at fixed a and lambda, with both from the saddle system         (1)
+//     K_r = N'((M a)_q - f_q - (J'lambda)_q) N    at the a and lambda of the saddle system  (1)
 //
-// It is the spectrum on the loops that limits a step, not that of the free links: a stiff spring may be softened, or made
-// stiffer, by what the loops allow.
-// Source: Hairer and Wanner 1996, Solving Ordinary Differential Equations II, section IV.2, for the regions.
+// It is the spectrum on the loops that limits a step, not that of the free links: a stiff spring
+// may be softened, or made stiffer, by what the loops allow.
+// Source: Hairer and Wanner 1996, Solving Ordinary Differential Equations II, section IV.2, for the
+// regions.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -24,9 +26,10 @@ typedef struct hn_spectrum hn_spectrum;
 HN_MUST_CHECK hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena,
                                            hn_spectrum **out);
 void hn_spectrum_free(hn_spectrum *s); ///< NULL is legal
-/// The 2 r eigenvalues at (t, q, v) in system coordinates, fastest (largest modulus) first; *n of them (borrowed until the next
-/// call). Rows that always depend on others do no harm. Fails: HN_ERR_SINGULAR where M_r or J has lost rank, HN_ERR_DIVERGED
-/// (an entry is not finite), HN_ERR_NO_CONVERGENCE; *n is then 0.
+/// The 2 r eigenvalues at (t, q, v) in system coordinates, fastest (largest modulus) first; *n of
+/// them (borrowed until the next call). Rows that always depend on others do no harm. Fails:
+/// HN_ERR_SINGULAR where M_r or J has lost rank, HN_ERR_DIVERGED (an entry is not finite),
+/// HN_ERR_NO_CONVERGENCE; *n is then 0.
 HN_MUST_CHECK hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const double *v,
                                          const hn_eigenvalue **out, int *n);
 

@@ -48,7 +48,7 @@ int hn_stability_is_stable(hn_stability_class kind) {
     return kind == HN_STABILITY_FINE || kind == HN_STABILITY_INACCURATE;
 }
 
-// the path ---------------------------------------------------------------------------------------------------------
+// ---- the path ----
 
 typedef struct making {
     hn_stability_path *path;
@@ -202,7 +202,7 @@ int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_ei
     return p->n_values[k];
 }
 
-// the prediction ---------------------------------------------------------------------------------------------------
+// ---- the prediction ----
 
 // why the spectrum on the loops is not what this method meets; NULL when it is
 static const char *why_not(const hn_method_spec *spec) {
@@ -290,7 +290,7 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
     return f;
 }
 
-// the trial --------------------------------------------------------------------------------------------------------
+// ---- the trial ----
 
 typedef struct trial {
     const hn_stability_path *path;
@@ -307,8 +307,8 @@ static void tell_growth(hn_stability_trial *o, double energy) {
              energy, o->t_reached);
 }
 
-// 1 when there is no need to go on. An energy that swings widely is no growth yet: symplectic integrators do that close to
-// their limit.
+// 1 when there is no need to go on. An energy that swings widely is no growth yet: symplectic
+// integrators do that close to their limit.
 static int ran_away(trial *t, double energy, double gap) {
     hn_stability_trial *o = t->out;
     o->energy = fmax(o->energy, energy);
@@ -352,7 +352,8 @@ static int look(trial *t, hn_run *run, int k, double time) {
     const hn_stability_path *p = t->path;
     const int beyond = k > HN_STABILITY_LOOKS;
     hn_sample s;
-    // a fixed step ends before the look, and the shorter one to it may fail where the step itself does not
+    // a fixed step ends before the look, and the shorter one to it may fail where the step itself
+    // does not
     const int there = hn_run_sample(run, time, &s) == HN_OK;
     if (!there && hn_run_sample(run, hn_run_time(run), &s) != HN_OK) {
         return 0;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_STABILITY_H
 #define HN_STUDY_STABILITY_H
-// What a fixed step does to a motion: predicted from the spectrum on the loops (study/spectrum/spectrum.h), and tried.
+// What a fixed step does to a motion: predicted from the spectrum on the loops
+// (study/spectrum/spectrum.h), and tried.
 //
-// A path is a motion that has been computed finely once: looks at equal times, with the state, the energy and the eigenvalues
-// there. Against it a method's trial is classed, and along it the strictest of the predicted limits is found.
+// A path is a motion that has been computed finely once: looks at equal times, with the state, the
+// energy and the eigenvalues there. Against it a method's trial is classed, and along it the
+// strictest of the predicted limits is found.
 
 #include "integrators/method/method_spec.h"
 #include "study/spectrum/spectrum.h"
@@ -53,16 +55,18 @@ typedef struct hn_stability_trial {
 
 typedef struct hn_stability_path hn_stability_path;
 
-/// The motion from (q, v), system coordinates, to T, by explicit and failing that implicit high-order integration within `limits`; the
-/// system must outlive it. Fails: HN_ERR_BUDGET or what the integration ended with, HN_ERR_INPUT (nothing moves: there is no
-/// scale of growth), HN_ERR_MEMORY; told in diag.
+/// The motion from (q, v), system coordinates, to T, by explicit and failing that implicit
+/// high-order integration within `limits`; the system must outlive it. Fails: HN_ERR_BUDGET or what
+/// the integration ended with, HN_ERR_INPUT (nothing moves: there is no scale of growth),
+/// HN_ERR_MEMORY; told in diag.
 HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const double *q,
                                                  const double *v, double T,
                                                  const hn_walk_limits *limits,
                                                  hn_stability_path **out, hn_diag *diag);
 void hn_stability_path_free(hn_stability_path *p);               ///< NULL is legal
 const char *hn_stability_path_means(const hn_stability_path *p); ///< the method that computed it
-/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum does not exist (a singular pose).
+/// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
+/// does not exist (a singular pose).
 int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out);
 
 /// A predicted limit of the step of one method.
@@ -70,15 +74,15 @@ typedef struct hn_stability_forecast {
     double limit; ///< strictest over the path [s]; HUGE_VAL: none; NaN: nothing can be said
     double start; ///< at the start [s]
     int look;     ///< where it is strictest
-    double
-        visible; ///< the smallest step beyond which a trial of `steps` steps grows by HN_STABILITY_SLOW [s]
+    /// the smallest step beyond which a trial of `steps` steps grows by HN_STABILITY_SLOW [s]
+    double visible;
     const char *why; ///< why nothing can be said (static text), NULL otherwise
 } hn_stability_forecast;
 /// With Baumgarte's terms the roots they add count too. A setting h in the spec plays no part.
 hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_method_spec *spec,
                                            long long steps);
-/// Runs the method from the path's start to its end, at least HN_STABILITY_LEAST_STEPS steps, and classes it. Returns 0 when stopped on
-/// request, the trial then being pending.
+/// Runs the method from the path's start to its end, at least HN_STABILITY_LEAST_STEPS steps, and
+/// classes it. Returns 0 when stopped on request, the trial then being pending.
 int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
                      const hn_walk_limits *limits, hn_stability_trial *out);
 #endif

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/// What differs between the two kinds of pair. A NULL in `dense` or `raw_lambda` of the integrator is asked for by the
-/// has_ functions, so the entries here are never called without it.
+/// What differs between the two kinds of pair. A NULL in `dense` or `raw_lambda` of the integrator
+/// is asked for by the has_ functions, so the entries here are never called without it.
 struct hn_engine_kind {
     hn_status (*create)(hn_engine *e, hn_diag *diag);
     void (*destroy)(hn_engine *e);
@@ -25,7 +25,7 @@ struct hn_engine_kind {
     const char *(*why)(const hn_engine *e);
 };
 
-// ---- ordinary differential equation and a stepper of it -----------------------------------------------------
+// ---- ordinary differential equation and a stepper of it ----
 
 static hn_status ode_create(hn_engine *e, hn_diag *diag) {
     return e->spec->formulation->create(e->sys, e->spec->formulation_set, e->arena, &e->formulation,
@@ -145,7 +145,7 @@ static const hn_engine_kind ODE = {
     .why = ode_why,
 };
 
-// ---- differential-algebraic system and an integrator that takes it --------------------------------------------
+// ---- differential-algebraic system and an integrator that takes it ----
 
 static const hn_dae_stepper *dae_of(const hn_engine *e) {
     return e->spec->stepper->dae;
@@ -255,7 +255,7 @@ static const hn_engine_kind DAE = {
     .why = dae_why,
 };
 
-// ---- either ------------------------------------------------------------------------------------------------------
+// ---- either ----
 
 static bool is_ode(const hn_method_spec *spec) {
     return hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;

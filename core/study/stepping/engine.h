@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ENGINE_H
 #define HN_STUDY_ENGINE_H
-// An engine: a formulation and an integrator put together. There are two kinds of pair, an ordinary differential equation with
-// a stepper of it, and a differential-algebraic system with an integrator that takes it as it is (integrators/step/dae.h). The
-// difference between the two is a table of functions in engine.c; everybody else knows engines only.
+// An engine: a formulation and an integrator put together. There are two kinds of pair, an ordinary
+// differential equation with a stepper of it, and a differential-algebraic system with an
+// integrator that takes it as it is (integrators/step/dae.h). The difference between the two is a
+// table of functions in engine.c; everybody else knows engines only.
 
 #include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"
@@ -34,25 +35,28 @@ typedef struct hn_engine {
 } hn_engine;
 
 /// Makes an engine; memory from `arena`. `sys`, `spec`, `accel` are borrowed.
-/// Fails: HN_ERR_UNSUPPORTED with the reason in diag, HN_ERR_MEMORY. hn_engine_destroy is legal after a failure.
+/// Fails: HN_ERR_UNSUPPORTED with the reason in diag, HN_ERR_MEMORY. hn_engine_destroy is legal
+/// after a failure.
 HN_MUST_CHECK hn_status hn_engine_create(const hn_system *sys, const hn_method_spec *spec,
                                          hn_accel *accel, hn_arena *arena, hn_engine *e,
                                          hn_diag *diag);
 void hn_engine_destroy(hn_engine *e);
-/// Begins at a state and forgets everything before. The first call makes the stepper of an ordinary differential equation,
-/// whose size may depend on the state.
+/// Begins at a state and forgets everything before. The first call makes the stepper of an ordinary
+/// differential equation, whose size may depend on the state.
 HN_MUST_CHECK hn_status hn_engine_start(hn_engine *e, double t, const double *q, const double *v);
 /// A trial from e->y to e->y_new, its error in e->err.
 HN_MUST_CHECK hn_status hn_engine_step(hn_engine *e, double t, double h);
-/// Says whether the integrator chooses the size of its steps itself: then `advance` takes the place of `step`.
+/// Says whether the integrator chooses the size of its steps itself: then `advance` takes the place
+/// of `step`.
 bool hn_engine_paces_itself(const hn_method_spec *spec);
 HN_MUST_CHECK hn_status hn_engine_advance(hn_engine *e, double t, double t_stop, double *t_new);
-/// Goes on in another chart from the accepted state, see hn_formulation.change_chart. Fails: HN_ERR_CHART where there is none.
+/// Goes on in another chart from the accepted state, see hn_formulation.change_chart. Fails:
+/// HN_ERR_CHART where there is none.
 HN_MUST_CHECK hn_status hn_engine_change_chart(hn_engine *e, double t);
 /// Evaluates what only dense output needs.
 HN_MUST_CHECK hn_status hn_engine_finish(hn_engine *e);
-/// Applies the formulation's correction (a projection, unit quaternions) to y at the end of a step; *changed is set to 1 when
-/// y moved.
+/// Applies the formulation's correction (a projection, unit quaternions) to y at the end of a step;
+/// *changed is set to 1 when y moved.
 HN_MUST_CHECK hn_status hn_engine_correct(hn_engine *e, double t, double *y, int *changed);
 /// The trial became the state; `changed` 1: y_new was changed since.
 void hn_engine_accepted(hn_engine *e, int changed);

@@ -12,8 +12,9 @@
 
 enum { WINDOWS = 16 };     // at least
 #define LONGEST_WINDOW 0.5 // [s]
-#define APART \
-    1e-7 // of a radian, or of the scene's length: far above the integrator's error, far below what bends the line
+// of a radian, or of the scene's length: far above the integrator's error, far below what bends the
+// line
+#define APART 1e-7
 #define METHOD "projection@dop853:rtol=1e-11"
 
 typedef struct twins {

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_CHAOS_H
 #define HN_STUDY_CHAOS_H
-// How fast neighbouring motions of a mechanism part. Where they part exponentially no method can follow the motion for long, and errors beyond a
-// horizon say nothing about methods.
+// How fast neighbouring motions of a mechanism part. Where they part exponentially no method can
+// follow the motion for long, and errors beyond a horizon say nothing about methods.
 //
-// Two motions, d0 apart, are followed for a window; the twin is then brought back to d0 from the other along the line between them, and so on. With
-// d_k the distance at the end of window k,
+// Two motions, d0 apart, are followed for a window; the twin is then brought back to d0 from the
+// other along the line between them, and so on. With d_k the distance at the end of window k,
 //
-//     lambda = 1 / T  sum ln(d_k / d0)                                                                                (1)
+//     lambda = 1 / T  sum ln(d_k / d0)                                                          (1)
 //
-// Regular motions part like t: between T / 2 and T by a factor 2, however large T is. Chaotic ones part by exp(lambda T / 2). The estimate is
-// that of the second half, when the twin has turned into the fastest direction.
-// Source: Benettin, Galgani and Strelcyn 1976; Hairer, Lubich and Wanner 2006, section I.1, for what that means for errors.
+// Regular motions part like t: between T / 2 and T by a factor 2, however large T is. Chaotic ones
+// part by exp(lambda T / 2). The estimate is that of the second half, when the twin has turned into
+// the fastest direction.
+// Source: Benettin, Galgani and Strelcyn 1976; Hairer, Lubich and Wanner 2006, section I.1, for
+// what that means for errors.
 
 #include "study/run/walk.h"
 
@@ -27,8 +29,9 @@ typedef struct hn_chaos {
 
 #define HN_CHAOS_PARTING 2.0 ///< in ln, over half the time: 7.4; regular motions give ln 2
 
-/// From the assembled state (q, v), system coordinates, to T. Fails: HN_ERR_INPUT (T), HN_ERR_BUDGET (stopped), HN_ERR_NO_CONVERGENCE (a motion did not come to T: told in
-/// diag), HN_ERR_MEMORY.
+/// From the assembled state (q, v), system coordinates, to T. Fails: HN_ERR_INPUT (T),
+/// HN_ERR_BUDGET (stopped), HN_ERR_NO_CONVERGENCE (a motion did not come to T: told in diag),
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double *v,
                                           double T, const hn_walk_limits *limits, hn_chaos *out,
                                           hn_diag *diag);

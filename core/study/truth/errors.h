@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ERRORS_H
 #define HN_STUDY_ERRORS_H
-// How far a state is from the reference solution, in six numbers without units that are never mixed: closed is not
-// correct, and correct positions do not promise correct reactions.
+// How far a state is from the reference solution, in six numbers without units that are never
+// mixed: closed is not correct, and correct positions do not promise correct reactions.
 //
-//     q             max |q - q_ref|, lengths over the scene's length L, angles as they are, never modulo a turn
-//     v             max |v - v_ref|, length rates over L, all over the largest rate of the reference
-//     reaction      |J'(lambda - lambda_ref)| over the largest |J' lambda_ref|, J at the reference: lambda alone is not
-//                   determined where rows are redundant
+//     q             max |q - q_ref|, lengths over the scene's length L, angles as they are, never
+//                   modulo a turn
+//     v             max |v - v_ref|, length rates over L, all over the largest rate of the
+//                   reference
+//     reaction      |J'(lambda - lambda_ref)| over the largest |J' lambda_ref|, J at the reference:
+//                   lambda alone is not determined where rows are redundant
 //     gap           |phi| / L
 //     velocity gap  |J v + phi_t| over L and the largest rate
-//     energy        |E - E_ref| over (largest kinetic energy + range of the potential): work done from outside is in both
+//     energy        |E - E_ref| over (largest kinetic energy + range of the potential): work done
+//                   from outside is in both
 
 #include "base/arena.h"
 #include "study/run/run.h"
@@ -49,16 +52,19 @@ typedef struct hn_state_seen {
 
 /// Scratch and evaluators of one system; one per thread.
 typedef struct hn_errors hn_errors;
-/// Memory from `arena`. Not thread-safe for one system (see system.h). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// Memory from `arena`. Not thread-safe for one system (see system.h). Fails: HN_ERR_MEMORY,
+/// HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_errors_create(const hn_system *sys, hn_arena *arena, hn_errors **out);
 void hn_errors_free(hn_errors *e); ///< NULL is legal
 /// The six errors of a state; NaN where a state has no multipliers. Allocates nothing.
 void hn_errors_calc(hn_errors *e, const hn_state_seen *state, const hn_state_seen *reference,
                     const hn_scales *scales, double out[HN_ERROR_COUNT]);
-/// Largest |v| with length rates over L, and |J' lambda| with forces times L: what scales are made of.
+/// Largest |v| with length rates over L, and |J' lambda| with forces times L: what scales are made
+/// of.
 double hn_errors_rate(const hn_errors *e, const double *user_v);
 double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *lambda);
-/// Largest difference of two states' coordinates as the error of q counts it, or of rates (over `scales->rate`).
+/// Largest difference of two states' coordinates as the error of q counts it, or of rates (over
+/// `scales->rate`).
 double hn_errors_between(hn_errors *e, const double *q, const double *other);
 double hn_errors_between_rates(const hn_errors *e, const double *v, const double *other,
                                const hn_scales *scales);

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-/// Of a step, relative to an angle of 1, the scene's length, and their rates. Accelerations near a pose without full rank carry rounding over
-/// the square of what is left of it; where no step gets past that, the whole is done again with the next.
+/// Of a step, relative to an angle of 1, the scene's length, and their rates. Accelerations near a
+/// pose without full rank carry rounding over the square of what is left of it; where no step gets
+/// past that, the whole is done again with the next.
 static const hn_real TOLERANCES[] = {1e-17L, 1e-15L, 1e-13L};
 enum { N_TOLERANCES = sizeof TOLERANCES / sizeof *TOLERANCES };
 #define LEAST_STEP 1e-15L // of T: below it nothing is gained
@@ -55,7 +56,7 @@ static hn_status rate_of(void *user, hn_real t, const hn_real *y, hn_real *dy) {
     return p->solver->accelerate(p->solving, t, y, y + nq, dy + nq, NULL);
 }
 
-// creation ---------------------------------------------------------------------------------------------------------
+// ---- creation ----
 
 static hn_status create(precise *p, hn_precise_kind kind, const hn_system *sys, hn_arena *arena) {
     hn_status status = hn_precise_model_create(sys, arena, &p->model);
@@ -126,7 +127,7 @@ static void set_scale(precise *p) {
     }
 }
 
-// walking ----------------------------------------------------------------------------------------------------------
+// ---- walking ----
 
 static hn_walk_end asked_to_end(precise *p) {
     return hn_pace_is_due(&p->pace) ? hn_walk_ask(p->limits, p->started) : HN_WALK_DONE;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gragg's midpoint rule with 2, 4, 6, ... substeps, extrapolated in h^2 (Aitken and Neville); the column that gives most for its cost is
-// aimed at. Only the increments over a step are extrapolated, so that rounding is relative to them. Source: Hairer, Norsett & Wanner 1993,
-// sec. II.9.
+// Gragg's midpoint rule with 2, 4, 6, ... substeps, extrapolated in h^2 (Aitken and Neville); the
+// column that gives most for its cost is aimed at. Only the increments over a step are
+// extrapolated, so that rounding is relative to them. Source: Hairer, Norsett & Wanner 1993, sec.
+// II.9.
 #include "study/truth/precise_stepper.h"
 
 #include <math.h>
@@ -102,7 +103,8 @@ static hn_real growth(hn_real error, int k) {
     return fminl(MOST_GROWTH, fmaxl(LEAST_SHRINK, g));
 }
 
-/// One attempt. Returns the column that is accurate enough, or -1; *factor: what to do with the step.
+/// One attempt. Returns the column that is accurate enough, or -1; *factor: what to do with the
+/// step.
 static int attempt(extrapolation *s, hn_real t, const hn_real *y, hn_real H, hn_real *factor,
                    hn_status *status) {
     hn_real best = HUGE_VALL;

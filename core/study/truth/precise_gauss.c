@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gauss collocation. The rates at the stages are iterated to rounding; their expansion in Legendre polynomials tells the error of the
-// step, and its continuation starts the next. Source: Hairer, Norsett & Wanner 1993, sec. II.7; Hairer, Lubich & Wanner 2006, sec. VIII.6.
+// Gauss collocation. The rates at the stages are iterated to rounding; their expansion in Legendre
+// polynomials tells the error of the step, and its continuation starts the next. Source: Hairer,
+// Norsett & Wanner 1993, sec. II.7; Hairer, Lubich & Wanner 2006, sec. VIII.6.
 #include "study/truth/precise_stepper.h"
 
 #include <math.h>
@@ -142,8 +143,9 @@ static hn_status solve(gauss *s, hn_real t, const hn_real *y, hn_real h) {
     return status;
 }
 
-/// Fills the expansion; returns the error of the step in tolerances. The coefficients c_k of f fall off like rho^-k where it is smooth, and
-/// what Gauss quadrature misses like rho^-2n: about h c_n-1^2 / max c. At a kink they fall off slowly, and so does this.
+/// Fills the expansion; returns the error of the step in tolerances. The coefficients c_k of f fall
+/// off like rho^-k where it is smooth, and what Gauss quadrature misses like rho^-2n: about h
+/// c_n-1^2 / max c. At a kink they fall off slowly, and so does this.
 static hn_real expand(gauss *s, hn_real h) {
     const int n = s->ode->n;
     hn_real size[STAGES] = {0}, most = 0;

@@ -11,7 +11,7 @@ hn_real *hn_arena_reals(hn_arena *arena, size_t n) {
     return n < SIZE_MAX / sizeof(hn_real) ? hn_arena_get(arena, n * sizeof(hn_real)) : NULL;
 }
 
-// creation ---------------------------------------------------------------------------------------------------------
+// ---- creation ----
 
 /// Outputs of a part while it is gathered.
 typedef struct gathering {
@@ -184,7 +184,7 @@ void hn_precise_model_free(hn_precise_model *m) {
     }
 }
 
-// evaluation -------------------------------------------------------------------------------------------------------
+// ---- evaluation ----
 
 static void run(const hn_precise_model *m, hn_precise_part *p, hn_real t, const hn_real *q,
                 const hn_real *v) {
@@ -211,7 +211,7 @@ void hn_precise_model_energy(hn_precise_model *m, hn_real t, const hn_real *q, c
     run(m, &m->energies, t, q, v);
 }
 
-// orientations -----------------------------------------------------------------------------------------------------
+// ---- orientations ----
 
 /// 1/2 q o (0, w).
 static void ball_rate(const hn_real q[4], const hn_real w[3], hn_real rate[4]) {

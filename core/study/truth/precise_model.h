@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_MODEL_H
 #define HN_STUDY_PRECISE_MODEL_H
-// The equations of a system in extended precision: its tapes run in long double. This, and nothing behind it, is what computations
-// that check each other have in common.
+// The equations of a system in extended precision: its tapes run in long double. This, and nothing
+// behind it, is what computations that check each other have in common.
 
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
@@ -32,7 +32,8 @@ typedef struct hn_precise_model {
     hn_real *floor; ///< nv: what counts as one: L for lengths, 1 for angles
 } hn_precise_model;
 
-/// Memory from `arena`; the tapes are freed by hn_precise_model_free(). Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// Memory from `arena`; the tapes are freed by hn_precise_model_free(). Fails: HN_ERR_MEMORY,
+/// HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_precise_model_create(const hn_system *sys, hn_arena *arena,
                                                 hn_precise_model **out);
 void hn_precise_model_free(hn_precise_model *m); ///< NULL is legal
@@ -44,7 +45,8 @@ void hn_precise_model_energy(hn_precise_model *m, hn_real t, const hn_real *q, c
 /// qdot = G(q) v, as hn_system_kinematics().
 void hn_precise_model_kinematics(const hn_precise_model *m, const hn_real *q, const hn_real *v,
                                  hn_real *qdot);
-/// q moved by G(q) delta, quaternions brought back to length 1: exact to the second order of delta, for Newton's corrections.
+/// q moved by G(q) delta, quaternions brought back to length 1: exact to the second order of delta,
+/// for Newton's corrections.
 void hn_precise_model_nudge(const hn_precise_model *m, hn_real *q, const hn_real *delta);
 void hn_precise_model_normalise(const hn_precise_model *m, hn_real *q);
 hn_real *hn_arena_reals(hn_arena *arena, size_t n); ///< zeroed; NULL when memory is out

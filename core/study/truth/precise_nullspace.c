@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The null space of J: J' P = Q [R; 0] by reflections, rows of J at unit length; N is the rest of Q. Which rows count, and in which order, is
-// found by column pivoting at the start of a step and stays for the step: where rows depend on one another they agree only as far as
-// the numbers in the scene do, and another choice amid a step would be a kink. Source: Golub & Van Loan 2013, sec. 5.4.2.
+// The null space of J: J' P = Q [R; 0] by reflections, rows of J at unit length; N is the rest of
+// Q. Which rows count, and in which order, is found by column pivoting at the start of a step and
+// stays for the step: where rows depend on one another they agree only as far as the numbers in the
+// scene do, and another choice amid a step would be a kink. Source: Golub & Van Loan 2013, sec.
+// 5.4.2.
 //
-//     c = Q1 R^-T (-gamma),   (N' M N) z = N' (f - M c),   a = N z + c,   R lambda = Q1' (M a - f)                   (1)
+//     c = Q1 R^-T (-gamma),   (N' M N) z = N' (f - M c),   a = N z + c,
+//     R lambda = Q1' (M a - f)                                             (1)
 #include "study/truth/precise_solver.h"
 
 #include <math.h>
@@ -56,7 +59,7 @@ static hn_real inner(int n, const hn_real *x, const hn_real *y) {
     return sum;
 }
 
-// factors ----------------------------------------------------------------------------------------------------------
+// ---- factors ----
 
 static hn_real *column_of(const nullspace *s, int k) {
     return s->A + (size_t)k * s->m->nv;
@@ -196,7 +199,7 @@ static void times_mass(const hn_precise_model *m, const hn_real *x, hn_real *out
     }
 }
 
-// accelerations ----------------------------------------------------------------------------------------------------
+// ---- accelerations ----
 
 /// Cholesky factor of S (r x r) and the solution in z.
 static hn_status solve_reduced(nullspace *s, int r) {
@@ -282,7 +285,7 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
     return HN_OK;
 }
 
-// closing ----------------------------------------------------------------------------------------------------------
+// ---- closing ----
 
 /// 1: some chosen row is all but a combination of the others here, or vanishes.
 static int is_weak(const nullspace *s) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The saddle system whole: rows of J that depend on others are left out at the start of a step, K is equilibrated and eliminated
-// with partial pivoting. Source: Golub & Van Loan 2013, sec. 3.4 (elimination), 5.2.8 (Gram-Schmidt).
+// The saddle system whole: rows of J that depend on others are left out at the start of a step, K
+// is equilibrated and eliminated with partial pivoting. Source: Golub & Van Loan 2013, sec. 3.4
+// (elimination), 5.2.8 (Gram-Schmidt).
 #include "study/truth/precise_solver.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static hn_status create(hn_precise_model *m, hn_arena *arena, void **ws) {
     return hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-// rows -------------------------------------------------------------------------------------------------------------
+// ---- rows ----
 
 static hn_real dot(int n, const hn_real *x, const hn_real *y) {
     hn_real sum = 0;
@@ -103,9 +104,10 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
     }
 }
 
-// elimination ------------------------------------------------------------------------------------------------------
+// ---- elimination ----
 
-/// K of the rows that are kept, symmetrically scaled by powers of the diagonal's roots so that pivots compare.
+/// K of the rows that are kept, symmetrically scaled by powers of the diagonal's roots so that
+/// pivots compare.
 static void fill(saddle *s) {
     const int nv = s->m->nv, n = nv + s->n_rows;
     s->size = n;
@@ -220,7 +222,7 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
     return HN_OK;
 }
 
-// closing ----------------------------------------------------------------------------------------------------------
+// ---- closing ----
 
 /// s->step: the change of least kinetic energy with J step = -gap, gap a row's `value` + J v.
 static hn_status solve_gap(saddle *s, const hn_real *value, const hn_real *v) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_PRECISE_STEPPER_H
 #define HN_STUDY_PRECISE_STEPPER_H
-// y' = f(t, y) in extended precision, in two ways that share nothing: a table each. Both choose their steps.
+// y' = f(t, y) in extended precision, in two ways that share nothing: a table each. Both choose
+// their steps.
 
 #include "study/truth/precise_model.h"
 
@@ -9,16 +10,17 @@ typedef struct hn_precise_ode {
     int n;
     HN_MUST_CHECK hn_status (*rate)(void *user, hn_real t, const hn_real *y, hn_real *dy);
     void *user;
-    const hn_real
-        *scale;  ///< n: what an error of 1 in each entry is worth; may change between steps
+    /// n: what an error of 1 in each entry is worth; may change between steps
+    const hn_real *scale;
     hn_real tol; ///< of a step, times the scale
 } hn_precise_ode;
 
 typedef struct hn_precise_stepper {
     const char *name; ///< second half of a computation's name
     HN_MUST_CHECK hn_status (*create)(const hn_precise_ode *ode, hn_arena *arena, void **ws);
-    /// One step from (t, y) of at most *h: y in place, the step taken in *taken, the next to try in *h. Fails: HN_ERR_STEP_UNDERFLOW
-    /// below `least`; as rate() does when even that step cannot be taken.
+    /// One step from (t, y) of at most *h: y in place, the step taken in *taken, the next to try in
+    /// *h. Fails: HN_ERR_STEP_UNDERFLOW below `least`; as rate() does when even that step cannot be
+    /// taken.
     HN_MUST_CHECK hn_status (*step)(void *ws, hn_real t, hn_real *y, hn_real least, hn_real *h,
                                     hn_real *taken);
     /// The motion has a corner here: nothing of the step before says anything about the next.

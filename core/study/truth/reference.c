@@ -11,7 +11,8 @@
 #define SMALLEST 1e-300 // a scale that would be 0 is 1 instead
 #define MOST_DIGITS 16.0
 
-/// In the order they are tried; any two have nothing but the scene's equations in common, or differ in formulation and integrator.
+/// In the order they are tried; any two have nothing but the scene's equations in common, or differ
+/// in formulation and integrator.
 typedef struct mean {
     int precise; ///< 1: in extended precision, `kind`
     hn_precise_kind kind;

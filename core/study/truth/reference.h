@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_REFERENCE_H
 #define HN_STUDY_REFERENCE_H
-// A reference solution: what the motion of a scene is, by two computations that share nothing but the scene's equations,
-// and how far these are apart. That difference is the reference's own error: no error below it is ever claimed.
+// A reference solution: what the motion of a scene is, by two computations that share nothing but
+// the scene's equations, and how far these are apart. That difference is the reference's own error:
+// no error below it is ever claimed.
 //
-// The first two of a fixed list that come to the end are taken. First stand the two in extended precision of study/truth/precise.h; then, in
-// double, accelerations and multipliers together with projection by our Dormand-Prince 8; the equations on the null space of J by
-// GSL's Prince-Dormand; the loops at position and speed level, with multipliers, by Radau IIA collocation.
+// The first two of a fixed list that come to the end are taken. First stand the two in extended
+// precision of study/truth/precise.h; then, in double, accelerations and multipliers together with
+// projection by our Dormand-Prince 8; the equations on the null space of J by GSL's Prince-Dormand;
+// the loops at position and speed level, with multipliers, by Radau IIA collocation.
 //
-// Numbers are stored as doubles, so the error of a coordinate is never called less than half a unit of its last place.
+// Numbers are stored as doubles, so the error of a coordinate is never called less than half a unit
+// of its last place.
 
 #include "study/truth/errors.h"
 #include "study/run/walk.h"
@@ -28,8 +31,8 @@ typedef struct hn_ref {
     double error[HN_ERROR_COUNT]; ///< the largest of them
     hn_scales scales;
     char means[HN_REF_MEANS][HN_SPEC_MAX]; ///< the first is the one that is kept
-    char refused
-        [320]; ///< computations that did not come to the end, with their reasons; "" when none
+    /// computations that did not come to the end, with their reasons; "" when none
+    char refused[320];
 } hn_ref;
 
 typedef struct hn_ref_opts {
@@ -38,14 +41,15 @@ typedef struct hn_ref_opts {
     int skip_precise;      ///< 1: those in double alone
     void (*progress)(
         void *user,
-        double
-            share); ///< of both computations; falls where one did not come to the end. NULL: not told
-    void *user;     ///< of `progress`
+        /// of both computations; falls where one did not come to the end. NULL: not told
+        double share);
+    void *user; ///< of `progress`
 } hn_ref_opts;
 hn_ref_opts hn_ref_opts_default(void);
 
-/// From the assembled state (q, v) in system coordinates to T. Returns owned in *out. Fails: HN_ERR_NO_CONVERGENCE when fewer than two
-/// computations come to the end, HN_ERR_BUDGET when stopped on request; told in diag. HN_ERR_INPUT (T), HN_ERR_MEMORY.
+/// From the assembled state (q, v) in system coordinates to T. Returns owned in *out. Fails:
+/// HN_ERR_NO_CONVERGENCE when fewer than two computations come to the end, HN_ERR_BUDGET when
+/// stopped on request; told in diag. HN_ERR_INPUT (T), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v,
                                       double T, const hn_ref_opts *opts, hn_ref **out,
                                       hn_diag *diag);

@@ -15,7 +15,8 @@ static const hn_incident *last_of(const hn_run *run) {
     return &list[n - 1];
 }
 
-// the stability study of this mechanism predicts 675 us and finds 670 us; kd = 678 decays at 4.1e3 1/s
+// the stability study of this mechanism predicts 675 us and finds 670 us; kd = 678 decays at 4.1e3
+// 1/s
 static void a_step_above_the_stability_limit_is_named_as_the_cause(void **state) {
     (void)state;
     hn_model m;
