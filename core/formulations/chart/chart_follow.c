@@ -5,8 +5,9 @@
 #include <string.h>
 
 // Newton's method from a prediction finds the branch of the prediction only where the two are
-// close. A step of a driven mechanism without degrees of freedom has no error that would bound it, and a
-// long step of any other may arrive at another branch of the loops, or a turn away in an angle.
+// close. A step of a driven mechanism without degrees of freedom has no error that would bound it,
+// and a long step of any other may arrive at another branch of the loops, or a turn away in an
+// angle.
 //
 // [rad], or of the characteristic length: a correction of the tangent prediction below this leaves
 // an angle's turn and the branch in no doubt; steps of ordinary length correct by about 1e-3

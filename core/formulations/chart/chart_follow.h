@@ -9,8 +9,7 @@
 
 /// Closes the loops at `point` for independent entries q_ind (r) at time t, on the branch of
 /// `base`. q (nq) receives the closed configuration. `spare` is another point of the chart; it is
-/// spoiled.
-/// Fails as hn_chart_close().
+/// spoiled. Fails as hn_chart_close().
 HN_MUST_CHECK hn_status hn_chart_follow(hn_chart *chart, hn_chart_point *point,
                                         hn_chart_point *spare, double t, const double *q_ind,
                                         double *q, double tol);

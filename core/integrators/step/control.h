@@ -28,9 +28,8 @@ double hn_step_factor(hn_step_control *control, double err, int k);
 
 /// [rad], or of the characteristic length: the largest displacement of a coordinate in one step of
 /// a mechanism without degrees of freedom. Its state is empty and its error 0, so the drive bounds
-/// the
-/// step: about 25 steps in a turn of the fastest part show the motion and keep each position solve
-/// near its prediction.
+/// the step: about 25 steps in a turn of the fastest part show the motion and keep each position
+/// solve near its prediction.
 #define HN_DRIVE_STEP 0.25
 
 /// Returns the largest displacement from q0 to q1 (nq each) over HN_DRIVE_STEP: an error norm for
