@@ -201,6 +201,8 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
     for (int i = 0; i < sys->scene->n_coordinates; i++) {
         n += sys->scene->coordinates[i].actuated != 0;
     }
+
+    // motors against degrees of freedom
     const char *reading = "fully actuated: as many motors as degrees of freedom";
     if (n == 0 && is_driven(sys)) {
         reading = "no motors: driven by loads or motions that are given over time";
@@ -212,6 +214,7 @@ void hn_system_actuation_put(hn_strbuf *b, const hn_system *sys, int freedoms) {
         reading = "over-actuated: more motors than degrees of freedom, so they can work against "
                   "each other";
     }
+
     hn_json_key(b, "actuation");
     hn_json_object(b);
     hn_json_put_int(b, "actuated", n);
