@@ -396,7 +396,7 @@ check: build/.packages-check check-house
 	@echo 'check: all good'
 
 # what the tree promises about itself; tests/house/test_checks.sh runs it inside `make test`
-check-house: check-layers check-names check-circles check-licence
+check-house: check-layers check-names check-circles check-licence check-width
 
 # awk gets the table above as layer:need,need and layer.room:room,room
 COMMA := ,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run costs beside hand-written C, all in one process: evaluation and Runge-Kutta step of the
-// reference four-bar FB0, interpreted and native, without and with the watch that every run has, and
-// the ladder of 40 loops. Prints CSV: medians of batches that take turns, their quartiles, ratios.
+// What a run costs beside hand-written C, all in one process: evaluation and Runge-Kutta step of
+// the reference four-bar FB0, interpreted and native, without and with the watch that every run
+// has, and the ladder of 40 loops. Prints CSV: medians of batches that take turns, their quartiles,
+// ratios.
 #include "hand_fourbar.h"
 
 #include "base/clock.h"

@@ -25,7 +25,7 @@ house() { # folder, target
 }
 
 # ---- the tree itself ----
-for check in layers names circles licence; do
+for check in layers names circles licence width; do
     expect "check-$check finds nothing in the tree" '' "$(house . check-$check | head -n 20)"
 done
 

@@ -7,8 +7,8 @@
 #include "session/model/model.h"
 
 /// Compiles the tape of accelerations and multipliers natively, waits for the compiler, and writes
-/// an object: {"status": "compiled", "instructions", "emit_seconds", "compile_seconds" (0: kept from
-/// before), "load_seconds", "interpreter_ns", "native_ns", "break_even_evaluations" (null: never)},
-/// or {"status": why the interpreter serves}.
+/// an object: {"status": "compiled", "instructions", "emit_seconds", "compile_seconds" (0: kept
+/// from before), "load_seconds", "interpreter_ns", "native_ns", "break_even_evaluations" (null:
+/// never)}, or {"status": why the interpreter serves}.
 void hn_model_native_put(hn_strbuf *b, const hn_model *model);
 #endif

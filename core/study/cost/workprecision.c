@@ -193,7 +193,7 @@ void hn_wp_free(hn_wp *wp) {
     }
 }
 
-// one point ------------------------------------------------------------------------------------------------------
+// ---- one point ----
 
 static hn_run *make_run(hn_wp *wp, int m, int k, hn_run **run, hn_diag *diag) {
     if (!*run) {
@@ -306,7 +306,7 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     return 1;
 }
 
-// the budget -----------------------------------------------------------------------------------------------------
+// ---- the budget ----
 
 /// The next coarser point that is run here, or -1: a part has not all of them.
 static int coarser_mine(const hn_wp *wp, int m, int k) {
@@ -378,7 +378,7 @@ static int fits(hn_wp *wp, int m, int k, double started) {
     return 0;
 }
 
-// time -----------------------------------------------------------------------------------------------------------
+// ---- time ----
 
 /// In ascending order, and where the middle is.
 static double sort_and_halve(double *list, int n) {
@@ -413,7 +413,8 @@ static int is_stopped(const hn_wp_hooks *hooks) {
     return hooks->stop && hooks->stop(hooks->user);
 }
 
-/// A sample of a run that is known to come to its end, told as that of point (m, k). 0: stopped or failed.
+/// A sample of a run that is known to come to its end, told as that of point (m, k). 0: stopped or
+/// failed.
 static int take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
                        const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {0, hooks->stop, hooks->user};
@@ -441,7 +442,8 @@ static int sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     return run && take_sample(wp, &wp->methods[m].point[k], run, m, k, hooks);
 }
 
-/// The coarsest run of the first method that comes to the end of the study: the same one in every part. 0: none does.
+/// The coarsest run of the first method that comes to the end of the study: the same one in every
+/// part. 0: none does.
 static int find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
     for (int m = 0; m < wp->n_methods && !is_stopped(hooks); m++) {
@@ -466,7 +468,7 @@ static int sample_yardstick(hn_wp *wp, int round, const hn_wp_hooks *hooks) {
     return take_sample(wp, &wp->yardstick, wp->yardstick_run, -1, 0, hooks);
 }
 
-// the whole ------------------------------------------------------------------------------------------------------
+// ---- the whole ----
 
 /// Share done: points count for what their finer sizes cost, samples for the rest.
 static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double started) {

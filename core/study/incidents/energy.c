@@ -19,8 +19,8 @@ bool hn_energy_is_conservative(const hn_system *sys) {
     return !hn_system_get_info(sys).has_time;
 }
 
-/// Energies are sums of terms as large as weights times lengths, whatever their sum is: rounding changes them by some eps of
-/// that. ROUNDINGS is what 1e5 steps of a swinging chain leave at most.
+/// Energies are sums of terms as large as weights times lengths, whatever their sum is: rounding
+/// changes them by some eps of that. ROUNDINGS is what 1e5 steps of a swinging chain leave at most.
 static double rounding_of(const hn_watch *w) {
     enum { ROUNDINGS = 10000 };
     const hn_scene *scene = hn_system_scene(w->run->sys);

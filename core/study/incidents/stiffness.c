@@ -5,14 +5,16 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
-// An explicit method that chooses its own steps does not fail on a stiff problem. It stays accurate, with steps held at
-// |h lambda| on the edge of its stability region, however smooth the motion is: T c / (3.3 m) steps of dopri5 for a damper c on
-// a mass m. Its own right-hand sides show that (hn_stepper.stiffness).
+// An explicit method that chooses its own steps does not fail on a stiff problem. It stays
+// accurate, with steps held at |h lambda| on the edge of its stability region, however smooth the
+// motion is: T c / (3.3 m) steps of dopri5 for a damper c on a mass m. Its own right-hand sides
+// show that (hn_stepper.stiffness).
 // Source: Hairer & Wanner 1996, IV.2, with the counts of the programs DOPRI5 and DOP853.
 enum { STEPS_HELD = 15, STEPS_FREE = 6 };
 #define AT_LIMIT 0.95 // of the limit on the real axis; the control swings about it
 
-// A multistep integrator whose state is changed after each step (a projection, a ball's unit quaternion) stays at order 1.
+// A multistep integrator whose state is changed after each step (a projection, a ball's unit
+// quaternion) stays at order 1.
 enum { RESTARTS_REPORTED = 20 };
 
 static void report_stiff(hn_watch *w, double size, double h) {

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- memory -----------------------------------------------------------------------------------------------------
+// ---- memory ----
 
 static hn_status create_memory(hn_watch *w) {
     hn_arena *arena = w->run->arena;
@@ -64,7 +64,7 @@ void hn_watch_free(hn_watch *w) {
     hn_singularity_free(w->singular.monitor);
 }
 
-// ---- measuring --------------------------------------------------------------------------------------------------
+// ---- measuring ----
 
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v) {
     const int nv = w->run->info.nv, nc = w->run->info.nc;
@@ -117,7 +117,7 @@ static void measure_present(hn_watch *w) {
     w->worst_energy_change = fmax(w->worst_energy_change, change);
 }
 
-// ---- checking ---------------------------------------------------------------------------------------------------
+// ---- checking ----
 
 static void check_present(hn_watch *w) {
     measure_present(w);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WATCH_H
 #define HN_STUDY_WATCH_H
-// The watching half of a run: after a step it measures the state that has been reached and checks it against the table of
-// incidents. It reads the stepping half and never changes it.
+// The watching half of a run: after a step it measures the state that has been reached and checks
+// it against the table of incidents. It reads the stepping half and never changes it.
 
 #include "dynamics/analyse/singularity_monitor.h"
 #include "dynamics/assembly/mode.h"
@@ -12,8 +12,9 @@
 #include "study/stepping/stepping.h"
 
 #define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is reported
-/// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so with pins half of it apart
-/// they point up to 30 degrees away from where they should; what is computed with them is no motion of this mechanism.
+/// Gap / characteristic length that ends a run: rows of J are lever arms of about that length, so
+/// with pins half of it apart they point up to 30 degrees away from where they should; what is
+/// computed with them is no motion of this mechanism.
 #define HN_RUN_LOST_GAP 0.5
 #define HN_RUN_WARN_PIVOT 1e-4 ///< pivot ratio of K that is reported as near-singular
 /// Energy change in one step / (T + range of V), conservative scenes only.
@@ -28,8 +29,8 @@
 #define HN_RUN_WARN_TURN 0.5
 /// Share of a step's motion that its velocities do not explain.
 #define HN_RUN_WARN_JUMP 0.5
-/// Velocities reversed within one step: reported where they are reversed this closely, and the accelerations explain less than
-/// this share of the change.
+/// Velocities reversed within one step: reported where they are reversed this closely, and the
+/// accelerations explain less than this share of the change.
 #define HN_RUN_WARN_BACK 0.3
 /// Change of the assembly-mode value that a jump to the other branch makes at least.
 #define HN_RUN_WARN_MODE 0.1
@@ -52,11 +53,12 @@ typedef struct hn_energy_record {
 /// The direction of motion, in velocities scaled by the masses and of unit length.
 typedef struct hn_heading {
     double t;
-    double *
-        e; ///< nv, and time where the mechanism is driven and has no degree of freedom of its own, else 0
+    /// nv, and time where the mechanism is driven and has no degree of freedom of its own, else 0
+    double *e;
 } hn_heading;
 
-/// Directions of motion on the way, and where the run entered a configuration with J all but rank deficient.
+/// Directions of motion on the way, and where the run entered a configuration with J all but rank
+/// deficient.
 typedef struct hn_heading_record {
     hn_heading older, last, now; ///< the first two away from singular configurations
     int n;
@@ -74,7 +76,8 @@ typedef struct hn_singular_record {
     double largest;           ///< sigma_min so far
     double multiplier;        ///< largest |lambda| away from singular configurations
     long long fallbacks;      ///< of the method, as reported so far
-    /// The latest prediction: 1 + number of its report, 0: none is open; the lowest sigma_min since.
+    /// The latest prediction: 1 + number of its report, 0: none is open; the lowest sigma_min
+    /// since.
     int announced;
     double lowest;
     int passing; ///< 1 + number of the report on the configuration being passed, 0: none
@@ -121,7 +124,8 @@ struct hn_watch {
     double *velocity_gap; ///< nc
 };
 
-/// Makes the watching half of a run; memory from its arena. `cost` is borrowed. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
+/// Makes the watching half of a run; memory from its arena. `cost` is borrowed. Fails:
+/// HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost,
                                         double warn_gap, hn_watch *w);
 void hn_watch_free(hn_watch *w);
@@ -129,8 +133,8 @@ void hn_watch_free(hn_watch *w);
 void hn_watch_start(hn_watch *w);
 /// Counts an accepted step: what is known without measuring its end.
 void hn_watch_step(hn_watch *w);
-/// Checks the state that the run has reached. Fails with HN_ERR_DIVERGED and the reason in `why` when that is no state of the
-/// mechanism any more (HN_RUN_LOST_GAP).
+/// Checks the state that the run has reached. Fails with HN_ERR_DIVERGED and the reason in `why`
+/// when that is no state of the mechanism any more (HN_RUN_LOST_GAP).
 HN_MUST_CHECK hn_status hn_watch_check(hn_watch *w, char why[256]);
 /// Measures any state.
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v);

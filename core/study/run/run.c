@@ -39,10 +39,11 @@ hn_run_opts hn_run_opts_default(void) {
     return (hn_run_opts){.max_steps = DEFAULT_MAX_STEPS, .warn_gap = HN_RUN_WARN_GAP};
 }
 
-// ---- the clock ----------------------------------------------------------------------------------------------------
+// ---- the clock ----
 
-/// What one pair of readings adds to an interval: the median of some pairs with nothing between, taken off each interval. A
-/// reading is a call into the kernel and takes as long as a small mechanism's step.
+/// What one pair of readings adds to an interval: the median of some pairs with nothing between,
+/// taken off each interval. A reading is a call into the kernel and takes as long as a small
+/// mechanism's step.
 static double calc_clock_grain(void) {
     enum { PAIRS = 15 };
     double cost[PAIRS];
@@ -73,7 +74,7 @@ static void stop_clock(hn_run *run) {
     hn_chart_check(&run->watch, spent.chart_changes);
 }
 
-// ---- stepping -----------------------------------------------------------------------------------------------------
+// ---- stepping ----
 
 /// Ends the run: keeps status and reason, and reports them as an incident.
 static hn_status fail(hn_run *run, hn_status status) {
@@ -165,7 +166,7 @@ hn_status hn_run_step(hn_run *run) {
     return hn_run_step_towards(run, run->stepping.now.t);
 }
 
-// ---- life ---------------------------------------------------------------------------------------------------------
+// ---- life ----
 
 /// The counters of a fresh run; the state goes back to the start.
 static void clear(hn_run *run) {
@@ -252,7 +253,7 @@ hn_status hn_run_reset(hn_run *run) {
     return status == HN_OK ? HN_OK : fail(run, status);
 }
 
-// ---- reading ------------------------------------------------------------------------------------------------------
+// ---- reading ----
 
 double hn_run_time(const hn_run *run) {
     return run->stepping.now.t;
@@ -341,7 +342,7 @@ void hn_run_watch(hn_run *run, int every) {
     run->watch.every = every > 0 ? every : 0;
 }
 
-// ---- options while running ----------------------------------------------------------------------------------------
+// ---- options while running ----
 
 static hn_status unknown_key(const hn_run *run, const char *key, hn_diag *diag) {
     const hn_method_spec *spec = hn_run_spec(run);

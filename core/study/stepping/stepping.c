@@ -7,10 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-// A trial that failed outright adds FAILED_TRIAL, a good step takes 1 away: steps that keep running into the end of a
-// chart shrink for ever without reaching it, and stop at TROUBLE_LIMIT.
+// A trial that failed outright adds FAILED_TRIAL, a good step takes 1 away: steps that keep running
+// into the end of a chart shrink for ever without reaching it, and stop at TROUBLE_LIMIT.
 enum { FAILED_TRIAL = 8, TROUBLE_LIMIT = 200 };
-// Where Newton's method fails at every other step the step grows back slowly, lest it runs into the same wall each time.
+// Where Newton's method fails at every other step the step grows back slowly, lest it runs into the
+// same wall each time.
 enum { TROUBLE_SEEN = 2 * FAILED_TRIAL };
 #define GROWTH_IN_TROUBLE 1.02
 #define UNDERFLOW_EPS 3.6e-15 // 16 eps: smaller steps no longer move t reliably
@@ -21,9 +22,10 @@ bool hn_stepping_is_sane(int n, const double *y) {
     return hn_all_finite(n, y) && hn_norm_max(n, y) < HN_STEPPING_BOUND;
 }
 
-// ---- a trial and its acceptance -------------------------------------------------------------------------------
+// ---- a trial and its acceptance ----
 
-/// One trial of size h towards t_new. A fixed step is corrected here, an adaptive one only once its error is accepted.
+/// One trial of size h towards t_new. A fixed step is corrected here, an adaptive one only once its
+/// error is accepted.
 static hn_status try_step(hn_stepping *s, double h, double t_new, int *changed) {
     hn_engine *e = &s->engine;
     HN_TRY(hn_engine_step(e, s->now.t, h));
@@ -71,7 +73,7 @@ static hn_status accept(hn_stepping *s, double h, double t_new, int changed) {
     return hn_engine_read(e, t_new, e->y, s->now.q, s->now.v);
 }
 
-// ---- corners of loads -------------------------------------------------------------------------------------------
+// ---- corners of loads ----
 
 double hn_stepping_short_of(double from, double to) {
     return (to - from) - SHORT_OF * fmax(fabs(from), fabs(to));
@@ -97,7 +99,7 @@ static hn_status accept_at_corner(hn_stepping *s, double h) {
     return status;
 }
 
-// ---- fixed steps --------------------------------------------------------------------------------------------------
+// ---- fixed steps ----
 
 static hn_status step_fixed(hn_stepping *s) {
     int changed = 0;
@@ -119,7 +121,7 @@ static hn_status step_fixed(hn_stepping *s) {
     return accept(s, rest, next, changed);
 }
 
-// ---- steps from tolerances ----------------------------------------------------------------------------------------
+// ---- steps from tolerances ----
 
 typedef struct tolerances {
     double rtol, atol, largest; // [-], [-], [s]
@@ -159,7 +161,8 @@ static hn_status choose_first_step(hn_stepping *s, const tolerances *tol) {
                          tol->largest, e->y_new, e->err, s->work, &s->h_next);
 }
 
-/// Returns the error norm of a trial, infinite when it failed; a trial with a norm <= 1 has been corrected.
+/// Returns the error norm of a trial, infinite when it failed; a trial with a norm <= 1 has been
+/// corrected.
 static double try_adaptive(hn_stepping *s, double h, const tolerances *tol, int *changed,
                            hn_status *status) {
     hn_engine *e = &s->engine;
@@ -184,7 +187,8 @@ static double try_adaptive(hn_stepping *s, double h, const tolerances *tol, int 
     return *status == HN_OK ? err : HUGE_VAL;
 }
 
-/// The status and reason of a run whose step has become too small, `cause` the failure of its last trial.
+/// The status and reason of a run whose step has become too small, `cause` the failure of its last
+/// trial.
 static hn_status underflow(hn_stepping *s, hn_status cause) {
     const char *why = NULL;
     if (cause != HN_OK) {
@@ -272,7 +276,7 @@ static hn_status step_of_its_own(hn_stepping *s) {
                          : accept(s, t_new - s->now.t, t_new, changed);
 }
 
-// ---- any step -------------------------------------------------------------------------------------------------------
+// ---- any step ----
 
 static hn_status take_step(hn_stepping *s) {
     if (hn_engine_paces_itself(&s->spec)) {
@@ -312,7 +316,7 @@ hn_status hn_stepping_step(hn_stepping *s) {
     return HN_OK;
 }
 
-// ---- life -------------------------------------------------------------------------------------------------------------
+// ---- life ----
 
 void hn_stepping_clear(hn_stepping *s) {
     s->has_step = s->dense_valid = s->corrected = s->restart = s->iterating = false;

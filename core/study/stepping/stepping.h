@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_STEPPING_H
 #define HN_STUDY_STEPPING_H
-// The stepping half of a run: where it is, and how it gets to the next state. It knows nothing of what is watched
-// (study/incidents) or sampled (study/run).
+// The stepping half of a run: where it is, and how it gets to the next state. It knows nothing of
+// what is watched (study/incidents) or sampled (study/run).
 //
-// Fixed steps stay on the grid t0 + n h. Steps chosen from tolerances go past the time asked for, and samples are interpolated.
-// A load given as a table has corners: a step ends a few roundings before a corner, so that every stage sees the load as it
-// was, and the next step begins at the corner itself, where the integrator starts anew.
+// Fixed steps stay on the grid t0 + n h. Steps chosen from tolerances go past the time asked for,
+// and samples are interpolated. A load given as a table has corners: a step ends a few roundings
+// before a corner, so that every stage sees the load as it was, and the next step begins at the
+// corner itself, where the integrator starts anew.
 
 #include "integrators/step/control.h"
 #include "study/stepping/engine.h"
@@ -28,8 +29,8 @@ typedef struct hn_stepping {
     hn_engine engine;
     hn_accel *accel; ///< accelerations at any state: first step sizes, samples, checks
     hn_state_at start, now, before;
-    /// The states after the two latest powers of two of steps: `earlier` lies at most half of the run back and no less than a
-    /// quarter, before whatever went wrong lately.
+    /// The states after the two latest powers of two of steps: `earlier` lies at most half of the
+    /// run back and no less than a quarter, before whatever went wrong lately.
     hn_state_at earlier, recent;
 
     bool has_step;    ///< `before` is the start of the last step
@@ -50,14 +51,17 @@ typedef struct hn_stepping {
     double *work;     ///< nq + nv
 } hn_stepping;
 
-/// Makes the stepping half of a run from the state (q, v) at time t0; memory from `arena`, nothing allocates after this.
-/// Fails: HN_ERR_UNSUPPORTED, HN_ERR_INPUT (a start that is not finite), HN_ERR_MEMORY, with the reason in diag.
+/// Makes the stepping half of a run from the state (q, v) at time t0; memory from `arena`, nothing
+/// allocates after this.
+/// Fails: HN_ERR_UNSUPPORTED, HN_ERR_INPUT (a start that is not finite), HN_ERR_MEMORY, with the
+/// reason in diag.
 HN_MUST_CHECK hn_status hn_stepping_create(const hn_system *sys, const hn_method_spec *spec,
                                            double t0, long long max_steps, const double *q,
                                            const double *v, hn_arena *arena, hn_stepping *s,
                                            hn_diag *diag);
 void hn_stepping_free(hn_stepping *s);
-/// Sets the state and the counters back to the start; the engine is started by hn_stepping_start_engine().
+/// Sets the state and the counters back to the start; the engine is started by
+/// hn_stepping_start_engine().
 void hn_stepping_clear(hn_stepping *s);
 HN_MUST_CHECK hn_status hn_stepping_start_engine(hn_stepping *s, hn_engine *e);
 /// Makes one accepted step. Fails with the method's status, and the state stays where it was.

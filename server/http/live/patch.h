@@ -5,6 +5,7 @@
 
 #include "http/live/session_state.h"
 
-/// Carries out the body of a PATCH and fills in the reply. On the session's thread, without the lock.
+/// Carries out the body of a PATCH and fills in the reply. On the session's thread, without the
+/// lock.
 void hn_session_apply(hn_session *session, hn_request *r);
 #endif

@@ -18,7 +18,8 @@ static const hn_incident *find(const hn_run *run, hn_incident_code code) {
     return NULL;
 }
 
-// A swing of 3e-8 rad has 4e-15 J, about the last bit of a potential of 10 J: a change of that size is no drift and no jump.
+// A swing of 3e-8 rad has 4e-15 J, about the last bit of a potential of 10 J: a change of that size
+// is no drift and no jump.
 static void rounding_of_the_energy_is_no_drift(void **state) {
     (void)state;
     hn_model m;
