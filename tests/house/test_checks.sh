@@ -52,14 +52,14 @@ layers() { # prints the faults of the files in $work, by a table of its own
     (cd "$work" && awk -v layers='base: expr:base session:expr,base render:base server:session,base' \
         -f "$here/tests/tools/check-layers.awk" "$@")
 }
-mkdir -p "$work/core/base" "$work/core/render" "$work/server/http"
+mkdir -p "$work/core/base" "$work/core/render" "$work/core/session"
 printf '#include "base/a.h"\n#include <math.h>\n' >"$work/core/base/good.c"
 printf '#include <GL/osmesa.h>\n' >"$work/core/render/gl.c"
-printf '#include "http/x.h"\n#include <GL/gl.h>\n' >"$work/server/http/y.c"
+printf '\n#include <GL/gl.h>\n' >"$work/core/session/y.c"
 printf '#include "graph.h"\n' >"$work/core/base/short.c"
 expect 'layers: below and libc are allowed' '' "$(layers core/base/good.c core/render/gl.c)"
 expect 'layers: a library outside its layer is found' \
-    'server/http/y.c:2: server must not include <GL/gl.h>: only render may' "$(layers server/http/y.c)"
+    'core/session/y.c:2: session must not include <GL/gl.h>: only render may' "$(layers core/session/y.c)"
 expect 'layers: a header without its layer is found' \
     'core/base/short.c:1: write "layer/file.h", not "graph.h"' "$(layers core/base/short.c)"
 layers core/base/short.c >/dev/null
@@ -115,7 +115,11 @@ expect 'circles: a line that allows what is not there is found' \
     "$(printf 'core/low/b.c core/low/a.c: they need each other\nup core/high/cellar/c.c: its table\n' | circles)"
 
 # ---- licence ----
+printf '// SPDX-License-Identifier: GPL-3.0-or-later\n' >"$work/good.c"
+printf '#!/bin/sh\n# SPDX-License-Identifier: GPL-3.0-or-later\n' >"$work/good.sh"
+printf 'int x;\n// SPDX-License-Identifier: GPL-3.0-or-later\n' >"$work/late.c"
 expect 'licence: a source that does not begin with it is found' \
+    "$work/late.c: the first line must say SPDX-License-Identifier: GPL-3.0-or-later" \
     "$(awk -f tests/tools/check-licence.awk "$work/good.c" "$work/good.sh" "$work/late.c")"
 
 echo "1..$n"

@@ -11,6 +11,7 @@ FNR == 1 || (FNR == 2 && first ~ /^#!/) {
 END {
     for (i = 1; i <= count; i++)
         if (!(files[i] in named)) {
+            printf "%s: the first line must say SPDX-License-Identifier: GPL-3.0-or-later\n", files[i]
             faults++
         }
     exit faults > 0
