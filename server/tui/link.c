@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links of the page: the part after # holds scene, parameters, methods and frame
-// (web/state/link.js).
-#include "tui/workbench.h"
+#include "tui/link.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -2,6 +2,7 @@
 #include "tui/tui.h"
 
 #include "base/clock.h"
+#include "tui/controls.h"
 #include "tui/keys.h"
 #include "tui/screen.h"
 #include "tui/views.h"
@@ -53,7 +54,7 @@ static void obey(hn_workbench *w, const hn_cells *c, int key, hn_mouse mouse) {
     if (key == HN_KEY_MOUSE) {
         point_at(w, c, mouse);
     } else if (key != HN_KEY_NONE && key != HN_KEY_RESIZE) {
-        hn_workbench_key(w, key);
+        hn_controls_key(w, key);
     }
     if (w->copy) {
         w->copy = false;

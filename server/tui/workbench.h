@@ -82,18 +82,16 @@ HN_MUST_CHECK hn_status hn_workbench_open(hn_workbench *w, const hn_library *lib
                                           hn_diags *diags);
 void hn_workbench_close(hn_workbench *w);
 
-/// A key of hn_tui_keys() or a character, or one of HN_KEY_*.
-void hn_workbench_key(hn_workbench *w, int key);
 /// Time goes on by `seconds`: the recording is asked for what comes, and the clock moves as far as
 /// there are frames.
 void hn_workbench_tick(hn_workbench *w, double seconds);
 /// The frame shown.
 int hn_workbench_frame(const hn_workbench *w);
-/// The address of the page's link to what is shown: "http://127.0.0.1:8080/#scene=...".
-void hn_workbench_link(const hn_workbench *w, hn_strbuf *b);
-/// Where the scene and its methods come from in a link of the page (the part after #, or the whole
-/// address); false: no link.
-bool hn_workbench_read_link(const char *link, char scene[HN_TUI_LINE], hn_setting *settings,
-                            char (*names)[64], int *n_settings, char (*methods)[HN_SPEC_MAX],
-                            int *n_methods);
+/// Records the methods anew; on failure what was recorded stays.
+HN_MUST_CHECK hn_status hn_workbench_record(hn_workbench *w, hn_diags *diags);
+/// Opens a scene in place of the present one; on failure that one stays and the fault is said.
+void hn_workbench_reopen(hn_workbench *w, const char *scene, const hn_setting *settings,
+                         int n_settings, bool keep_methods);
+void hn_workbench_say(hn_workbench *w, const char *format, ...) HN_PRINTF(2, 3);
+void hn_workbench_say_fault(hn_workbench *w, const hn_diags *diags);
 #endif

@@ -8,6 +8,7 @@
 #include "cli/shell/print.h"
 #include "cli/shell/scene_word.h"
 #include "render/look.h"
+#include "tui/link.h"
 
 #include <math.h>
 #include <stdio.h>

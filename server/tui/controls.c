@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tui/controls.h"
+
+#include "tui/keys.h"
+#include "tui/link.h"
+#include "tui/panels.h"
+
+#include <math.h>
+
+static const double SPEEDS[] = {0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10};
+enum { N_SPEEDS = sizeof SPEEDS / sizeof *SPEEDS };
+
+static void go(hn_workbench *w, double frame) {
+    const int last = hn_recording_last(w->recording);
+    w->clock = frame < 0 ? 0 : frame > last ? last : frame;
+    w->playing = false;
+}
+
+static void change_speed(hn_workbench *w, int by) {
+    int i = 0;
+    while (i < N_SPEEDS - 1 && SPEEDS[i] < w->speed) {
+        i++;
+    }
+    i += by;
+    w->speed = SPEEDS[i < 0 ? 0 : i >= N_SPEEDS ? N_SPEEDS - 1 : i];
+}
+
+// ---- keys of the main view ----
+
+static void play(hn_workbench *w) {
+    if (!w->playing && w->clock >= hn_recording_last(w->recording)) {
+        w->clock = 0;
+    }
+    w->playing = !w->playing;
+}
+
+static void copy_link(hn_workbench *w) {
+    hn_strbuf link;
+    hn_strbuf_init(&link);
+    hn_workbench_link(w, &link);
+    hn_workbench_say(w, "%s", hn_strbuf_text(&link));
+    hn_strbuf_reset(&link);
+    w->copy = true;
+}
+
+static void select_method(hn_workbench *w, int by) {
+    w->selected = (w->selected + by + w->n_methods) % w->n_methods;
+}
+
+static void act(hn_workbench *w, hn_tui_action action) {
+    switch (action) {
+    case HN_TUI_PLAY:
+        play(w);
+        break;
+    case HN_TUI_NEXT:
+        go(w, floor(w->clock) + 1);
+        break;
+    case HN_TUI_BACK:
+        go(w, floor(w->clock) - 1);
+        break;
+    case HN_TUI_NEXT_TEN:
+        go(w, floor(w->clock) + 10);
+        break;
+    case HN_TUI_BACK_TEN:
+        go(w, floor(w->clock) - 10);
+        break;
+    case HN_TUI_START:
+        go(w, 0);
+        break;
+    case HN_TUI_SLOWER:
+        change_speed(w, -1);
+        break;
+    case HN_TUI_FASTER:
+        change_speed(w, 1);
+        break;
+    case HN_TUI_UP:
+        select_method(w, -1);
+        break;
+    case HN_TUI_DOWN:
+        select_method(w, 1);
+        break;
+    case HN_TUI_HIDE:
+        w->hidden[w->selected] = !w->hidden[w->selected];
+        break;
+    case HN_TUI_PLOT:
+        w->plot = (w->plot + 1) % HN_TUI_PLOTS;
+        break;
+    case HN_TUI_WHY:
+        w->why = !w->why;
+        break;
+    case HN_TUI_LINK:
+        copy_link(w);
+        break;
+    case HN_TUI_QUIT:
+        w->quit = true;
+        break;
+    default:
+        hn_panel_open(w, action);
+        break;
+    }
+}
+
+void hn_controls_key(hn_workbench *w, int key) {
+    w->message[0] = '\0';
+    if (w->prompt != HN_PROMPT_NONE) {
+        hn_prompt_key(w, key);
+    } else if (w->panel != HN_PANEL_MAIN) {
+        hn_panel_key(w, key);
+    } else if (key >= '1' && key < '1' + w->n_methods) {
+        w->selected = key - '1';
+    } else if (key == HN_KEY_ESCAPE) {
+        w->why = false;
+    } else {
+        act(w, hn_tui_action_of(key));
+    }
+}
