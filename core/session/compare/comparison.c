@@ -84,6 +84,8 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     if (status != HN_OK) {
         return hn_diags_add(diags, status, pointer, diag.hint, "%s", diag.message);
     }
+
+    // step and colour; the entry counts only from here on
     entry *e = &c->entries[c->n];
     e->h = hn_method_is_adaptive(&spec) ? 0 : hn_method_option(&spec, "h", 0);
     e->slot = choose_slot(c, spec.formulation);
@@ -128,6 +130,8 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
     if (status != HN_OK) {
         return status;
     }
+
+    // one run per method
     hn_comparison *c = calloc(1, sizeof *c);
     if (!c) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
@@ -140,6 +144,8 @@ hn_status hn_comparison_create(const hn_model *model, const char *const *methods
         hn_comparison_free(c);
         return status;
     }
+
+    // defaults from the scene and the methods
     c->duration = chosen.duration > 0 ? chosen.duration : hn_model_scene(model)->duration;
     c->frame_dt = chosen.frame_dt > 0 ? chosen.frame_dt : choose_frame_dt(c);
     c->cpu_budget =
@@ -424,12 +430,16 @@ void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident) {
     if (method >= 0) {
         hn_json_put_int(b, "method", method);
     }
+
+    // what happened, when, by which measure
     hn_json_put_string(b, "code", hn_incident_spelling(incident->code));
     hn_json_put_number(b, "t", incident->t);
     hn_json_put_string(b, "quantity", incident->quantity);
     hn_json_put_number(b, "value", incident->value);
     hn_json_put_number(b, "limit", incident->limit);
     hn_json_put_string(b, "message", incident->message);
+
+    // remedies, and the result of the trial of each
     hn_json_key(b, "remedies");
     hn_json_array(b);
     for (int i = 0; i < HN_REMEDIES && incident->remedy[i][0]; i++) {
@@ -463,6 +473,8 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_put_int(b, "frame", c->frame);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
     hn_json_put_bool(b, "finished", hn_comparison_finished(c));
+
+    // state, sample and cost of every method at this frame
     hn_json_key(b, "methods");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
@@ -485,15 +497,20 @@ void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_number(b, "frame_dt", c->frame_dt);
     hn_json_put_number(b, "duration", c->duration);
+
+    // properties of the methods that no frame changes
     hn_json_key(b, "methods");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
+        // legend: colour, names, one-sentence rule
         const hn_method_spec *spec = hn_run_spec(c->entries[i].run);
         hn_json_object(b);
         hn_json_put_int(b, "slot", c->entries[i].slot);
         hn_json_put_string(b, "short", spec->formulation->short_name);
         hn_json_put_string(b, "rule", spec->formulation->rule);
         hn_json_put_string(b, "drift", spec->formulation->drift);
+
+        // theory: errors of the model, drift, order
         hn_json_put_bool(b, "model_error", spec->formulation->model_error);
         hn_json_put_bool(b, "keeps_gap",
                          (spec->formulation->traits & HN_TRAIT_CLOSES_POSITION) != 0);
@@ -511,12 +528,16 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(c->model)->id);
     hn_json_put_number(b, "t", (double)c->frame * c->frame_dt);
+
+    // one entry per method
     hn_json_key(b, "methods");
     hn_json_array(b);
     for (int i = 0; i < c->n; i++) {
         hn_run_summary s = hn_run_get_summary(c->entries[i].run);
         char spelling[HN_SPEC_MAX];
         hn_method_format(hn_run_spec(c->entries[i].run), spelling);
+
+        // name and state
         hn_json_object(b);
         hn_json_put_string(b, "method", spelling);
         hn_json_put_string(b, "short", hn_run_spec(c->entries[i].run)->formulation->short_name);
@@ -526,6 +547,8 @@ void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c) {
         put_reason(b, c, &c->entries[i], &s);
         // an adaptive step may end beyond the clock; what was reached is what can be shown
         hn_json_put_number(b, "t_reached", fmin(s.t, (double)c->frame * c->frame_dt));
+
+        // cost and error totals
         put_cost(b, &s);
         put_step_cost(b, c, i);
         hn_json_put_number(b, "energy_removed", s.cost.energy_removed);

@@ -54,10 +54,14 @@ static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     if (status != HN_OK) {
         return status;
     }
+
+    // frame length that divides the time asked for
     const int frames = r->time > 0 ? (int)fmin(MAX_FRAMES, ceil(r->time / 0.05)) : 0;
     hn_comparison_opts opts = hn_comparison_opts_default();
     opts.frame_dt = frames > 0 ? fmax(r->time / frames, 1e-6) : 1;
     opts.duration = fmax(r->time, 1e-6);
+
+    // advance until the time, the stop request or the time limit
     status = hn_comparison_create(p->model, r->methods, r->n_methods, &opts, &p->comparison, diags);
     for (int k = 0; k < frames && status == HN_OK; k++) {
         if (!hn_comparison_work(p->comparison, r->stop, r->user)) {
@@ -112,16 +116,22 @@ static void gather_poses(scene_picture *p, hn_status *ended) {
         const int good = hn_comparison_sample(p->comparison, i, &sample);
         const hn_run *run = hn_comparison_run(p->comparison, i);
         hn_snapshot_pose *pose = &p->poses[i];
+
+        // a method without a sample has a pose without points
         if (sample.points) {
             memcpy(p->points + (size_t)i * width, sample.points, width * sizeof(double));
             pose->points = p->points + (size_t)i * width;
         }
+
+        // legend entry
         note_method(p, i, &sample, good);
         name_method(p, i);
         pose->name = p->names[i];
         pose->note = p->notes[i];
         pose->slot = hn_comparison_slot(p->comparison, i);
         pose->selected = i == 0;
+
+        // the first failure is reported
         if (!good && *ended == HN_OK) {
             *ended = hn_run_get_summary(run).status;
         }
@@ -155,6 +165,8 @@ static hn_status choose_view(scene_picture *p, hn_diags *diags) {
     if (p->request->view && hn_view_parse(p->request->view, &asked, &diag) != HN_OK) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/view", diag.hint, "%s", diag.message);
     }
+
+    // fit the frame
     hn_model_envelope(p->model, p->request->view ? &asked : NULL, &e);
     p->opts = hn_snapshot_opts_default();
     p->opts.look = e.look;
@@ -164,6 +176,8 @@ static hn_status choose_view(scene_picture *p, hn_diags *diags) {
         p->opts.view[2] = e.box[1];
         p->opts.view[3] = e.box[3];
     }
+
+    // title line
     hn_model_caption(p->model, p->caption, sizeof p->caption);
     p->opts.title = hn_model_scene(p->model)->title;
     p->opts.caption = p->request->caption ? p->request->caption : p->caption;
@@ -198,6 +212,8 @@ static hn_status describe_picture(hn_strbuf *b, const scene_picture *p, hn_diags
     const int height = p->request->height ? p->request->height : DEFAULT_HEIGHT;
     const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
     hn_diag diag = {0};
+
+    // what was asked for
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(p->model)->id);
     hn_json_put_int(b, "width", width);
@@ -207,6 +223,8 @@ static hn_status describe_picture(hn_strbuf *b, const scene_picture *p, hn_diags
         hn_json_key(b, "methods");
         hn_comparison_summary_json(b, p->comparison);
     }
+
+    // what is drawn, element by element
     hn_json_key(b, "picture");
     const hn_status status =
         hn_snapshot_describe(b, width, height, &drawing, p->poses, p->n_poses, &p->opts, &diag);
@@ -222,6 +240,8 @@ hn_status hn_model_picture(hn_strbuf *png, hn_strbuf *describe, const hn_model *
     p.points = p.arena
                    ? hn_arena_doubles(p.arena, 3 * (size_t)n_points * HN_COMPARISON_MAX_METHODS + 1)
                    : NULL;
+
+    // poses: reached by methods, or given
     hn_status status = p.points ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK && request->methods) {
         status = run_methods(&p, diags);

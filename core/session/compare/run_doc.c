@@ -48,6 +48,8 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
     for (int i = 0; i < tab->drawing.n_points; i++) {
         tab->n_points += tab->drawing.labels[i] != NULL;
     }
+
+    // numbers per sample decide whether the table may be built
     double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc + 3.0 * tab->n_points;
     if (width * (double)cap > most_numbers(request)) {
         return hn_diags_add(
@@ -55,6 +57,8 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
             "%lld samples of %g numbers are more than one answer may hold (%.0f numbers)", cap,
             width, most_numbers(request));
     }
+
+    // columns
     tab->arena = hn_arena_create(0);
     if (!tab->arena) {
         return HN_ERR_MEMORY;
@@ -187,11 +191,15 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
         return hn_diags_add(diags, HN_ERR_INPUT, "/every", NULL,
                             "the output interval is %g s; it must be above 0", r->every);
     }
+
+    // number of output times; the end is always one of them
     *s = (schedule){.request = r, .every = r->every > 0 ? r->every : r->time / DEFAULT_SAMPLES};
     double n = r->at ? r->n_at : floor(r->time / s->every * (1 + 1e-12)) + 1;
     if (!r->at && (n - 1) * s->every < r->time * (1 - 1e-9)) {
         n += 1; // the end is always told
     }
+
+    // limit of the caller
     long long allowed = r->max_samples > 0 ? r->max_samples : 1000000;
     if (n > (double)allowed) {
         return hn_diags_add(diags, HN_ERR_LIMIT, r->at ? "/at" : "/every",
@@ -277,6 +285,8 @@ static hn_status record(hn_run *run, const schedule *s, table *tab) {
 static void put_samples(hn_strbuf *b, const table *tab) {
     hn_json_key(b, "samples");
     hn_json_object(b);
+
+    // state and multipliers
     hn_json_put_numbers(b, "t", tab->t, (size_t)tab->n);
     hn_columns_put_table(b, "q", tab->q, tab->n, tab->n_user);
     hn_columns_put_table(b, "v", tab->v, tab->n, tab->n_user);
@@ -287,6 +297,8 @@ static void put_samples(hn_strbuf *b, const table *tab) {
     if (tab->raw_lambda) {
         hn_columns_put_table(b, "raw_lambda", tab->raw_lambda, tab->n, tab->nc);
     }
+
+    // reactions, where they were asked for
     if (tab->reactions) {
         const int width = 3 * hn_reaction_writer_count(tab->reactions);
         hn_columns_put_table(b, "reaction_force", tab->force, tab->n, width);
@@ -294,6 +306,8 @@ static void put_samples(hn_strbuf *b, const table *tab) {
         hn_columns_put_table(b, "effort", tab->effort, tab->n,
                              hn_reaction_writer_efforts(tab->reactions));
     }
+
+    // positions and error measures
     hn_columns_put_table(b, "points", tab->points, tab->n, 3 * tab->n_points);
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
@@ -401,9 +415,13 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
     }
+
+    // a valid spelling may carry a warning, which the document repeats
     char warning[HN_DIAG_MESSAGE];
     snprintf(warning, sizeof warning, "%s", diag.message);
     status = make_schedule(request, &times, diags);
+
+    // the run
     if (status == HN_OK) {
         hn_run_opts opts = hn_run_opts_default();
         opts.t_end = request->time;
@@ -417,6 +435,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
             hn_diags_add(diags, status, "/method", diag.hint, "%s", diag.message);
         }
     }
+
+    // tables for the samples
     if (status == HN_OK) {
         const int raw = request->raw_lambda && hn_run_has_raw_lambda(run);
         status = table_create(&tab, hn_model_system(model), times.n + 1, request, raw, diags);
@@ -424,6 +444,8 @@ hn_status hn_model_run_json(hn_strbuf *b, const hn_model *model, const hn_run_re
     if (status == HN_OK && request->reactions) {
         status = table_want_reactions(&tab, model, request, diags);
     }
+
+    // run, diagnose, write
     if (status == HN_OK) {
         *ended = record(run, &times, &tab);
         hn_run_diagnose(run);

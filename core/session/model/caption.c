@@ -46,6 +46,8 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
     if (scene->is_lagrangian || scene->n_bodies != 3 || scene->n_joints != 4) {
         return 0;
     }
+
+    // follow the joints from the ground, round the loop
     int chain[4] = {HN_GROUND, HN_GROUND, HN_GROUND, HN_GROUND}, n = 1, last = -1;
     for (int step = 0; step < 4; step++) {
         int found = 0;
@@ -68,6 +70,8 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
             return 0;
         }
     }
+
+    // every link needs a length, and no body may occur twice
     for (int i = 0; i < 4; i++) {
         out[i] = link_length(scene, chain[i]);
         if (!(out[i] > 0)) {

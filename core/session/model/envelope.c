@@ -121,6 +121,8 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
     hn_run *run = NULL;
     hn_run_opts opts = hn_run_opts_default();
     opts.max_steps = ENVELOPE_MAX_STEPS;
+
+    // a scene that does not assemble, or has too many constraint rows, is not run
     if (!hn_model_assembly(model)->ok || info.nc > ENVELOPE_MAX_ROWS ||
         hn_method_parse(ENVELOPE_METHOD, &spec, NULL) != HN_OK ||
         hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model), &opts,
@@ -128,6 +130,8 @@ static void grow_by_motion(reach *r, const char *skipped, const hn_model *model)
         return;
     }
     hn_run_watch(run, 0);
+
+    // sample the motion until it ends, fails or leaves the neighbourhood
     const double far = FAR * fmax(extent(r), hn_system_length(hn_model_system(model)));
     double end = fmin(ENVELOPE_SECONDS, hn_model_scene(model)->duration);
     for (int k = 1; k <= ENVELOPE_SAMPLES; k++) {
@@ -174,6 +178,8 @@ hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     double *here = arena ? hn_arena_doubles(arena, n + 1) : NULL;
     double *there = arena ? hn_arena_doubles(arena, n + 1) : NULL;
     double *q = arena ? hn_arena_doubles(arena, (size_t)info.nq + 1) : NULL;
+
+    // points at the start, and at another configuration and time
     hn_status status = here && there && q ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK) {
         for (int i = 0; i < info.nq; i++) {
@@ -184,6 +190,8 @@ hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     if (status == HN_OK) {
         status = eval_points(model, 0.7312, q, there);
     }
+
+    // a point of the ground is the same in both, to the last bit
     for (int i = 0; i < info.n_points && status == HN_OK; i++) {
         is_ground[i] = memcmp(here + 3 * i, there + 3 * i, 3 * sizeof *here) == 0;
     }
@@ -204,11 +212,15 @@ static void read_reach(const reach *r, const hn_scene *scene, hn_envelope *out) 
         out->high[k] = isfinite(r->high[k]) ? r->high[k] : 0;
         size = fmax(size, out->high[k] - out->low[k]);
     }
+
+    // a plane mechanism has no extent along one axis
     memcpy(out->extremes, r->extremes, sizeof out->extremes);
     const int flat_in_z = !(out->high[2] - out->low[2] > FLAT * size);
     const int flat_in_y = !(out->high[1] - out->low[1] > FLAT * size);
     out->z_up = pulls_along_z(scene) && !flat_in_z;
     out->spatial = out->z_up ? !flat_in_y : !flat_in_z;
+
+    // the projection that fits, and the box in it
     const int view = 2 * out->z_up + out->spatial;
     out->look = r->views[view];
     for (int k = 0; k < 4; k++) {

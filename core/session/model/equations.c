@@ -69,6 +69,8 @@ static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *un
         put_orientation(b, sys, i);
         return;
     }
+
+    // other coordinates: a linear combination, one rate after the other
     for (int j = 0; j < info.nv; j++) {
         memset(unit, 0, (size_t)info.nv * sizeof *unit);
         unit[j] = 1;
@@ -124,12 +126,16 @@ static void write_json(hn_strbuf *b, hn_graph *g, const term *m, int i, int j) {
     hn_ex e = m->cols ? m->e[i * m->cols + j] : m->e[i];
     hn_strbuf piece;
     hn_strbuf_init(&piece);
+
+    // place of the entry in its term
     hn_json_object(b);
     hn_json_put_string(b, "term", m->name);
     hn_json_put_int(b, "row", i + 1);
     if (m->cols) {
         hn_json_put_int(b, "column", j + 1);
     }
+
+    // the expression as text and as LaTeX
     hn_print(&piece, g, e, HN_PRINT_TEXT, 0);
     hn_json_put_string(b, "text", hn_strbuf_text(&piece));
     hn_strbuf_clear(&piece);
@@ -173,17 +179,23 @@ static void put_text(hn_strbuf *b, const hn_system *sys, const term *terms, doub
     const hn_scene *scene = hn_system_scene(sys);
     hn_system_exprs x = hn_system_get_exprs(sys);
     hn_system_info info = hn_system_get_info(sys);
+
+    // title, and the system that the terms belong to
     hn_strbuf_printf(b, "%s\n%s\n", scene->title ? scene->title : scene->id, SYSTEM_TEXT);
     hn_strbuf_add(b, "speeds, in the order of rows and columns:");
     for (int i = 0; i < info.nv; i++) {
         hn_strbuf_printf(b, "%s %s", i ? "," : "", symbol_name(sys, x.v_symbols[i]));
     }
     hn_strbuf_add(b, "\n");
+
+    // coordinates of the scene in those of the system
     for (int i = 0; i < info.n_user; i++) {
         hn_strbuf_printf(b, "%s = ", scene->coordinates[hn_system_user_coordinate(sys, i)].name);
         put_coordinate(b, sys, i, unit, image);
         hn_strbuf_add(b, "\n");
     }
+
+    // entries of every term, then the position form
     for (int k = 0; k < N_TERMS; k++) {
         hn_strbuf_printf(b, "\n%s (%s; entries not listed are zero)\n", terms[k].name,
                          terms[k].meaning);
@@ -222,6 +234,8 @@ static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, doub
         hn_json_string(b, symbol_name(sys, x.v_symbols[i]));
     }
     hn_json_end_array(b);
+
+    // coordinates of the scene in those of the system
     hn_json_key(b, "coordinates");
     hn_json_array(b);
     for (int i = 0; i < info.n_user; i++) {
@@ -236,6 +250,8 @@ static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, doub
         hn_strbuf_reset(&text);
     }
     hn_json_end_array(b);
+
+    // sizes of the terms, then their entries
     hn_json_key(b, "terms");
     hn_json_array(b);
     for (int k = 0; k < N_TERMS; k++) {
@@ -261,12 +277,16 @@ static void put_json(hn_strbuf *b, const hn_system *sys, const term *terms, doub
 hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_form form,
                              hn_diags *diags) {
     hn_system *sys = NULL;
+
+    // compile with the parameters as symbols
     hn_system_opts opts = hn_system_opts_default();
     opts.symbolic_params = 1;
     hn_status status = hn_system_compile(hn_model_scene(model), &opts, &sys, diags);
     if (status != HN_OK) {
         return status;
     }
+
+    // position form and workspace
     hn_system_info info = hn_system_get_info(sys);
     hn_position_form position;
     status = hn_position_form_create(model, sys, &position);
@@ -275,6 +295,8 @@ hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_fo
         position.arena ? hn_arena_doubles(position.arena, (size_t)info.n_user + 1) : NULL;
     term terms[N_TERMS];
     list_terms(sys, terms);
+
+    // write in the form asked for
     if (status != HN_OK || !unit || !image) {
         status = status != HN_OK ? status : HN_ERR_MEMORY;
     } else if (form == HN_EQUATIONS_TEXT) {
@@ -284,6 +306,8 @@ hn_status hn_model_equations(hn_strbuf *b, const hn_model *model, hn_equation_fo
     } else {
         put_json(b, sys, terms, unit, image, &position);
     }
+
+    // a truncated text is an error
     if (status == HN_OK && b->n >= LARGEST_TEXT) {
         status = hn_diags_add(diags, HN_ERR_LIMIT, "/scene", "take a smaller scene",
                               "the equations are longer than %d bytes", LARGEST_TEXT);

@@ -30,11 +30,15 @@ static void put_start(hn_strbuf *b, const hn_model *model) {
 hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *diags) {
     char caption[160];
     hn_model_caption(model, caption, sizeof caption);
+
+    // the scene and its start
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "title", hn_model_scene(model)->title);
     hn_json_put_string(b, "caption", caption);
     put_start(b, model);
+
+    // redundant constraints, actuation, operation counts, position form
     hn_status status = hn_system_redundancy_put(b, hn_model_system(model), 0, hn_model_q(model));
     hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
     if (status == HN_OK) {

@@ -63,6 +63,7 @@ static void note_place(char *tried, size_t size, const char *folder) {
 
 /// The folder that holds lessons/ and web/; 0 when there is none.
 static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, size_t n_tried) {
+    // a folder that is named is the only one tried
     static const char *const beside[] = {"..", "../..", "../share/holonom"};
     const char *named = home ? home : getenv("HOLONOM_HOME");
     if (named && *named) {
@@ -70,6 +71,8 @@ static int find_home(const char *home, char out[MAX_PATH_CHARS], char *tried, si
         note_place(tried, n_tried, named);
         return is_home(out);
     }
+
+    // otherwise: folders relative to the program, as built and as installed
     char program[MAX_PATH_CHARS];
     if (!program_folder(program)) {
         return 0;
@@ -102,6 +105,8 @@ static void shelve(hn_library *lib, shelf *s, const char *folder, const char *fi
         !join_path(path, folder, file)) {
         return;
     }
+
+    // insertion sort by id; a second file of the same id is left out
     char id[256];
     snprintf(id, sizeof id, "%.*s", (int)(n - 5 < 255 ? n - 5 : 255), file);
     int at = s->n;
@@ -111,6 +116,8 @@ static void shelve(hn_library *lib, shelf *s, const char *folder, const char *fi
     if (at > 0 && strcmp(s->ids[at - 1], id) == 0) {
         return;
     }
+
+    // make room and insert
     memmove(s->ids + at + 1, s->ids + at, (size_t)(s->n - at) * sizeof *s->ids);
     memmove(s->paths + at + 1, s->paths + at, (size_t)(s->n - at) * sizeof *s->paths);
     s->ids[at] = hn_arena_strdup(lib->arena, id);
@@ -159,6 +166,8 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
                            "set HOLONOM_HOME to the folder that holds lessons/ and web/",
                            "no folder with lessons/ and web/ was found; tried: %.300s", tried);
     }
+
+    // the library owns its strings
     hn_arena *arena = hn_arena_create(1 << 14);
     hn_library *lib = arena ? hn_arena_get(arena, sizeof *lib) : NULL;
     if (!lib) {
@@ -172,6 +181,8 @@ hn_status hn_library_open(const char *home, hn_library **out, hn_diag *diag) {
     if (join_path(path, folder, "lessons")) {
         lib->lessons = hn_arena_strdup(arena, path);
     }
+
+    // scenes and problems of every lesson
     hn_status status = lib->web && lib->lessons ? read_lessons(lib, diag) : HN_ERR_IO;
     if (status == HN_OK && hn_arena_failed(arena)) {
         status = hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");

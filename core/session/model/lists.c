@@ -41,9 +41,13 @@ static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
     hn_strbuf_printf(&place, "%s/%s", hn_library_lessons(lib), id);
     const char *folder = hn_strbuf_text(&place);
     find_title(folder, id, title);
+
+    // name of the lesson
     hn_json_object(b);
     hn_json_put_string(b, "id", id);
     hn_json_put_string(b, "title", title);
+
+    // its scenes
     hn_json_key(b, "scenes");
     hn_json_array(b);
     for (int i = 0; i < hn_library_n_scenes(lib); i++) {
@@ -53,6 +57,8 @@ static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
         }
     }
     hn_json_end_array(b);
+
+    // its problems
     hn_json_key(b, "problems");
     hn_json_array(b);
     for (int i = 0; i < hn_library_n_problems(lib); i++) {
@@ -63,6 +69,8 @@ static void put_lesson(hn_strbuf *b, const hn_library *lib, const char *id) {
     }
     hn_json_end_array(b);
     hn_json_end_object(b);
+
+    // out of memory for the path is a failure of the document
     b->failed |= place.failed;
     hn_strbuf_reset(&place);
 }

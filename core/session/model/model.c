@@ -92,6 +92,8 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
         hn_arena_free(arena);
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+
+    // scene, equations, consistent start
     model->arena = arena;
     hn_status status = load_scene(lib, source, &model->scene, diags);
     if (status == HN_OK) {
@@ -100,6 +102,8 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     if (status == HN_OK) {
         status = assemble(model, source->allow_open, diags);
     }
+
+    // the compiler's limit has no message of its own
     if (status == HN_ERR_LIMIT && diags && diags->n == 0) {
         hn_diags_add(diags, status, "/scene", "take fewer bodies, or shorter chains",
                      "the scene's equations hold more values at once than a tape can (65,000)");
@@ -108,6 +112,8 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
         hn_model_free(model);
         return status;
     }
+
+    // stored reference solution, if the scene has one
     model->reference = find_reference(arena, lib, model->scene->id);
     *out = model;
     return HN_OK;

@@ -190,11 +190,15 @@ static void put_points(hn_strbuf *b, const hn_model *model) {
     const int n = hn_system_get_info(hn_model_system(model)).n_points;
     hn_arena *arena = hn_arena_create(0);
     double *points = arena ? hn_arena_doubles(arena, 3 * (size_t)n + 1) : NULL;
+
+    // positions at the start
     if (points && hn_model_points(model, hn_model_q(model), points) == HN_OK) {
         hn_envelope e;
         hn_model_envelope(model, NULL, &e);
         hn_json_put_numbers(b, "points", points, 3 * (size_t)n);
         put_ground_points(b, model, arena);
+
+        // a scene without points has no view
         if (n > 0) {
             hn_json_put_numbers(b, "envelope", e.box, 4);
             if (e.spatial) {
@@ -235,18 +239,26 @@ void hn_model_json(hn_strbuf *b, const hn_model *model) {
         b->failed = 1;
         return;
     }
+
+    // the system: sizes, coordinates, constraint rows
     hn_json_object(b);
     put_scene_head(b, model);
     put_sizes(b, model);
     put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
     put_rows(b, hn_model_system(model));
+
+    // how the start was assembled
     hn_json_key(b, "assembly");
     hn_json_object(b);
     put_assembly_fields(b, model);
     hn_json_end_object(b);
+
+    // shapes, points and the view that fits them
     hn_json_key(b, "drawing");
     hn_drawing_json(b, hn_model_system(model));
     put_points(b, model);
+
+    // suggested runs
     hn_json_key(b, "methods");
     int n_methods;
     const char *const *methods = hn_model_methods(model, &n_methods);

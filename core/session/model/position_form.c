@@ -36,6 +36,8 @@ static hn_status find_form(hn_position_form *f, const hn_model *model, const hn_
     if (status != HN_OK) {
         return status;
     }
+
+    // independent coordinates at the start; none or no loops: no form
     f->chart.plain_only = 1;
     const double *q = hn_model_q(model);
     f->exists = hn_chart_choose(&f->chart, 0, q, HN_CHART_PREFERRED) == HN_OK &&
@@ -43,12 +45,16 @@ static hn_status find_form(hn_position_form *f, const hn_model *model, const hn_
     if (!f->exists || f->chart.nc == 0) {
         return HN_OK;
     }
+
+    // parameters as symbols first; numbers where that is refused
     if (symbolic && is_same_shape(symbolic, sys)) {
         status = make_dyads(f, symbolic);
     }
     if (status == HN_OK && (!f->dyads || hn_dyads_refusal(f->dyads))) {
         status = make_dyads(f, sys);
     }
+
+    // signs of the assembly mode at the start
     if (status == HN_OK && !hn_dyads_refusal(f->dyads)) {
         (void)hn_dyads_take_branch(f->dyads, 0, q); // a sign of 0 tells that both ways meet here
     }
@@ -156,6 +162,8 @@ void hn_position_form_text(hn_strbuf *b, const hn_position_form *f) {
     if (f->exists && !f->dyads) {
         return;
     }
+
+    // independent coordinates, and how the others follow
     hn_position_answer(f, answer, sizeof answer);
     hn_strbuf_add(b, "\nq = f(q_r) (the pose from the independent coordinates)\n");
     if (f->exists) {
@@ -164,6 +172,8 @@ void hn_position_form_text(hn_strbuf *b, const hn_position_form *f) {
         hn_strbuf_add(b, "\n");
     }
     hn_strbuf_printf(b, "the others: %s\n", answer);
+
+    // one dyad or single unknown after the other
     for (int k = 0; k < n_steps(f); k++) {
         const hn_dyad d = hn_dyads_at(f->dyads, k);
         const char *sign = hn_dyads_sign_name(f->dyads, k);
@@ -230,6 +240,8 @@ static void put_lines(hn_strbuf *b, const hn_position_form *f, int k) {
 static void put_step(hn_strbuf *b, const hn_position_form *f, int k) {
     const hn_dyad d = hn_dyads_at(f->dyads, k);
     const char *sign = hn_dyads_sign_name(f->dyads, k);
+
+    // kind of dyad, and the constraint rows it solves
     hn_json_object(b);
     hn_json_put_string(b, "kind", hn_dyad_kind_name(d.kind));
     hn_json_put_string(b, "meets", hn_dyad_kind_about(d.kind));
@@ -239,6 +251,8 @@ static void put_step(hn_strbuf *b, const hn_position_form *f, int k) {
         hn_json_string(b, hn_system_row_name(f->sys, d.row[i]));
     }
     hn_json_end_array(b);
+
+    // sign of the root that the assembly mode takes
     if (sign) {
         hn_json_key(b, "sign");
         hn_json_object(b);

@@ -42,6 +42,8 @@ hn_status hn_reaction_writer_create(const hn_model *model, hn_arena *arena,
     const hn_system_info info = hn_system_get_info(sys);
     hn_diag diag = {0};
     *out = NULL;
+
+    // buffers for one state
     hn_reaction_writer *w = hn_arena_get(arena, sizeof *w);
     if (!w) {
         return HN_ERR_MEMORY;
@@ -55,6 +57,8 @@ hn_status hn_reaction_writer_create(const hn_model *model, hn_arena *arena,
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // evaluators of reactions and of accelerations with multipliers
     hn_status status = hn_reactions_create(sys, arena, &w->reactions, &diag);
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "/reactions", diag.hint, "%s", diag.message);
@@ -64,6 +68,8 @@ hn_status hn_reaction_writer_create(const hn_model *model, hn_arena *arena,
         hn_reactions_free(w->reactions);
         return status;
     }
+
+    // joints and constraints that have a place
     list_carriers(w);
     *out = w;
     return HN_OK;

@@ -39,6 +39,8 @@ static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
                             "the scene has %d speeds; its matrices are written out up to %d",
                             w->info.nv, MAX_DENSE);
     }
+
+    // workspace, sized by coordinates of the system and of the scene
     size_t n = (size_t)w->info.nv, m = (size_t)w->info.nc, nq = (size_t)w->info.nq,
            nu = (size_t)w->info.n_user;
     w->arena = hn_arena_create(0);
@@ -54,6 +56,8 @@ static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
     if (hn_arena_failed(w->arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // evaluators of the terms and of the accelerations
     unsigned all = HN_TERM_M | HN_TERM_F | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_GAMMA |
                    HN_TERM_ENERGY;
     hn_status status = hn_eval_create(hn_model_system(model), all, w->arena, &w->eval);
@@ -89,6 +93,8 @@ static void times_P(const terms *w, const double *A, int rows, double *out) {
 static void calc_user_terms(terms *w) {
     const hn_system *sys = hn_model_system(w->model);
     int n = w->info.nv, nu = w->info.n_user;
+
+    // columns of P: images of the unit rates
     for (int j = 0; j < nu; j++) {
         memset(w->ua, 0, (size_t)nu * sizeof(double));
         w->ua[j] = 1;
@@ -97,6 +103,8 @@ static void calc_user_terms(terms *w) {
             w->P[k * nu + j] = w->a[k];
         }
     }
+
+    // J P and P' M P
     hn_eval_run(w->eval, w->t, w->q, w->v);
     times_P(w, hn_eval_get(w->eval, HN_TERM_J), w->info.nc, w->J);
     times_P(w, hn_eval_get(w->eval, HN_TERM_M), n, w->scratch);
@@ -109,6 +117,8 @@ static void calc_user_terms(terms *w) {
             w->M[i * nu + j] = sum;
         }
     }
+
+    // P' f, and the accelerations in the scene's rates
     hn_system_forces_to_user(sys, hn_eval_get(w->eval, HN_TERM_F), w->f);
     w->accel_status =
         hn_accel_eval(w->accel, w->t, w->q, w->v, 0, 0, w->a, w->lambda, &w->accel_info);
@@ -189,11 +199,15 @@ static hn_status put_terms(hn_strbuf *b, const terms *w) {
     int nu = w->info.n_user, m = w->info.nc;
     const double *energy = hn_eval_get(w->eval, HN_TERM_ENERGY),
                  *phi = hn_eval_get(w->eval, HN_TERM_PHI);
+
+    // names of coordinates and rows
     hn_json_object(b);
     hn_json_put_string(b, "scene", hn_model_scene(w->model)->id);
     hn_json_put_string(b, "equations", "M a = f + J' lambda, J a + gamma = 0, f = Q - h");
     hn_columns_put_coordinates(b, hn_model_system(w->model));
     hn_columns_put_rows(b, hn_model_system(w->model));
+
+    // state, terms and constraint values
     hn_json_put_number(b, "t", w->t);
     hn_json_put_numbers(b, "q", w->uq, (size_t)nu);
     hn_json_put_numbers(b, "v", w->uv, (size_t)nu);
@@ -202,11 +216,15 @@ static hn_status put_terms(hn_strbuf *b, const terms *w) {
     hn_columns_put_table(b, "J", w->J, m, nu);
     hn_json_put_numbers(b, "gamma", hn_eval_get(w->eval, HN_TERM_GAMMA), (size_t)m);
     hn_json_put_numbers(b, "phi", phi, (size_t)m);
+
+    // solution: accelerations, multipliers, reactions
     put_saddle(b, w);
     put_solution(b, w);
     if (w->reactions) {
         hn_reaction_writer_put(b, w->reactions);
     }
+
+    // reduced equations, then scalars
     const hn_status status = hn_reduced_put(b, w->model, w->arena, w->t, w->q, w->v);
     hn_json_put_number(b, "gap", hn_norm2(m, phi));
     hn_json_put_number(b, "velocity_gap", velocity_gap(w));
@@ -227,6 +245,8 @@ static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
     if (status == HN_OK && !isfinite(t)) {
         status = hn_diags_add(diags, HN_ERR_INPUT, "/t", NULL, "the time is not a finite number");
     }
+
+    // the state, in coordinates of the system and of the scene
     if (status == HN_OK) {
         w.t = t;
         status = hn_model_state(model, entries, n_entries, w.q, w.v, diags);

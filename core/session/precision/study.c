@@ -114,6 +114,8 @@ hn_status hn_study_open(const hn_job_request *request, hn_study **out, hn_diags 
     if (!s) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+
+    // no methods named: the standard list
     s->model = request->models[0];
     s->request = *request;
     if (s->request.n_methods == 0) {
@@ -121,6 +123,8 @@ hn_status hn_study_open(const hn_job_request *request, hn_study **out, hn_diags 
         const char *const *standard = hn_study_standard(&n);
         status = hn_job_request_set_methods(&s->request, standard, n, diags);
     }
+
+    // reference, ladders, journal
     if (status == HN_OK) {
         status = set_up(s, diags);
     }

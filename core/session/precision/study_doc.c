@@ -21,6 +21,8 @@ static void put_errors(hn_strbuf *b, const char *key, const double e[HN_ERROR_CO
 static void put_reference(hn_strbuf *b, const hn_study *s) {
     hn_json_key(b, "reference");
     hn_json_object(b);
+
+    // the two computations, and how far they agree
     hn_json_key(b, "methods");
     hn_json_array(b);
     for (int i = 0; i < HN_REF_MEANS; i++) {
@@ -33,6 +35,8 @@ static void put_reference(hn_strbuf *b, const hn_study *s) {
     if (s->ref->refused[0]) {
         hn_json_put_string(b, "refused", s->ref->refused);
     }
+
+    // scales by which errors are divided
     hn_json_key(b, "scales");
     hn_json_object(b);
     hn_json_put_number(b, "length", s->ref->scales.length);
@@ -98,12 +102,16 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp_point *p = &s->wp->methods[m].point[k];
     char spelling[HN_SPEC_MAX];
     hn_wp_spelling(s->wp, m, k, spelling);
+
+    // method, size and outcome
     hn_json_object(b);
     hn_json_put_string(b, "method", spelling);
     hn_json_put_number(b, "size", p->size);
     hn_json_put_string(b, "state", hn_wp_state_name(p->state));
     hn_json_put_string(b, "status", hn_status_name(p->status));
     hn_json_put_string(b, "reason", p->reason);
+
+    // cost until the end or the failure
     if (p->state == HN_WP_DONE || p->state == HN_WP_FAILED) {
         hn_json_put_number(b, "t_reached", p->t_reached);
         hn_json_put_int(b, "steps", p->steps);
@@ -114,6 +122,8 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
         hn_json_put_int(b, "solves", p->cost.solves);
         hn_json_put_int(b, "newton", p->cost.newton);
     }
+
+    // errors and times of a complete run
     if (p->state == HN_WP_DONE) {
         put_errors(b, "worst", p->worst);
         put_errors(b, "end", p->end);
@@ -184,12 +194,15 @@ static void put_sentences(hn_strbuf *b, const hn_study *s, const hn_pareto *p) {
 static void put_paretos(hn_strbuf *b, const hn_study *s) {
     hn_json_key(b, "pareto");
     hn_json_array(b);
+
+    // coordinates to reactions, and the error that the ranking uses
     const hn_error_kind also = hn_wp_ranked_error(s->wp);
     for (int error = HN_ERROR_Q; error < HN_ERROR_COUNT; error++) {
         if (error > HN_ERROR_REACTION && error != (int)also) {
             continue;
         }
         for (int cost = 0; cost < HN_COST_COUNT; cost++) {
+            // one front for each pair of error and cost
             hn_pareto p;
             hn_wp_pareto(s->wp, s->classes, (hn_error_kind)error, (hn_cost_kind)cost, &p);
             hn_json_object(b);
@@ -197,6 +210,8 @@ static void put_paretos(hn_strbuf *b, const hn_study *s) {
             hn_json_put_string(b, "cost", hn_cost_name((hn_cost_kind)cost));
             hn_json_put_bool(b, "ranked", !p.few && !p.clocks_differ && !p.beyond_horizon);
             put_sentences(b, s, &p);
+
+            // cheapest methods, accuracy by accuracy
             hn_json_key(b, "bands");
             hn_json_array(b);
             for (int i = 0; i < p.n_bands; i++) {
@@ -235,6 +250,8 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     const hn_scene *scene = hn_model_scene(s->model);
     char hex[17];
     hn_hash_hex(scene->hash, hex);
+
+    // identity and state of the study
     hn_json_object(b);
     hn_json_put_string(b, "study", "work-precision");
     hn_json_put_string(b, "scene", scene->id);
@@ -247,6 +264,8 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     // where nothing is timed the document holds nothing that a clock said: two of them are the same
     // bytes
     hn_json_put_number(b, "elapsed", s->wp->opts.n_samples > 0 ? s->wp->elapsed : (double)NAN);
+
+    // results
     put_reference(b, s);
     put_chaos(b, s);
     put_methods(b, s);
@@ -268,12 +287,16 @@ static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     put_cell(b, p->size);
     hn_strbuf_printf(b, ",%s", hn_wp_state_name(p->state));
     put_cell(b, done || p->state == HN_WP_FAILED ? p->t_reached : (double)NAN);
+
+    // errors: largest over the run, then at the end
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         put_cell(b, done ? p->worst[i] : (double)NAN);
     }
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         put_cell(b, done ? p->end[i] : (double)NAN);
     }
+
+    // cost and times
     put_cell(b, (double)p->steps);
     put_cell(b, (double)p->rejected);
     put_cell(b, (double)p->cost.evals);
@@ -284,6 +307,8 @@ static void put_row(hn_strbuf *b, const hn_study *s, int m, int k) {
     put_cell(b, p->half[1]);
     put_cell(b, p->n_samples);
     put_cell(b, p->busy);
+
+    // verdict on the method, reason of the point
     hn_strbuf_printf(b, ",%s,", hn_class_name(s->classes[m].kind));
     hn_csv_text(b, p->reason);
     hn_strbuf_add(b, "\n");

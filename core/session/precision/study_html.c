@@ -54,6 +54,7 @@ void hn_page_theme(hn_strbuf *b, hn_theme theme) {
 
 /// Rules by which the radio buttons show one plot and mark what is chosen.
 static void put_choices_style(hn_strbuf *b) {
+    // show the plot of the chosen error and cost
     for (int e = 0; e < HN_ERROR_COUNT; e++) {
         for (int c = 0; c < HN_COST_COUNT; c++) {
             hn_strbuf_printf(b, "%s#e%d:checked~#c%d:checked~.plots .e%d.c%d", e + c ? "," : "", e,
@@ -61,6 +62,8 @@ static void put_choices_style(hn_strbuf *b) {
         }
     }
     hn_strbuf_add(b, "{display:block}");
+
+    // mark the labels of what is chosen
     for (int i = 0; i < HN_ERROR_COUNT + HN_COST_COUNT; i++) {
         const int e = i < HN_ERROR_COUNT;
         const int n = e ? i : i - HN_ERROR_COUNT;
@@ -68,6 +71,8 @@ static void put_choices_style(hn_strbuf *b) {
                          e ? 'e' : 'c', n);
     }
     hn_strbuf_add(b, "{background:var(--raised);box-shadow:inset 0 -2px var(--ink)}");
+
+    // keyboard focus
     for (int i = 0; i < HN_ERROR_COUNT + HN_COST_COUNT; i++) {
         const int e = i < HN_ERROR_COUNT;
         const int n = e ? i : i - HN_ERROR_COUNT;
@@ -210,6 +215,8 @@ void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
     hn_strbuf_add(b, "<p class=\"quiet\">What the ladder of sizes says of each, and its most "
                      "accurate point. Closed is not correct: a gap of 1e-16 promises nothing about "
                      "the other columns.</p>");
+
+    // head of the table
     hn_page_table(b, "Methods");
     hn_strbuf_add(b, "<thead><tr><th>method</th><th>verdict</th><th class=\"n\">done</th>");
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
@@ -218,6 +225,8 @@ void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
                                                     : hn_error_title((hn_error_kind)i));
     }
     hn_strbuf_add(b, "<th class=\"n\">CPU</th><th class=\"n\">operations</th></tr></thead><tbody>");
+
+    // one row per method
     for (int m = 0; m < wp->n_methods; m++) {
         const hn_wp_point *best = best_point(wp, m);
         const hn_class *c = &hn_study_classes(s)[m];
@@ -225,11 +234,15 @@ void hn_study_put_methods(hn_strbuf *b, const hn_study *s, int level) {
         for (int k = 0; k < wp->n_levels; k++) {
             done += wp->methods[m].point[k].state == HN_WP_DONE;
         }
+
+        // name, verdict, share of complete points
         hn_strbuf_add(b, "<tr>");
         hn_study_put_method(b, s, m);
         hn_strbuf_printf(b, "<td class=\"v%s\">", c->kind == HN_CLASS_ELSEWHERE ? " wrong" : "");
         hn_html_text(b, c->text);
         hn_strbuf_printf(b, "</td><td class=\"n\">%d of %d</td>", done, wp->n_levels);
+
+        // errors and cost of the most accurate point
         for (int i = 0; i < HN_ERROR_COUNT; i++) {
             put_error(b, wp, best, (hn_error_kind)i);
         }
@@ -248,11 +261,15 @@ void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level) {
     if (race.n == 0) {
         return;
     }
+
+    // heading
     put_head(b, level, "What equal cost buys");
     hn_strbuf_printf(b,
                      "<p class=\"quiet\">Error of the %s for the same number of operations, "
                      "between measured points; ≤: with fewer already; –: no point is as cheap.</p>",
                      hn_error_title(error));
+
+    // costs as columns
     hn_page_table(b, "What equal cost buys");
     hn_strbuf_add(b, "<thead><tr><th>method</th>");
     for (int i = 0; i < race.n; i++) {
@@ -261,6 +278,8 @@ void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level) {
         hn_strbuf_printf(b, "<th class=\"n\">%s</th>", text);
     }
     hn_strbuf_add(b, "</tr></thead><tbody>");
+
+    // one row per method
     for (int m = 0; m < wp->n_methods; m++) {
         hn_strbuf_add(b, "<tr>");
         hn_study_put_method(b, s, m);
@@ -281,9 +300,13 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     const hn_wp *wp = hn_study_wp(s);
     const hn_wp_point *p = &wp->methods[m].point[k];
     const int done = p->state == HN_WP_DONE;
+
+    // method, size, steps
     hn_strbuf_add(b, "<tr>");
     hn_study_put_method(b, s, m);
     hn_strbuf_printf(b, "<td class=\"n\">%.3g</td><td class=\"n\">%lld</td>", p->size, p->steps);
+
+    // errors, or across their columns the reason of the failure
     for (int i = 0; i < HN_ERROR_COUNT && done; i++) {
         put_error(b, wp, p, (hn_error_kind)i);
     }
@@ -295,6 +318,8 @@ static void put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
         hn_html_text(b, p->reason[0] ? p->reason : "not run: the study was stopped");
         hn_strbuf_add(b, "</td>");
     }
+
+    // cost
     put_quantity(b, done ? p->median : (double)NAN, "s");
     hn_strbuf_printf(
         b, isfinite(p->spread) ? "<td class=\"n\">%.0f %%%s</td>" : "<td class=\"n\">–</td>",
@@ -335,11 +360,15 @@ void hn_study_put_failures(hn_strbuf *b, const hn_study *s, int level) {
             if (p->state == HN_WP_DONE) {
                 continue;
             }
+
+            // the heading appears with the first failure only
             hn_wp_spelling(wp, m, k, spelling);
             if (!any++) {
                 put_head(b, level, "What did not come to the end");
                 hn_strbuf_add(b, "<ul class=\"answers\">");
             }
+
+            // method, time and reason
             hn_strbuf_add(b, "<li>");
             hn_html_text(b, spelling);
             if (p->t_reached > 0) {

@@ -84,12 +84,16 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
     if (!p->root) {
         return refuse(g, p, "it is not JSON, or cut short");
     }
+
+    // kind and version of the document
     if (strcmp(text_of(p->root, "study"), HN_PART_STUDY) != 0) {
         return refuse(g, p, "it does not say that it is one");
     }
     if (!whole_of(p->root, "format", 1, 1000, &format) || format != HN_PART_FORMAT) {
         return refuse(g, p, "its format is another version's");
     }
+
+    // which part it is, and its points
     if (!whole_of(p->root, "of", 1, HN_WP_SHARDS, &p->of) ||
         !whole_of(p->root, "shard", 1, p->of, &p->shard) ||
         !hn_stored_number(p->root, "time_limit", &p->time_limit) ||
@@ -147,6 +151,8 @@ static hn_status load_scene(merging *g) {
     hn_setting settings[HN_SCENE_MAX_PARAMS];
     char hex[17];
     int n = 0;
+
+    // parameters that were set
     cJSON_ArrayForEach(item, set) {
         if (n < HN_SCENE_MAX_PARAMS && cJSON_IsNumber(item)) {
             settings[n++] = (hn_setting){item->string, item->valuedouble};
@@ -155,6 +161,8 @@ static hn_status load_scene(merging *g) {
     if (!text) {
         return refuse(g, p, "it holds no scene");
     }
+
+    // load from the text; the parts need no library
     const hn_model_source source = {.text = text,
                                     .n_text = strlen(text),
                                     .id = text_of(p->root, "scene/id"),
@@ -165,6 +173,8 @@ static hn_status load_scene(merging *g) {
     if (status != HN_OK) {
         return status;
     }
+
+    // the hash guards against a scene that was edited afterwards
     g->study->model = g->study->own_model;
     hn_hash_hex(hn_model_scene(g->study->model)->hash, hex);
     return strcmp(hex, text_of(p->root, "scene/hash")) == 0
@@ -215,18 +225,24 @@ static hn_status set_up(merging *g) {
     hn_diag diag = {0};
     hn_wp_opts opts = {0};
     int n = 0;
+
+    // scene, reference and methods of the first part: all parts agree in them
     hn_status status = load_scene(g);
     status = status == HN_OK ? load_reference(g) : status;
     status = status == HN_OK ? read_methods(g, specs, &n) : status;
     if (status != HN_OK) {
         return status;
     }
+
+    // options of the ladders
     if (!whole_of(root, "request/levels", 1, HN_WP_LEVELS, &opts.n_levels) ||
         !whole_of(root, "request/samples", -1, HN_WP_SAMPLES, &opts.n_samples) ||
         !hn_stored_number(at_path(root, "request"), "step", &opts.step) || !(opts.step > 0)) {
         return refuse(g, &g->parts[0], "fields of its request are missing");
     }
     opts.budget = largest_limit(g);
+
+    // an empty study to fill
     s->request = (hn_job_request){.time = s->ref->T, .limits.time_limit = opts.budget};
     status = hn_wp_create(hn_model_system(s->model), hn_model_q(s->model), hn_model_v(s->model),
                           s->ref, specs, n, &opts, &s->wp, &diag);
@@ -285,6 +301,8 @@ static hn_status take_record(merging *g, const part *p, const cJSON *o) {
     if (!whole_of(o, "m", 0, wp->n_methods - 1, &m) || !whole_of(o, "k", 0, wp->n_levels - 1, &k)) {
         return refuse(g, p, "a point of it is no point of its request");
     }
+
+    // results of two complete runs must agree
     const int i = m * wp->n_levels + k;
     record *best = &g->best[i];
     if (best->o && state_of(best->o) != HN_WP_SKIPPED && state_of(o) != HN_WP_SKIPPED) {
@@ -293,6 +311,8 @@ static hn_status take_record(merging *g, const part *p, const cJSON *o) {
             return status;
         }
     }
+
+    // keep the better record
     if (!best->o || is_better(o, best->o)) {
         *best = here;
     }
@@ -318,6 +338,8 @@ static hn_status fill_point(merging *g, const record *r, hn_wp_point *p) {
 static hn_status take_points(merging *g) {
     hn_wp *wp = g->study->wp;
     const cJSON *o;
+
+    // choose a record for every point
     for (int i = 0; i < g->n; i++) {
         cJSON_ArrayForEach(o, member(g->parts[i].root, "points")) {
             const hn_status status = take_record(g, &g->parts[i], o);
@@ -326,6 +348,8 @@ static hn_status take_points(merging *g) {
             }
         }
     }
+
+    // fill the study from the records chosen
     for (int i = 0; i < wp->n_methods * wp->n_levels; i++) {
         if (g->best[i].o) {
             hn_wp_point *p = &wp->methods[i / wp->n_levels].point[i % wp->n_levels];
@@ -366,6 +390,8 @@ static int find_lacking(const merging *g, int n, int lacks[HN_WP_SHARDS]) {
 /// Names the parts without which it is not whole: of the split that lacks fewest.
 static hn_status find_missing(merging *g) {
     int lacks[HN_WP_SHARDS], of = 0, least = HN_WP_SHARDS + 1;
+
+    // the split for which the fewest parts are missing
     for (int i = 0; i < g->n; i++) {
         const int found = find_lacking(g, g->parts[i].of, lacks);
         if (found < least || (found == least && g->parts[i].of < of)) {
@@ -376,6 +402,8 @@ static hn_status find_missing(merging *g) {
     if (least == 0) {
         return HN_OK;
     }
+
+    // name those parts, and whether they were stopped early
     hn_strbuf b;
     hn_strbuf_init(&b);
     find_lacking(g, of, lacks);
@@ -388,6 +416,8 @@ static hn_status find_missing(merging *g) {
             hn_strbuf_printf(&b, " ('%.80s' was stopped before its end)", name);
         }
     }
+
+    // report
     hn_diags_add(g->diags, HN_ERR_INPUT, "/shard", "run them with the same request, or again",
                  "%d of %d parts are missing: %.300s", least, of, hn_strbuf_text(&b));
     hn_strbuf_reset(&b);
@@ -479,6 +509,8 @@ hn_status hn_study_merge(const hn_study_part_text *parts, int n, hn_study **out,
         return hn_diags_add(diags, HN_ERR_INPUT, NULL, NULL,
                             "%d parts were given; 1 to %d can be put together", n, MOST_PARTS);
     }
+
+    // the study outlives the merging; everything else is freed here
     merging *g = calloc(1, sizeof *g);
     part *list = calloc((size_t)n, sizeof *list);
     hn_study *s = calloc(1, sizeof *s);
@@ -489,6 +521,8 @@ hn_status hn_study_merge(const hn_study_part_text *parts, int n, hn_study **out,
     } else {
         hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+
+    // free what the merging used
     for (int i = 0; list && i < n; i++) {
         cJSON_Delete(list[i].root);
     }

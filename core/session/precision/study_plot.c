@@ -101,6 +101,8 @@ static int find_frame(const hn_wp *wp, frame *f) {
     f->x1 = -HUGE_VAL;
     f->y0 = 0;
     f->y1 = -HUGE_VAL;
+
+    // range of the points that can be drawn
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             const hn_wp_point *p = &wp->methods[m].point[k];
@@ -113,6 +115,8 @@ static int find_frame(const hn_wp *wp, frame *f) {
             }
         }
     }
+
+    // room at the sides; errors above 100 are clamped
     const double margin = SLOPE_MARGIN * (f->x1 - f->x0) + 0.05;
     f->x0 -= margin;
     f->x1 += margin;
@@ -132,6 +136,8 @@ static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
         [HN_MARKER_PLUS] = "M-1.1 0H1.1M0-1.1V1.1",
         [HN_MARKER_DOT] = "M-.5 0a.5.5 0 1 0 1 0a.5.5 0 1 0 -1 0Z",
     };
+
+    // strokes for open shapes, fill for solid ones
     const int slot = hn_look_slot(m);
     const hn_marker marker = hn_look_get(slot)->marker;
     const int open =
@@ -141,6 +147,8 @@ static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
                      "style=\"%s:var(--slot-%d)\" class=\"%s\"/>",
                      x, y, r, shapes[marker], open ? "stroke" : "fill", slot,
                      open ? "open" : "solid");
+
+    // ring
     if (m >= HN_LOOK_METHODS) {
         hn_strbuf_printf(b,
                          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" class=\"lap\" "
@@ -236,6 +244,8 @@ static void put_curve(hn_strbuf *b, const hn_study *s, const frame *f, int m) {
     const hn_wp *wp = hn_study_wp(s);
     int started = 0;
     hn_strbuf_add(b, "<path d=\"");
+
+    // line through the points
     for (int k = 0; k < wp->n_levels; k++) {
         const hn_wp_point *p = &wp->methods[m].point[k];
         if (is_drawn(p, f)) {
@@ -246,6 +256,8 @@ static void put_curve(hn_strbuf *b, const hn_study *s, const frame *f, int m) {
     }
     hn_strbuf_add(b, "\"");
     put_line_style(b, m, hn_study_classes(s)[m].kind == HN_CLASS_ELSEWHERE ? " elsewhere" : "");
+
+    // markers with tooltips on top
     for (int k = 0; k < wp->n_levels; k++) {
         const hn_wp_point *p = &wp->methods[m].point[k];
         if (is_drawn(p, f)) {
@@ -341,15 +353,21 @@ void hn_study_plot(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost
                          "was timed.</p>");
         return;
     }
+
+    // accessible name
     snprintf(title, sizeof title, "error of the %s, largest over the run", hn_error_title(error));
     hn_strbuf_printf(b, "<svg viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s against %s\">",
                      WIDTH, HEIGHT, title, hn_cost_name(cost));
+
+    // axes and what lies behind the curves
     put_error_axis(b, &f);
     put_cost_axis(b, &f);
     put_band(b, wp, &f);
     hn_strbuf_printf(b, "<path class=\"axis\" d=\"M%d %dV%dH%d\"/>", LEFT, TOP, HEIGHT - BOTTOM,
                      WIDTH - RIGHT);
     hn_plot_text(b, 6, 14, "title", title);
+
+    // curves, then their labels
     for (int m = 0; m < wp->n_methods; m++) {
         hn_strbuf_printf(b, "<g class=\"series\" data-m=\"%d\">", m);
         put_curve(b, s, &f, m);

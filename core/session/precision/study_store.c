@@ -90,6 +90,7 @@ static int are_counts(const double *n, int count) {
 }
 
 int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
+    // every member must be there and in range
     double state, status, numbers[3], counts[N_COUNTS];
     if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
         !hn_stored_text(o, "reason", p->reason, sizeof p->reason) ||
@@ -103,6 +104,8 @@ int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
         (state != HN_WP_DONE && state != HN_WP_FAILED && state != HN_WP_SKIPPED)) {
         return 0;
     }
+
+    // a refused line never sets the state of the point
     p->state = (hn_wp_state)state;
     p->status = (hn_status)status;
     p->t_reached = numbers[0];

@@ -35,11 +35,15 @@ static void put_errors(hn_strbuf *b, const char *key, const double e[HN_ERROR_CO
 static void put_head(hn_strbuf *b, const hn_model *model, const hn_ref *ref, hn_ref_source source) {
     char hex[17];
     hn_hash_hex(ref->scene, hex);
+
+    // identity of the scene and of the reference
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "scene_hash", hex);
     hn_json_put_string(b, "source", hn_ref_source_name(source));
     hn_json_put_number(b, "time", ref->T);
     hn_json_put_number(b, "duration", hn_model_scene(model)->duration);
+
+    // methods of the two computations, and how far they agree
     hn_json_key(b, "means");
     hn_json_array(b);
     for (int i = 0; i < HN_REF_MEANS; i++) {
@@ -49,6 +53,8 @@ static void put_head(hn_strbuf *b, const hn_model *model, const hn_ref *ref, hn_
     hn_json_put_string(b, "refused", ref->refused);
     hn_json_put_number(b, "digits", hn_ref_digits(ref));
     put_errors(b, "error", ref->error);
+
+    // scales by which errors are divided
     hn_json_key(b, "scales");
     hn_json_object(b);
     hn_json_put_number(b, "length", ref->scales.length);
@@ -152,6 +158,8 @@ static hn_status follow(motion *m) {
         const double asked = k <= m->n ? k * m->every : HUGE_VAL,
                      stored = node <= m->ref->n ? hn_ref_at(m->ref, node).t : HUGE_VAL;
         const double t = fmin(fmin(asked, stored), m->ref->T);
+
+        // go to the earlier of the two times
         hn_sample s;
         hn_status status = step_to(m, t);
         if (status == HN_OK) {
@@ -160,6 +168,8 @@ static hn_status follow(motion *m) {
         if (status != HN_OK) {
             return status;
         }
+
+        // keep what was asked for; compare with what is stored
         if (asked <= stored) {
             keep(m, k++, &s);
         }

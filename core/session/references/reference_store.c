@@ -40,6 +40,8 @@ static int fill(hn_ref *ref, const cJSON *o) {
     const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
     const cJSON *means = cJSON_GetObjectItemCaseSensitive(o, "means");
     double scales[4];
+
+    // methods that computed it
     for (int i = 0; i < HN_REF_MEANS; i++) {
         const char *text = cJSON_GetStringValue(cJSON_GetArrayItem(means, i));
         if (!text) {
@@ -47,10 +49,14 @@ static int fill(hn_ref *ref, const cJSON *o) {
         }
         snprintf(ref->means[i], HN_SPEC_MAX, "%s", text);
     }
+
+    // scales of the errors
     if (!hn_stored_numbers(o, "scales", scales, 4)) {
         return 0;
     }
     ref->scales = (hn_scales){scales[0], scales[1], scales[2], scales[3]};
+
+    // columns; multipliers and errors may be NaN
     return hn_stored_text(o, "refused", ref->refused, sizeof ref->refused) &&
            hn_stored_numbers(o, "error", ref->error, HN_ERROR_COUNT) &&
            hn_stored_numbers(o, "q", ref->q, rows * nu) &&
@@ -96,12 +102,16 @@ void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
                               ref->scales.energy};
     char hex[17];
     hn_hash_hex(ref->scene, hex);
+
+    // identity: format, scene, end time, number of intervals
     hn_json_object(b);
     hn_json_put_int(b, "reference", FORMAT);
     hn_json_put_string(b, "scene", hn_model_scene(model)->id);
     hn_json_put_string(b, "scene_hash", hex);
     hn_json_put_number(b, "T", ref->T);
     hn_json_put_int(b, "n", ref->n);
+
+    // methods, scales and agreement
     hn_json_key(b, "means");
     hn_json_array(b);
     for (int i = 0; i < HN_REF_MEANS; i++) {
@@ -111,6 +121,8 @@ void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref) {
     hn_json_put_string(b, "refused", ref->refused);
     hn_json_put_numbers(b, "scales", scales, 4);
     hn_json_put_numbers(b, "error", ref->error, HN_ERROR_COUNT);
+
+    // columns over the stored times
     hn_json_put_numbers(b, "q", ref->q, rows * nu);
     hn_json_put_numbers(b, "v", ref->v, rows * nu);
     hn_json_put_numbers(b, "lambda", ref->lambda, rows * nc);
@@ -178,6 +190,8 @@ hn_status hn_reference_get(const hn_model *model, const hn_ref_request *request,
     hn_ref_source from = HN_REF_COMPUTED;
     *out = request->again ? NULL : find_stored(model, request, T, n, &from);
     hn_status status = HN_OK;
+
+    // a caller who cannot wait gets an error, not a computation
     if (!*out && request->only_stored) {
         return hn_diags_add(diags, HN_ERR_UNSUPPORTED, NULL,
                             "one is shipped for every scene with its own parameters and time",
@@ -185,6 +199,8 @@ hn_status hn_reference_get(const hn_model *model, const hn_ref_request *request,
                             "to t = %g s; it would have to be computed",
                             T);
     }
+
+    // compute, and report where the reference came from
     if (!*out) {
         from = HN_REF_COMPUTED;
         status = compute(model, request, T, out, diags);

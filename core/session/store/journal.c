@@ -58,17 +58,23 @@ hn_status hn_journal_open(hn_journal *j, const char *folder, const char *kind, u
     char hex[17];
     size_t n = 0;
     *j = (hn_journal){0};
+
+    // name the file after the kind and the key; too long a path means no journal
     hn_hash_hex(add_program(key), hex);
     if (snprintf(j->path, sizeof j->path, "%s/%s-%s.ndjson", folder, kind, hex) >=
         (int)sizeof j->path) {
         j->path[0] = 0;
         return HN_OK;
     }
+
+    // another process may hold the lock on the file
     const hn_status status = open_file(j, diags);
     if (status != HN_OK) {
         j->path[0] = 0;
         return status;
     }
+
+    // resume from the lines of an earlier run
     char *text = hn_stored_text_of(j->file, &n);
     const size_t used = text ? take_lines(text, take, user) : 0;
     free(text);
