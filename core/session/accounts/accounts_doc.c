@@ -7,11 +7,14 @@
 #include <math.h>
 
 static void put_error(hn_strbuf *b, const hn_account_row *row, const hn_coordinate *c) {
+    // no error at the end: null
     hn_json_key(b, "error");
     if (!c) {
         hn_json_null(b);
         return;
     }
+
+    // the error, the sum of its parts, and how far the two differ
     hn_json_object(b);
     hn_json_put_string(b, "coordinate", c->name);
     hn_json_put_string(b, "unit", c->kind == HN_LENGTH ? "m" : "rad");
@@ -20,6 +23,8 @@ static void put_error(hn_strbuf *b, const hn_account_row *row, const hn_coordina
     hn_json_put_number(b, "mismatch", hn_account_mismatch(row));
     hn_json_put_bool(b, "holds", hn_account_holds(row));
     hn_json_put_number(b, "holds_until", row->holds_until);
+
+    // the part of every cause
     hn_json_key(b, "parts");
     hn_json_object(b);
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
@@ -83,10 +88,14 @@ static void put_cell(hn_strbuf *b, double value) {
 static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row) {
     const hn_coordinate *c = hn_account_coordinate(a->model, row);
     const int is_one = row->status == HN_OK;
+
+    // the method, how its run ended, and how far it came
     hn_csv_text(b, row->spelling);
     hn_strbuf_printf(b, ",%s", hn_account_state(row));
     put_cell(b, is_one ? row->account.t : (double)NAN);
     put_cell(b, is_one ? (double)row->account.steps : (double)NAN);
+
+    // the error and its parts, in the unit of the coordinate
     hn_strbuf_add(b, ",");
     hn_csv_text(b, c ? c->name : "");
     hn_strbuf_printf(b, ",%s", !c ? "" : c->kind == HN_LENGTH ? "m" : "rad");
@@ -96,11 +105,15 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
     for (int i = 0; i < HN_CAUSE_COUNT; i++) {
         put_cell(b, c ? hn_account_part(row, 0, i) : (double)NAN);
     }
+
+    // the change of energy and its parts, in joules
     put_cell(b, is_one ? row->account.energy : (double)NAN);
     put_cell(b, is_one ? row->account.swing : (double)NAN);
     for (int i = 0; i < HN_BILL_COUNT; i++) {
         put_cell(b, is_one ? hn_account_part(row, 1, i) : (double)NAN);
     }
+
+    // why it ended
     hn_strbuf_add(b, ",");
     hn_csv_text(b, row->reason);
     hn_strbuf_add(b, "\n");

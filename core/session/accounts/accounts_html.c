@@ -41,9 +41,13 @@ static void put_head(hn_strbuf *b, int energy) {
 static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row, int energy) {
     const hn_coordinate *c = hn_account_coordinate(a->model, row);
     const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
+
+    // a row without an account has no line in this table
     if (row->status != HN_OK || (!energy && !c)) {
         return;
     }
+
+    // the head of the line: the method, then the end time or the coordinate
     hn_strbuf_add(b, "<tr><th scope=\"row\" class=\"m\">");
     hn_html_text(b, row->spelling);
     hn_strbuf_add(b, "</th><td class=\"m\">");
@@ -53,6 +57,8 @@ static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *ro
         hn_html_text(b, c->name);
     }
     hn_strbuf_add(b, "</td>");
+
+    // the whole, its parts, and for errors their sum
     put_quantity(b, energy ? row->account.energy : row->account.error, unit);
     for (int k = 0; k < (energy ? (int)HN_BILL_COUNT : (int)HN_CAUSE_COUNT); k++) {
         put_quantity(b, hn_account_part(row, energy, k), unit);
@@ -113,11 +119,15 @@ static void put_legend(hn_strbuf *b) {
 void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
     static const char *const heads[] = {"Where the error at the end comes from",
                                         "Who put energy in, or took it out"};
+
+    // the head of the page
     const hn_scene *scene = hn_model_scene(a->model);
     char title[300];
     snprintf(title, sizeof title, "%.250s: errors and energy",
              scene->title ? scene->title : scene->id);
     hn_page_head(b, title, STYLE);
+
+    // the heading, and what was compared with what
     hn_strbuf_add(b, "<h1>");
     hn_html_text(b, title);
     hn_strbuf_printf(
@@ -125,7 +135,11 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
         "</h1><p class=\"quiet\">Each method from the scene's start to t = %g s, every step of it "
         "beside the exact flow of its own equations and of the equations of motion.</p>",
         a->request.time);
+
+    // methods without an account, with the reason
     put_reasons(b, a);
+
+    // the two budgets: plot above table
     for (int energy = 0; energy < 2; energy++) {
         if (!hn_accounts_can_plot(a->rows, a->n, energy)) {
             continue;
@@ -136,6 +150,8 @@ void hn_accounts_html(hn_strbuf *b, const hn_accounts *a) {
         hn_strbuf_add(b, "</div>");
         put_table(b, a, energy);
     }
+
+    // what the columns mean
     put_legend(b);
     hn_strbuf_add(b, "</main></body></html>\n");
 }

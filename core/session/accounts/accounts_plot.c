@@ -68,23 +68,33 @@ static void put_bar(hn_strbuf *b, const parts *p, double y, double largest) {
     for (int i = 0; i < p->n; i++) {
         const double width = fabs(p->value[i]) * scale;
         char amount[SIGNED_TEXT];
-        if (!(width >= FEWEST_PIXELS)) { // also NaN: it cannot be told
+
+        // parts too narrow to see, and NaN, are not drawn
+        if (!(width >= FEWEST_PIXELS)) {
             continue;
         }
+
+        // place the part on its side, outside those before it
         const double x = p->value[i] > 0 ? right : left - width;
         right += p->value[i] > 0 ? width : 0;
         left -= p->value[i] > 0 ? 0 : width;
+
+        // the amount appears on pointing
         format_signed(p->value[i], p->unit, amount);
         hn_strbuf_printf(b, "<g class=\"part\"><title>%s: %s</title>", p->name[i], amount);
         hn_strbuf_printf(b,
                          "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%d\" "
                          "style=\"fill:var(--slot-%d)\"/>",
                          x, y, width, BAR, hn_look_slot(i));
+
+        // the name is written inside where it fits
         if (width > LETTER * (double)strlen(p->name[i]) + 6) {
             hn_plot_text(b, x + width / 2, y + BAR / 2.0 + 4, "inside middle", p->name[i]);
         }
         hn_strbuf_add(b, "</g>");
     }
+
+    // the line of zero
     hn_strbuf_printf(b, "<path class=\"axis\" d=\"M%.1f %.1fV%.1f\"/>", middle, y - 4, y + BAR + 4);
 }
 
@@ -124,13 +134,16 @@ static void put_account(hn_strbuf *b, const hn_model *model, const hn_account_ro
                         double y) {
     parts p = {0};
     char amount[SIGNED_TEXT], text[200];
+
+    // the name of the method, or why it has no account
     hn_plot_text(b, 0, y + BAR / 2.0 + 4, "label", a->spelling);
     if (!take_parts(model, a, energy, &p)) {
         snprintf(text, sizeof text, "%.110s", a->reason[0] ? a->reason : "no account");
         hn_plot_text(b, LABELS, y + BAR / 2.0 + 4, "note", text);
         return;
     }
-    // parts that do not add up to the error are no parts of it: no bars
+
+    // the bars; where the parts do not add up to the error a note replaces them
     const double largest = largest_side(&p);
     char note[HN_ACCOUNT_NOTE] = "";
     if (!energy) {
@@ -142,6 +155,8 @@ static void put_account(hn_strbuf *b, const hn_model *model, const hn_account_ro
         put_bar(b, &p, y, largest);
         put_words(b, &p, y + BAR + 16, largest);
     }
+
+    // the whole amount to the right, and when the run ended early
     format_signed(p.whole, p.unit, amount);
     hn_plot_text(b, RIGHT + 12, y + 10, "label", amount);
     hn_plot_text(b, RIGHT + 12, y + 26, "note", p.of);

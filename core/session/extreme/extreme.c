@@ -60,6 +60,8 @@ void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long) {
     hn_extreme_bench bench = {.lib = x->lib, .limits = limits};
     const int all = n_trials(x);
     int done = 0;
+
+    // the deadline of the whole matrix
     bench.deadline = limits->time_limit > 0 ? hn_clock_wall() + limits->time_limit : 0;
     for (int i = 0; i < x->n_cases; i++) {
         hn_extreme_case *c = &x->cases[i];
@@ -67,10 +69,14 @@ void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long) {
             hn_extreme_trial *t = &c->trials[k];
             const int is_left_out = t->is_long && !run_long && t->n_seen == 0;
             done++;
-            if (is_left_out || t->n_seen > 0) { // done before: what is left is told by the others
+
+            // leave out long trials not asked for, and trials done before
+            if (is_left_out || t->n_seen > 0) {
                 t->verdict = is_left_out ? HN_EXTREME_LONG : t->verdict;
                 continue;
             }
+
+            // run the trial and keep its result in the journal
             bench.id = c->id;
             bench.share = (done - 1.0) / all;
             if (!hn_extreme_is_stopped(&bench) && run_trial(&bench, t, 1.0 / all)) {
@@ -79,6 +85,8 @@ void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long) {
         }
         c->verdict = case_verdict(c);
     }
+
+    // note why the matrix ended, and close the journal accordingly
     x->stopped = hn_job_must_stop(limits);
     x->out_of_time = !x->stopped && hn_extreme_is_stopped(&bench);
     hn_journal_end(&x->journal, !x->stopped && !x->out_of_time);

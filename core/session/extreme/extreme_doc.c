@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 static void put_expect(hn_strbuf *b, const hn_extreme_expect *e) {
+    // the prediction: a word for an outcome, or a band for a number
     hn_json_key(b, "predicted");
     hn_json_object(b);
     hn_json_put_string(b, "text", e->text);
@@ -18,9 +19,12 @@ static void put_expect(hn_strbuf *b, const hn_extreme_expect *e) {
         hn_json_put_number(b, "low", e->low);
         hn_json_put_number(b, "high", e->high);
     }
+
     hn_json_put_string(b, "reason", e->reason);
     hn_json_put_string(b, "source", e->source);
     hn_json_end_object(b);
+
+    // the earlier prediction, if this one corrects it
     hn_json_key(b, "corrected");
     if (!e->was) {
         hn_json_null(b);
@@ -69,6 +73,8 @@ void hn_extreme_json(hn_strbuf *b, const hn_extreme *x) {
     hn_json_object(b);
     hn_json_key(b, "cases");
     hn_json_array(b);
+
+    // the cases, each with its trials
     for (int i = 0; i < x->n_cases; i++) {
         const hn_extreme_case *c = &x->cases[i];
         hn_json_object(b);
@@ -86,6 +92,8 @@ void hn_extreme_json(hn_strbuf *b, const hn_extreme *x) {
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
+
+    // how many trials have each verdict
     hn_json_key(b, "counts");
     hn_json_object(b);
     for (int v = 0; v < HN_EXTREME_VERDICTS; v++) {
@@ -93,6 +101,8 @@ void hn_extreme_json(hn_strbuf *b, const hn_extreme *x) {
         hn_json_put_int(b, hn_extreme_verdict_name(verdict), hn_extreme_count(x, verdict));
     }
     hn_json_end_object(b);
+
+    // whether all trials were run
     hn_json_put_bool(b, "stopped", x->stopped);
     hn_json_put_bool(b, "out_of_time", x->out_of_time);
     hn_json_end_object(b);
@@ -100,6 +110,8 @@ void hn_extreme_json(hn_strbuf *b, const hn_extreme *x) {
 
 void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x) {
     hn_strbuf_add(b, "id,what,predicted,observed,verdict,reason,source,corrected\n");
+
+    // a row for each trial
     for (int i = 0; i < x->n_cases; i++) {
         const hn_extreme_case *c = &x->cases[i];
         for (int k = 0; k < c->n_trials; k++) {
@@ -112,6 +124,7 @@ void hn_extreme_csv(hn_strbuf *b, const hn_extreme *x) {
                                    t->expect.reason,
                                    t->expect.source,
                                    t->expect.was_why};
+
             for (size_t j = 0; j < sizeof cells / sizeof *cells; j++) {
                 hn_strbuf_add(b, j ? "," : "");
                 hn_csv_text(b, cells[j]);

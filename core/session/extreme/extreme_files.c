@@ -118,25 +118,31 @@ hn_status hn_extreme_load(const hn_library *lib, const char *const *ids, int n_i
     char folder[4200];
     struct dirent **entries = NULL;
     hn_extreme *x = make(lib);
+
+    // list the case files and check the names that were asked for
     snprintf(folder, sizeof folder, "%.4096s/extreme", hn_library_lessons(lib));
     const int n = x ? scandir(folder, &entries, is_case_file, alphasort) : 0;
     hn_status status =
         !x      ? HN_ERR_MEMORY
         : n < 1 ? hn_diags_add(diags, HN_ERR_IO, NULL, NULL, "there is no case in %s", folder)
                 : check_ids(entries, n, ids, n_ids, diags);
+
+    // read the wanted cases; a file with faults does not stop the others
     for (int i = 0; i < n; i++) {
         if ((status == HN_OK || status == HN_ERR_INPUT) && x->n_cases < HN_EXTREME_CASES &&
             is_wanted(entries[i]->d_name, ids, n_ids)) {
             const hn_status read = read_file(x, folder, entries[i]->d_name, diags);
-            status = read == HN_OK ? status : read; // further files may have faults to tell too
+            status = read == HN_OK ? status : read; // report the faults of all files
         }
         free(entries[i]);
     }
+
     free(entries);
     if (status != HN_OK) {
         hn_extreme_free(x);
         return status;
     }
+
     *out = x;
     return HN_OK;
 }

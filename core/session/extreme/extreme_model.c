@@ -65,6 +65,7 @@ hn_status hn_extreme_value(const hn_extreme_number *number, const char *name, do
 hn_status hn_extreme_spell(const hn_extreme_point *point, char out[256], hn_diags *diags) {
     size_t n = 0;
     for (const char *p = point->method; *p;) {
+        // a formula in braces is replaced by its value; other characters are copied
         char formula[128], number[40] = "";
         const char *end = *p == '{' ? strchr(p, '}') : NULL;
         if (end && (size_t)(end - p) <= sizeof formula) {
@@ -80,6 +81,8 @@ hn_status hn_extreme_spell(const hn_extreme_point *point, char out[256], hn_diag
         } else {
             number[0] = *p++;
         }
+
+        // append, within the length of a spelling
         const int more = snprintf(out + n, 256 - n, "%s", number);
         n += more > 0 ? (size_t)more : 0;
         if (n >= 256) {
@@ -126,6 +129,8 @@ static int is_loaded(const hn_extreme_bench *bench, const hn_extreme_point *poin
 const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point *point) {
     const hn_extreme_trial *t = point->trial;
     hn_setting settings[HN_EXTREME_SETTINGS];
+
+    // the values of the settings at this point of the sweep
     memset(&bench->diags, 0, sizeof bench->diags);
     bench->load_status = HN_OK;
     for (int i = 0; i < t->n_set; i++) {
@@ -136,9 +141,13 @@ const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point
             return NULL;
         }
     }
+
+    // the model of the last point may be the same
     if (is_loaded(bench, point, settings)) {
         return bench->model;
     }
+
+    // load the scene with these settings
     hn_extreme_bench_clear(bench);
     const hn_extreme_scene *scene = point->scene;
     const hn_model_source source = {.name = scene->shipped,
@@ -152,6 +161,8 @@ const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point
         bench->model = NULL;
         return NULL;
     }
+
+    // remember what was loaded, for the next point
     bench->scene = scene;
     bench->n_set = t->n_set;
     bench->is_open = may_be_open(t);
@@ -164,7 +175,9 @@ const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point
 /// The least change, weighted by mass, that takes row `row` to `gap` and its rate to `speed`.
 static hn_status open_row(const hn_system *sys, const hn_extreme_trial *t, hn_arena *arena,
                           double *q, double *v) {
-    enum { ROUNDS = 6 }; // Newton from a closed loop: the gap is small
+    enum { ROUNDS = 6 }; // enough for Newton's method: the start is closed and the gap small
+
+    // work arrays, the saddle solver, and the evaluator of the constraint terms
     const hn_system_info info = hn_system_get_info(sys);
     const unsigned terms = HN_TERM_M | HN_TERM_J | HN_TERM_PHI | HN_TERM_PHI_T;
     const size_t nv = (size_t)info.nv, nc = (size_t)info.nc;
@@ -176,18 +189,23 @@ static hn_status open_row(const hn_system *sys, const hn_extreme_trial *t, hn_ar
     if (status == HN_OK && (hn_arena_failed(arena) || !ws)) {
         status = HN_ERR_MEMORY;
     }
+
+    // rounds of Newton on the positions; the last round corrects the velocities
     for (int k = 0; k <= ROUNDS && status == HN_OK; k++) {
         const double *J = hn_eval_get(e, HN_TERM_J), *M = hn_eval_get(e, HN_TERM_M);
         memset(zero, 0, nv * sizeof *zero);
         hn_eval_run(e, 0, q, v);
         const int of_speed = k == ROUNDS;
         if (of_speed) {
+            // the residual: constraint values, or their rates
             hn_mat_vec(info.nc, info.nv, J, v, left);
             hn_axpy(info.nc, 1, hn_eval_get(e, HN_TERM_PHI_T), left);
         } else {
             memcpy(left, hn_eval_get(e, HN_TERM_PHI), nc * sizeof *left);
         }
         left[t->row] -= of_speed ? t->speed : t->gap;
+
+        // the smallest change that removes the residual, in the metric of the mass matrix
         status = hn_saddle_solve(info.nv, info.nc, M, J, zero, left, step, NULL, NULL, NULL, ws);
         if (status == HN_OK && of_speed) {
             hn_axpy(info.nv, 1, step, v);
@@ -204,6 +222,8 @@ hn_status hn_extreme_start(hn_extreme_bench *bench, const hn_model *model,
     const hn_system *sys = hn_model_system(model);
     const hn_system_info info = hn_system_get_info(sys);
     hn_state_entry entries[HN_EXTREME_SETTINGS];
+
+    // the values of the state entries
     for (int i = 0; i < t->n_state; i++) {
         entries[i].name = t->state[i].name;
         const hn_status status =
@@ -212,11 +232,14 @@ hn_status hn_extreme_start(hn_extreme_bench *bench, const hn_model *model,
             return status;
         }
     }
+
     *q = hn_arena_doubles(arena, (size_t)info.nq);
     *v = hn_arena_doubles(arena, (size_t)info.nv);
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // the assembled state, then moved off the constraints if the trial asks for it
     hn_status status = hn_model_state(model, entries, t->n_state, *q, *v, &bench->diags);
     if (status == HN_OK && t->is_open) {
         status = open_row(sys, t, arena, *q, *v);

@@ -291,9 +291,13 @@ double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *p
     double value = (double)NAN;
     hn_extreme_look look;
     reason[0] = 0;
+
+    // a solver's answer needs no run
     if (of->needs & HN_EXTREME_SOLVE) {
         return of_answer(bench, point, reason, status);
     }
+
+    // make the run; some quantities exist for a run that ended early
     hn_extreme_look_begin(bench, point, of->needs, &look);
     *status = look.status;
     const int early =
@@ -301,6 +305,8 @@ double hn_extreme_quantity_of(hn_extreme_bench *bench, const hn_extreme_point *p
     if (look.status == HN_OK || early) {
         value = of->of_run(&look) / point->trial->scale;
     }
+
+    // without a number, give the outcome as the reason
     if (isnan(value)) {
         snprintf(reason, 200, "%s%s%.150s", hn_extreme_outcome(look.status),
                  look.reason[0] ? ": " : "", look.reason);

@@ -15,15 +15,20 @@
 static void read_scenes(hn_xr *r, const cJSON *root) {
     const cJSON *node = hn_xr_get(root, "scenes"), *m;
     hn_extreme_case *c = r->c;
+
+    // a case may do without scenes of its own
     if (!node) {
         return;
     }
+
     const size_t mark = hn_xr_enter(r, "scenes", -1);
     if (!cJSON_IsObject(node) || cJSON_GetArraySize(node) > HN_XR_SCENES) {
         hn_xr_fault(r, NULL, NULL, "expected an object of at most %d scenes", HN_XR_SCENES);
         hn_xr_leave(r, mark);
         return;
     }
+
+    // keep the text of each scene under its name
     cJSON_ArrayForEach(m, node) {
         char *text = cJSON_IsObject(m) ? cJSON_PrintUnformatted(m) : NULL;
         if (!text && !cJSON_IsString(m)) {
@@ -39,17 +44,22 @@ static void read_scenes(hn_xr *r, const cJSON *root) {
 }
 
 static const hn_extreme_scene *find_scene(hn_xr *r, const char *key, const char *name) {
+    // a scene of this file
     for (int i = 0; i < r->c->n_scenes; i++) {
         if (strcmp(r->c->scenes[i].name, name) == 0) {
             return &r->c->scenes[i];
         }
     }
+
+    // otherwise a shipped scene, by name
     hn_extreme_scene *scene = hn_arena_get(r->arena, sizeof *scene);
     if (!scene) {
         r->status = HN_ERR_MEMORY;
         return NULL;
     }
     *scene = (hn_extreme_scene){.name = name, .shipped = name};
+
+    // suggest the nearest name for an unknown one
     if (!hn_library_scene_path(r->lib, name)) {
         const char *near =
             hn_nearest_name(name, hn_library_scene_ids(r->lib), hn_library_n_scenes(r->lib));
@@ -116,6 +126,8 @@ static void read_quantity(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
 
 static void read_sweep(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
     const cJSON *node = hn_xr_get(root, "sweep"), *m;
+
+    // the measure decides whether there must be a sweep
     if (t->measure && t->measure->takes_sweep >= 0 && (node != NULL) != t->measure->takes_sweep) {
         hn_xr_fault(r, "sweep", NULL, node ? "'%s' takes no sweep" : "'%s' needs a sweep",
                     t->measure->name);
@@ -123,6 +135,8 @@ static void read_sweep(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
     if (!node) {
         return;
     }
+
+    // the swept name and its values
     const size_t mark = hn_xr_enter(r, "sweep", -1);
     if (hn_xr_object(r, node, HN_XR_FIELDS("name", "values"))) {
         const cJSON *values = hn_xr_get(node, "values");
@@ -168,6 +182,7 @@ static void read_truth(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
 }
 
 static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
+    // either methods or solvers of the saddle system
     const int solvers = hn_xr_get(node, "solvers") != NULL;
     const int of_model = t->of && (t->of->needs & HN_EXTREME_MODEL);
     t->solvers = solvers;
@@ -176,6 +191,8 @@ static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     if (solvers && (hn_xr_get(node, "method") || hn_xr_get(node, "methods"))) {
         hn_xr_fault(r, "solvers", NULL, "a trial has methods or solvers, not both");
     }
+
+    // solvers must exist and fit the quantity
     for (int i = 0; solvers && i < t->n_methods; i++) {
         if (!hn_extreme_is_solver(t->methods[i])) {
             hn_xr_fault(r, "solvers", NULL, "there is no solver '%.60s'", t->methods[i]);
@@ -185,12 +202,16 @@ static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
         hn_xr_fault(r, "of", NULL, "'%s' is a quantity of %s", t->of->name,
                     solvers ? "a run" : "a solver's answer");
     }
+
+    // no method at all: a quantity of the model alone, or a measure that gives a word
     if (t->n_methods == 0) {
         if (!of_model && !(t->measure && t->measure->gives_word)) {
             hn_xr_fault(r, "methods", NULL, "no method is named");
         }
         t->methods[t->n_methods++] = "";
     }
+
+    // bound the number of runs
     if (t->n_methods * (t->n_scenes > 0 ? t->n_scenes : 1) > HN_EXTREME_RUNS) {
         hn_xr_fault(r, "methods", NULL, "more than %d methods times scenes", HN_EXTREME_RUNS);
     }
@@ -198,11 +219,15 @@ static void read_methods(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
 
 static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     const cJSON *time = hn_xr_get(node, "time"), *limit = hn_xr_get(node, "limit");
+
+    // time, settings and start
     if (time) {
         t->time = hn_xr_formula(r, time, "time", t, 0, HN_XR_TIME);
     }
     t->n_set = hn_xr_assigns(r, node, "set", t, t->set);
     t->n_state = hn_xr_assigns(r, node, "state", t, t->state);
+
+    // options of the quantity and of the run
     t->coordinate = hn_xr_text(r, node, "coordinate", 0);
     t->incident = hn_xr_text(r, node, "incident", 0);
     t->scale = hn_xr_number(r, node, "scale", 1e-30, 1e30, 1);
@@ -210,18 +235,24 @@ static void read_rest(hn_xr *r, const cJSON *node, hn_extreme_trial *t) {
     t->steps = hn_xr_number(r, node, "steps", 100, 1e6, 4000);
     t->max_steps = hn_xr_number(r, node, "max_steps", 1, 1e9, 0);
     t->is_long = hn_xr_flag(r, node, "long");
+
+    // the interval in which to search for the largest stable step
     if (cJSON_IsArray(limit) && cJSON_GetArraySize(limit) == 2) {
         t->limit[0] = hn_xr_check_number(r, cJSON_GetArrayItem(limit, 0), "limit", 1e-12, 100);
         t->limit[1] = hn_xr_check_number(r, cJSON_GetArrayItem(limit, 1), "limit", 1e-12, 100);
     } else if (limit) {
         hn_xr_fault(r, "limit", NULL, "expected two steps [s] to look between");
     }
+
+    // what the quantity needs must be named
     if (t->of && (t->of->needs & HN_EXTREME_COORDINATE) && !t->coordinate) {
         hn_xr_fault(r, "coordinate", NULL, "'%s' is of a coordinate", t->of->name);
     }
     if (t->of && (t->of->needs & HN_EXTREME_INCIDENT) && !t->incident) {
         hn_xr_fault(r, "incident", NULL, "'%s' is of an incident", t->of->name);
     }
+
+    // the incident must be one that runs report
     int known = !t->incident;
     for (int i = 0; i < HN_INCIDENT_COUNT && !known; i++) {
         known = strcmp(hn_incident_spelling((hn_incident_code)i), t->incident) == 0;
@@ -260,17 +291,23 @@ void hn_xr_case(hn_xr *r, const cJSON *root) {
                       HN_XR_FIELDS("id", "title", "why", "about", "scene", "scenes", "trials"))) {
         return;
     }
-    memset(c, 0, sizeof *c); // a case before that had faults may have left its own
+
+    // the head of the case; a faulty case read before may have left values here
+    memset(c, 0, sizeof *c);
     c->id = hn_xr_text(r, root, "id", 1);
     c->title = hn_xr_text(r, root, "title", 1);
     c->why = hn_xr_text(r, root, "why", 1);
     c->about = hn_xr_text(r, root, "about", 0);
     c->verdict = HN_EXTREME_NOT_RUN;
+
+    // the number of trials
     const int n = cJSON_IsArray(list) ? cJSON_GetArraySize(list) : 0;
     if (n < 1 || n > HN_EXTREME_TRIALS) {
         hn_xr_fault(r, "trials", NULL, "expected a list of 1 to %d trials", HN_EXTREME_TRIALS);
         return;
     }
+
+    // make room for scenes and trials
     c->scenes = hn_arena_get(r->arena, HN_XR_SCENES * sizeof *c->scenes);
     c->trials = hn_arena_get(r->arena, (size_t)n * sizeof *c->trials);
     if (hn_arena_failed(r->arena)) {
@@ -279,6 +316,8 @@ void hn_xr_case(hn_xr *r, const cJSON *root) {
     }
     memset(c->scenes, 0, HN_XR_SCENES * sizeof *c->scenes);
     memset(c->trials, 0, (size_t)n * sizeof *c->trials);
+
+    // scenes first: trials refer to them
     read_scenes(r, root);
     cJSON_ArrayForEach(m, list) {
         const size_t mark = hn_xr_enter(r, "trials", c->n_trials);

@@ -82,11 +82,14 @@ void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
     if (hn_xr_object(r, node,
                      HN_XR_FIELDS("value", "within", "within_share", "at_most", "at_least",
                                   "between", "word", "says", "from", "reason", "source"))) {
+        // count the forms of prediction that are given
         static const char *const forms[] = {"value", "at_most", "at_least", "between", "word"};
         int given = 0;
         for (int i = 0; i < 5; i++) {
             given += hn_xr_get(node, forms[i]) != NULL;
         }
+
+        // where the prediction comes from, and why it is expected
         const char *from = hn_xr_text(r, node, "from", 0);
         e->from_spectrum = from != NULL;
         if (from && strcmp(from, "spectrum") != 0) {
@@ -95,6 +98,8 @@ void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
         }
         e->reason = hn_xr_text(r, node, "reason", 1);
         e->source = hn_xr_text(r, node, "source", 0);
+
+        // exactly one form, as a band or a word
         if (given != 1) {
             hn_xr_fault(r, NULL, NULL,
                         "a prediction is one of value, at_most, at_least, between and word");
@@ -113,15 +118,21 @@ void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
                        HUGE_VAL);
             snprintf(e->text, sizeof e->text, "at least %.6g", e->low);
         }
+
+        // the spectrum predicts step limits only
         if (e->from_spectrum && t->measure && t->measure->see != hn_extreme_see_stable_step) {
             hn_xr_fault(r, "from", NULL, "only 'stable-step' is predicted from the spectrum");
         }
+
+        // a stable step needs one place to search: the spectrum's limit or 'limit'
         if (t->measure && t->measure->see == hn_extreme_see_stable_step &&
             (t->limit[0] > 0) == e->from_spectrum) {
             hn_xr_fault(
                 r, "from", NULL,
                 "a step is searched about the spectrum's limit, or between the two of 'limit'");
         }
+
+        // the prediction must be of the kind that the measure gives
         if (t->measure && t->measure->gives_word != (e->word != NULL) && given == 1) {
             hn_xr_fault(r, NULL, NULL, "'%s' gives %s", t->measure->name,
                         t->measure->gives_word ? "a word" : "a number");

@@ -55,21 +55,28 @@ void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const 
     }
 }
 
-/// 1 for an object without unknown fields.
+/// Checks that `node` is an object and reports fields that are unknown or given twice.
+/// Returns 1 for an object, else 0.
 int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields) {
     if (!cJSON_IsObject(node)) {
         hn_xr_fault(r, NULL, NULL, "expected an object");
         return 0;
     }
+
+    // check every member
     const cJSON *m;
     cJSON_ArrayForEach(m, node) {
         int known = 0, again = 0;
+
+        // whether it is known, and whether it came before
         for (int i = 0; fields[i]; i++) {
             known |= strcmp(fields[i], m->string) == 0;
         }
         for (const cJSON *o = node->child; o != m; o = o->next) {
             again |= strcmp(o->string, m->string) == 0;
         }
+
+        // report what is wrong with it
         if (!known) {
             char hint[HN_DIAG_HINT] = "";
             hn_xr_suggest(hint, m->string, fields, count(fields));
@@ -177,6 +184,8 @@ int hn_xr_texts(hn_xr *r, const cJSON *object, const char *one, const char *many
                 const char **out) {
     const cJSON *node = hn_xr_get(object, many), *m;
     int n = 0;
+
+    // one text
     if (hn_xr_get(object, one)) {
         if (node) {
             hn_xr_fault(r, many, NULL, "'%s' is given too", one);
@@ -184,6 +193,8 @@ int hn_xr_texts(hn_xr *r, const cJSON *object, const char *one, const char *many
         out[0] = hn_xr_text(r, object, one, 1);
         return 1;
     }
+
+    // a list of texts, which may be absent
     if (!node) {
         return 0;
     }
@@ -191,6 +202,7 @@ int hn_xr_texts(hn_xr *r, const cJSON *object, const char *one, const char *many
         hn_xr_fault(r, many, NULL, "expected a list of at most %d texts", HN_EXTREME_RUNS);
         return 0;
     }
+
     cJSON_ArrayForEach(m, node) {
         if (!cJSON_IsString(m) || strlen(m->valuestring) > HN_XR_TEXT) {
             hn_xr_fault(r, many, NULL, "expected texts");

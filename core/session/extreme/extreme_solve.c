@@ -89,13 +89,17 @@ static double pivot(table *k, int at) {
     return size_of(k->a[at][at]);
 }
 
-/// Gauss and Jordan with complete pivoting; unknowns without a pivot are 0.
+/// Solves by Gauss-Jordan elimination with complete pivoting; unknowns without a pivot are 0.
 static void eliminate(table *k, wide x[MOST_UNKNOWNS]) {
     double first = 0;
+
+    // start from zero and the given order of unknowns
     for (int i = 0; i < k->n; i++) {
         k->column[i] = i;
         x[i] = 0;
     }
+
+    // clear each pivot's column in all other rows, until the pivots vanish
     int rank = 0;
     for (; rank < k->n; rank++) {
         const double size = pivot(k, rank);
@@ -110,6 +114,8 @@ static void eliminate(table *k, wide x[MOST_UNKNOWNS]) {
             }
         }
     }
+
+    // read off the unknowns that have a pivot
     for (int i = 0; i < rank; i++) {
         x[k->column[i]] = k->a[i][k->n] / k->a[i][i];
     }
@@ -136,11 +142,13 @@ typedef struct saddle {
     const double *M, *J, *f, *gamma;
 } saddle;
 
-/// a (nv) and lambda (nc) to the digits of double.
+/// Solves for a (nv) and lambda (nc), exact to the digits of double.
 static void solve_exactly(const saddle *s, double *a, double *lambda) {
     table k = {.n = s->nv + s->nc};
     double scale[MOST_UNKNOWNS];
     wide x[MOST_UNKNOWNS];
+
+    // fill the saddle matrix and its right-hand side
     memset(k.a, 0, sizeof k.a);
     for (int i = 0; i < s->nv; i++) {
         for (int j = 0; j < s->nv; j++) {
@@ -154,6 +162,8 @@ static void solve_exactly(const saddle *s, double *a, double *lambda) {
     for (int j = 0; j < s->nc; j++) {
         k.a[s->nv + j][k.n] = -(wide)s->gamma[j];
     }
+
+    // equilibrate symmetrically
     find_scales(&k, scale);
     for (int i = 0; i < k.n; i++) {
         for (int j = 0; j < k.n; j++) {
@@ -161,6 +171,8 @@ static void solve_exactly(const saddle *s, double *a, double *lambda) {
         }
         k.a[i][k.n] *= (wide)scale[i];
     }
+
+    // eliminate, then undo the scaling; lambda has the opposite sign here
     eliminate(&k, x);
     for (int i = 0; i < k.n; i++) {
         const double value = (double)(x[i] * (wide)scale[i]);
@@ -202,10 +214,14 @@ static void solve_by_way(hn_arena *arena, const hn_model *model, const saddle *s
     hn_kkt *kkt = hn_kkt_create(arena, s->nv, s->nc);
     hn_kkt_info info = {.massless = -1};
     hn_kkt_opts opts = hn_kkt_opts_default();
+
+    // report missing memory before any solve
     if (hn_arena_failed(arena) || !kkt) {
         out->status = HN_ERR_MEMORY;
         return;
     }
+
+    // the answer of the solver under test
     opts.max_refine = refine;
     out->status =
         hn_kkt_solve(kkt, way, s->nv, s->nc, s->M, s->J, s->f, s->gamma, a, lambda, &info, &opts);
@@ -213,7 +229,11 @@ static void solve_by_way(hn_arena *arena, const hn_model *model, const saddle *s
         tell_refusal(model, &info, out);
         return;
     }
+
+    // the exact answer
     solve_exactly(s, exact, exact_lambda);
+
+    // errors of accelerations and constraint forces, and both norms of lambda
     hn_mat_t_vec(s->nc, s->nv, s->J, lambda, force);
     hn_mat_t_vec(s->nc, s->nv, s->J, exact_lambda, exact_force);
     out->error = relative(a, exact, s->nv);
@@ -228,6 +248,8 @@ void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
     const hn_model *model = hn_extreme_model(bench, point);
     hn_eval *e = NULL;
     double *q = NULL, *v = NULL;
+
+    // load the model and its start
     memset(out, 0, sizeof *out);
     hn_arena *arena = hn_arena_create(1 << 14);
     out->status = !model ? bench->load_status : !arena ? HN_ERR_MEMORY : HN_OK;
@@ -237,9 +259,13 @@ void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
                           ? HN_ERR_LIMIT
                           : hn_extreme_start(bench, model, point->trial, arena, &q, &v);
     }
+
+    // evaluate the saddle system there
     if (out->status == HN_OK) {
         out->status = hn_eval_create(hn_model_system(model), terms, arena, &e);
     }
+
+    // solve it, or say why there is nothing to solve
     if (out->status == HN_OK) {
         const hn_system_info info = hn_system_get_info(hn_model_system(model));
         hn_eval_run(e, 0, q, v);
@@ -254,6 +280,7 @@ void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
         snprintf(out->reason, sizeof out->reason, "%.199s",
                  bench->diags.n ? bench->diags.item[0].message : hn_status_text(out->status));
     }
+
     hn_eval_free(e);
     hn_arena_free(arena);
 }

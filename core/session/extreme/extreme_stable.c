@@ -56,35 +56,43 @@ static int walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long 
     return 1;
 }
 
-/// 1: does not grow at h, 0: it does, -1: cannot be told (reason in out).
+/// Returns 1 if the motion does not grow at step h, 0 if it does, -1 if unknown (reason in out).
 static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
                      hn_extreme_seen *out) {
     hn_extreme_look look;
     double most[4] = {0, 0, 0, 0};
+
+    // start a run at this step size; it stays at its start (time 0)
     point->value = h;
-    hn_extreme_look_begin(bench, point, 0, &look); // to its time 0: stands at its start
+    hn_extreme_look_begin(bench, point, 0, &look);
     if (!look.run) {
         fail(out, look.status, look.reason);
         hn_extreme_look_end(&look);
         return -1;
     }
+
+    // the largest velocity in each quarter of the steps
     const int n = hn_system_get_info(hn_model_system(look.model)).n_user;
     const int whole = walk_quarters(bench, look.run, n, (long long)point->trial->steps, most);
-    // an adaptive step that was to be held, and was shortened, had grown beyond all that was
-    // allowed
+
+    // an adaptive method that shortened the step did not hold it: counts as growth
     const double steps = floor(point->trial->steps);
     const int held = hn_run_time(look.run) > steps * h * (1 - 1e-6);
+
     hn_extreme_look_end(&look);
     if (hn_extreme_is_stopped(bench)) {
         fail(out, HN_ERR_BUDGET, "stopped");
         return -1;
     }
+
+    // stable: hardly any growth since the second quarter, or decay since the first
     return whole && held && (most[3] <= GROWN * most[1] || most[3] <= DECAYED * most[0]);
 }
 
 /// Narrows [low, high], stable and not, to the limit.
 static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, double high,
                   hn_extreme_seen *out) {
+    // the interval must enclose the limit
     const int at_low = is_stable(bench, point, low, out);
     const int at_high = at_low == 1 ? is_stable(bench, point, high, out) : 0;
     if (at_low < 0 || at_high < 0) {
@@ -95,6 +103,8 @@ static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, 
                  at_low == 0 ? "grows" : "does not grow", at_low == 0 ? low : high);
         return 0;
     }
+
+    // bisect in ratios
     while (high > low * (1 + SAME_LIMIT)) {
         const double middle = sqrt(low * high);
         const int stable = is_stable(bench, point, middle, out);
@@ -107,7 +117,8 @@ static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, 
     return 1;
 }
 
-/// What the spectrum on the loops says at the start of a trial's run [s]; NaN with a reason in out.
+/// Returns the largest stable step that the spectrum on the loops predicts at the start
+/// of a trial's run [s]; NaN with a reason in out.
 static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
                       hn_extreme_seen *out) {
     hn_extreme_look look;
@@ -115,7 +126,11 @@ static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
     const hn_eigenvalue *s = NULL;
     int n = 0;
     double limit = (double)NAN;
+
+    // make the run, and leave it at its start
     hn_extreme_look_begin(bench, point, 0, &look);
+
+    // the eigenvalues at its start
     hn_status status = look.status;
     if (status == HN_OK) {
         status = hn_spectrum_create(hn_model_system(look.model), look.arena, &spectrum);
@@ -123,6 +138,8 @@ static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
     if (status == HN_OK) {
         status = hn_spectrum_calc(spectrum, 0, look.q, look.v, &s, &n);
     }
+
+    // the step limit of the method for these eigenvalues
     if (status == HN_OK) {
         const hn_stepper *stepper = hn_run_spec(look.run)->stepper;
         const char *why_not = hn_stability_why_not(stepper);
@@ -131,8 +148,11 @@ static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
     } else {
         fail(out, status, look.reason);
     }
+
     hn_spectrum_free(spectrum);
     hn_extreme_look_end(&look);
+
+    // a limit of 0 or infinity cannot be compared with
     if (!isnan(limit) && !(limit > 0 && limit < HUGE_VAL)) {
         snprintf(out->reason, sizeof out->reason, "the spectrum gives the limit %g s", limit);
         return (double)NAN;

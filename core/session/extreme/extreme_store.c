@@ -53,15 +53,20 @@ static int take_seen(const cJSON *o, hn_extreme_seen *seen) {
 static int take_line(void *user, const cJSON *o) {
     hn_extreme *x = user;
     int i, k, n = 0;
+
+    // the trial that the line belongs to
     if (!hn_stored_int(o, "case", x->n_cases, &i) ||
         !hn_stored_int(o, "trial", x->cases[i].n_trials, &k)) {
         return 0;
     }
     hn_extreme_trial *t = &x->cases[i].trials[k];
+
+    // a line holds a result for each scene and method of the trial
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(o, "seen"), *item;
     if (cJSON_GetArraySize(list) != t->n_scenes * t->n_methods) {
         return 0;
     }
+
     cJSON_ArrayForEach(item, list) {
         hn_extreme_seen *seen = &t->seen[n];
         *seen = (hn_extreme_seen){.scene = t->scenes[n / t->n_methods]->name,
@@ -71,6 +76,8 @@ static int take_line(void *user, const cJSON *o) {
         }
         n++;
     }
+
+    // counts as resumed once, even if the line is there twice
     x->resumed += t->n_seen == 0;
     hn_extreme_conclude(t);
     return 1;
@@ -88,9 +95,13 @@ void hn_extreme_keep(hn_extreme *x, int i, int k) {
     const hn_extreme_trial *t = &x->cases[i].trials[k];
     hn_strbuf b;
     hn_strbuf_init(&b);
+
+    // the place of the trial in the matrix
     hn_json_object(&b);
     hn_json_put_int(&b, "case", i);
     hn_json_put_int(&b, "trial", k);
+
+    // its results, in the order of scenes and methods
     hn_json_key(&b, "seen");
     hn_json_array(&b);
     int whole = 1;
@@ -103,9 +114,11 @@ void hn_extreme_keep(hn_extreme *x, int i, int k) {
         whole &= !isinf(t->seen[n].value);
     }
     hn_json_end_array(&b);
+
+    // infinity has no JSON number: such a trial is run again next time
     if (whole) {
         hn_journal_write(&x->journal, &b);
-    } else { // a number that JSON does not have: seen again next time
+    } else {
         hn_strbuf_reset(&b);
     }
 }

@@ -55,25 +55,34 @@ static double largest_speed(const hn_extreme_look *look) {
                                                                          : (double)NAN;
 }
 
-/// Step by step, with a look at each.
+/// Steps to the end of the trial and records the smallest step and the largest velocities.
 static hn_walk_end walk_steps(hn_extreme_look *look, const hn_walk_limits *limits) {
     const double T = look->time;
     double before = 0;
     look->least_step = HUGE_VAL;
     hn_pace pace = hn_pace_begin();
+
+    // one step at a time, to the end of the trial
     while (hn_run_time(look->run) < T * (1 - 1e-12)) {
         if (hn_run_step_towards(look->run, T) != HN_OK) {
             return HN_WALK_FAILED;
         }
+
+        // the smallest step; the last one may be cut short
         const double t = hn_run_time(look->run), h = t - before;
         if (t < T || before == 0) {
-            look->least_step = fmin(look->least_step, h); // the last one may be cut short
+            look->least_step = fmin(look->least_step, h);
         }
+
         before = t;
+
+        // the largest velocity in the first and in the last tenth
         if (t <= T / 10 || t >= 0.9 * T) {
             double *window = t <= T / 10 ? &look->first : &look->last;
             *window = fmax(*window, largest_speed(look));
         }
+
+        // stop on request
         if (hn_pace_is_due(&pace) && limits->stop(limits->user)) {
             return HN_WALK_STOPPED;
         }
@@ -99,15 +108,19 @@ static void walk(hn_extreme_look *look, unsigned needs) {
     }
 }
 
-/// The truth method's end, once for a model and a time.
+/// Computes the end state of the truth method, once for each model and time.
 static hn_status find_truth(hn_extreme_look *look) {
     hn_extreme_bench *bench = look->bench;
     const hn_extreme_trial *t = look->point->trial;
     const hn_system_info info = hn_system_get_info(hn_model_system(look->model));
     const size_t n = (size_t)info.n_user, nc = (size_t)info.nc;
+
+    // the exact end of the last point serves while trial and time are the same
     if (bench->truth_trial == t && bench->truth_time == look->time) {
         return HN_OK;
     }
+
+    // make room for the exact end; it outlives this run
     hn_arena_free(bench->truth_arena);
     bench->truth_trial = NULL;
     bench->truth_arena = hn_arena_create(1 << 12);
@@ -120,6 +133,8 @@ static hn_status find_truth(hn_extreme_look *look) {
     if (hn_arena_failed(bench->truth_arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // run the truth method on the same model
     hn_extreme_look exact = *look;
     hn_status status = make_run(&exact, t->truth_method, 0, &exact.run);
     if (status == HN_OK) {
@@ -127,6 +142,8 @@ static hn_status find_truth(hn_extreme_look *look) {
         walk(&exact, 0);
         status = exact.status;
     }
+
+    // keep its end, or report why it has none
     if (status == HN_OK) {
         memcpy(bench->truth_q, exact.end.q, n * sizeof(double));
         memcpy(bench->truth_v, exact.end.v, n * sizeof(double));
@@ -138,6 +155,7 @@ static hn_status find_truth(hn_extreme_look *look) {
         snprintf(text, sizeof text, "the truth: %.180s", exact.reason);
         fail_look(look, status, text);
     }
+
     hn_run_free(exact.run);
     return status;
 }
@@ -156,6 +174,8 @@ static hn_status use_truth(hn_extreme_look *look) {
 void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,
                            hn_extreme_look *look) {
     const hn_extreme_trial *t = point->trial;
+
+    // the model of this point
     memset(look, 0, sizeof *look);
     look->bench = bench;
     look->point = point;
@@ -164,9 +184,13 @@ void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *poin
         refuse(look, bench->load_status);
         return;
     }
+
+    // quantities of the model alone need no run
     if (needs & HN_EXTREME_MODEL || !point->method[0]) {
         return;
     }
+
+    // the end time, the method's spelling and the start
     char method[256];
     double *q = NULL, *v = NULL;
     look->arena = hn_arena_create(1 << 12);
@@ -183,12 +207,17 @@ void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *poin
         refuse(look, status);
         return;
     }
+
     look->q = q;
     look->v = v;
+
+    // the exact end, if needed, and the run
     if (((needs & HN_EXTREME_TRUTH) && use_truth(look) != HN_OK) ||
         make_run(look, method, needs, &look->run) != HN_OK) {
         return;
     }
+
+    // sample the start, then run to the end
     hn_sample start;
     look->status = hn_run_sample(look->run, 0, &start);
     look->start_energy = look->status == HN_OK ? start.energy : (double)NAN;

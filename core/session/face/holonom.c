@@ -335,21 +335,28 @@ holonom_status holonom_accelerations(holonom_mechanism *m, double t, const doubl
 holonom_status holonom_run_create(const holonom_mechanism *m, const char *method, holonom_run **out,
                                   holonom_fault *fault) {
     HN_ASSERT(m && method && out);
+
+    // read the method's spelling
     hn_diag diag = {0};
     hn_method_spec spec;
     const hn_model *model = m->shared->model;
     hn_status status = hn_method_parse(method, &spec, &diag);
+
+    // start the run
     hn_run *run = NULL;
     if (status == HN_OK) {
         const hn_run_opts opts = hn_run_opts_default();
         status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
                                &opts, &run, &diag);
     }
+
+    // wrap it; the run shares the model with the mechanism
     holonom_run *r = status == HN_OK ? calloc(1, sizeof *r) : NULL;
     if (!r) {
         hn_run_free(run);
         return fail(fault, status == HN_OK ? HN_ERR_MEMORY : status, &diag);
     }
+
     r->run = run;
     r->shared = hold(m->shared);
     *out = r;
@@ -380,6 +387,8 @@ static void put_sample(const hn_sample *s, holonom_sample *out) {
 holonom_status holonom_run_to(holonom_run *run, double t, holonom_sample *out,
                               holonom_fault *fault) {
     HN_ASSERT(run);
+
+    // advance; a run that ends early gives its own reason
     hn_diag diag = {0};
     hn_status status = hn_run_advance(run->run, t);
     if (status != HN_OK) {
@@ -388,6 +397,8 @@ holonom_status holonom_run_to(holonom_run *run, double t, holonom_sample *out,
         (void)fail(fault, status, &diag);
         return HOLONOM_ENDED;
     }
+
+    // sample there
     if (out) {
         status = hn_run_sample(run->run, t, &run->sample);
         if (status != HN_OK) {

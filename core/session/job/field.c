@@ -41,6 +41,7 @@ static void member_pointer(char out[HN_DIAG_POINTER], const char *parent, const 
 }
 
 static const char *type_words(const hn_field *f) {
+    // the wording completes "expected ..."
     switch (f->type) {
     case HN_FIELD_SCENE:
         return "the id of a shipped scene or a scene object";
@@ -52,9 +53,13 @@ static const char *type_words(const hn_field *f) {
         return "a whole number";
     case HN_FIELD_BOOL:
         return "true or false";
+
+    // strings, of which a choice is one
     case HN_FIELD_TEXT:
     case HN_FIELD_CHOICE:
         return "a string";
+
+    // lists and objects
     case HN_FIELD_TEXTS:
         return "an array of strings";
     case HN_FIELD_NUMBERS:
@@ -64,6 +69,8 @@ static const char *type_words(const hn_field *f) {
     case HN_FIELD_ANY:
         break;
     }
+
+    // no type is asked for
     return "any value";
 }
 
@@ -87,20 +94,27 @@ static bool is_text(const cJSON *item) {
 }
 
 static bool has_type(const cJSON *value, const hn_field *f) {
+    // objects and what may stand for one
     switch (f->type) {
     case HN_FIELD_SCENE:
         return cJSON_IsString(value) || cJSON_IsObject(value);
     case HN_FIELD_BY_NAME:
         return cJSON_IsObject(value) && all_are(value, is_number);
+
+    // numbers and truth values
     case HN_FIELD_NUMBER:
         return cJSON_IsNumber(value);
     case HN_FIELD_INTEGER:
         return cJSON_IsNumber(value) && value->valuedouble == floor(value->valuedouble);
     case HN_FIELD_BOOL:
         return cJSON_IsBool(value);
+
+    // strings, of which a choice is one
     case HN_FIELD_TEXT:
     case HN_FIELD_CHOICE:
         return cJSON_IsString(value);
+
+    // lists and records
     case HN_FIELD_TEXTS:
         return cJSON_IsArray(value) && all_are(value, is_text);
     case HN_FIELD_NUMBERS:
@@ -110,6 +124,8 @@ static bool has_type(const cJSON *value, const hn_field *f) {
     case HN_FIELD_ANY:
         break;
     }
+
+    // any value will do
     return true;
 }
 

@@ -40,8 +40,9 @@ void hn_job_request_set_text(hn_job_request *r, const char *name, const char *te
     add_value(r, name)->text = text;
 }
 
-/// Takes one member; the common ones have places of their own.
+/// Takes one member of the body into the request: common ones to their own places.
 static hn_status take_member(hn_job_request *r, const cJSON *item, hn_diags *diags) {
+    // the methods, as many as are allowed and one more, so that too many are reported
     if (strcmp(item->string, "methods") == 0) {
         const char *methods[HN_JOB_METHODS + 1];
         const cJSON *one;
@@ -53,6 +54,8 @@ static hn_status take_member(hn_job_request *r, const cJSON *item, hn_diags *dia
         }
         return hn_job_request_set_methods(r, methods, n, diags);
     }
+
+    // the times; other members are fields of the kind
     if (strcmp(item->string, "time") == 0) {
         r->time = item->valuedouble;
     } else if (strcmp(item->string, "time_limit") == 0) {

@@ -177,13 +177,18 @@ static void put_presets(hn_strbuf *b, const hn_job_kind *kind) {
 void hn_job_kinds_json(hn_strbuf *b) {
     hn_json_array(b);
     for (int i = 0; i < N_KINDS; i++) {
+        // kinds that run on the command line only are not listed
         if (!KINDS[i]->served) {
             continue;
         }
+
+        // what the kind computes
         hn_json_object(b);
         hn_json_put_string(b, "name", KINDS[i]->name);
         hn_json_put_string(b, "about", KINDS[i]->about);
         put_words(b, "chooses", KINDS[i]->chooses);
+
+        // the fields that a request to the server may have
         hn_json_key(b, "fields");
         hn_json_array(b);
         for (const hn_field *f = KINDS[i]->fields; f->name; f++) {
@@ -192,6 +197,7 @@ void hn_job_kinds_json(hn_strbuf *b) {
             }
         }
         hn_json_end_array(b);
+
         put_presets(b, KINDS[i]);
         hn_json_end_object(b);
     }

@@ -80,6 +80,8 @@ static void account_progress(void *user, double part) {
 
 static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     hn_diags diags = {0};
+
+    // the request of one scene, with its share of the time
     hn_job_request q = r->request;
     q.models[0] = s->model;
     q.n_models = 1;
@@ -89,11 +91,15 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
     q.limits.user = r;
     q.limits.stop = ask_stop;
     q.limits.progress = study_progress;
+
+    // run the study
     const hn_status status = hn_study_open(&q, &s->study, &diags);
     if (status == HN_OK) {
         hn_study_run(s->study);
         return HN_OK;
     }
+
+    // without a study: why
     s->study = NULL;
     snprintf(s->reason, sizeof s->reason, "%s",
              r->stopped    ? "stopped on request before it began"
@@ -104,26 +110,35 @@ static hn_status study_scene(hn_report *r, hn_report_scene *s, double seconds) {
 
 static void account(hn_report *r, hn_report_scene *s) {
     const hn_ref *ref = hn_study_wp(s->study)->ref;
-    // past a singular pose there is no account, which looking for the exact motion finds
+
+    // past a singular pose there is no account; without an exact end it finds that out itself
     const double *end = ref->q + (size_t)ref->n * (size_t)ref->n_user;
     const hn_account_opts opts = {.exact = s->singular ? NULL : end,
                                   .stop = ask_end,
                                   .progress = account_progress,
                                   .user = r};
+
+    // an account for each listed method
     for (s->n_accounts = 0; s->n_accounts < HN_REPORT_ACCOUNTS; s->n_accounts++) {
         hn_account_row *a = &s->accounts[s->n_accounts];
         a->holds_until = (double)NAN;
+
+        // the method at the account's step size
         hn_diag diag = {0};
         hn_method_spec spec;
         snprintf(a->spelling, sizeof a->spelling, "%s:h=%.6g", ACCOUNTED[s->n_accounts],
                  ACCOUNT_STEP * hn_model_scene(s->model)->step);
         a->status = hn_method_parse(a->spelling, &spec, &diag);
+
+        // compute it while time is left
         if (a->status == HN_OK && ask_end(r)) {
             a->status = HN_ERR_BUDGET;
         } else if (a->status == HN_OK) {
             a->status = hn_account_make(hn_model_system(s->model), &spec, hn_model_q(s->model),
                                         hn_model_v(s->model), ref->T, &opts, &a->account, &diag);
         }
+
+        // why there is none, or why its run ended early
         if (a->status == HN_ERR_BUDGET) {
             hn_diag_set(&diag, HN_ERR_BUDGET, NULL, NULL, "left out to keep the budget");
         }
@@ -177,16 +192,20 @@ static void try_size(const hn_report_scene *s, const hn_survival_judge *judge, i
     hn_run_free(run);
 }
 
-/// Every method with one size, then with the next, until the time is over.
+/// Runs every method with one step size, then with the next, until the time is over.
 static void survive(hn_report *r, hn_report_scene *s) {
     const hn_wp *wp = hn_study_wp(s->study);
     const hn_walk_limits limits = {0, ask_end, r};
     hn_survival_judge judge = {0};
     hn_arena *arena = hn_arena_create(1 << 14);
+
+    // judge runs by the reference
     s->strips = arena ? calloc((size_t)wp->n_methods, sizeof *s->strips) : NULL;
     if (s->strips &&
         hn_survival_by_reference(hn_model_system(s->model), wp->ref, arena, &judge) == HN_OK) {
         judge.limits = &limits;
+
+        // try one size with every method, then the next
         for (int i = 0; i < HN_REPORT_SIZES && !ask_end(r); i++) {
             for (int m = 0; m < wp->n_methods && !ask_end(r); m++) {
                 try_size(s, &judge, m, i * STRIDE % HN_REPORT_SIZES);
@@ -197,6 +216,7 @@ static void survive(hn_report *r, hn_report_scene *s) {
     } else {
         r->no_memory = 1;
     }
+
     hn_survival_unjudge(&judge);
     hn_arena_free(arena);
 }

@@ -11,10 +11,14 @@
 static void put_strip(hn_strbuf *b, const hn_report_scene *s, int m) {
     const hn_strip *strip = &s->strips[m];
     hn_json_object(b);
+
+    // the method and how many sizes it survived
     hn_json_put_string(b, "method", hn_study_wp(s->study)->methods[m].spelling);
     hn_json_put_int(b, "survived", hn_strip_survived(strip));
     hn_json_put_int(b, "tried", strip->n);
     hn_json_put_string(b, "reason", strip->reason);
+
+    // every run
     hn_json_key(b, "runs");
     hn_json_array(b);
     for (int i = 0; i < strip->n; i++) {
@@ -33,6 +37,8 @@ static void put_strip(hn_strbuf *b, const hn_report_scene *s, int m) {
 
 static void put_answers(hn_strbuf *b, const hn_report_scene *s) {
     const hn_wp *wp = hn_study_wp(s->study);
+
+    // the cheapest method for each accuracy
     hn_json_key(b, "answers");
     hn_json_array(b);
     for (int i = 0; i < HN_REPORT_BANDS; i++) {
@@ -45,6 +51,8 @@ static void put_answers(hn_strbuf *b, const hn_report_scene *s) {
         hn_json_end_object(b);
     }
     hn_json_end_array(b);
+
+    // the verdict on each method
     hn_json_key(b, "verdicts");
     hn_json_array(b);
     for (int m = 0; m < wp->n_methods; m++) {
@@ -72,6 +80,8 @@ static void put_study(hn_strbuf *b, const hn_study *study) {
 static void put_scene(hn_strbuf *b, const hn_report_scene *s) {
     const hn_scene *scene = hn_model_scene(s->model);
     hn_json_object(b);
+
+    // the scene; without a study only the reason
     hn_json_put_string(b, "scene", scene->id);
     hn_json_put_string(b, "title", scene->title);
     if (!s->study) {
@@ -79,14 +89,20 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s) {
         hn_json_end_object(b);
         return;
     }
+
+    // the study
     put_answers(b, s);
     put_study(b, s->study);
+
+    // the accounts of errors and energy
     hn_json_key(b, "accounts");
     hn_json_array(b);
     for (int i = 0; i < s->n_accounts; i++) {
         hn_account_put(b, s->model, &s->accounts[i]);
     }
     hn_json_end_array(b);
+
+    // singular poses, and which step sizes survive them
     hn_json_put_number(b, "singular_at", s->singular ? s->singular_at : (double)NAN);
     if (s->strips) {
         hn_json_key(b, "survival");

@@ -105,6 +105,7 @@ static void put_answer(hn_strbuf *b, const hn_report_scene *s, double accuracy) 
 }
 
 static void put_answers(hn_strbuf *b, const hn_report *r) {
+    // the head of the table: the accuracies
     hn_strbuf_add(b, "<h2>The cheapest method, for an error of the coordinates of</h2>");
     hn_page_table(b, "The cheapest method");
     hn_strbuf_add(b, "<thead><tr><th>scene</th>");
@@ -112,17 +113,25 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
         hn_strbuf_printf(b, "<th>10<sup>%.0f</sup></th>", log10(hn_report_accuracy[i]));
     }
     hn_strbuf_add(b, "</tr></thead><tbody>");
+
+    // a row for each scene
     for (int i = 0; i < r->n; i++) {
         const hn_report_scene *s = &r->scenes[i];
+
+        // its title links to its section
         hn_strbuf_printf(b, "<tr><th scope=\"row\"><a href=\"#scene-%d\">", i + 1);
         hn_html_text(b, title_of(s));
         hn_strbuf_add(b, "</a> <small>");
         hn_html_text(b, hn_report_scene_id(s));
         hn_strbuf_add(b, "</small>");
+
+        // mark scenes where errors are taken from the energy
         if (s->study && hn_wp_is_beyond_horizon(hn_study_wp(s->study))) {
             hn_strbuf_add(b, " <small>chaotic: by energy</small>");
         }
         hn_strbuf_add(b, "</th>");
+
+        // its cheapest methods, or why it has no study
         for (int k = 0; k < HN_REPORT_BANDS && s->study; k++) {
             put_answer(b, s, hn_report_accuracy[k]);
         }
@@ -133,6 +142,8 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
+
+    // how to read the table
     hn_strbuf_add(
         b, "</tbody></table></div><p class=\"quiet\">Seconds: CPU time of the run, ranked "
            "only where two measurements agree and the next method is clearly slower. "
@@ -141,10 +152,13 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
 }
 
 static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
+    // no study: a dash
     if (!s->study) {
         hn_strbuf_add(b, "<td class=\"none\">–</td>");
         return;
     }
+
+    // the verdict, with its reason shown on pointing
     const hn_verdict v = hn_report_find_verdict(s, m);
     const int none = v.kind == HN_VERDICT_REFUSED || v.kind == HN_VERDICT_NOT_RUN;
     hn_strbuf_printf(b, "<td%s title=\"",
@@ -153,6 +167,8 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
                                  : "");
     hn_html_text(b, v.why);
     hn_strbuf_printf(b, "\">%s", v.text);
+
+    // what was left out, and how many sizes survive singular poses
     if (v.skipped > 0 && v.done > 0) {
         hn_strbuf_printf(b, "<small>, %d left out</small>", v.skipped);
     }
@@ -164,10 +180,13 @@ static void put_verdict(hn_strbuf *b, const hn_report_scene *s, int m) {
 }
 
 static void put_verdicts(hn_strbuf *b, const hn_report *r) {
+    // without any study there is no list of methods
     const hn_study *any = hn_report_any_study(r);
     if (!any) {
         return;
     }
+
+    // the head of the table: the scenes
     hn_strbuf_add(b,
                   "<h2>What each method reaches: smallest error of the coordinates, and where it "
                   "fails</h2>");
@@ -179,6 +198,8 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         hn_strbuf_add(b, "</a></th>");
     }
     hn_strbuf_add(b, "</tr></thead><tbody>");
+
+    // a row for each method
     for (int m = 0; m < hn_study_wp(any)->n_methods; m++) {
         hn_strbuf_add(b, "<tr>");
         hn_study_put_method(b, any, m);
@@ -187,6 +208,8 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r) {
         }
         hn_strbuf_add(b, "</tr>");
     }
+
+    // how to read the table
     hn_strbuf_add(
         b, "</tbody></table></div><p class=\"quiet\">“3 of 7 fail”: so many sizes of step "
            "or tolerance did not come to the end. “3 left out”: so many finer ones, to keep the "
@@ -234,18 +257,23 @@ static void put_top(hn_strbuf *b, const hn_report *r) {
 // a scene ----
 
 static void put_accounts(hn_strbuf *b, const hn_report_scene *s) {
+    // the heading names what there is
     const int error = hn_accounts_can_plot(s->accounts, s->n_accounts, 0);
     const int energy = hn_accounts_can_plot(s->accounts, s->n_accounts, 1);
     if (error || energy) {
         hn_strbuf_printf(b, "<h3>Where %senergy come%s from</h3>", error ? "errors and " : "",
                          error ? "" : "s");
     }
+
+    // why the account of errors, or both, is missing
     if (!error) {
         hn_strbuf_printf(
             b, "<p class=\"quiet\">No account of %s: ", energy ? "errors" : "errors and energy");
         hn_html_text(b, s->n_accounts > 0 ? s->accounts[0].reason : "the report was stopped");
         hn_strbuf_add(b, ".</p>");
     }
+
+    // the plots
     for (int k = 0; k < 2; k++) {
         if (k ? energy : error) {
             hn_strbuf_add(b, "<div class=\"lines\">");
@@ -285,31 +313,42 @@ static void put_wrong_models(hn_strbuf *b, const hn_report_scene *s) {
 }
 
 static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
+    // the heading
     hn_strbuf_printf(b,
                      "<section id=\"scene-%d\" aria-labelledby=\"title-%d\"><h2 id=\"title-%d\">",
                      i + 1, i + 1, i + 1);
     hn_html_text(b, title_of(s));
     hn_strbuf_add(b, "</h2>");
+
+    // a scene without a study: why
     if (!s->study) {
         hn_strbuf_add(b, "<p class=\"wrong\">");
         hn_html_text(b, s->reason);
         hn_strbuf_add(b, "</p></section>\n");
         return;
     }
+
+    // say when the time limit left results out
     const hn_wp *wp = hn_study_wp(s->study);
     if (wp->out_of_time || wp->stopped) {
         hn_strbuf_add(b,
                       "<p class=\"quiet\">The budget left finer sizes or samples of time out; they "
                       "are listed below.</p>");
     }
+
+    // the plots and the answers
     put_wrong_models(b, s);
     hn_page_scroll(b, "error against cost");
     hn_study_put_plots(b, s->study);
     hn_strbuf_add(b, "</div>");
     hn_study_put_answers(b, s->study);
     hn_study_put_chaos(b, s->study);
+
+    // errors, energy, survival
     put_accounts(b, s);
     put_survival(b, s);
+
+    // details are folded away
     hn_strbuf_add(b, "<details><summary>Methods, equal cost, failures, how it was measured, every "
                      "point</summary>");
     hn_study_put_methods(b, s->study, 3);
@@ -349,6 +388,8 @@ static void put_names(hn_strbuf *b, const hn_study *any) {
 
 void hn_report_html(hn_strbuf *b, const hn_report *r) {
     const hn_study *any = hn_report_any_study(r);
+
+    // the head of the page, with the style of hidden methods
     hn_strbuf style;
     hn_strbuf_init(&style);
     hn_strbuf_add(&style, STYLE);
@@ -356,8 +397,12 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     hn_page_head(b, "Methods for mechanisms with closed loops: the report", hn_strbuf_text(&style));
     b->failed |= style.failed;
     hn_strbuf_reset(&style);
+
+    // the first screen
     put_top(b, r);
     hn_page_choices(b, first_cost(r));
+
+    // the plots of every scene
     hn_strbuf_add(b, "<div class=\"plots\">");
     put_names(b, any);
     hn_strbuf_add(b,
@@ -368,6 +413,8 @@ void hn_report_html(hn_strbuf *b, const hn_report *r) {
     for (int i = 0; i < r->n; i++) {
         put_scene(b, &r->scenes[i], i);
     }
+
+    // how times were measured, and the script
     hn_strbuf_add(b,
                   "<section aria-labelledby=\"timing\"><h2 id=\"timing\">How time was taken</h2>");
     hn_page_timing(b);

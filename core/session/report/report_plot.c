@@ -102,16 +102,24 @@ void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *s) {
     const double usual = hn_model_scene(s->model)->step;
     const int height = STRIP_TOP + STRIP_ROW * wp->n_methods + STRIP_BOTTOM;
     char title[120], axis[160], low[HN_SI_TEXT], high[HN_SI_TEXT];
+
+    // the title, and the smallest and largest step as text
     snprintf(title, sizeof title, "step sizes that survive %.3g s through singular poses",
              wp->ref->T);
     hn_si_format(hn_survival_step(usual, 0, HN_REPORT_SIZES), "s", 2, low);
     hn_si_format(hn_survival_step(usual, HN_REPORT_SIZES - 1, HN_REPORT_SIZES), "s", 2, high);
+
+    // the head of the picture
     hn_plot_begin(b, WIDTH, height, title);
     hn_plot_text(b, 0, 14, "title", title);
     put_signs_legend(b);
+
+    // a strip for each method
     for (int m = 0; m < wp->n_methods; m++) {
         put_strip(b, s, m, STRIP_TOP + STRIP_ROW * m);
     }
+
+    // the axes: time upwards, step size across
     snprintf(axis, sizeof axis, "%.3g s", wp->ref->T);
     hn_plot_text(b, LABELS - 4, STRIP_TOP + 4, "tick end", axis);
     hn_plot_text(b, LABELS - 4, STRIP_TOP + STRIP + 4, "tick end", "0");
@@ -185,7 +193,7 @@ static size_t find_variable(const char *theme, const char *name, const char **va
     return 0;
 }
 
-/// Text with each var(--name) replaced by its value: not every reader of SVG knows variables.
+/// Writes text with each var(--name) replaced by its value: some SVG readers know no variables.
 static void put_resolved(hn_strbuf *b, const char *text, const char *theme) {
     for (const char *at; (at = strstr(text, "var(")) != NULL; text = at + strcspn(at, ")") + 1) {
         const char *value = NULL;
@@ -201,8 +209,11 @@ int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *p) {
     hn_strbuf_init(&inner);
     hn_strbuf_init(&theme);
     hn_strbuf_init(&whole);
+
+    // draw the plot as it stands in a page
     const int drawn = draw(&inner, p);
     if (drawn) {
+        // add what a file of its own needs: XML head, style, paper
         const char *body = strchr(hn_strbuf_text(&inner), '>') + 1;
         hn_page_theme(&theme, HN_THEME_LIGHT);
         hn_strbuf_add(&whole, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -214,8 +225,11 @@ int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *p) {
         hn_strbuf_add(&whole, "</style><rect x=\"-12\" y=\"-12\" width=\"120%\" height=\"120%\" "
                               "style=\"fill:var(--paper)\"/>");
         hn_strbuf_add(&whole, body);
+
+        // replace variables by the values of the light theme
         put_resolved(b, hn_strbuf_text(&whole), hn_strbuf_text(&theme));
     }
+
     b->failed |= inner.failed || theme.failed || whole.failed;
     hn_strbuf_reset(&inner);
     hn_strbuf_reset(&theme);

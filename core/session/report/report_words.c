@@ -61,7 +61,10 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
     const hn_wp *wp = hn_study_wp(s->study);
     const hn_class *c = &hn_study_classes(s->study)[m];
     hn_verdict v = {.kind = HN_VERDICT_NOT_RUN, .best = (double)NAN};
+
+    // what became of each size
     count_points(wp, m, &v);
+    // the verdict: elsewhere, nothing finished, or the smallest error with the failures
     if (c->kind == HN_CLASS_ELSEWHERE) {
         v.kind = HN_VERDICT_ELSEWHERE;
         v.why = c->text;
@@ -81,6 +84,8 @@ hn_verdict hn_report_find_verdict(const hn_report_scene *s, int m) {
         snprintf(v.text, sizeof v.text, v.failed > 0 ? "%s, %d of %d fail" : "%s", best, v.failed,
                  v.failed + v.done);
     }
+
+    // the reason, and whether any result can be trusted
     v.why = v.why ? v.why : "left out to keep the budget";
     v.untrusted = v.kind == HN_VERDICT_FAILS || v.kind == HN_VERDICT_ELSEWHERE ||
                   (v.done > 0 && !(v.best < NO_DIGIT));
@@ -198,9 +203,11 @@ static int is_few(const hn_report_scene *s) {
     return p.few;
 }
 
-/// How many answers are by time, and why the others are not.
+/// Writes how many answers are ranked by time, and why the others are not.
 static void say_timed(hn_strbuf *b, const hn_report *r) {
     int answers = 0, by_time = 0, scenes = 0, timed = 0, few = 0;
+
+    // count scenes, timed scenes and answers
     for (int i = 0; i < r->n; i++) {
         const hn_report_scene *s = &r->scenes[i];
         if (!s->study) {
@@ -215,10 +222,14 @@ static void say_timed(hn_strbuf *b, const hn_report *r) {
             by_time += a.method >= 0 && a.by == HN_COST_TIME;
         }
     }
+
+    // say what decided the ranking
     if (timed == 0) {
         hn_strbuf_add(b, "Ranked by operations: no time was taken.\n");
     } else if (answers > 0) {
         hn_strbuf_printf(b, "Ranked by CPU time: %d of %d", by_time, answers);
+
+        // say why the others are ranked by operations
         if (by_time < answers) {
             hn_strbuf_add(b, "; the others by operations, as ");
             if (few > 0) {

@@ -30,9 +30,13 @@ hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *dia
     if (!map) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+
+    // choose methods, axes and scenes
     map->model = request->models[0];
     map->request = *request;
     hn_status status = hn_map_set_up(map, diags);
+
+    // make room for every cell and column
     if (status == HN_OK) {
         const size_t columns = (size_t)map->n_methods * (size_t)map->x.n;
         map->scenes = calloc((size_t)map->n_scenes, sizeof *map->scenes);
@@ -42,6 +46,8 @@ hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *dia
             status = hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
         }
     }
+
+    // mark all as not run, then take what an earlier run left in the journal
     if (status == HN_OK) {
         blank(map);
         status = request->limits.folder ? hn_map_open_journal(map, diags) : HN_OK;

@@ -34,6 +34,8 @@ static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high,
     const hn_scene *scene = hn_model_scene(map->model);
     const int p = hn_scene_find_param(scene, a->name);
     hn_diag diag = {0};
+
+    // a parameter of the scene: the range must lie within its limits
     if (p >= 0) {
         const hn_param *param = &scene->params[p];
         a->is_param = 1;
@@ -45,16 +47,21 @@ static hn_status name_axis(hn_map *map, hn_map_axis *a, double low, double high,
         }
         return HN_OK;
     }
-    // a setting: every method has to have it
+
+    // an option of the method: every method needs it
     a->is_step = strcmp(a->name, "h") == 0;
     for (int m = 0; m < map->n_methods; m++) {
         const hn_option *info = NULL;
+
+        // the method has an option of this name, and it is a number
         if (!hn_method_find_option(&map->specs[m], a->name, &info) || info->choices) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over",
                                 "name a parameter of the scene, h, or a setting of every method",
                                 "'%s' is no parameter of the scene and no number that %s takes",
                                 a->name, map->names[m]);
         }
+
+        // the method accepts both ends of the range
         if (hn_option_check(info, low, &diag) != HN_OK ||
             hn_option_check(info, high, &diag) != HN_OK) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "%s", diag.message);
@@ -103,6 +110,8 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
     char copy[200], *rest = copy;
     hn_map_axis axes[2];
     int n = 0;
+
+    // split at commas, one axis each
     const int fits = snprintf(copy, sizeof copy, "%s", map->over) < (int)sizeof copy;
     for (char *part = strsep(&rest, ","); part; part = strsep(&rest, ",")) {
         char *name;
@@ -112,6 +121,8 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
             return hn_diags_add(diags, HN_ERR_INPUT, "/over", "as in h=1e-4..1e-1,k=1e2..1e8",
                                 "'%.80s' does not name one or two axes", map->over);
         }
+
+        // the vertical axis has as many points as the map has rows
         const int vertical = strcmp(name, "h") == 0 || (n == 1 && !axes[0].is_step);
         const int side = vertical ? map->n_rows : map->n_columns;
         const hn_status status = make_axis(map, &axes[n], name, low, high, side, form, diags);
@@ -120,10 +131,14 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
         }
         n++;
     }
+
+    // two axes must differ
     if (n == 2 && strcmp(axes[0].name, axes[1].name) == 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", NULL, "both axes are %s", axes[0].name);
     }
-    const int swap = n == 1 || axes[0].is_step; // the step stands upright
+
+    // a step size becomes the vertical axis; a single axis is vertical too
+    const int swap = n == 1 || axes[0].is_step;
     map->y = axes[swap ? 0 : 1];
     map->x = n == 2 ? axes[swap ? 1 : 0] : (hn_map_axis){.n = 1};
     return HN_OK;
@@ -185,12 +200,14 @@ static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diag
     return make_axis(map, &map->y, "h", low, fmax(high, 40 * low), n, 'l', diags);
 }
 
-// a parameter of one of these units over its range, and the steps that the spectra at both ends ask
-// for
+// Takes a parameter of one of these units over its range, and the step sizes that the spectra at
+// both ends of the range require.
 static hn_status over_param(hn_map *map, const char *what, const char *const *units, int n_units,
                             hn_diags *diags) {
     const hn_scene *scene = hn_model_scene(map->model);
     const hn_param *found = NULL;
+
+    // the first parameter of a fitting unit
     for (int i = scene->n_params - 1; i >= 0; i--) {
         found = has_unit(&scene->params[i], units, n_units) ? &scene->params[i] : found;
     }
@@ -198,9 +215,13 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
         return hn_diags_add(diags, HN_ERR_UNSUPPORTED, "/preset", "name the axes with --over",
                             "this scene has no parameter that is %s", what);
     }
+
+    // its range: a factor of PRESET_SPAN up and down, within its limits
     const double middle = found->value > 0 ? found->value : sqrt(found->max);
     const double low = fmax(found->min, middle / PRESET_SPAN),
                  high = fmin(found->max, middle * PRESET_SPAN);
+
+    // the fastest rates at both ends bound the step sizes
     double first, last;
     hn_status status = make_axis(map, &map->x, found->name, low, high, map->n_columns, 'l', diags);
     if (status == HN_OK) {
@@ -312,6 +333,7 @@ static void name_methods(hn_map *map) {
 }
 
 static hn_status check_sizes(hn_map *map, hn_diags *diags) {
+    // the smallest fixed step of the map
     double h = HUGE_VAL;
     for (int m = 0; m < map->n_methods && !map->y.is_step; m++) {
         const double own = hn_method_option(&map->specs[m], "h", 0);
@@ -321,12 +343,16 @@ static hn_status check_sizes(hn_map *map, hn_diags *diags) {
         }
         h = fmin(h, own);
     }
+
+    // a trial must not take too many steps
     h = map->y.is_step ? map->y.value[0] : h;
     if (map->T / h > HN_MAP_STEPS) {
         return hn_diags_add(diags, HN_ERR_LIMIT, "/time", "take a shorter --time or larger steps",
                             "%g s at steps of %.3g s take %.3g of them; a trial has at most %g",
                             map->T, h, map->T / h, HN_MAP_STEPS);
     }
+
+    // each value of a parameter is a scene of its own
     map->n_scenes = (map->x.is_param ? map->x.n : 1) * (map->y.is_param ? map->y.n : 1);
     return map->n_scenes <= HN_MAP_MODELS ? HN_OK
                                           : hn_diags_add(diags, HN_ERR_LIMIT, "/grid", NULL,

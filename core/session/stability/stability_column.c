@@ -179,18 +179,24 @@ void hn_map_judge_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     const double limit = c->n_predicted ? c->predicted[0] : (double)NAN;
     c->verdict = HN_MAP_UNTOLD;
+
+    // compare only where the limit is on the axis, or the search found a boundary
     const bool inside = limit >= map->y.value[0] && limit <= map->y.value[map->y.n - 1];
     const bool found = c->stable > 0 && isfinite(c->unstable); // wherever the search ended
     if (!map->y.is_step || !(limit > 0) || (!inside && !found)) {
         return;
     }
+
+    // where the boundary was measured; unstable is NaN where none was found
     const double seen = isnan(c->unstable) ? HUGE_VAL : sqrt(c->stable * c->unstable);
     const int never =
         isnan(c->unstable) &&
         !hn_stability_is_stable(hn_map_cell_at(map, m, column, map->y.n - 1)->trial.kind);
     if (never) {
-        return; // not all of the column was tried
+        return; // the column has cells that were not tried
     }
+
+    // compare it with the prediction
     if (fabs(seen / limit - 1) <= HN_MAP_AGREES) {
         c->verdict = HN_MAP_AGREE;
     } else if (seen < limit) {
@@ -273,11 +279,15 @@ void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m) {
         hn_strbuf_printf(b, "nothing to compare: %s", a.why);
         return;
     }
+
+    // how many columns or cells agree
     hn_strbuf_printf(b,
                      a.by_columns ? "prediction within %.0f %% on %d of %d columns"
                                   : "prediction right, %.0f %% or more from the boundary, in %d of "
                                     "%d cells",
                      100 * HN_MAP_AGREES, a.agree, a.compared);
+
+    // the others, by the kind of disagreement
     if (a.unseen) {
         hn_strbuf_printf(b, "; %d: beyond the limit a step grows too little to be seen", a.unseen);
     }

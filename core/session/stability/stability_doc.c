@@ -77,14 +77,20 @@ static void put_agreement(hn_strbuf *b, const hn_map *map, int m) {
 
 static void put_method(hn_strbuf *b, const hn_map *map, int m) {
     hn_json_object(b);
+
+    // the method and how well it agrees
     hn_json_put_string(b, "method", hn_map_method(map, m));
     put_agreement(b, map, m);
+
+    // the boundary in each column
     hn_json_key(b, "columns");
     hn_json_array(b);
     for (int i = 0; i < hn_map_x(map)->n; i++) {
         put_column(b, hn_map_get_column(map, m, i));
     }
     hn_json_end_array(b);
+
+    // the outcome of each cell, row by row
     hn_json_key(b, "rows");
     hn_json_array(b);
     for (int j = 0; j < hn_map_y(map)->n; j++) {
@@ -122,6 +128,8 @@ static void put_row(hn_strbuf *b, const hn_map *map, int m, int column, int row)
     const hn_map_cell *cell = hn_map_get(map, m, column, row);
     const hn_map_column *c = hn_map_get_column(map, m, column);
     const hn_stability_trial *t = &cell->trial;
+
+    // the numbers of the row, before and after the class
     const double at[] = {x->name[0] ? x->value[column] : (double)NAN, y->value[row]};
     const double seen[] = {t->error,
                            t->energy,
@@ -130,6 +138,8 @@ static void put_row(hn_strbuf *b, const hn_map *map, int m, int column, int row)
                            (double)t->steps,
                            cell->margin,
                            c->n_predicted ? c->predicted[0] : (double)NAN};
+
+    // the method, the place in the map, the outcome
     hn_csv_text(b, hn_map_method(map, m));
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         hn_strbuf_add(b, ",");
@@ -140,6 +150,8 @@ static void put_row(hn_strbuf *b, const hn_map *map, int m, int column, int row)
         hn_strbuf_add(b, ",");
         hn_csv_number(b, seen[i]);
     }
+
+    // why it ended
     hn_strbuf_add(b, ",");
     hn_csv_text(b, t->reason);
     hn_strbuf_add(b, "\n");

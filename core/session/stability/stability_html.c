@@ -40,20 +40,27 @@ static void put_cell(hn_strbuf *b, const hn_map *map, int m, int i, int j) {
     const hn_stability_class kind = hn_map_get(map, m, i, j)->trial.kind;
     const double x = hn_map_column_edge(map, i), w = hn_map_column_edge(map, i + 1) - x;
     const double y = hn_map_row_edge(map, m, j + 1), h = hn_map_row_edge(map, m, j) - y;
+
+    // the outcome in words, shown on pointing
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_map_cell_text(&text, map, m, i, j);
     hn_strbuf_printf(b, "<g><title>");
     hn_html_text(b, hn_strbuf_text(&text));
+
+    // the cell itself, coloured by its class
     hn_strbuf_printf(b,
                      "</title><rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" "
                      "class=\"c-%s\"/>",
                      x, y, w, h, hn_stability_class_name(kind));
+
+    // the sign of the class, where the cell has room for it
     const char *glyph = hn_map_class_look_get(kind)->glyph;
     if (glyph[0] && w >= 8 && h >= 8) {
         hn_strbuf_printf(b, "<text x=\"%.2f\" y=\"%.2f\" class=\"glyph middle\">%s</text>",
                          x + w / 2, y + h / 2 + 3, glyph);
     }
+
     hn_strbuf_add(b, "</g>\n");
     b->failed |= text.failed;
     hn_strbuf_reset(&text);
@@ -118,20 +125,28 @@ static void put_axes(hn_strbuf *b, const hn_map *map, int m) {
     const double top = hn_map_field_top(m), bottom = top + HN_MAP_FIELD_HEIGHT;
     int at[8];
     char title[96];
+
+    // the frame
     hn_strbuf_printf(b, "<rect class=\"frame\" x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%d\"/>",
                      HN_MAP_LEFT, top, HN_MAP_FIELD_WIDTH, HN_MAP_FIELD_HEIGHT);
+
+    // ticks of the vertical axis
     for (int k = 0, n = hn_map_ticks(y, at); k < n; k++) {
         const double here =
             (hn_map_row_edge(map, m, at[k]) + hn_map_row_edge(map, m, at[k] + 1)) / 2;
         hn_strbuf_printf(b, "<text x=\"%d\" y=\"%.1f\" class=\"end quiet-text\">%.3g</text>",
                          HN_MAP_LEFT - 8, here + 4, y->value[at[k]]);
     }
+
+    // ticks of the horizontal axis, where there is one
     for (int k = 0, n = x->name[0] ? hn_map_ticks(x, at) : 0; k < n; k++) {
         const double here =
             (hn_map_column_edge(map, at[k]) + hn_map_column_edge(map, at[k] + 1)) / 2;
         hn_strbuf_printf(b, "<text x=\"%.1f\" y=\"%.1f\" class=\"middle quiet-text\">%.3g</text>",
                          here, bottom + 16, x->value[at[k]]);
     }
+
+    // both titles, the vertical one turned
     hn_map_axis_title(x, title);
     hn_strbuf_printf(b, "<text x=\"%d\" y=\"%.1f\" class=\"middle\">",
                      HN_MAP_LEFT + HN_MAP_FIELD_WIDTH / 2, bottom + 34);
@@ -242,6 +257,7 @@ static void put_sections(hn_strbuf *b, const hn_map *map) {
 }
 
 static void put_limits(hn_strbuf *b, const hn_map *map) {
+    // the head of the table
     hn_strbuf_add(b, "<h2>Boundaries</h2>");
     hn_page_table(b, "Boundaries");
     hn_strbuf_add(b, "<thead><tr><th>method</th>");
@@ -252,12 +268,16 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         for (int i = 0; i < hn_map_x(map)->n; i++) {
             const hn_map_column *c = hn_map_get_column(map, m, i);
+
+            // the method and the value of the parameter
             hn_strbuf_add(b, "<tr><th scope=\"row\" class=\"m\">");
             hn_html_text(b, hn_map_method(map, m));
             hn_strbuf_printf(b,
                              hn_map_x(map)->name[0] ? "</th><td class=\"n\">%.4g</td>"
                                                     : "</th><td class=\"n\">–</td>",
                              hn_map_x(map)->value[i]);
+
+            // the predicted limit and the two steps that enclose the measured one
             const double list[] = {c->n_predicted ? c->predicted[0] : (double)NAN, c->stable,
                                    c->unstable};
             for (int k = 0; k < 3; k++) {
@@ -265,6 +285,8 @@ static void put_limits(hn_strbuf *b, const hn_map *map) {
                     b, isfinite(list[k]) ? "<td class=\"n\">%.4g</td>" : "<td class=\"n\">–</td>",
                     list[k]);
             }
+
+            // how the run ended beyond the boundary
             hn_strbuf_add(b, "<td>");
             hn_html_text(b, c->how);
             hn_strbuf_add(b, "</td></tr>\n");
@@ -294,6 +316,8 @@ static void put_head(hn_strbuf *b, const char *of) {
 void hn_map_html(hn_strbuf *b, const hn_map *map) {
     const hn_scene *scene = hn_model_scene(hn_map_model(map));
     const char *title = scene->title ? scene->title : scene->id;
+
+    // the heading, and how to read the map
     put_head(b, title);
     hn_strbuf_add(b, "<h1>");
     hn_html_text(b, title);
@@ -305,10 +329,14 @@ void hn_map_html(hn_strbuf *b, const hn_map *map) {
         "the loops, the strictest along the motion; the dotted one is where runs began to grow or "
         "ended. Point at a cell to read its outcome.</p>",
         hn_map_time(map), HN_STABILITY_LEAST_STEPS);
+
+    // the maps, and a table of limits where the step size is an axis
     put_sections(b, map);
     if (hn_map_y(map)->is_step) {
         put_limits(b, map);
     }
+
+    // the terms and thresholds used above
     hn_strbuf_printf(
         b,
         "<h2>What the words mean</h2><p class=\"quiet\">Error: the largest difference of the "

@@ -88,18 +88,24 @@ static void draw_axes(drawing *d, int m) {
     const double top = hn_map_field_top(m), bottom = top + HN_MAP_FIELD_HEIGHT;
     int at[8];
     char text[96];
+
+    // ticks of the vertical axis
     for (int k = 0, n = hn_map_ticks(y, at); k < n; k++) {
         const double here =
             (hn_map_row_edge(d->map, m, at[k]) + hn_map_row_edge(d->map, m, at[k] + 1)) / 2;
         snprintf(text, sizeof text, "%.3g", y->value[at[k]]);
         hn_canvas_text(d->c, HN_MAP_LEFT - 8, here + 4, TEXT_SIZE, HN_ALIGN_RIGHT, d->muted, text);
     }
+
+    // ticks of the horizontal axis, where there is one
     for (int k = 0, n = x->name[0] ? hn_map_ticks(x, at) : 0; k < n; k++) {
         const double here =
             (hn_map_column_edge(d->map, at[k]) + hn_map_column_edge(d->map, at[k] + 1)) / 2;
         snprintf(text, sizeof text, "%.3g", x->value[at[k]]);
         hn_canvas_text(d->c, here, bottom + 17, TEXT_SIZE, HN_ALIGN_CENTRE, d->muted, text);
     }
+
+    // both titles
     hn_map_axis_title(x, text);
     hn_canvas_text(d->c, HN_MAP_LEFT + HN_MAP_FIELD_WIDTH / 2.0, bottom + 36, TEXT_SIZE,
                    HN_ALIGN_CENTRE, d->ink, text);

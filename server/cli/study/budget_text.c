@@ -6,6 +6,8 @@
 static void put_errors(hn_strbuf *b, const hn_accounts *a) {
     hn_table t;
     hn_table_init(&t);
+
+    // columns: the error, the part of each cause, and their sum
     hn_table_column(&t, "method", 0);
     hn_table_column(&t, "error of", 0);
     hn_table_column(&t, "at the end", 1);
@@ -13,6 +15,8 @@ static void put_errors(hn_strbuf *b, const hn_accounts *a) {
         hn_table_column(&t, hn_cause_name((hn_cause)i), 1);
     }
     hn_table_column(&t, "their sum", 1);
+
+    // a line for each method that has an error at its end
     for (int m = 0; m < hn_accounts_n(a); m++) {
         const hn_account_row *row = hn_accounts_at(a, m);
         const hn_coordinate *c = hn_account_coordinate(hn_accounts_model(a), row);
@@ -28,6 +32,7 @@ static void put_errors(hn_strbuf *b, const hn_accounts *a) {
         }
         hn_table_quantity(&t, row->account.sum, unit);
     }
+
     hn_table_write(b, &t);
     hn_table_reset(&t);
 }
@@ -35,12 +40,16 @@ static void put_errors(hn_strbuf *b, const hn_accounts *a) {
 static void put_energies(hn_strbuf *b, const hn_accounts *a) {
     hn_table t;
     hn_table_init(&t);
+
+    // columns: the change of energy, and the part of each cause
     hn_table_column(&t, "method", 0);
     hn_table_column(&t, "to t", 1);
     hn_table_column(&t, "change", 1);
     for (int i = 0; i < HN_BILL_COUNT; i++) {
         hn_table_column(&t, hn_bill_name((hn_bill_item)i), 1);
     }
+
+    // a line for each method that has an account
     for (int m = 0; m < hn_accounts_n(a); m++) {
         const hn_account_row *row = hn_accounts_at(a, m);
         if (row->status != HN_OK) {
@@ -53,6 +62,7 @@ static void put_energies(hn_strbuf *b, const hn_accounts *a) {
             hn_table_quantity(&t, hn_account_part(row, 1, i), "J");
         }
     }
+
     hn_table_write(b, &t);
     hn_table_reset(&t);
 }

@@ -82,20 +82,27 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
     const command *c = user;
     const char *const word = c->args->words.word[0];
     char text[2][120];
+
+    // standard input cannot be read a second time
     if (strcmp(word, "-") == 0) {
         return hn_diags_add(diags, HN_ERR_INPUT, "/over", "write it into a file first",
                             "a scene from standard input can be read once only, and a map over a "
                             "parameter reads it for every value");
     }
+
+    // the options are large: the copy lives on the heap
     hn_args *args = malloc(sizeof *args);
     if (!args) {
         return hn_diags_add(diags, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     *args = *c->args;
+
+    // add the parameters of this map cell to those of --set
     for (int i = 0; i < n && args->set.n < HN_CLI_MAX_WORDS; i++) {
         snprintf(text[i], sizeof text[i], "%s=%.17g", parameters[i].name, parameters[i].value);
         args->set.word[args->set.n++] = text[i];
     }
+
     const hn_status status = hn_args_load_model(c->lib, args, word, 0, out, diags);
     free(args);
     return status;
@@ -195,20 +202,26 @@ static void report_end(const command *c, const hn_job_end *end) {
     }
 }
 
-/// Beside the forms of a kind: a part of a study, the plots of a report, a reference as it is
-/// shipped.
+/// Writes what a kind has besides its forms (a part of a study, the plots of a report, a reference
+/// as it is shipped), then the forms.
 static hn_exit write_job(const command *c, const hn_job *job) {
     const hn_args *args = c->args;
     const void *work = hn_job_work(job);
+
+    // a part of a study is written for a later merge
     if (hn_job_text(&c->request, "shard")) {
         return hn_write_part(args, work);
     }
+
+    // plots go to files beside the other output
     if (args->plots) {
         const hn_exit drawn = hn_write_plots(args, work);
         if (drawn != HN_EXIT_DONE) {
             return drawn;
         }
     }
+
+    // a reference with --out is saved in the form that lessons ship
     if (args->out && strcmp(c->kind->name, "reference") == 0) {
         const hn_reference_work *w = work;
         hn_diag diag = {0};

@@ -41,20 +41,28 @@ static hn_exit write_plot(const hn_args *args, const hn_report_plot *plot, int *
     char svg[700], png[700];
     hn_strbuf b;
     hn_strbuf_init(&b);
+
+    // a plot without content makes no file
     if (!hn_report_plot_svg(&b, plot)) {
         hn_strbuf_reset(&b);
         return HN_EXIT_DONE;
     }
+
+    // the names of both files
     if (snprintf(svg, sizeof svg, "%s/%s.svg", args->plots, plot->name) >= (int)sizeof svg ||
         snprintf(png, sizeof png, "%s/%s.png", args->plots, plot->name) >= (int)sizeof png) {
         hn_strbuf_reset(&b);
         return fail(args, args->plots, "the name of the folder is too long");
     }
+
+    // the SVG
     const hn_exit done = hn_cli_write_file(args, svg, &b);
     if (done != HN_EXIT_DONE) {
         return done;
     }
     ++*written;
+
+    // the PNG; if the converter is missing, later plots skip this step
     if (*converts) {
         const int converted = convert(svg, png);
         if (converted == 0) {

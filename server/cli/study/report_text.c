@@ -11,11 +11,15 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
     static const char *const heads[HN_REPORT_BANDS] = {"1e-3", "1e-6", "1e-9"};
     hn_table t;
     hn_table_init(&t);
+
+    // columns: a method and its cost for each accuracy
     hn_table_column(&t, "cheapest for an error of", 0);
     for (int i = 0; i < HN_REPORT_BANDS; i++) {
         hn_table_column(&t, heads[i], 0);
         hn_table_column(&t, "", 1);
     }
+
+    // a line for each scene; a scene without a study has dashes
     for (int i = 0; i < hn_report_n_scenes(r); i++) {
         const hn_report_scene *s = hn_report_scene_at(r, i);
         hn_table_cell(&t, "%s", hn_report_scene_id(s));
@@ -28,21 +32,27 @@ static void put_answers(hn_strbuf *b, const hn_report *r) {
             hn_table_quantity(&t, a.cost, a.by == HN_COST_TIME ? "s" : "op");
         }
     }
+
     hn_table_write(b, &t);
     hn_table_reset(&t);
 }
 
-/// A line a method, a column a scene; tables are as wide as they may be, the rest is in the files.
+/// Writes a table with a line for each method and a column for each scene, as many as a table can
+/// have; the other scenes are in the files.
 static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) {
     int left = 0;
     hn_table t;
     hn_table_init(&t);
+
+    // columns: the scenes that fit
     hn_table_column(&t, "smallest error of q", 0);
     const int n =
         hn_report_n_scenes(r) < HN_TABLE_COLUMNS - 1 ? hn_report_n_scenes(r) : HN_TABLE_COLUMNS - 1;
     for (int i = 0; i < n; i++) {
         hn_table_column(&t, hn_report_scene_id(hn_report_scene_at(r, i)), 0);
     }
+
+    // a line for each method
     for (int m = 0; m < hn_study_wp(any)->n_methods; m++) {
         hn_table_cell(&t, "%s", hn_study_wp(any)->methods[m].spelling);
         for (int i = 0; i < n; i++) {
@@ -51,6 +61,8 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
                 hn_table_cell(&t, "-");
                 continue;
             }
+
+            // the verdict, with the number of sizes left out
             const hn_verdict v = hn_report_find_verdict(s, m);
             if (v.skipped > 0 && v.done > 0) {
                 hn_table_cell(&t, "%s (%d left)", v.text, v.skipped);
@@ -60,9 +72,12 @@ static void put_verdicts(hn_strbuf *b, const hn_report *r, const hn_study *any) 
             }
         }
     }
+
     hn_strbuf_add(b, "\n");
     hn_table_write(b, &t);
     hn_table_reset(&t);
+
+    // explain the mark
     if (left) {
         hn_strbuf_add(b, "(1 left): so many finer sizes were left out to keep the budget\n");
     }

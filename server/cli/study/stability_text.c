@@ -70,9 +70,13 @@ static void put_legend(hn_strbuf *b) {
 static void put_limit(hn_table *t, const hn_map *map, int m) {
     const hn_map_column *c = hn_map_get_column(map, m, 0);
     const double predicted = c->n_predicted ? c->predicted[0] : (double)NAN;
+
+    // no boundary was found and the largest step is stable too
     const int stable_all =
         isnan(c->unstable) &&
         hn_stability_is_stable(hn_map_get(map, m, 0, hn_map_y(map)->n - 1)->trial.kind);
+
+    // the method, its predicted limit, and the largest stable step
     hn_table_cell(t, "%s", hn_map_method(map, m));
     hn_table_quantity(t, predicted, "s");
     if (c->stable == 0) {
@@ -81,12 +85,16 @@ static void put_limit(hn_table *t, const hn_map *map, int m) {
         hn_table_quantity(t, stable_all ? hn_map_y(map)->value[hn_map_y(map)->n - 1] : c->stable,
                           "s");
     }
+
+    // the smallest unstable step, and the ratio of boundary and prediction
     hn_table_quantity(t, c->unstable, "s");
     if (predicted > 0 && c->stable > 0) {
         hn_table_cell(t, "%.3f", sqrt(c->stable * c->unstable) / predicted);
     } else {
         hn_table_cell(t, "%s", "-");
     }
+
+    // how it ended
     hn_table_cell(t, "%.150s", c->how[0] ? c->how : stable_all ? "stable throughout" : "");
 }
 

@@ -179,20 +179,27 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp) {
     hn_braille c;
     range r;
     char low[HN_SI_TEXT], high[HN_SI_TEXT];
+
+    // nothing to draw where the points span no range
     if (!find_range(wp, &r)) {
         return;
     }
+
+    // draw every method on the canvas
     const char *unit = r.cost == HN_COST_TIME ? "s" : "op";
     hn_braille_init(&c, PLOT_COLUMNS, PLOT_ROWS);
     for (int m = 0; m < wp->n_methods; m++) {
         draw_method(&c, wp, &r, m);
     }
+
+    // the heading names both axes
     hn_strbuf_printf(b,
                      "\nError of the coordinates against %s (both logarithmic; %s: ended early)\n",
                      r.cost == HN_COST_TIME ? "CPU time" : "operations", FAILED_MARK);
+
+    // the rows, with a label where a whole decade begins
     int told = 1;
     for (int row = 0; row < PLOT_ROWS; row++) {
-        // a label where a whole decade begins
         const double top = r.error_high - (r.error_high - r.error_low) * row / PLOT_ROWS;
         const int decade = (int)floor(top);
         if (decade < told) {
@@ -204,6 +211,8 @@ static void put_plot(hn_strbuf *b, const hn_wp *wp) {
         hn_braille_row(b, &c, row);
         hn_strbuf_add(b, "\n");
     }
+
+    // the ends of the cost axis
     hn_si_format(pow(10, r.cost_low), unit, 2, low);
     hn_si_format(pow(10, r.cost_high), unit, 2, high);
     hn_strbuf_printf(b, "%*s%-*s%*s\n", AXIS_WIDTH + 1, "", PLOT_COLUMNS / 2, low, PLOT_COLUMNS / 2,
@@ -244,20 +253,28 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
     hn_race race;
     hn_table t;
     hn_wp_race(wp, hn_study_classes(study), kind, &race);
+
+    // no cost at which the methods can be compared: no table
     if (race.n == 0) {
         return;
     }
+
+    // columns: the costs at which the methods are compared
     hn_table_init(&t);
     hn_table_column(&t, "", 0);
     hn_table_column(&t, "for as many operations", 0);
     for (int i = 0; i < race.n; i++) {
         hn_table_column(&t, heads[i], 1);
     }
+
+    // the first line gives these costs
     hn_table_cell(&t, "%s", "");
     hn_table_cell(&t, "%s", "");
     for (int i = 0; i < race.n; i++) {
         hn_table_quantity(&t, race.cost[i], "op");
     }
+
+    // the error of each method at each cost
     for (int m = 0; m < wp->n_methods; m++) {
         hn_table_cell(&t, "%s", glyph_of(m));
         hn_table_cell(&t, "%s", wp->methods[m].spelling);
@@ -269,6 +286,8 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
             }
         }
     }
+
+    // the heading, then the table
     hn_strbuf_printf(b,
                      "\nWhat equal cost buys: the error of the %s (between measured points; "
                      "\xe2\x89\xa4: with fewer already; -: no point is as cheap)\n",
@@ -310,12 +329,13 @@ static void shorten_size(char spelling[HN_SPEC_MAX]) {
     }
 }
 
-/// Everything that did not come to the end, with why; what never began for the same reason once per
-/// method.
+/// Writes every run that did not reach the end, with its reason; runs of a method that never began,
+/// all for one reason, share a line.
 static void put_failures(hn_strbuf *b, const hn_wp *wp) {
     int any = 0;
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
+            // only runs that failed or were skipped; a repeated reason is written once
             const hn_wp_point *p = &wp->methods[m].point[k];
             if (p->state != HN_WP_FAILED && p->state != HN_WP_SKIPPED) {
                 continue;
@@ -323,11 +343,15 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             if (p->t_reached == 0 && told_before(wp, m, k)) {
                 continue;
             }
+
+            // the method with its size
             char spelling[HN_SPEC_MAX];
             hn_wp_spelling(wp, m, k, spelling);
             shorten_size(spelling);
             hn_strbuf_printf(b, "%s  %s %s", any++ ? "" : "\nNot at the end\n", glyph_of(m),
                              spelling);
+
+            // how far it came, and how many others share the reason
             if (p->t_reached > 0) {
                 hn_strbuf_printf(b, " ended at t = %.4g s", p->t_reached);
             }
@@ -335,6 +359,7 @@ static void put_failures(hn_strbuf *b, const hn_wp *wp) {
             if (others > 0) {
                 hn_strbuf_printf(b, " and %d other size%s", others, others == 1 ? "" : "s");
             }
+
             hn_strbuf_printf(b, ": %s\n", p->reason);
         }
     }
