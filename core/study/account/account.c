@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
-#include "study/account/account_internal.h"
+#include "study/account/account_back.h"
+#include "study/account/account_state.h"
 
 #include "linalg/dense.h"
 
@@ -124,15 +125,12 @@ static hn_status follow_aside(hn_books *b, double t, double h, const double *y) 
     return status == HN_OK ? follow_own(b, side, t, h, side->y) : status;
 }
 
-void hn_books_difference(const hn_books *b, const double *from, const double *to, double *out) {
+/// The displacement from one state to another, in q along the velocities and in v: out (nd).
+static void difference(const hn_books *b, const double *from, const double *to, double *out) {
     hn_system_difference(b->sys, from, to, out);
     for (int i = 0; i < b->info.nv; i++) {
         out[b->info.nv + i] = to[b->info.nq + i] - from[b->info.nq + i];
     }
-}
-
-double *hn_books_record(const hn_books *b, size_t k) {
-    return b->record + k * b->width;
 }
 
 static hn_status make_room(hn_books *b, hn_diag *diag) {
@@ -150,11 +148,6 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
     b->record = more;
     b->room = room;
     return HN_OK;
-}
-
-void hn_books_present(const hn_books *b, double *y) {
-    memcpy(y, b->steps->now.q, (size_t)b->info.nq * sizeof *y);
-    memcpy(y + b->info.nq, b->steps->now.v, (size_t)b->info.nv * sizeof *y);
 }
 
 /// Books one step: the run's, the two flows beside it, their differences and energies.
@@ -193,9 +186,9 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     r[0] = t;
     r[1] = h;
     hn_books_present(b, b->y);
-    hn_books_difference(b, after_own, unmended, part + HN_PART_TRUNCATION * b->nd);
-    hn_books_difference(b, b->flowed, after_own, part + HN_PART_FORMULATION * b->nd);
-    hn_books_difference(b, unmended, b->y, part + HN_PART_PROJECTION * b->nd);
+    difference(b, after_own, unmended, part + HN_PART_TRUNCATION * b->nd);
+    difference(b, b->flowed, after_own, part + HN_PART_FORMULATION * b->nd);
+    difference(b, unmended, b->y, part + HN_PART_PROJECTION * b->nd);
     const double e0 = energy_at(b, t, y), e1 = energy_at(b, t + h, b->flowed),
                  e2 = energy_at(b, t + h, after_own), e3 = energy_at(b, t + h, unmended),
                  e4 = energy_at(b, t + h, b->y);
@@ -207,13 +200,6 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     out->loop_work_abs += fabs(work);
     b->kept++;
     return HN_OK;
-}
-
-int hn_books_asked_to_stop(const hn_books *b, double share) {
-    if (b->opts->progress) {
-        b->opts->progress(b->opts->user, share);
-    }
-    return b->opts->stop && b->opts->stop(b->opts->user);
 }
 
 static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the end of a run back to its start: what each step's parts have become by then.
+#include "study/account/account_back.h"
+
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
-#include "study/account/account_internal.h"
 
 #include "linalg/dense.h"
 

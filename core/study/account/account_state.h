@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef HN_STUDY_ACCOUNT_INTERNAL_H
-#define HN_STUDY_ACCOUNT_INTERNAL_H
-// The inside of an account: account.c books the steps, account_back.c carries their parts to the
-// end.
+#ifndef HN_STUDY_ACCOUNT_STATE_H
+#define HN_STUDY_ACCOUNT_STATE_H
+// The state of an error budget while it is made: the record of the steps and the workspaces.
+// account.c fills the record from the start of the run to its end; account_back.c reads it from the
+// end back to the start.
 
 #include "dynamics/evaluate/accel.h"
 #include "dynamics/evaluate/linearise.h"
@@ -47,14 +48,10 @@ typedef struct hn_books {
     double v_min, v_max, t_max;
 } hn_books;
 
-/// Record of step k: t, h, y, parts.
+/// Returns the record of step k: t, h, y, parts.
 double *hn_books_record(const hn_books *b, size_t k);
-/// The displacement from one state to another, in q along the speeds and in v: out (nd).
-void hn_books_difference(const hn_books *b, const double *from, const double *to, double *out);
-/// The state the run has reached: y (ny).
+/// Copies the state that the run has reached: y (ny).
 void hn_books_present(const hn_books *b, double *y);
-/// Tells how far the account is, and asks whether to stop.
+/// Reports the share that is done (0 to 1) to the caller and returns 1 if the caller asks to stop.
 int hn_books_asked_to_stop(const hn_books *b, double share);
-/// Error at the end of the run, at time T, and where it comes from.
-HN_MUST_CHECK hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag);
 #endif
