@@ -31,7 +31,7 @@ double hn_account_part(const hn_account_row *row, int energy, int i) {
     return of_formulation && !a->has_equations ? (double)NAN : energy ? a->bill[i] : a->part[i];
 }
 
-// errors below it [rad or m] are what rounding leaves: no part of them means anything
+// smaller errors [rad or m] are rounding: their parts have no meaning
 static const double ROUNDING = 1e-11;
 
 double hn_account_mismatch(const hn_account_row *row) {
@@ -122,8 +122,8 @@ static void report_progress(void *user, double part) {
     hn_job_progress(&a->request.limits, "", (a->at + part) / a->n);
 }
 
-/// Finds until when the parts add up to the error: the end is halved until they do. Together these
-/// budgets take no longer than the first.
+/// Finds the time until which the parts add up to the error, by halving the end time until they do.
+/// Together these budgets take no longer than the first.
 static void find_horizon(hn_accounts *a, hn_account_row *row) {
     enum { MOST_HALVINGS = 5 };
     const hn_account_opts opts = {.stop = ask_stop, .user = a};
@@ -142,7 +142,7 @@ static void find_horizon(hn_accounts *a, hn_account_row *row) {
     row->holds_until = hn_account_holds(&shorter) ? T : (double)NAN;
 }
 
-/// 0 when it was stopped.
+/// Computes the budget of one method. Returns 0 when it was stopped.
 static int make_row(hn_accounts *a, hn_account_row *row) {
     const hn_account_opts opts = {.stop = ask_stop, .progress = report_progress, .user = a};
     hn_diag diag = {0};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ACCOUNTS_H
 #define HN_SESSION_ACCOUNTS_H
-// Where errors and energy come from, for several methods of one scene: study/account/account.h
-// method by method, as tables, documents and pictures. With a folder each account is kept as it is
-// made: the same request goes on behind the last whole one.
+// Error and energy budgets (study/account/account.h) of several methods on one scene, as tables,
+// documents and plots. With a folder each budget is kept when it is complete, so that the same
+// request continues after the last complete one.
 
 #include "session/job/job_request.h"
 #include "study/account/account.h"
@@ -17,13 +17,13 @@ typedef struct hn_account_row {
     char reason[HN_DIAG_MESSAGE]; ///< why there is none, or why the run ended early; "" else
     hn_account account;
     /// [s] latest of the times T, T/2, T/4 ... until which the parts add up to the error; NaN: not
-    /// looked for, or not found
+    /// searched, or not found
     double holds_until;
 } hn_account_row;
 #define HN_ACCOUNT_HOLDS 0.1 ///< difference of sum and error, over the larger: first order holds
 /// Returns |sum of the parts - error| over the larger of them; NaN: there is no error at the end.
 double hn_account_mismatch(const hn_account_row *row);
-/// Returns false where the parts do not add up to the error: first order has ended before.
+/// Returns false where the parts do not add up to the error: the error is beyond first order.
 bool hn_account_holds(const hn_account_row *row);
 enum { HN_ACCOUNT_NOTE = 200 };
 /// Writes the sentence that says so, with the sum and the time until which it held; "" where it
@@ -34,7 +34,7 @@ const char *hn_account_state(const hn_account_row *row);
 /// Coordinate whose error it is; NULL: there is no error at the end.
 const hn_coordinate *hn_account_coordinate(const hn_model *model, const hn_account_row *row);
 /// Part i of the error (energy = 0, of HN_CAUSE_COUNT) or of the energy (1, of HN_BILL_COUNT); NaN:
-/// it cannot be told.
+/// unknown.
 double hn_account_part(const hn_account_row *row, int energy, int i);
 
 typedef struct hn_accounts hn_accounts;
@@ -48,13 +48,13 @@ typedef struct hn_accounts hn_accounts;
 HN_MUST_CHECK hn_status hn_accounts_open(const hn_job_request *request, hn_accounts **out,
                                          hn_diags *diags);
 void hn_accounts_free(hn_accounts *accounts); ///< NULL is legal
-/// Computes the budgets that are not there. Returns 1 when all are; 0: stopped, or out of time. A
-/// method that has no budget stands with its reason.
+/// Computes the missing budgets. Returns 1 when all are complete; 0: stopped, or out of time. The
+/// row of a method without a budget gives the reason.
 int hn_accounts_run(hn_accounts *accounts);
 int hn_accounts_stopped(const hn_accounts *accounts),
     hn_accounts_out_of_time(const hn_accounts *accounts);
 
-int hn_accounts_resumed(const hn_accounts *accounts); ///< that were there
+int hn_accounts_resumed(const hn_accounts *accounts); ///< budgets kept from an earlier run
 int hn_accounts_n(const hn_accounts *accounts);
 const hn_account_row *hn_accounts_at(const hn_accounts *accounts, int i);
 const hn_model *hn_accounts_model(const hn_accounts *accounts);

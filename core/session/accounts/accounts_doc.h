@@ -11,8 +11,8 @@
 ///  "energy":{"change","swing","conservative","loops_back_and_forth","parts":{item: number}}}...]},
 /// energies in J; from "t" on only where there is a budget.
 void hn_accounts_json(hn_strbuf *b, const hn_accounts *accounts);
-/// A row a method, with a head; what cannot be told is empty.
+/// Writes a head and a row for each method; unknown values are empty cells.
 void hn_accounts_csv(hn_strbuf *b, const hn_accounts *accounts);
-/// One row as it stands in "methods".
+/// Writes one entry of "methods".
 void hn_account_put(hn_strbuf *b, const hn_model *model, const hn_account_row *row);
 #endif

@@ -37,7 +37,7 @@ static void put_head(hn_strbuf *b, int energy) {
                             : "</th><th class=\"n\">their sum</th></tr></thead>");
 }
 
-/// Nothing for a row without an account, or without an error at its end.
+/// Writes a line of the table; none for a row without an account or without an error at its end.
 static void put_row(hn_strbuf *b, const hn_accounts *a, const hn_account_row *row, int energy) {
     const hn_coordinate *c = hn_account_coordinate(a->model, row);
     const char *unit = energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";

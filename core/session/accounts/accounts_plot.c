@@ -16,7 +16,7 @@ enum { BAR_TOP = 58, BAR_ROW = 62, BAR = 24, FEWEST_PIXELS = 1, SAID_MOST = 4 };
 static const double LETTER = 6.6; // about the width of one in a label [px]
 static const double SAID = 0.01;  // parts below this share of the largest are not named
 
-/// The parts of one bar, whatever they are of.
+/// The parts of one bar, of an error or of an energy.
 typedef struct parts {
     int n;
     const char *name[HN_CAUSE_COUNT];
@@ -60,8 +60,8 @@ static void format_signed(double value, const char *unit, char out[SIGNED_TEXT])
     snprintf(out, SIGNED_TEXT, "%s%s", value < 0 ? "\xe2\x88\x92" : "+", text);
 }
 
-/// Positive parts to the right of the middle, negative ones to the left; `largest` fills half the
-/// width.
+/// Draws positive parts to the right of the middle, negative ones to the left; `largest` fills half
+/// the width.
 static void put_bar(hn_strbuf *b, const parts *p, double y, double largest) {
     const double middle = (LABELS + RIGHT) / 2.0, scale = (RIGHT - LABELS) / 2.0 / largest;
     double right = middle, left = middle;
@@ -98,7 +98,7 @@ static void put_bar(hn_strbuf *b, const parts *p, double y, double largest) {
     hn_strbuf_printf(b, "<path class=\"axis\" d=\"M%.1f %.1fV%.1f\"/>", middle, y - 4, y + BAR + 4);
 }
 
-/// The largest few in words, under the bar: for paper, and for what is too narrow to see.
+/// Writes the largest few parts under the bar, for paper and for parts too narrow to see.
 static void put_words(hn_strbuf *b, const parts *p, double y, double largest) {
     int said[HN_CAUSE_COUNT] = {0};
     hn_strbuf_printf(b, "<text x=\"%d\" y=\"%.1f\" class=\"note\">", LABELS, y);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ACCOUNTS_ACCOUNTS_PLOT_H
 #define HN_SESSION_ACCOUNTS_ACCOUNTS_PLOT_H
-// The picture of accounts: a bar a method, a block a part.
+// The plot of budgets: a bar for each method, a block for each part.
 
 #include "session/accounts/accounts.h"
 

@@ -10,7 +10,7 @@
 
 enum { FORMAT = 2 }; // counts up when the meaning of a line changes
 
-/// All that decides what the accounts are.
+/// Hashes everything that the accounts depend on.
 static uint64_t accounts_key(const hn_accounts *a) {
     const hn_scene *scene = hn_model_scene(a->model);
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene->hash, sizeof scene->hash);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trials run, and what is seen compared with what is predicted.
+// Runs the trials of the extreme matrix and compares results with predictions.
 #include "session/extreme/extreme_internal.h"
 #include "session/extreme/extreme_model.h"
 #include "session/extreme/extreme_store.h"
@@ -18,7 +18,8 @@ int hn_extreme_is_stopped(void *user) {
            (bench->deadline > 0 && hn_clock_wall() > bench->deadline);
 }
 
-/// `whole`: its share of the matrix. 0 when it was stopped: half a trial says nothing.
+/// Runs one trial; `whole` is its share of the matrix. Returns 0 when it was stopped: a trial that
+/// is not complete has no result.
 static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t, double whole) {
     const int n = t->n_scenes * t->n_methods;
     for (int i = 0; i < n; i++) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_H
 #define HN_SESSION_EXTREME_H
-// The extreme matrix: cases in which a method is known to break, or must not, each a data file with
-// what theory says will be seen, and where that is written. What is measured is a table here; what
-// is expected stands in the files alone.
+// The extreme matrix: cases in which a method is known to fail, or must not fail. Each case is a
+// data file with the prediction of theory and its source. The quantities that can be measured are
+// tables in the program; predictions are in the files alone.
 //
 // A case holds trials. A trial runs a scene by some methods (or hands its saddle system to some
 // solvers) for every value of one swept name, takes one quantity from each run, reduces the
@@ -47,7 +47,7 @@ const char *hn_extreme_verdict_name(hn_extreme_verdict verdict);
 /// What is predicted: a band for a number, or a word for an outcome.
 typedef struct hn_extreme_expect {
     const char *word; ///< NULL: a number
-    const char *says; ///< that the reason of the outcome must hold, or NULL
+    const char *says; ///< text that the reason of the outcome must contain, or NULL
     double low, high; ///< band; one side may be infinite
     double warn_low, warn_high;
     /// the number is the ratio to the limit that the spectrum of the scene gives
@@ -103,11 +103,11 @@ typedef struct hn_extreme_trial {
     double values[HN_EXTREME_SWEEP];
     hn_extreme_number time;
     const char *coordinate, *incident;
-    double scale; ///< that numbers are divided by; 1
+    double scale; ///< numbers are divided by it; default 1
     double
         limit[2]; ///< of a search for the largest stable step [s]; {0, 0}: about the predicted one
     double max_steps; ///< 0: no bound of its own
-    double steps;     ///< that a step size is tried for
+    double steps;     ///< number of steps for which a step size is tried
     int is_long;      ///< run only when asked for
     hn_extreme_expect expect;
     // what was seen
@@ -136,9 +136,9 @@ typedef struct hn_extreme {
     int stopped, out_of_time;
 } hn_extreme;
 
-/// Runs all trials that are not done; those that were stopped, or left out by the time limit, say
-/// so. A trial that is begun is ended by the limit. `run_long`: also the trials that run for
-/// minutes.
+/// Runs all trials that are not done. Trials that were stopped or left out by the time limit stay
+/// "not run"; the limit also ends the trial that is running. `run_long`: also runs the trials that
+/// take minutes.
 void hn_extreme_run(hn_extreme *x, const hn_job_limits *limits, bool run_long);
 int hn_extreme_count(const hn_extreme *x, hn_extreme_verdict verdict); ///< trials
 

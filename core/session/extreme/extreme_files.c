@@ -97,7 +97,7 @@ static hn_status read_file(hn_extreme *x, const char *folder, const char *name, 
     return status;
 }
 
-/// An id that no file has is told.
+/// Reports an id for which there is no file.
 static hn_status check_ids(struct dirent **entries, int n, const char *const *ids, int n_ids,
                            hn_diags *diags) {
     for (int i = 0; i < n_ids; i++) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_INTERNAL_H
 #define HN_SESSION_EXTREME_INTERNAL_H
-// The inside of the extreme matrix: extreme_files.c and extreme_read*.c (files, see
-// extreme_reader.h), extreme_store.c (what is kept), extreme.c (trials and verdicts),
+// The types that the files of the extreme matrix share: extreme_files.c and extreme_read*.c (files,
+// see extreme_reader.h), extreme_store.c (journal), extreme.c (trials and verdicts),
 // extreme_model.c (scene and start of a point), extreme_walk.c (a run), extreme_quantity.c and
 // extreme_measure.c (the two tables), extreme_solve.c, extreme_stable.c (measures with a loop of
 // their own).
@@ -20,7 +20,7 @@ typedef struct hn_extreme_point {
     double value;       ///< of the swept name
 } hn_extreme_point;
 
-/// What lasts while trials run: the model last loaded, its exact end, who may stop it.
+/// State kept from trial to trial: the model last loaded, its exact end state, and the limits.
 typedef struct hn_extreme_bench {
     const hn_library *lib;
     const hn_job_limits *limits;
@@ -40,10 +40,10 @@ typedef struct hn_extreme_bench {
     double *truth_q, *truth_v, *truth_lambda;
 } hn_extreme_bench;
 
-/// Tells how far it is, and asks whether to stop: as the `stop` of a walk.
+/// Reports progress and returns 1 when the job must stop; serves as the `stop` of a walk.
 int hn_extreme_is_stopped(void *bench);
 
-/// A run at its end, and what was seen on its way.
+/// A run that has ended, with what was measured on the way.
 typedef struct hn_extreme_look {
     hn_extreme_bench *bench;
     const hn_extreme_point *point;
@@ -76,7 +76,7 @@ enum {
     HN_EXTREME_WATCHED = 256    ///< needs the run's watch
 };
 
-/// An answer of a solver beside the exact one.
+/// The errors of a solver's answer against the exact answer.
 typedef struct hn_extreme_answer {
     hn_status status;
     int nv, nc;
@@ -99,7 +99,7 @@ typedef struct hn_extreme_measure {
     const char *name, *about;
     int takes_quantity, takes_sweep; ///< 1 must, 0 must not, -1 may
     int gives_word;
-    /// One number or outcome for a scene and a method.
+    /// Measures one number or outcome for a scene and a method.
     void (*see)(hn_extreme_bench *bench, const hn_extreme_trial *trial,
                 const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out);
 } hn_extreme_measure;

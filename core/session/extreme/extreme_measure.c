@@ -20,7 +20,7 @@ static int fits(const hn_extreme_expect *e, const char *word, const char *reason
     return same && (!e->says || strstr(reason, e->says));
 }
 
-/// How one point ended.
+/// Returns how the run (or the solve) of one point ended, with the reason.
 static hn_status end_of(hn_extreme_bench *bench, const hn_extreme_point *point, char reason[200]) {
     if (point->trial->solvers) {
         hn_extreme_answer answer;
@@ -40,8 +40,8 @@ static hn_status end_of(hn_extreme_bench *bench, const hn_extreme_point *point, 
     return status;
 }
 
-/// The word of all points of the sweep, or the first that is another than expected; value: the
-/// share that is as expected.
+/// Gives the common outcome of all points of the sweep, or the first that differs from the
+/// prediction; value is the share of points with the predicted outcome.
 static void see_outcome(hn_extreme_bench *bench, const hn_extreme_trial *trial,
                         const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out) {
     const int n = trial->n_sweep > 0 ? trial->n_sweep : 1;
@@ -67,7 +67,8 @@ static void see_outcome(hn_extreme_bench *bench, const hn_extreme_trial *trial,
 
 // numbers ----
 
-/// The quantity at every value of the sweep; 0 with a reason in out when one is missing.
+/// Measures the quantity at every value of the sweep. Returns 0, with a reason in out, when one is
+/// missing.
 static int see_sweep(hn_extreme_bench *bench, const hn_extreme_trial *trial,
                      const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out,
                      double *y) {

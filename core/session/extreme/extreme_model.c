@@ -104,12 +104,12 @@ void hn_extreme_bench_clear(hn_extreme_bench *bench) {
     bench->scene = NULL;
 }
 
-/// 1 when a scene that cannot be assembled is of use all the same.
+/// Returns 1 when the trial can use a scene whose loops cannot be closed.
 static int may_be_open(const hn_extreme_trial *t) {
     return t->of && (t->of->needs & HN_EXTREME_MODEL);
 }
 
-/// 1 when the model at hand is that of these settings.
+/// Returns 1 when the loaded model already has these settings.
 static int is_loaded(const hn_extreme_bench *bench, const hn_extreme_point *point,
                      const hn_setting *settings) {
     const hn_extreme_trial *t = point->trial;
@@ -172,7 +172,8 @@ const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point
 
 // starts ----
 
-/// The least change, weighted by mass, that takes row `row` to `gap` and its rate to `speed`.
+/// Moves (q, v) by the least change in the mass metric that takes constraint `row` to `gap` and its
+/// rate to `speed`.
 static hn_status open_row(const hn_system *sys, const hn_extreme_trial *t, hn_arena *arena,
                           double *q, double *v) {
     enum { ROUNDS = 6 }; // enough for Newton's method: the start is closed and the gap small

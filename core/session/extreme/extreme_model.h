@@ -6,7 +6,7 @@
 
 #include "session/extreme/extreme_internal.h"
 
-/// Value of a number at a point; HN_ERR_INPUT (told in diags) for a formula that has none.
+/// Value of a number at a point; HN_ERR_INPUT (reported in diags) where a formula has none.
 HN_MUST_CHECK hn_status hn_extreme_value(const hn_extreme_number *number, const char *name,
                                          double value, double *out, hn_diags *diags);
 /// The method's spelling with its {formulas} filled in.

@@ -18,7 +18,7 @@ static int n_user(const hn_extreme_look *look) {
     return hn_system_get_info(hn_model_system(look->model)).n_user;
 }
 
-/// Place of a coordinate among the user coordinates, by its own name (or its rate's); -1.
+/// Returns the index of a user coordinate, by its name or the name of its rate; -1: none.
 static int find_coordinate(const hn_extreme_look *look, const char *name) {
     const hn_system *sys = hn_model_system(look->model);
     const hn_scene *scene = hn_model_scene(look->model);
@@ -41,7 +41,7 @@ static double largest_difference(const double *x, const double *y, int n) {
 
 // errors ----
 
-/// Of the coordinates that the truth names, or all.
+/// Returns the largest error of the coordinates that the truth names, or of all.
 static double error_q(const hn_extreme_look *look) {
     const hn_extreme_trial *t = look->point->trial;
     double worst = 0;
@@ -154,9 +154,9 @@ static double per_step_ringing(const hn_extreme_look *look) {
     return exp(log(ringing(look)) / (0.9 * steps(look)));
 }
 
-// what is met ----
+// states and incidents ----
 
-/// The coordinate or rate of that name at the last good state.
+/// Returns the coordinate or rate of that name at the last good state.
 static double coordinate(const hn_extreme_look *look) {
     const int k = find_coordinate(look, look->point->trial->coordinate);
     const hn_scene *scene = hn_model_scene(look->model);

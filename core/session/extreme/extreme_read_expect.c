@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define WARN_TOLERANCES 3.0 // a number is warned of up to so many tolerances
-#define WARN_FACTOR 10.0    // and behind a one-sided bound up to this factor
+#define WARN_TOLERANCES 3.0 // a number outside gives "warn" up to this many tolerances
+#define WARN_FACTOR 10.0    // and beyond a one-sided bound up to this factor
 
 static void set_band(hn_extreme_expect *e, double low, double high, double tolerance) {
     e->low = low;
@@ -20,8 +20,8 @@ static void set_band(hn_extreme_expect *e, double low, double high, double toler
     e->warn_high = high + (WARN_TOLERANCES - 1) * tolerance;
 }
 
-/// A bound on one side: a factor beyond it is warned of; where the bound is 0 there is nothing to
-/// warn of.
+/// Sets a one-sided bound; results within WARN_FACTOR beyond it give "warn". A bound of 0 has no
+/// such range.
 static void set_bounds(hn_extreme_expect *e, double low, double high) {
     e->low = low;
     e->high = high;

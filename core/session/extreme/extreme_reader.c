@@ -134,8 +134,8 @@ int hn_xr_flag(hn_xr *r, const cJSON *object, const char *key) {
     return cJSON_IsTrue(m);
 }
 
-/// A number, or a formula in the swept name; that it has a value is checked at the sweep's first
-/// one.
+/// Reads a number, or a formula in the swept name; checks that the formula has a value at the first
+/// value of the sweep.
 hn_extreme_number hn_xr_formula(hn_xr *r, const cJSON *m, const char *key,
                                 const hn_extreme_trial *trial, double low, double high) {
     hn_extreme_number number = {0};
@@ -179,7 +179,7 @@ int hn_xr_assigns(hn_xr *r, const cJSON *object, const char *key, const hn_extre
     return n;
 }
 
-/// One text under `one`, or a list of them under `many`.
+/// Reads one text under `one`, or a list of texts under `many`. Returns how many.
 int hn_xr_texts(hn_xr *r, const cJSON *object, const char *one, const char *many,
                 const char **out) {
     const cJSON *node = hn_xr_get(object, many), *m;

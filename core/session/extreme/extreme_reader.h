@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_READER_H
 #define HN_SESSION_EXTREME_READER_H
-// What the readers of the extreme matrix's files share: where they are, what is wrong, values in
-// bounds.
+// Helpers for reading the files of the extreme matrix: the place in the file, faults, and values
+// within bounds.
 
 #include "session/extreme/extreme_internal.h"
 
@@ -24,7 +24,7 @@ typedef struct hn_xr {
 
 #define HN_XR_FIELDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/// A fault at the present place, or at its member `key`.
+/// Reports a fault at the present place, or at its member `key`.
 void hn_xr_fault(hn_xr *r, const char *key, const char *hint, const char *format, ...)
     HN_PRINTF(4, 5);
 /// Steps into a member, or an entry of it (index -1: the member); returns what hn_xr_leave() wants.
@@ -32,7 +32,7 @@ size_t hn_xr_enter(hn_xr *r, const char *key, int index);
 void hn_xr_leave(hn_xr *r, size_t mark);
 /// "did you mean 'x'?", or the list of what there is.
 void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const *names, int n);
-/// 1 for an object; members that are not among `fields`, or come twice, are faults.
+/// Returns 1 for an object; members not among `fields`, or given twice, are reported as faults.
 int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields);
 
 const cJSON *hn_xr_get(const cJSON *object, const char *key);

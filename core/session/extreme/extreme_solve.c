@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// twice the digits of double, or what the machine has most of
+// twice the digits of double, or the widest type of the machine
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 wide;
 #else
@@ -73,7 +73,7 @@ static void swap_columns(table *k, int a, int b) {
     k->column[b] = keep;
 }
 
-/// Moves the largest entry of what is left to (at, at); its size.
+/// Moves the largest entry of the remaining block to (at, at). Returns its size.
 static double pivot(table *k, int at) {
     int row = at, column = at;
     for (int i = at; i < k->n; i++) {
@@ -121,7 +121,7 @@ static void eliminate(table *k, wide x[MOST_UNKNOWNS]) {
     }
 }
 
-/// Powers of two that bring each row and column of the symmetric K near 1.
+/// Finds powers of two that scale each row and column of the symmetric K to about 1.
 static void find_scales(const table *k, double *scale) {
     for (int i = 0; i < k->n; i++) {
         scale[i] = 1;

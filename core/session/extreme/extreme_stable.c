@@ -15,12 +15,13 @@
 #include <stdio.h>
 #include <string.h>
 
-// between the second and the last quarter of the steps: grows. A neutral motion stays below
+// growth from the second to the last quarter of the steps above which a motion counts as growing; a
+// neutral motion stays below
 #define GROWN 1.01
-// of the first quarter's rates: what is left is rounding, and may go up and down
+// a motion below this share of the first quarter's rates is rounding noise and has decayed
 #define DECAYED 1e-6
-#define BRACKET 1.6       // times the predicted limit, both ways, is searched
-#define SMALL_STEP 1e-9   // [s], for a method that is only looked at
+#define BRACKET 1.6       // the search goes this factor below and above the prediction
+#define SMALL_STEP 1e-9   // [s], for a run that is never stepped
 #define SAME_LIMIT 2.5e-4 // relative width at which the search ends
 
 static int fail(hn_extreme_seen *out, hn_status status, const char *reason) {
@@ -30,7 +31,7 @@ static int fail(hn_extreme_seen *out, hn_status status, const char *reason) {
     return 0;
 }
 
-/// A trial that is the same but for its swept name: the step, searched for.
+/// Returns the same trial with the step size as its swept name.
 static hn_extreme_trial with_step(const hn_extreme_trial *trial) {
     hn_extreme_trial t = *trial;
     t.sweep = "h";
@@ -39,7 +40,8 @@ static hn_extreme_trial with_step(const hn_extreme_trial *trial) {
 
 // the largest stable step ----
 
-/// Largest rates over each quarter of the steps; 0 when the run ended early or was stopped.
+/// Finds the largest rate in each quarter of the steps. Returns 0 when the run ended early or was
+/// stopped.
 static int walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long steps,
                          double most[4]) {
     for (long long k = 1; k <= steps; k++) {
@@ -89,7 +91,8 @@ static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
     return whole && held && (most[3] <= GROWN * most[1] || most[3] <= DECAYED * most[0]);
 }
 
-/// Narrows [low, high], stable and not, to the limit.
+/// Narrows the interval from a stable `low` to an unstable `high` down to the limit. Returns 0 when
+/// there is none (reason in out).
 static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, double high,
                   hn_extreme_seen *out) {
     // the interval must enclose the limit
@@ -192,7 +195,7 @@ void hn_extreme_see_lyapunov(hn_extreme_bench *bench, const hn_extreme_trial *tr
                              const hn_extreme_scene *scene, const char *method,
                              hn_extreme_seen *out) {
     hn_extreme_trial still = *trial;
-    still.time = (hn_extreme_number){0}; // the look stands at its start
+    still.time = (hn_extreme_number){0}; // the run stays at its start
     const hn_extreme_point point = {&still, scene, method, 0};
     const hn_walk_limits limits = {.stop = ask_bench, .user = bench};
     hn_extreme_look look;

@@ -22,7 +22,7 @@ static hn_status hash_file(const char *path, uint64_t *hash, hn_diags *diags) {
     return status;
 }
 
-/// All that decides what is seen: the files of the cases, the shipped scenes they name.
+/// Hashes everything that results depend on: the files of the cases and the scenes they name.
 static hn_status find_key(const hn_extreme *x, uint64_t *key, hn_diags *diags) {
     uint64_t hash = hn_hash_double(x->hash, FORMAT);
     const char *last = "";

@@ -66,7 +66,8 @@ static hn_extreme_verdict judge_number(const hn_extreme_expect *e, double value)
     return value >= e->warn_low && value <= e->warn_high ? HN_EXTREME_WARN : HN_EXTREME_FAIL;
 }
 
-/// The worst of all numbers; of words all, some, or none are as expected.
+/// Returns the worst verdict of all numbers; for words: pass, warn or fail where all, some or none
+/// are as predicted.
 static hn_extreme_verdict judge(const hn_extreme_trial *t) {
     hn_extreme_verdict worst = HN_EXTREME_PASS;
     double share = 0;

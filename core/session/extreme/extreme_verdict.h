@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_EXTREME_VERDICT_H
 #define HN_SESSION_EXTREME_EXTREME_VERDICT_H
-// What is said of a trial: the outcome of a run in a word, the numbers against what is predicted.
+// Verdicts: the outcome of a run as a word, and numbers compared with predictions.
 
 #include "session/extreme/extreme.h"
 

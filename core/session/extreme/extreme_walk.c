@@ -168,7 +168,7 @@ static hn_status use_truth(hn_extreme_look *look) {
         look->truth_lambda = look->bench->truth_lambda;
         return status;
     }
-    return HN_OK; // given by name: see the quantity
+    return HN_OK; // the trial gives exact values by name; the quantity reads them
 }
 
 void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *point, unsigned needs,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_EXTREME_EXTREME_WALK_H
 #define HN_SESSION_EXTREME_EXTREME_WALK_H
-// One run of a point, from its start to its time, with what was seen on the way.
+// One run of a point, from its start to its end time, with what is measured on the way.
 
 #include "session/extreme/extreme_internal.h"
 

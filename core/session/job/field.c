@@ -200,7 +200,7 @@ static hn_status report_unknown(const char *name, const hn_field *fields, const 
     return hn_diags_add(diags, HN_ERR_INPUT, pointer, hint, "there is no field '%.60s' here", name);
 }
 
-/// One member of the object; `seen` has a bit for each field that came before.
+/// Checks one member of the object; `seen` has a bit for each field that came before.
 static hn_status check_one(const cJSON *item, const hn_field *fields, const char *parent,
                            bool served, uint32_t *seen, hn_diags *diags) {
     char pointer[HN_DIAG_POINTER];
@@ -228,13 +228,13 @@ hn_status hn_fields_check(const cJSON *object, const hn_field *fields, const cha
     cJSON_ArrayForEach(item, object) {
         const hn_status one = check_one(item, fields, parent, served, &seen, diags);
         status = one != HN_OK ? one : status;
-        // whoever sends more faults than are listed gets no more work out of this
+        // no further checks once the list of faults is full
         if (diags->found >= HN_DIAG_MAX) {
             return status;
         }
     }
 
-    // nothing that is required is missing
+    // every required field is there
     for (const hn_field *f = fields; f->name; f++) {
         if (f->required && !(seen & UINT32_C(1) << (f - fields))) {
             char pointer[HN_DIAG_POINTER];

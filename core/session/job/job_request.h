@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_JOB_REQUEST_H
 #define HN_SESSION_JOB_REQUEST_H
-// What a long job is asked: the scenes, the methods, the values of its own fields (field.h), and
-// how it is bounded. All kinds of jobs share this one request; session/kinds/job.h lists the kinds.
+// The request of a long job: the scenes, the methods, the values of its own fields (field.h), and
+// its limits. All kinds of jobs share this one request; session/kinds/job.h lists the kinds.
 
 #include "integrators/method/method_spec.h"
 #include "session/job/field.h"
@@ -10,7 +10,7 @@
 
 enum { HN_JOB_METHODS = 24, HN_JOB_SCENES = 12, HN_JOB_VALUES = 8 };
 
-/// How a job is bounded, where it keeps unfinished work, whom it reports to.
+/// The limits of a job, the folder for unfinished work, and the callbacks for stop and progress.
 typedef struct hn_job_limits {
     double time_limit;       ///< wall time [s]; NaN: the kind's own default; 0: none
     const char *folder;      ///< for references and unfinished work; NULL: nothing is kept
@@ -21,7 +21,7 @@ typedef struct hn_job_limits {
     void *user;
 } hn_job_limits;
 
-/// A choice of what a job is over, by name.
+/// A preset of a job, chosen by name.
 typedef struct hn_job_preset {
     const char *name, *about;
     const char *chooses; ///< options of methods that the job sets itself, separated by blanks

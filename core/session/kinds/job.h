@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_JOB_H
 #define HN_SESSION_JOB_H
-// The registry of long jobs: what takes seconds to minutes, keeps unfinished work, and ends in
+// The registry of long jobs: they take seconds to minutes, keep unfinished work, and produce
 // documents. A kind is one file (kind_NAME.c) and one row of the list in job.c. The command line,
 // the server and, through the index of the API, the page read what they need from the row.
 
@@ -24,7 +24,7 @@ typedef struct hn_job_form {
 typedef struct hn_job_end {
     bool stopped;     ///< on request
     bool out_of_time; ///< the time limit left something out
-    bool differs;     ///< it is whole, and something is not as it was expected
+    bool differs;     ///< it is complete, and a result differs from its prediction
 } hn_job_end;
 
 typedef struct hn_job_kind {
@@ -42,7 +42,7 @@ typedef struct hn_job_kind {
     /// owned in *work. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_IO and others, reported in diags.
     hn_status (*open)(const hn_job_request *request, void **work, hn_diags *diags);
     int (*resumed)(const void *work); ///< pieces taken up; NULL: none ever
-    /// Does what is left. Fails: reported in diags; there is then no document.
+    /// Computes the remaining pieces. Fails: reported in diags; there is then no document.
     hn_status (*run)(void *work, const hn_job_request *request, hn_job_end *end, hn_diags *diags);
     void (*release)(void *work);
 } hn_job_kind;

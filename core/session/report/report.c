@@ -17,21 +17,21 @@ static const double ACCOUNT_STEP = 4;              // times the scene's
 static const double NO_LIMIT = 1e9;                // [s]
 static const double FIRST_RTOL = 3, LAST_RTOL = 9; // powers of ten, where survival is counted
 
-// one loop; two motors; poses that lose ranks; a closed benchmark; stiff springs on moving ground;
-// space
+// in order: one loop; two motors; singular poses; a benchmark with several loops; stiff springs on
+// moving ground; a mechanism in space
 static const char *const SCENES[] = {
     "fb0", "five-bar", "n-four-bar", "seven-body-squeezer", "car-axis", "stewart-6-6",
 };
 
-// one that drifts, one that is held back, one that is put back
+// a method whose constraints drift, one with stabilised constraints, one with projected ones
 static const char *const ACCOUNTED[HN_REPORT_ACCOUNTS] = {
     "index1@rk4",
     "baumgarte@rk4",
     "projection@rk4",
 };
 
-// in which order sizes are tried, so that what a budget leaves is spread evenly: prime to
-// HN_REPORT_SIZES
+// sizes are tried with this stride, so that those a budget leaves out are spread evenly; it has no
+// common factor with HN_REPORT_SIZES
 enum { STRIDE = 7 };
 
 const char *const *hn_report_standard(int *n) {
@@ -39,7 +39,7 @@ const char *const *hn_report_standard(int *n) {
     return SCENES;
 }
 
-// telling and asking ----
+// progress and limits ----
 
 static double elapsed(const hn_report *r) {
     return hn_clock_wall() - r->started;
@@ -59,7 +59,7 @@ static int ask_stop(void *user) {
     return r->stopped;
 }
 
-/// The same, and when the time for this part of a scene is over.
+/// Returns 1 when asked to stop, or when the time for this part of a scene is over.
 static int ask_end(void *user) {
     hn_report *r = user;
     return ask_stop(r) || hn_clock_wall() > r->until;
@@ -147,8 +147,8 @@ static void account(hn_report *r, hn_report_scene *s) {
     }
 }
 
-/// Whether the motion passes near singular poses: a run that puts itself back after each step looks
-/// out for them.
+/// Finds whether the motion passes near singular poses: a run with projection after each step
+/// monitors them.
 static void find_singular(hn_report *r, hn_report_scene *s) {
     const double T = hn_study_wp(s->study)->ref->T;
     hn_method_spec spec;
@@ -161,7 +161,7 @@ static void find_singular(hn_report *r, hn_report_scene *s) {
                       NULL, &run, &diag) != HN_OK) {
         return;
     }
-    // how it ends is told by its incidents
+    // an early end is recorded in the incidents of the run
     while (hn_run_time(run) < T && !ask_end(r) && hn_run_step(run) == HN_OK) {}
     s->singular = hn_run_passed_singular(run, &s->singular_at);
     hn_run_free(run);
@@ -228,7 +228,7 @@ static void make_scene(hn_report *r, double seconds) {
     }
     r->until = hn_clock_wall() + SURVIVAL_SHARE * seconds;
     find_singular(r, s);
-    // where there is nothing to survive its time goes to the accounts, which take long in space
+    // without singular poses the time for survival goes to the accounts, which are slow in space
     const double share = s->singular ? ACCOUNT_SHARE : ACCOUNT_SHARE + SURVIVAL_SHARE;
     r->until = hn_clock_wall() + share * seconds;
     account(r, s);
@@ -254,7 +254,7 @@ static hn_status complete(hn_job_request *q, hn_diags *diags) {
     return hn_job_complete(q, DEFAULT_LIMIT, HN_WP_METHODS, specs, diags);
 }
 
-/// Time for the present scene: an even share of what is left.
+/// Returns the time for the present scene: an even share of the time left.
 static double share_of(const hn_report *r) {
     const double limit = r->request.limits.time_limit;
     return limit > 0 ? fmax(1, (limit - elapsed(r)) / (r->n - r->at)) : NO_LIMIT;
@@ -284,7 +284,7 @@ hn_status hn_report_run(hn_report *r, hn_diags *diags) {
         make_scene(r, share_of(r));
     }
 
-    // a report that is whole needs nothing of its studies any more
+    // a complete report no longer needs the kept studies
     for (int i = 0; i < r->n && !r->stopped; i++) {
         if (r->scenes[i].study) {
             hn_study_forget(r->scenes[i].study);

@@ -9,9 +9,9 @@
 // the other core would share its caches and its clock, and times would be those of the pair. What a
 // scene does not use of its share goes to those after it.
 //
-// Studies are kept in the folder as they are made, finished ones too, until the report is whole:
-// the same request goes on where it was interrupted. Accounts and survivals take seconds and are
-// made anew.
+// Studies, finished ones too, are kept in the folder until the report is complete, so that the same
+// request continues where it was interrupted. Accounts and survivals take seconds and are made
+// anew.
 
 #include "session/accounts/accounts.h"
 #include "session/precision/study.h"
@@ -32,13 +32,13 @@ typedef struct hn_report hn_report;
 /// Fails:   HN_ERR_INPUT and HN_ERR_LIMIT (the request), HN_ERR_MEMORY. All reported in diags.
 HN_MUST_CHECK hn_status hn_report_open(const hn_job_request *request, hn_report **out,
                                        hn_diags *diags);
-/// Computes it. A scene that cannot be studied stands in it with its reason. Fails: HN_ERR_MEMORY,
-/// reported in diags.
+/// Computes the report. A scene that cannot be studied is listed with its reason. Fails:
+/// HN_ERR_MEMORY, reported in diags.
 HN_MUST_CHECK hn_status hn_report_run(hn_report *report, hn_diags *diags);
 void hn_report_free(hn_report *report); ///< NULL is legal
 
 // what is in it
-/// Of one method: what it did with so many sizes.
+/// The runs of one method with a number of step sizes.
 typedef struct hn_strip {
     int n; ///< sizes that were tried; 0: none, `reason` says why
     double size[HN_REPORT_SIZES];
@@ -64,9 +64,10 @@ int hn_report_stopped(const hn_report *report);    ///< 1: on request
 /// Sizes that a method survived, of strip->n.
 int hn_strip_survived(const hn_strip *strip);
 
-/// Who reaches an accuracy for the least: by time where that may be ranked, else by operations.
+/// The cheapest method that reaches an accuracy: by time where times may be ranked, else by
+/// operations.
 typedef struct hn_report_answer {
-    int method; ///< -1: nobody reaches it
+    int method; ///< -1: no method reaches it
     double cost;
     hn_cost_kind by;
     int n_alike; ///< by operations alone: others as cheap

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_REPORT_DOC_H
 #define HN_SESSION_REPORT_REPORT_DOC_H
-// The whole of a report as JSON.
+// A report as JSON.
 
 #include "session/report/report.h"
 

@@ -35,7 +35,7 @@ static const char STYLE[] =
     ".scroll>svg,.plot>svg{min-width:640px}section>details{margin:12px 0}"
     "@media (max-width:760px){main{padding:16px 12px 48px}"
     ".bars{position:static}.names{font-size:12px}}"
-    // what is folded is printed: by the style sheet, and for browsers that cannot by the script
+    // folded details are printed: by the style sheet, or by the script in browsers that need it
     "@media print{.names{display:none}.bars{display:none}section>details>summary{display:none}"
     "section>details{break-before:page}section>details::details-content{content-visibility:visible;"
     "block-size:auto}"
@@ -75,7 +75,7 @@ static const char *title_of(const hn_report_scene *s) {
     return scene->title ? scene->title : scene->id ? scene->id : "scene";
 }
 
-/// What a method that is switched off looks like.
+/// Writes the style that hides a method that is switched off.
 static void put_hiding_style(hn_strbuf *b) {
     for (int m = 0; m < HN_WP_METHODS; m++) {
         hn_strbuf_printf(b, ".hide-%d .plot .series[data-m=\"%d\"]{display:none}", m, m);
@@ -359,7 +359,7 @@ static void put_scene(hn_strbuf *b, const hn_report_scene *s, int i) {
     hn_strbuf_add(b, "</details></section>\n");
 }
 
-/// What plots show first: time where all of it was measured, else operations, which always are.
+/// Returns the cost that plots show first: time if every scene was timed, else operations.
 static hn_cost_kind first_cost(const hn_report *r) {
     for (int i = 0; i < r->n; i++) {
         hn_pareto p;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REPORT_INTERNAL_H
 #define HN_SESSION_REPORT_INTERNAL_H
-// The inside of a report: report.c (making), report_words.c (what it says in short), report_plot.c
-// (pictures), report_html.c and report_doc.c (documents).
+// The state of a report, shared by report.c (computing), report_words.c (summary), report_plot.c
+// (plots), report_html.c and report_doc.c (documents).
 
 #include "session/report/report.h"
 

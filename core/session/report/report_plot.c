@@ -41,14 +41,15 @@ static void put_sign(hn_strbuf *b, hn_survival_end end, double x, double y) {
 
 static void put_signs_legend(hn_strbuf *b) {
     double x = 6;
-    for (int end = 0; end < HN_SURVIVAL_SILENT; end++) { // which the reference cannot tell
+    for (int end = 0; end < HN_SURVIVAL_SILENT;
+         end++) { // without 'silent', which a reference cannot show
         put_sign(b, (hn_survival_end)end, x, 31);
         hn_plot_text(b, x + 10, 35, "note", MEANINGS[end]);
         x += 34 + LETTER * (double)strlen(MEANINGS[end]);
     }
 }
 
-/// From fine at the left to coarse at the right.
+/// Returns the place of a step size: fine at the left, coarse at the right.
 static double across(int adaptive, double size, double usual) {
     const double low = hn_survival_step(usual, 0, HN_REPORT_SIZES);
     const double high = hn_survival_step(usual, HN_REPORT_SIZES - 1, HN_REPORT_SIZES);

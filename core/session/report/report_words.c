@@ -110,7 +110,7 @@ const char *hn_report_scene_id(const hn_report_scene *s) {
     return scene->id && scene->id[0] ? scene->id : "scene";
 }
 
-/// Puts `text` behind what comes before the first, or behind a comma; counts in *said.
+/// Appends `text`: after the lead-in if it is the first, else after a comma; counts in *said.
 static void list(hn_strbuf *b, int *said, const char *before, const char *text) {
     hn_strbuf_printf(b, "%s%s", (*said)++ ? ", " : before, text);
 }
@@ -138,7 +138,7 @@ static void say_cheapest(hn_strbuf *b, const hn_report *r, const hn_wp *wp) {
     hn_strbuf_add(b, said ? ".\n" : "No method reaches any of these accuracies.\n");
 }
 
-/// 1: in every scene all sizes that were tried came to the end, and the best to that error.
+/// Returns 1 if in every scene all tried sizes reached the end and the best reached that error.
 static int is_dependable(const hn_report *r, int m) {
     for (int i = 0; i < r->n; i++) {
         if (r->scenes[i].study) {

@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
-// of the time limit, for the motion of one scene; its computing time where there is no limit [s]
+// The motion of one scene may take a PATH_SHARE-th of the time limit, or PATH_SECONDS [s] of
+// computing time where there is no limit.
 enum { PATH_SHARE = 10 };
 static const double PATH_SECONDS = 5;
 
@@ -59,7 +60,7 @@ hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row) {
     const int at = (map->y.is_param ? row : 0) * (map->x.is_param ? map->x.n : 1) +
                    (map->x.is_param ? column : 0);
     hn_map_scene *s = &map->scenes[at];
-    // what was cut short is left as it is: no motion is begun for what nobody waits for
+    // a map that was stopped begins no new motion
     if (!s->tried && !s->path && !map->stopped && !map->out_of_time) {
         make_scene(map, s, column, row);
     }

@@ -7,13 +7,13 @@
 
 hn_map_cell *hn_map_cell_at(const hn_map *map, int m, int column, int row);
 hn_map_column *hn_map_column_at(const hn_map *map, int m, int column);
-/// The scene of a cell, with its motion if it has one.
+/// Returns the scene of a cell, with its motion if there is one; loads it on first use.
 hn_map_scene *hn_map_scene_of(hn_map *map, int column, int row);
-/// The method of a cell; `y` in place of the row's value.
+/// Returns the method of a cell, with `y` in place of the row's value.
 hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y);
-/// 1 when asked to stop or out of the budget; then noted.
+/// Returns 1 when asked to stop or out of time, and records which.
 int hn_map_must_end(hn_map *map);
-/// One trial within the limits of a cell; 0 when it was stopped.
+/// Runs one trial within the limits of a cell. Returns 0 when it was stopped.
 int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
                hn_stability_trial *out);
 #endif

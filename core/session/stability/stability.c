@@ -96,7 +96,8 @@ static int count_pending(const hn_map *map) {
     return n;
 }
 
-// one round: what lies on the grid of this stride and is pending yet; 0 when it has to end
+// Tries the cells on the grid of this stride that have no outcome yet. Returns 0 when the map must
+// end.
 static int try_round(hn_map *map, int stride) {
     const double all = (double)map->n_methods * map->x.n * map->y.n;
     for (int row = 0; row < map->y.n; row += stride) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_H
 #define HN_SESSION_STABILITY_H
-// A map of stability: a grid over two of {a scene's parameters, a method's settings, the step},
-// every cell a trial that is classed (study/stability/stability.h), with the boundary predicted
-// from the spectrum on the loops beside what was observed. Where the vertical axis is the step h,
-// the observed boundary of every column is found to 2 %, so that prediction and observation can be
-// compared as numbers. Cells are tried in rounds from coarse to fine; finished ones are kept in a
-// folder, so that the same request goes on where it was interrupted.
+// A map of stability: a grid over two of {a scene's parameters, a method's options, the step size}.
+// Each cell is a trial with its class (study/stability/stability.h). The map shows the observed
+// boundary and the boundary that the spectrum of the constrained motion predicts. Where the
+// vertical axis is the step h, the observed boundary of every column is found to 2 %, so that
+// prediction and observation can be compared as numbers. Cells are tried in rounds from coarse to
+// fine; finished ones are kept in a folder, so that the same request goes on where it was
+// interrupted.
 
 #include "session/job/job_request.h"
 #include "study/stability/stability.h"
@@ -21,7 +22,7 @@ enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSI
 
 typedef struct hn_map hn_map;
 
-/// What a map may be over by name: maker of the axes, name, about, chooses, stabilised
+/// Axes of a map by name: maker of the axes, name, about, chooses, stabilised
 /// (hn_job_preset).
 #define HN_MAP_PRESETS(X)                                                               \
     X(stiffness_axes, "stiffness", "the step and a stiffness of the scene", "h", false) \
@@ -43,19 +44,19 @@ typedef struct hn_map_cell {
     double margin; ///< h / predicted limit: above 1 unstable; NaN: nothing is predicted
 } hn_map_cell;
 
-/// What one column of one method says.
+/// Boundaries of one column of one method, predicted and observed.
 typedef struct hn_map_column {
     int n_predicted;
     double predicted
         [HN_MAP_CROSSINGS];  ///< places on the vertical axis; one of a step may lie outside it
     double visible;          ///< step axis: growth is seen from here on within a trial [s]
     double stable, unstable; ///< step axis: the boundary observed lies between; NaN: not on the map
-    char how[HN_STABILITY_REASON]; ///< it ended at `unstable`
+    char how[HN_STABILITY_REASON]; ///< how the run at `unstable` ended
     enum {
         HN_MAP_UNTOLD, ///< no prediction, or no observation to compare it with
         HN_MAP_AGREE,
         HN_MAP_UNSEEN,  ///< beyond the predicted limit growth is too slow for the trial
-        HN_MAP_EARLIER, ///< observed before it was predicted
+        HN_MAP_EARLIER, ///< observed at a smaller step than predicted
         HN_MAP_LATER
     } verdict;
 } hn_map_column;
@@ -78,14 +79,14 @@ typedef struct hn_map_agreement {
 /// Fails:   HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO. All reported in diags.
 HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags);
 void hn_map_free(hn_map *map); ///< NULL is legal
-/// Runs what is left. Returns 1 when finished; 0: stopped, or out of its budget.
+/// Runs the cells that have no outcome. Returns 1 when finished; 0: stopped, or out of time.
 int hn_map_run(hn_map *map);
 
 const hn_model *hn_map_model(const hn_map *map);
 const hn_map_axis *hn_map_x(const hn_map *map);
 const hn_map_axis *hn_map_y(const hn_map *map);
 int hn_map_n_methods(const hn_map *map);
-/// Spelling without what the axes set.
+/// Returns the spelling of method m without the options that the axes set.
 const char *hn_map_method(const hn_map *map, int m);
 const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);
 const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column);

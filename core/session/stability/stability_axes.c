@@ -9,10 +9,10 @@
 
 enum { DEFAULT_SIDE = 24 };
 static const double DEFAULT_LIMIT = 60; // wall time of a map [s]
-static const double LOG_FROM = 15;      // a range of this ratio and above zero is divided in ratios
-static const double PRESET_SPAN = 1e3;  // a preset takes a parameter so far up and down
+static const double LOG_FROM = 15;      // positive ranges of this ratio have a logarithmic axis
+static const double PRESET_SPAN = 1e3;  // a preset varies a parameter by this factor up and down
 static const double FINEST = 0.3, COARSEST = 12; // h times the fastest rate, for steps of a preset
-static const double PRESET_STEPS = 2e4;          // of the finest trial of a preset
+static const double PRESET_STEPS = 2e4;          // steps of the finest trial of a preset
 
 static const char *const STANDARD[] = {"projection@rk4", "projection@dop853:h=1e-3",
                                        "projection@symplectic-euler"};
@@ -146,7 +146,7 @@ static hn_status read_over(hn_map *map, hn_diags *diags) {
 
 // presets ----
 
-// modulus of the fastest eigenvalue at the start of a model; 0 when it has none
+// Returns the modulus of the fastest eigenvalue at the start of a model; 0 when it has none.
 static double fastest_rate(const hn_model *model) {
     hn_arena *arena = hn_arena_create(0);
     hn_spectrum *s = NULL;
@@ -255,7 +255,7 @@ static hn_status mass_axes(hn_map *map, hn_diags *diags) {
     return over_param(map, "a mass in kg", units, 1, diags);
 }
 
-// steps doubled, one column
+// One column whose steps double from row to row.
 static hn_status limit_axes(hn_map *map, hn_diags *diags) {
     const double rate = fastest_rate(map->model);
     const hn_status status = steps_for(map, rate / 40, rate, 2, diags);
@@ -303,7 +303,7 @@ static hn_status take_preset(hn_map *map, hn_diags *diags) {
 
 // methods ----
 
-/// The methods of the request, or those that fit the axes.
+/// Takes the methods of the request, or, if it names none, those that fit the axes.
 static hn_status take_methods(hn_map *map, hn_diags *diags) {
     hn_job_request *r = &map->request;
     const int preset = map->preset ? find_preset(map->preset) : -1;
@@ -322,7 +322,7 @@ static hn_status take_methods(hn_map *map, hn_diags *diags) {
     return HN_OK;
 }
 
-// the spelling shows what no axis sets
+// Spells each method without the options that an axis sets.
 static void name_methods(hn_map *map) {
     for (int m = 0; m < map->n_methods; m++) {
         if (!map->y.is_step && !map->x.is_step) {
@@ -360,7 +360,7 @@ static hn_status check_sizes(hn_map *map, hn_diags *diags) {
                                                          map->n_scenes, HN_MAP_MODELS);
 }
 
-/// What the map is over, and how finely.
+/// Sets the axes and their numbers of points.
 static hn_status take_values(hn_map *map, hn_diags *diags) {
     const hn_job_request *r = &map->request;
     map->n_columns = (int)hn_job_number(r, "columns", DEFAULT_SIDE);

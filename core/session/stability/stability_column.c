@@ -11,12 +11,12 @@
 static const double WITHIN =
     0.95; // of a margin of 1: cells closer to the boundary are not compared
 
-// a trial of fewer steps than this says nothing of their stability
+// a trial of fewer steps does not show whether they are stable
 enum { LEAST_IN_TRIAL = 10 };
 
 // the prediction ----
 
-// log of h over the limit, bounded so that limits of 0 and infinity can stand between others
+// Returns log(h / limit), bounded, so that limits of 0 and infinity can be interpolated.
 static double log_margin(double margin) {
     return margin > 0 ? fmax(-40, fmin(40, log(margin))) : -40;
 }
@@ -95,7 +95,8 @@ static int is_over(hn_stability_class kind) {
     return kind == HN_STABILITY_GREW || kind == HN_STABILITY_STOPPED;
 }
 
-/// Tries one step of a column; 0 when stopped. `over`: 1 unstable, 0 stable, -1 nothing observed.
+/// Tries one step size of a column. Returns 0 when stopped. `over`: 1 unstable, 0 stable, -1 no
+/// observation.
 static int try_step(hn_map *map, int m, int column, int row, double h, int *over,
                     hn_map_column *c) {
     hn_stability_trial trial;
@@ -110,8 +111,8 @@ static int try_step(hn_map *map, int m, int column, int row, double h, int *over
     return 1;
 }
 
-/// Beyond the ends of a single column: steps halved or doubled until the boundary lies between two
-/// of them, or a trial would take too many steps or too few. 0 when stopped.
+/// Searches beyond the ends of a single column: halves or doubles the step until the boundary lies
+/// between two steps, or a trial would take too many or too few. Returns 0 when stopped.
 static int search_beyond(hn_map *map, int m, double *low, double *high, hn_map_column *c) {
     int over = isinf(*high) ? 0 : 1;
     while (over == 1 && *low == 0 && map->T / (*high / 2) <= HN_MAP_STEPS) {
@@ -134,10 +135,10 @@ static int search_beyond(hn_map *map, int m, double *low, double *high, hn_map_c
 int hn_map_observe_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     if (!isnan(c->unstable)) {
-        return 1; // taken up from before
+        return 1; // found by an earlier run
     }
 
-    // between which rows, or beyond which end of the column
+    // the boundary lies between two rows, or beyond an end of the column
     int j = 0;
     while (j < map->y.n && hn_stability_is_stable(hn_map_cell_at(map, m, column, j)->trial.kind)) {
         j++;
@@ -156,7 +157,7 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
         return 1; // stable throughout
     }
 
-    // halved until the interval is narrow
+    // halve the interval until it is narrow
     const int row = j < map->y.n ? j : map->y.n - 1;
     while (low > 0 && high / low > HN_MAP_REFINED) {
         const double middle = sqrt(low * high);
@@ -257,7 +258,7 @@ hn_map_agreement hn_map_agrees(const hn_map *map, int m) {
     return a;
 }
 
-// what ended the first of the columns that ended earlier
+// Writes how the first column ended that became unstable before the prediction.
 static void put_first_earlier(hn_strbuf *b, const hn_map *map, int m) {
     for (int i = 0; i < map->x.n; i++) {
         const hn_map_column *c = hn_map_column_at(map, m, i);

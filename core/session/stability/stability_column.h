@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_STABILITY_COLUMN_H
 #define HN_SESSION_STABILITY_STABILITY_COLUMN_H
-// What a column says: the boundary predicted, the boundary observed, and whether they are the same.
+// One column of a map: the predicted boundary, the observed boundary, and whether they agree.
 
 #include "session/stability/stability.h"
 #include "session/stability/stability_internal.h"
@@ -9,7 +9,7 @@
 hn_map_agreement hn_map_agrees(const hn_map *map, int m);
 /// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
-/// Margins and predicted boundary of a column; the scenes must be there.
+/// Predicts the margins and the boundary of a column; its scenes must be loaded.
 void hn_map_predict_column(hn_map *map, int m, int column);
 /// Step axis: halves the interval between the last stable and the first other step. 0 when stopped.
 int hn_map_observe_column(hn_map *map, int m, int column);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_FRAME_H
 #define HN_SESSION_STABILITY_FRAME_H
-// Where things stand in a picture of a map, and how a class looks: for the SVG and for the PNG
-// alike.
+// Layout of a picture of a map and the look of each class, shared by the SVG and the PNG.
 
 #include "render/look.h"
 #include "session/stability/stability.h"
@@ -27,13 +26,13 @@ const hn_map_class_look *hn_map_class_look_get(hn_stability_class kind);
 uint32_t hn_map_class_colour(hn_stability_class kind, hn_theme theme);
 
 int hn_map_height(const hn_map *map);
-/// Top of method m's field.
+/// Returns the top of method m's field.
 double hn_map_field_top(int m);
 enum { HN_MAP_SAID_LINES = 3, HN_MAP_SAID_COLUMNS = 124, HN_MAP_SAID_HEIGHT = 16 };
 typedef char hn_map_said_line[HN_MAP_SAID_COLUMNS + 4];
-/// What is said of a method (hn_map_agreement_text), broken into lines as wide as the picture;
-/// returns how many. What needs more
-/// ends in "...". The last line stands right above the field, the method's name above the first.
+/// Breaks the text on a method (hn_map_agreement_text) into lines as wide as the picture. Returns
+/// how many; text that needs more ends in "...". The last line is right above the field, the
+/// method's name above the first.
 int hn_map_said(const hn_map *map, int m, hn_map_said_line lines[HN_MAP_SAID_LINES]);
 /// Left edge of column i (0 .. n), top edge of row j counted from below (0 .. n).
 double hn_map_column_edge(const hn_map *map, int i);

@@ -19,9 +19,9 @@ static void put_class_colours(hn_strbuf *b, hn_theme theme) {
 enum {
     ABOVE = 8,
     BELOW = 46
-}; // a field on a page: room for the frame, and for what stands at the axis
+}; // room [px] above and below a field on a page, for the frame and the labels of the axis
 
-// rules of the picture itself: it needs them on its own too
+// Writes the style rules of the picture; the SVG file on its own needs them too.
 static void put_rules(hn_strbuf *b) {
     hn_strbuf_add(b, "text{fill:var(--ink);font:12px system-ui,sans-serif}.quiet-text{fill:var(--"
                      "muted)}.end{text-anchor:end}.middle{text-anchor:middle}.glyph{font-size:9px}"
@@ -70,7 +70,7 @@ static int is_inside(double y, int m) {
     return y >= hn_map_field_top(m) && y <= hn_map_field_top(m) + HN_MAP_FIELD_HEIGHT;
 }
 
-// a stroke across each column, joined to the next one's where both are there
+// Draws the predicted limit: a stroke across each column, joined to that of the next column.
 static void put_predicted(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_add(b, "<path class=\"predicted\" d=\"");
     for (int k = 0; k < HN_MAP_CROSSINGS; k++) {
@@ -91,7 +91,7 @@ static void put_predicted(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_add(b, "\"/>\n");
 }
 
-// strokes across rows, where the boundary is steep
+// Draws strokes across rows where the boundary is steep.
 static void put_steep(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_add(b, "<path class=\"predicted\" d=\"");
     for (int j = 0; j < hn_map_y(map)->n; j++) {
@@ -189,7 +189,7 @@ static void put_agreement(hn_strbuf *b, const hn_map *map, int m) {
     hn_strbuf_reset(&said);
 }
 
-/// One method's field with its axes and legend.
+/// Draws the field of one method with its axes and legend.
 static void put_map(hn_strbuf *b, const hn_map *map, int m) {
     for (int j = 0; j < hn_map_y(map)->n; j++) {
         for (int i = 0; i < hn_map_x(map)->n; i++) {
@@ -235,7 +235,7 @@ void hn_map_svg(hn_strbuf *b, const hn_map *map) {
     hn_strbuf_add(b, "</svg>\n");
 }
 
-/// A section a method: on a page words wrap, and paper is cut between maps.
+/// Writes a section for each method, so that text wraps and paper breaks between maps.
 static void put_sections(hn_strbuf *b, const hn_map *map) {
     for (int m = 0; m < hn_map_n_methods(map); m++) {
         hn_strbuf_add(b, "<section><h2>");

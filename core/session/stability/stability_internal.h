@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_INTERNAL_H
 #define HN_SESSION_STABILITY_INTERNAL_H
-// The inside of a map: stability.c (life and running), stability_axes.c (what is asked for),
-// stability_column.c (what a column says), stability_store.c (what is kept of an unfinished one),
-// and the documents.
+// The state of a map, shared by stability.c (opening and running), stability_axes.c (request),
+// stability_column.c (boundaries), stability_store.c (journal) and the writers of documents.
 
 #include "session/store/journal.h"
 #include "session/stability/stability.h"
 
 /// One scene of the map with its motion; made when a cell first needs it.
 typedef struct hn_map_scene {
-    hn_model *model; ///< owned; NULL: the map's own serves, or there is none
+    hn_model *model; ///< owned; NULL: the map's own model, or none
     hn_stability_path *path;
     int tried;
-    char why[HN_STABILITY_REASON]; ///< it has no motion to compare with
+    char why[HN_STABILITY_REASON]; ///< why there is no motion to compare with
 } hn_map_scene;
 
 struct hn_map {

@@ -17,7 +17,7 @@ static uint64_t hash_axis(uint64_t hash, const hn_map_axis *a) {
     return hash;
 }
 
-/// All that decides what the cells are.
+/// Hashes everything that the outcomes of the cells depend on.
 static uint64_t map_key(const hn_map *map) {
     uint64_t scene = hn_model_scene(map->model)->hash;
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene, sizeof scene);

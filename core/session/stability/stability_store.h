@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STABILITY_STABILITY_STORE_H
 #define HN_SESSION_STABILITY_STABILITY_STORE_H
-// What is kept of an unfinished map: a line a cell, a line a column's observed boundary.
+// The journal of an unfinished map: a line for each cell and for each observed boundary.
 
 #include "session/stability/stability_internal.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_BUDGET_TEXT_H
 #define HN_CLI_BUDGET_TEXT_H
-// Error budgets for people at a terminal: where errors and energy come from, method by method.
+// Error and energy budgets as text for a terminal, method by method.
 
 #include "session/accounts/accounts.h"
 

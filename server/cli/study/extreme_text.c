@@ -6,7 +6,7 @@
 
 enum { WHAT = 58, PREDICTED = 32, OBSERVED = 40 };
 
-/// How many bytes of text fit into so many columns, broken at a blank where there is one.
+/// Returns how many bytes of text fit into the columns, broken at a blank where there is one.
 static size_t fit(const char *text, int columns) {
     size_t n = 0, blank = 0;
     for (int used = 0; text[n] && used < columns; used++) {
@@ -27,7 +27,7 @@ static int columns_of(const char *text, size_t n) {
     return columns;
 }
 
-/// Puts what fits of *text, padded, and moves it on.
+/// Writes the part of *text that fits, padded, and advances *text past it.
 static void put_part(hn_strbuf *b, const char **text, int columns) {
     const size_t n = fit(*text, columns);
     hn_strbuf_printf(b, "%.*s%*s", (int)n, *text, columns - columns_of(*text, n) + 2, "");

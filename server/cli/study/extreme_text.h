@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_CLI_EXTREME_TEXT_H
 #define HN_CLI_EXTREME_TEXT_H
-// The extreme matrix for people at a terminal: a line a trial, predicted beside observed.
+// The extreme matrix as text for a terminal: a line for each trial, predicted and observed.
 
 #include "session/extreme/extreme.h"
 

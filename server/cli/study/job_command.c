@@ -76,7 +76,7 @@ static void show_progress(void *user, const char *part, double share) {
     hn_progress_tell(&c->progress, what, share);
 }
 
-/// The scene with other parameters: that of the command line, with these on top of --set.
+/// Loads the scene of the command line with these parameters in addition to those of --set.
 static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_model **out,
                            hn_diags *diags) {
     const command *c = user;
@@ -122,7 +122,7 @@ static hn_status read_grid(const char *text, cJSON *body, hn_diags *diags) {
     return HN_OK;
 }
 
-/// The values of all fields as one object, checked as the server checks a body.
+/// Collects the values of all fields in one object and checks it as the server checks a body.
 static hn_status read_body(command *c, hn_diags *diags) {
     const hn_args *args = c->args;
     c->body = args->fields ? cJSON_Duplicate(args->fields, 1) : cJSON_CreateObject();
@@ -140,7 +140,7 @@ static hn_status read_body(command *c, hn_diags *diags) {
     return hn_job_request_read(&c->request, c->body, c->kind->fields, diags);
 }
 
-/// The scenes of the words; the extreme matrix takes its words as names of cases.
+/// Loads the scenes that the words name; for the extreme matrix the words are names of cases.
 static hn_status load_words(command *c, hn_diags *diags) {
     const bool of_study = strcmp(c->kind->command, "study") == 0;
     int n = of_study ? 1 : c->args->words.n;
@@ -169,7 +169,7 @@ static hn_status check_output(const command *c, hn_diags *diags) {
     return hn_job_text(&c->request, "shard") ? hn_part_check(c->args, diags) : HN_OK;
 }
 
-/// Everything that can be refused before the computation.
+/// Checks everything that can be refused before the computation.
 static hn_status prepare(command *c, hn_diags *diags) {
     c->request = hn_job_request_default(NULL);
     HN_TRY(read_body(c, diags));

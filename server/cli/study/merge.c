@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// holonom merge PART...: parts of a study to the whole.
+// holonom merge PART...: joins the parts of a study.
 #include "base/file.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
@@ -15,7 +15,7 @@ enum {
 
 HN_JOB_FORM(text, hn_study, hn_study_text)
 
-/// What the parts are merged to.
+/// Returns the kind of job that the merged parts make.
 static const hn_job_kind *merged(void) {
     return hn_job_kind_find("work-precision");
 }

@@ -16,7 +16,7 @@ extern char **environ;
 
 #define PNG_ZOOM "2" // pixels a unit of the drawing: sharp in print and on dense screens
 
-/// 1: done; 0: it failed; -1: there is no such program.
+/// Converts a file with rsvg-convert. Returns 1: done; 0: it failed; -1: no such program.
 static int convert(const char *svg, const char *png) {
     char *const words[] = {"rsvg-convert", "-z", PNG_ZOOM, "-o", (char *)png, (char *)svg, NULL};
     pid_t pid;
@@ -35,7 +35,7 @@ static hn_exit fail(const hn_args *args, const char *path, const char *why) {
     return hn_report_diag(args, &diag);
 }
 
-/// One plot as SVG, and as PNG while there is a program that makes one.
+/// Writes one plot as SVG, and as PNG while the converter is there.
 static hn_exit write_plot(const hn_args *args, const hn_report_plot *plot, int *converts,
                           int *written) {
     char svg[700], png[700];

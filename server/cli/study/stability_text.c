@@ -16,7 +16,7 @@ static double near_row(const hn_map_axis *y, double value) {
                      : (value - low) / (high - low) * (y->n - 1);
 }
 
-/// 1 when the predicted boundary of this column passes between row j and the one above.
+/// Returns 1 when the predicted boundary of this column passes between row j and the one above.
 static int is_boundary(const hn_map *map, int m, int column, int row) {
     const hn_map_column *c = hn_map_get_column(map, m, column);
     for (int k = 0; k < c->n_predicted; k++) {
@@ -33,7 +33,7 @@ static void put_row(hn_strbuf *b, const hn_map *map, int m, int row) {
     for (int i = 0; i < x->n; i++) {
         const hn_stability_class kind = hn_map_get(map, m, i, row)->trial.kind;
         const char *glyph = hn_map_class_look_get(kind)->glyph;
-        // two characters a cell: the outcome, and the line where it passes
+        // two characters for each cell: the outcome, and the predicted boundary if it passes here
         hn_strbuf_add(b, glyph[0] ? glyph : " ");
         hn_strbuf_add(b, is_boundary(map, m, i, row) ? PREDICTED : " ");
     }

@@ -5,7 +5,7 @@
 
 #include "session/stability/stability.h"
 
-/// A map of characters a method, the predicted boundary in it and the agreement below; a map with
-/// one column is a table of limits.
+/// Writes a map of characters for each method, with the predicted boundary in it and the agreement
+/// below; a map with one column is a table of limits.
 void hn_map_text(hn_strbuf *b, const hn_map *map);
 #endif

@@ -6,7 +6,7 @@
 #include "cli/shell/print.h"
 #include "session/precision/study_part.h"
 
-/// The points of a part, counted, for people.
+/// Writes how many points the part has, for people.
 static void put_part_text(hn_strbuf *b, const hn_args *args, const hn_study *study) {
     const hn_wp *wp = hn_study_wp(study);
     int n[HN_WP_STATES] = {0}, mine = 0;
@@ -28,7 +28,7 @@ static void put_part_text(hn_strbuf *b, const hn_args *args, const hn_study *stu
     hn_strbuf_printf(b, "; in %s\n", args->out);
 }
 
-/// A part of a study: to its file, or to standard output.
+/// Writes a part of a study to its file, or to standard output.
 hn_exit hn_write_part(const hn_args *args, const hn_study *study) {
     hn_strbuf b;
     hn_strbuf_init(&b);

@@ -18,7 +18,7 @@ static const char *glyph_of(int m) {
     return hn_look_get(hn_look_slot(m))->glyph;
 }
 
-/// Of a point as it may be claimed: "< 1e-12" where the reference is no better.
+/// Writes the error that may be claimed: "< 1e-12" where the reference is no more accurate.
 static void put_error(hn_table *t, const hn_wp *wp, hn_error_kind kind, double error) {
     const double bound = HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
     if (!isfinite(error)) {
