@@ -13,8 +13,8 @@
 #include <string.h>
 
 static const double FRAME = 1.0 / 60; // [s]
-enum { LEAST_FRAMES = 240 }; // of a run so short that frames of that length would not show it
-// frames whose cost is kept, and those at the start that are not: caches are cold
+enum { LEAST_FRAMES = 240 };          // least number of frames of a short run
+// frames whose cost is kept, and frames at the start that are not measured: their caches are cold
 enum { COST_FRAMES = 63, COLD_FRAMES = 3 };
 
 /// One method of the comparison.
@@ -22,7 +22,7 @@ typedef struct entry {
     hn_run *run;
     double h;                      ///< fixed step [s], 0 for an adaptive method
     int slot;                      ///< colour and dash, see render/look.h
-    char warning[HN_DIAG_MESSAGE]; ///< what its spelling deserves to be told, "" if nothing
+    char warning[HN_DIAG_MESSAGE]; ///< warning about the spelling, "" if none
     int over_budget;               ///< stopped by the comparison because one frame cost too much
     double slowness;               ///< computing time per simulated time in that frame [-]
     double frame_cpu, frame_t;     ///< computing time and own time when the frame was begun [s]
@@ -44,7 +44,7 @@ hn_comparison_opts hn_comparison_opts_default(void) {
     return (hn_comparison_opts){.cpu_budget = 5};
 }
 
-/// A formulation keeps its colour everywhere: its place in the catalogue, or the next free one when
+/// Returns the colour slot of a formulation: its place in the catalogue, or the next free slot when
 /// two methods share it.
 static int choose_slot(const hn_comparison *c, const hn_formulation *formulation) {
     int wanted = 0;
@@ -71,7 +71,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     hn_method_spec spec;
     hn_status status = hn_method_parse(text, &spec, &diag);
     if (status == HN_OK) {
-        // a spelling may be right and still deserve a word: a negative alpha, for one
+        // a valid spelling may carry a warning, such as one about a negative alpha
         snprintf(c->entries[c->n].warning, sizeof c->entries[c->n].warning, "%s", diag.message);
         hn_run_opts run_opts = hn_run_opts_default();
         run_opts.t_end = opts->duration > 0 ? opts->duration : hn_model_scene(c->model)->duration;
@@ -93,8 +93,7 @@ static hn_status add_method(hn_comparison *c, const char *text, const hn_compari
     return HN_OK;
 }
 
-/// A whole number of the largest fixed step, at least a sixtieth of a second or of a short run its
-/// part.
+/// Returns a multiple of the largest fixed step, at least 1/60 s, or 1/240 of a short run.
 static double choose_frame_dt(const hn_comparison *c) {
     const double shortest = fmin(FRAME, c->duration / LEAST_FRAMES);
     double h = 0;
@@ -236,7 +235,7 @@ static int advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void 
     return 1;
 }
 
-/// Keeps what a step of the frame took on average.
+/// Records the mean computing time of a step in this frame.
 static void measure_frame(hn_comparison *c, entry *e) {
     const hn_run_summary s = hn_run_get_summary(e->run);
     if (c->frame >= COLD_FRAMES && s.steps > e->frame_steps) {
@@ -273,11 +272,11 @@ int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
         c->entries[i].frame_t = hn_run_time(c->entries[i].run);
     }
 
-    // methods that are there already have nothing left to do
+    // a method that has already reached t does nothing
     c->in_frame = 1;
     const double t = (double)(c->frame + 1) * c->frame_dt;
     for (int k = 0; k < c->n; k++) {
-        // each frame another method comes first: none always pays for cold caches
+        // the order rotates, so that no method always starts with cold caches
         entry *e = &c->entries[(k + c->frame) % c->n];
         if (is_live(e) && !advance_entry(c, e, t, stop, user)) {
             return 0;
@@ -357,7 +356,7 @@ int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out) {
     return 0;
 }
 
-/// "running", "finished", "failed": as a person would say it of this method now.
+/// Returns the present state of the method: "running", "finished" or "failed".
 static const char *state_name(const hn_comparison *c, const entry *e) {
     return !is_live(e) ? "failed" : hn_comparison_finished(c) ? "finished" : "running";
 }

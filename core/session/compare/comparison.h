@@ -15,19 +15,19 @@ enum { HN_COMPARISON_MAX_METHODS = 8 };
 typedef struct hn_comparison hn_comparison;
 
 typedef struct hn_comparison_opts {
-    /// [s]; 0: chosen, a whole number of the largest fixed step, at least 1/60 s or 1/240 of the
+    /// [s]; 0: chosen as a multiple of the largest fixed step, at least 1/60 s or 1/240 of the
     /// duration, whichever is less
     double frame_dt;
     double duration; ///< [s]; 0: the scene's
-    /// seconds of stepping allowed for one frame of one method; beyond it the method is stopped
-    /// with HN_ERR_BUDGET; 0: 5
+    /// computing time [s] allowed to one method for one frame; beyond it the method is stopped with
+    /// HN_ERR_BUDGET; 0: 5 s
     double cpu_budget;
     long long max_steps; ///< per method
 } hn_comparison_opts;
 hn_comparison_opts hn_comparison_opts_default(void);
 
-/// The model must outlive the comparison. A spelling that is at fault, or a method the scene cannot
-/// serve, is told in diags (pointer "/methods/2").
+/// Creates a comparison at its frame 0. The model must outlive it. A wrong spelling, or a method
+/// that does not support the scene, is reported in diags (pointer "/methods/2").
 HN_MUST_CHECK hn_status hn_comparison_create(const hn_model *model, const char *const *methods,
                                              int n_methods, const hn_comparison_opts *opts,
                                              hn_comparison **out, hn_diags *diags);
@@ -39,41 +39,45 @@ long long
 hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
 int hn_comparison_finished(
     const hn_comparison *c); ///< the clock reached the duration, or every method failed
-/// Advances every method to the next frame. Failures of single methods are not an error of the
+/// Advances every method to the next frame. The failure of one method is not an error of the
 /// comparison.
 void hn_comparison_next(hn_comparison *c);
-/// The same in pieces: returns 1 when the next frame is complete, 0 when `stop` (asked every few
-/// milliseconds; may be NULL) returned 1. The next call goes on; until then the present frame has
-/// no samples. A reset forgets what was begun.
+/// Advances in pieces. Returns 1 when the next frame is complete, 0 when `stop` (called every few
+/// milliseconds; may be NULL) returned 1. The next call continues the frame; until it is complete
+/// there are no samples. hn_comparison_reset() discards an unfinished frame.
 int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
 void hn_comparison_reset(hn_comparison *c);
-/// Changes "alpha" ... of one method (-1: all that have the key) while running.
+/// Changes an option, such as "alpha", of one method while it runs; method -1: of all that have it.
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
                                           double value, hn_diag *diag);
 const hn_run *hn_comparison_run(const hn_comparison *c, int method);
 int hn_comparison_slot(const hn_comparison *c, int method); ///< colour and dash, see render/look.h
-/// Computing time of one step of a method: what its last frames took, in turns with the others.
+/// Computing time of one step of a method, measured over its last frames, with the methods taking
+/// turns.
 typedef struct hn_step_cost {
-    int frames;               ///< measured; below HN_STEP_COST_FRAMES nothing is said
+    int frames;               ///< frames measured; too few below HN_STEP_COST_FRAMES
     double median, low, high; ///< [s], quartiles; NaN: too few frames
 } hn_step_cost;
 enum { HN_STEP_COST_FRAMES = 5 };
 hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
-/// The sample of a method at the present frame; 0 when the method has failed (then it is its last
-/// good one).
+/// Returns the sample of a method at the present frame. Returns 0 when the method has failed; *out
+/// is then its last good state.
 int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
 /// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
 /// "velocity_gap","energy_change","steps","evals","ops","cpu","step_cpu":{"median","low","high",
 /// "frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
 void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
-/// Methods with spelling, title, short name, look slot, card; frame_dt, duration.
+/// Writes the properties of the methods (spelling, short name, colour slot, rule, order), frame_dt
+/// and duration.
 void hn_comparison_json(hn_strbuf *b, const hn_comparison *c);
-/// The closing table: per method status, reason, t, worst gap, worst velocity gap, worst energy
-/// change, steps, rejected, evals, ops, cpu, incidents.
+/// Writes the final table: status, reason, time reached, largest violations, largest change of
+/// energy, steps, rejected steps, evaluations, operations and CPU time per method; then the
+/// incidents.
 void hn_comparison_summary_json(hn_strbuf *b, const hn_comparison *c);
-/// One incident: {["method",]"code","t","quantity","value","limit","message","remedies":[...],
-/// "tried":[...]}; method -1: left out.
+/// Writes one incident:
+/// {["method",]"code","t","quantity","value","limit","message","remedies":[...],"tried":[...]}.
+/// method -1 leaves "method" out.
 void hn_incident_json(hn_strbuf *b, int method, const hn_incident *incident);
 
 // one run with output, for `holonom run` and POST /runs ----
@@ -86,14 +90,14 @@ typedef struct hn_run_request {
     long long max_samples; ///< bound
     long long max_numbers; ///< in the tables of the answer; 0: 2^25
     long long max_steps;
-    /// 1: a column "raw_lambda" too, where the integrator finds multipliers of its own
+    /// 1: adds a column "raw_lambda" where the integrator computes multipliers of its own
     int raw_lambda;
-    /// 1: columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names:
-    /// "efforts") too
+    /// 1: adds columns "reaction_force", "reaction_moment" (names: "carriers") and "effort" (names:
+    /// "efforts")
     int reactions;
-    /// called now and then with the share done; returns 0 to stop. May be NULL.
+    /// called every few milliseconds with the share done; returns 0 to stop. May be NULL.
     int (*progress)(void *user, double share);
-    const char *stop_reason; ///< said when `progress` stopped the run; NULL: "stopped on request"
+    const char *stop_reason; ///< reason if `progress` stops the run; NULL: "stopped on request"
     void *user;
 } hn_run_request;
 

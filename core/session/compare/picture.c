@@ -15,7 +15,7 @@
 
 enum { DEFAULT_WIDTH = 1200, DEFAULT_HEIGHT = 720, MAX_NOTE = 160, MAX_FRAMES = 1000 };
 
-/// Everything one picture is drawn from.
+/// The data of one picture.
 typedef struct scene_picture {
     const hn_model *model;
     const hn_picture_request *request;
@@ -46,8 +46,8 @@ static double cpu_used(const hn_comparison *c) {
     return sum;
 }
 
-/// Runs every method to the wanted time. The clock advances in whole frames, so a frame is a part
-/// of that time.
+/// Runs every method to the requested time. The clock advances in whole frames, so the frame length
+/// divides that time.
 static hn_status run_methods(scene_picture *p, hn_diags *diags) {
     const hn_picture_request *r = p->request;
     hn_status status = check_time(r->time, diags);
@@ -88,7 +88,8 @@ static void note_method(scene_picture *p, int i, const hn_sample *sample, int go
     }
 }
 
-/// As short as tells the methods apart: "index-1", "index-1, rk4", or the whole spelling.
+/// Writes the shortest name that distinguishes the methods: "index-1", "index-1, rk4", or the whole
+/// spelling.
 static void name_method(scene_picture *p, int i) {
     const hn_method_spec *spec = hn_run_spec(hn_comparison_run(p->comparison, i));
     int alike = 0, twins = 0; // others of the same formulation, of the same integrator too
@@ -156,8 +157,8 @@ static hn_status gather_given_pose(scene_picture *p, hn_diags *diags) {
     return status;
 }
 
-/// The frame is fitted to the motion, so that a series of pictures does not jump; a given pose may
-/// lie outside it.
+/// Fits the view to the whole motion, so that it does not change in a series of pictures. A given
+/// pose may lie outside the motion, so its view is not fitted to it.
 static hn_status choose_view(scene_picture *p, hn_diags *diags) {
     hn_envelope e;
     hn_view asked;

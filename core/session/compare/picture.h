@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_PICTURE_H
 #define HN_SESSION_PICTURE_H
-// A picture of a mechanism without a display: the poses that several methods reached at one time,
-// or one given pose.
+// Draws a mechanism without a display: the poses that several methods reached at one time, or one
+// given pose.
 
 #include "render/look.h"
 #include "session/model/model.h"
@@ -17,20 +17,21 @@ typedef struct hn_picture_request {
     const char *caption; ///< NULL: the scene's
     int width, height;   ///< [px]; 0: 1200 x 720
     hn_theme theme;
-    /// hn_view_parse() spelling; NULL: the front, or for a mechanism in space from the side and
-    /// above
+    /// spelling of hn_view_parse(); NULL: the front view, or an oblique view for a spatial
+    /// mechanism
     const char *view;
-    double cpu_budget; ///< seconds of stepping allowed in all: HN_ERR_LIMIT beyond; 0: not bounded
+    double cpu_budget;       ///< computing time allowed [s], then HN_ERR_LIMIT; 0: no limit
     int (*stop)(void *user); ///< asked every few milliseconds; 1: HN_ERR_LIMIT. May be NULL
     void *user;
 } hn_picture_request;
 
-/// Appends the bytes of a PNG file. `describe` (may be NULL) receives in words and numbers what the
-/// picture shows, as JSON:
-/// {"scene","time","methods":[{"method","state","reason","t","gap"}],"picture":{...}}. A method
-/// that ended early is drawn at its last good state, with the reason in the legend; *ended (may be
-/// NULL) is then its status. Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED (no renderer),
-/// HN_ERR_MEMORY.
+/// Appends the bytes of a PNG file to `png`. `describe` (may be NULL) receives the contents of the
+/// picture as JSON:
+/// {"scene","width","height","time","methods":{...},"picture":{...}}, with the summary of the
+/// comparison under "methods".
+/// A method that ended early is drawn at its last good state, with the reason in the legend; *ended
+/// (may be NULL) is then its status.
+/// Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED (no renderer), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_model_picture(hn_strbuf *png, hn_strbuf *describe, const hn_model *model,
                                          const hn_picture_request *request, hn_status *ended,
                                          hn_diags *diags);

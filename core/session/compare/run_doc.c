@@ -21,11 +21,11 @@ typedef struct table {
     hn_arena *arena;
     int n_user, nc;
     long long n, cap;
-    hn_pace pace; ///< of looks at the limits between samples
+    hn_pace pace; ///< of the checks of limits between samples
     double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
     double *mark;                  ///< hn_multiplier_mark of a sample
-    hn_drawing drawing;            ///< whose points with a name are columns too
-    int n_points;                  ///< of them
+    hn_drawing drawing;            ///< its labelled points are columns too
+    int n_points;                  ///< number of labelled points
     double *points;                ///< 3 per point, world [m]
     double *raw_lambda;            ///< NULL: not asked for, or the method has none
     hn_reaction_writer *reactions; ///< NULL: not asked for
@@ -35,7 +35,7 @@ typedef struct table {
     const hn_system *sys;
 } table;
 
-/// The most numbers that the tables may hold.
+/// Returns the largest number of values that the tables may hold.
 static double most_numbers(const hn_run_request *r) {
     return r->max_numbers > 0 ? (double)r->max_numbers : LARGEST_TABLE;
 }
@@ -100,7 +100,7 @@ static hn_status table_want_reactions(table *tab, const hn_model *model,
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
-/// A state without accelerations has no reactions either: told as null.
+/// Adds the reactions of a sample; null where the accelerations cannot be computed.
 static void add_reactions(table *tab, const hn_sample *s, size_t k) {
     const size_t n = 3 * (size_t)hn_reaction_writer_count(tab->reactions),
                  n_efforts = (size_t)hn_reaction_writer_efforts(tab->reactions);
@@ -140,7 +140,7 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run) {
         tab->mark[k] = hn_run_sample_mark(run);
     }
     for (size_t i = 0; tab->raw_lambda && i < nc; i++) {
-        tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // told as null
+        tab->raw_lambda[k * nc + i] = s->raw_lambda ? s->raw_lambda[i] : nan(""); // written as null
     }
     if (tab->reactions) {
         add_reactions(tab, s, k);
@@ -196,7 +196,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     *s = (schedule){.request = r, .every = r->every > 0 ? r->every : r->time / DEFAULT_SAMPLES};
     double n = r->at ? r->n_at : floor(r->time / s->every * (1 + 1e-12)) + 1;
     if (!r->at && (n - 1) * s->every < r->time * (1 - 1e-9)) {
-        n += 1; // the end is always told
+        n += 1; // the end is always an output time
     }
 
     // limit of the caller
@@ -210,8 +210,7 @@ static hn_status make_schedule(const hn_run_request *r, schedule *s, hn_diags *d
     return r->at ? check_at(r, diags) : HN_OK;
 }
 
-/// Steps until the run's clock reaches t; asks now and then whether to go on. HN_ERR_BUDGET when
-/// told to stop.
+/// Steps until the run reaches t. Returns HN_ERR_BUDGET when `progress` stops it.
 static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_request *r) {
     while (hn_run_time(run) < t * (1 - 1e-14)) {
         hn_status status = hn_run_step_towards(run, t);
@@ -226,8 +225,8 @@ static hn_status step_to(hn_run *run, double t, hn_pace *pace, const hn_run_requ
     return HN_OK;
 }
 
-/// The sample at t. Where no step of the integrator's own reaches it the run goes on first: if it
-/// ends there, that is the reason.
+/// Takes the sample at t. A run that has not reached t steps there first; the failure of that step
+/// is the reason.
 static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
     hn_status status = hn_run_sample(run, t, sample);
     if (status != HN_OK && hn_run_time(run) < t) {
@@ -239,8 +238,8 @@ static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
     return status;
 }
 
-/// Runs to `t` and takes the sample there. The fixed step lands on its own grid first, so that
-/// output never moves a step.
+/// Runs to `t` and takes the sample there. A fixed step stops on its own grid first, so that output
+/// times do not change the steps.
 static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
                              const hn_run_request *r, table *tab) {
     // a sample may cost more than the steps before it
@@ -263,8 +262,8 @@ static double fixed_step(const hn_method_spec *spec) {
     return hn_method_is_adaptive(spec) ? 0 : hn_method_option(spec, "h", 0);
 }
 
-/// The whole run; a run that ends early keeps what it reached, with its last good state as the last
-/// sample.
+/// Records the whole run. A run that ends early keeps its samples, with its last good state as the
+/// last one.
 static hn_status record(hn_run *run, const schedule *s, table *tab) {
     double h = fixed_step(hn_run_spec(run));
     hn_pace pace = hn_pace_begin();
@@ -361,7 +360,8 @@ static void put_run_incidents(hn_strbuf *b, const hn_run *run) {
     hn_json_end_array(b);
 }
 
-/// The run's own reason; where it would have gone on, what ended the output.
+/// Returns the reason of the run, or, if the run itself did not fail, the reason why its output
+/// ended.
 static const char *reason_of(const hn_run *run, const hn_run_request *request,
                              const hn_run_summary *s, hn_status ended) {
     if (ended == HN_OK || s->status != HN_OK) {

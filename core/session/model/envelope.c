@@ -7,15 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-/// How far the envelope looks ahead: enough for a few turns, bounded in steps so that no scene
-/// makes it slow.
+/// Bounds of the motion that the envelope covers: some revolutions, and little computing time for
+/// any scene.
 enum { ENVELOPE_SAMPLES = 160, ENVELOPE_MAX_STEPS = 4000, ENVELOPE_MAX_ROWS = 120 };
 static const double ENVELOPE_SECONDS = 10;
-static const double FAR = 4;     ///< times what the mechanism spans at the start
-static const double FLAT = 1e-6; ///< of the largest extent: thinner than that is a plane mechanism
+static const double FAR = 4;     ///< multiple of the extent at the start
+static const double FLAT = 1e-6; ///< of the largest extent: a thinner mechanism is planar
 static const char *const ENVELOPE_METHOD = "index1@dopri5:rtol=1e-5";
 
-/// 1 for a point that only tells the direction of a slider or a guide: nothing is drawn there.
+/// Returns 1 for a point that only gives the direction of a slider or a guide and is not drawn.
 static char is_direction_only(const hn_drawing *d, int point) {
     char directs = 0;
     for (int i = 0; i < d->n_shapes; i++) {
@@ -32,8 +32,8 @@ static char is_direction_only(const hn_drawing *d, int point) {
 
 enum { FRONT, SPACE, FRONT_Z_UP, SPACE_Z_UP, VIEWS };
 
-/// What every point that is drawn has been through: in the world, from the front and in the view
-/// for space, for either direction upwards.
+/// The extents that the drawn points have reached: in the world, and in the front and the oblique
+/// view, with y and with z upwards.
 typedef struct reach {
     double low[3], high[3];
     double direction[HN_ENVELOPE_EXTREMES][3], farthest[HN_ENVELOPE_EXTREMES];
@@ -112,9 +112,9 @@ static double extent(const reach *r) {
     return size;
 }
 
-/// Looks ahead along the motion, so that a view can be fitted once. What a failing run reached
-/// still counts; what falls or flies away would leave the view of a dot, so it is followed for some
-/// lengths only.
+/// Extends the box by the motion, so that a view has to be fitted only once. A failing run counts
+/// up to its failure. A mechanism that falls or flies away is followed for a few lengths only, as a
+/// view of its whole path would show a dot.
 static void grow_by_motion(reach *r, const char *skipped, const hn_model *model) {
     hn_system_info info = hn_system_get_info(hn_model_system(model));
     hn_method_spec spec;
@@ -169,8 +169,8 @@ hn_status hn_model_points(const hn_model *model, const double *q, double *points
     return eval_points(model, 0, q, points);
 }
 
-// a point of a body is a formula of the coordinates: it differs where all of them and the time do;
-// one of the ground is a constant
+// a point of a body is a function of the coordinates and time, so it differs between two states in
+// which all of them differ; a point of the ground is constant
 hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     const hn_system_info info = hn_system_get_info(hn_model_system(model));
     const size_t n = 3 * (size_t)info.n_points;
@@ -183,7 +183,7 @@ hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     hn_status status = here && there && q ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK) {
         for (int i = 0; i < info.nq; i++) {
-            q[i] = hn_model_q(model)[i] + 0.3 + 0.7 / (i + 2); // no two alike, none a full turn
+            q[i] = hn_model_q(model)[i] + 0.3 + 0.7 / (i + 2); // unequal, never a full turn
         }
         status = hn_model_points(model, hn_model_q(model), here);
     }

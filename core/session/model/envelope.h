@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_ENVELOPE_H
 #define HN_SESSION_ENVELOPE_H
-// Where a mechanism will be: its points at a state, and the box around its motion, so that a view
-// is fitted once.
+// The region that a mechanism moves through: its points at one state, and the box around its
+// motion, so that a view has to be fitted only once.
 
 #include "render/view.h"
 #include "session/model/model.h"
 
-/// World points (3 n_points) at q (system coordinates).
+/// Computes the world points (3 n_points) [m] at q (system coordinates).
 HN_MUST_CHECK hn_status hn_model_points(const hn_model *model, const double *q, double *points);
 
-/// is_ground[i]: 1 for each of the world points (n_points) that neither a coordinate nor time
-/// moves.
+/// Sets is_ground[i] = 1 for each world point (n_points) that depends neither on a coordinate nor
+/// on time, else 0.
 HN_MUST_CHECK hn_status hn_model_ground_points(const hn_model *model, char *is_ground);
 
 enum { HN_ENVELOPE_EXTREMES = 64 };
 
 typedef struct hn_envelope {
     double low[3], high[3]; ///< world [m]
-    /// the points reached farthest out in as many directions [m]: a view from anywhere is fitted to
-    /// them
+    /// farthest point reached [m] in each of 64 directions, to fit a view from any side
     double extremes[HN_ENVELOPE_EXTREMES][3];
-    int spatial; ///< something leaves the plane that one looks at from the front
-    int z_up;    ///< gravity pulls along -z, and the mechanism does not lie flat in z = const
-    /// as asked for; else the front, or for a spatial mechanism a view from the side and above
+    int spatial; ///< 1: the mechanism leaves the plane of the front view
+    int z_up;    ///< 1: gravity acts along -z, and the mechanism is not planar in z = const
+    /// the view asked for; by default the front view, or an oblique view for a spatial mechanism
     hn_view look;
-    double box[4]; ///< in that view [m]: right and up at least, right and up at most
+    double box[4]; ///< in that view [m]: minimum right and up, maximum right and up
 } hn_envelope;
 
-/// Around the start and the motion of the next seconds (bounded work). `look`, y upwards, is turned
-/// where z is; NULL: the view that fits. A scene without points gives zeros.
+/// Computes the envelope of the start and of the next seconds of motion (bounded work). `look`: a
+/// view with y upwards, turned where z is up; NULL: the default view. A scene without points gives
+/// zeros.
 void hn_model_envelope(const hn_model *model, const hn_view *look, hn_envelope *out);
 
 #endif

@@ -13,12 +13,12 @@
 
 enum { LARGEST_TEXT = 8 << 20 };
 
-/// One term of the equations: its letter, its shape, where its expressions stand.
+/// One term of the equations: its symbol, its shape and its expressions.
 typedef struct term {
     const char *name, *latex, *meaning;
     const hn_ex *e;
     int rows, cols; ///< cols 0: a vector
-    int symmetric;  ///< the lower triangle says it all
+    int symmetric;  ///< only the lower triangle is written
 } term;
 
 enum { N_TERMS = 5 };
@@ -40,7 +40,7 @@ static const char *symbol_name(const hn_system *sys, int symbol) {
     return hn_graph_symbol_name(hn_system_graph(sys), symbol);
 }
 
-/// Entry i of q's speeds belongs to an orientation: which quaternion, whose entries stand in a row.
+/// Writes the quaternion to which velocity i, a component of a rotation vector, belongs.
 static void put_orientation(hn_strbuf *b, const hn_system *sys, int i) {
     hn_system_exprs x = hn_system_get_exprs(sys);
     int at = 0, part = 0; // of q; of the orientation
@@ -88,7 +88,7 @@ static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *un
     }
 }
 
-/// 1 if the entry is told: not zero, and for a symmetric matrix not above the diagonal.
+/// Returns 1 if the entry is written: not zero, and for a symmetric matrix not above the diagonal.
 static int is_told(const term *m, int i, int j) {
     return !(m->symmetric && j > i) && !hn_is_zero(m->cols ? m->e[i * m->cols + j] : m->e[i]);
 }

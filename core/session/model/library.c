@@ -34,7 +34,7 @@ static int join_path(char out[MAX_PATH_CHARS], const char *folder, const char *n
     return n > 0 && n < MAX_PATH_CHARS;
 }
 
-/// The folder of the running program, without a trailing slash; 0 if it cannot be told.
+/// Finds the folder of the running program, without a trailing slash; returns 0 if it is unknown.
 static int program_folder(char out[MAX_PATH_CHARS]) {
     ssize_t n = readlink("/proc/self/exe", out, MAX_PATH_CHARS - 1);
     if (n <= 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_LISTS_H
 #define HN_SESSION_LISTS_H
-// What the library holds besides scenes: lessons, as a document.
+// The list of lessons, as a document.
 
 #include "base/strbuf.h"
 #include "session/model/library.h"

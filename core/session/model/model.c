@@ -61,7 +61,7 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
                               source->n_settings, scene, diags);
 }
 
-/// Consistent starting values; an open loop is an error unless the caller wants to look at it.
+/// Computes consistent starting values. An open loop is an error unless allow_open is set.
 static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(model->system);
     model->q = hn_arena_doubles(model->arena, (size_t)info.nq);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_MODEL_H
 #define HN_SESSION_MODEL_H
-// A model: a scene loaded, compiled and assembled; and the documents (JSON, text) that the command
-// line and the HTTP interface both hand out. One door for server/: nothing there looks below this
-// layer.
+// A model: a scene, loaded, compiled and assembled; and the documents (JSON, text) that both the
+// command line and the HTTP interface return. The server uses this layer only, and nothing below
+// it.
 
 #include "base/diag.h"
 #include "base/strbuf.h"
@@ -14,8 +14,8 @@
 
 typedef struct hn_model hn_model;
 
-/// Exactly one of name, path, text is set. `name` is a shipped scene (near-miss suggestion when
-/// unknown).
+/// The scene to load: exactly one of name, path and text is set. `name` is a shipped scene; an
+/// unknown name is reported with the nearest known one.
 typedef struct hn_model_source {
     const char *name, *path;
     const char *text; ///< scene JSON
@@ -24,7 +24,7 @@ typedef struct hn_model_source {
         *id; ///< of a text: what the scene is called when it does not say itself; may be NULL
     const hn_setting *settings;
     int n_settings;
-    /// 1: a scene that cannot be assembled is still a model (for inspect); its report says why
+    /// 1: a scene that cannot be assembled still gives a model, for `inspect`, which reports why
     int allow_open;
 } hn_model_source;
 
@@ -32,26 +32,24 @@ HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_sour
                                       hn_model **out, hn_diags *diags);
 void hn_model_free(hn_model *model);
 const hn_scene *hn_model_scene(const hn_model *model);
-/// Where the reference solution of the shipped scene of this id would stand (references.h); NULL:
-/// no shipped scene has its id.
+/// Returns the path at which the reference solution of the shipped scene of this id is stored
+/// (references.h); NULL when no shipped scene has this id.
 const char *hn_model_reference_path(const hn_model *model);
 const hn_system *hn_model_system(const hn_model *model);
-/// Returns the methods to compare where none is asked for: the scene's own, or where it names none
-/// a method that drifts, one that is pulled back and one that is projected (of a tree: two
-/// integrators).
+/// Returns the methods that a comparison uses by default: those that the scene names; otherwise one
+/// that drifts, one that stabilises and one that projects, or for a tree two integrators.
 const char *const *hn_model_methods(const hn_model *model, int *n);
-/// Returns the method to run where none is asked for: the first of hn_model_methods() that keeps
-/// the loops closed or pulls them back, else the first.
+/// Returns the method that a run uses by default: the first of hn_model_methods() that projects or
+/// stabilises the constraints; if there is none, the first.
 const char *hn_model_method(const hn_model *model);
 const hn_assembly *hn_model_assembly(const hn_model *model);
-/// What keeps the loops of the start from closing, told as assembly tells it; NULL: they are closed
-/// (always unless allow_open).
+/// Returns the reason why the loops cannot be closed at the start, as assembly reports it; NULL
+/// when they are closed. Without allow_open they always are.
 const hn_diag *hn_model_why_open(const hn_model *model);
 const double *hn_model_q(const hn_model *model); ///< assembled start, system coordinates
 const double *hn_model_v(const hn_model *model);
 
-/// A state in user coordinates that differs from the assembled start where entries are given (by
-/// coordinate name).
+/// One entry of a state in user coordinates. Coordinates without an entry keep the assembled start.
 typedef struct hn_state_entry {
     const char *name; ///< coordinate (position) or rate name
     double value;

@@ -17,7 +17,8 @@ const char *hn_position_name(const hn_system *sys, int coordinate) {
 
 // making ----
 
-/// The same rows and coordinates: what was chosen for the one serves the other.
+/// Returns 1 if both systems have the same numbers of coordinates and constraint rows, so that the
+/// chart of one is valid for the other.
 static int is_same_shape(const hn_system *a, const hn_system *b) {
     const hn_system_info x = hn_system_get_info(a), y = hn_system_get_info(b);
     return x.nq == y.nq && x.nv == y.nv && x.nc == y.nc;
@@ -56,7 +57,7 @@ static hn_status find_form(hn_position_form *f, const hn_model *model, const hn_
 
     // signs of the assembly mode at the start
     if (status == HN_OK && !hn_dyads_refusal(f->dyads)) {
-        (void)hn_dyads_take_branch(f->dyads, 0, q); // a sign of 0 tells that both ways meet here
+        (void)hn_dyads_take_branch(f->dyads, 0, q); // sign 0: both assembly modes coincide
     }
     return status;
 }
@@ -74,7 +75,7 @@ void hn_position_form_free(hn_position_form *f) {
     *f = (hn_position_form){0};
 }
 
-// telling ----
+// writing ----
 
 void hn_position_answer(const hn_position_form *f, char *text, size_t size) {
     const char *refusal = f->dyads ? hn_dyads_refusal(f->dyads) : NULL;
@@ -113,7 +114,7 @@ static void put_independent(hn_strbuf *b, const hn_position_form *f) {
     }
 }
 
-/// Into a buffer of its own: a form that is too long for anybody must not spoil the rest.
+/// Prints into a buffer of its own; dots replace an expression longer than LONGEST_FORM.
 static void print_short(hn_strbuf *piece, const hn_graph *g, hn_ex e, hn_print_form form) {
     hn_strbuf_init(piece);
     hn_print(piece, g, e, form, form == HN_PRINT_LATEX ? 6 : 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_POSITION_JSON_H
 #define HN_SESSION_POSITION_JSON_H
-// How the reduced method finds the whole pose from its independent coordinates, as a part of what
-// inspect tells.
+// How the reduced method computes the configuration from its independent coordinates, as a part of
+// the report of `inspect`.
 
 #include "base/strbuf.h"
 #include "session/model/model.h"
@@ -12,6 +12,6 @@
 ///   {"independent": [names], "answers": "dyads: closed form (3 of them)" or "Newton, because ...",
 ///   "operations"?,
 ///    "operations_of_a_newton_step", "steps"?: [{"kind", "meets", "unknowns", "rows"}]}
-///   {"answers": "none: ..."} without loops, or where there are no such coordinates.
+///   {"answers": "none: ..."} without loops, or where no set of independent coordinates exists.
 HN_MUST_CHECK hn_status hn_position_put(hn_strbuf *b, const hn_model *model);
 #endif

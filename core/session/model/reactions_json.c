@@ -12,14 +12,15 @@ struct hn_reaction_writer {
     hn_accel *accel;
     hn_reactions *reactions;
     hn_wrench *wrenches; ///< joints, then constraints
-    /// of these, the ones that have a place: joints of bodies, and what is held to them
+    /// indices of the wrenches that act at a place: joints of bodies, and constraints on their
+    /// points
     int *carrier;
     int n_carriers;
     double *a, *lambda;
-    int known; ///< the last state has been worked out
+    int known; ///< 1: the last state was computed without failure
 };
 
-/// Of a generalised force along a coordinate.
+/// Unit of a generalised force, by the kind of its coordinate.
 static const char *const EFFORT_UNITS[] = {[HN_ANGLE] = "N m", [HN_LENGTH] = "N", [HN_OTHER] = "J"};
 
 static void list_carriers(hn_reaction_writer *w) {
@@ -136,7 +137,7 @@ static void put_wrench(hn_strbuf *b, const hn_reaction_writer *w, int k) {
     hn_json_end_object(b);
 }
 
-/// One effort; without its value where only its name is wanted.
+/// Writes one effort; with_value = 0 leaves out its value.
 static void put_effort(hn_strbuf *b, const hn_reaction_writer *w, int k, int with_value) {
     const hn_effort e = hn_reactions_effort(w->reactions, k);
     const hn_coordinate *c = &w->scene->coordinates[e.coordinate];

@@ -5,7 +5,7 @@
 #include "formulations/chart/reduced_terms.h"
 #include "session/store/columns_json.h"
 
-#define SPEED_TOL 1e-9 // of the largest speed: below, the speeds given fit the loops
+#define SPEED_TOL 1e-9 // of the largest velocity: violations below this are rounding
 
 static const hn_coordinate *coordinate_of(const hn_model *model, int user) {
     return &hn_model_scene(model)

@@ -17,7 +17,7 @@
 enum {
     MAX_DENSE = 150,
     MAX_K = 40
-}; ///< speeds for which matrices are written out; and the whole K
+}; ///< largest number of velocities for the matrices; largest size of K
 
 /// Workspace of one call. P (nv x n): v_system = P v_user.
 typedef struct terms {
@@ -255,8 +255,8 @@ static hn_status write_terms(hn_strbuf *b, const hn_model *model, double t,
     }
     if (status == HN_OK) {
         calc_user_terms(&w);
-        // without accelerations there is nothing to carry: the list stays empty and "status" says
-        // why
+        // reactions need accelerations: without them the list is empty and "status" gives the
+        // reason
         if (w.reactions && w.accel_status == HN_OK) {
             w.accel_status = hn_reaction_writer_eval(w.reactions, t, w.q, w.v);
         }

@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const double DEFAULT_LIMIT = 60; // [s]
-// of the time limit: one of the two computations of a reference, and the search for chaos
+// shares of the time limit: each of the two computations of a reference, and the estimate of chaos
 static const double REFERENCE_SHARE = 0.5, CHAOS_SHARE = 0.05;
 
 // from the naive to the specialised: fixed steps, chosen steps, differential-algebraic integrators
@@ -24,7 +24,7 @@ const char *const *hn_study_standard(int *n) {
     return STANDARD;
 }
 
-/// While the reference is computed there is something to see: nothing of the study is done.
+/// Reports progress 0 while the reference is computed, and asks whether to stop.
 static int ask_and_report(void *user) {
     const hn_job_limits *limits = user;
     hn_job_progress(limits, "", 0);
@@ -99,7 +99,7 @@ static hn_status set_up(hn_study *s, hn_diags *diags) {
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s", diag.message);
     }
 
-    // a part leaves the question of chaos to the whole
+    // only a whole study estimates chaos
     if (opts.n_shards == 0) {
         const hn_walk_limits limits = {CHAOS_SHARE * r->limits.time_limit, r->limits.stop,
                                        r->limits.user};

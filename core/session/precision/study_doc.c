@@ -86,7 +86,7 @@ static void put_times(hn_strbuf *b, const hn_wp_point *p) {
     hn_json_end_object(b);
 }
 
-/// Errors that are no more than bounds, because the reference is no better.
+/// Writes the kinds of error that are only bounds, because the reference does not resolve them.
 static void put_bounds(hn_strbuf *b, const hn_wp *wp, const hn_wp_point *p) {
     hn_json_key(b, "bounds");
     hn_json_array(b);
@@ -261,8 +261,8 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     hn_json_put_bool(b, "finished", !s->wp->out_of_time && !s->wp->stopped);
     hn_json_put_bool(b, "stopped", s->wp->stopped);
     hn_json_put_number(b, "time_limit", s->request.limits.time_limit);
-    // where nothing is timed the document holds nothing that a clock said: two of them are the same
-    // bytes
+    // without timing the document holds no clock value, so that two documents are equal byte by
+    // byte
     hn_json_put_number(b, "elapsed", s->wp->opts.n_samples > 0 ? s->wp->elapsed : (double)NAN);
 
     // results
@@ -274,7 +274,7 @@ void hn_study_json(hn_strbuf *b, const hn_study *s) {
     hn_json_end_object(b);
 }
 
-/// A number behind a comma.
+/// Writes a comma and a number.
 static void put_cell(hn_strbuf *b, double value) {
     hn_strbuf_add(b, ",");
     hn_csv_number(b, value);

@@ -6,6 +6,6 @@
 #include "session/precision/study.h"
 
 void hn_study_json(hn_strbuf *b, const hn_study *study);
-/// One row a point, with a head.
+/// Writes a table with a header line and one line per point.
 void hn_study_csv(hn_strbuf *b, const hn_study *study);
 #endif

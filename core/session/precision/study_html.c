@@ -180,7 +180,7 @@ static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind kind)
     return fmax(p->worst[kind], HN_WP_ABOVE_REFERENCE * wp->ref->error[kind]);
 }
 
-/// The coarsest point with the smallest error that can be claimed, or NULL.
+/// Returns the coarsest point with the smallest error that the reference resolves, or NULL.
 static const hn_wp_point *best_point(const hn_wp *wp, int m) {
     const hn_wp_point *best = NULL;
     for (int k = 0; k < wp->n_levels; k++) {
@@ -349,7 +349,7 @@ void hn_study_put_points(hn_strbuf *b, const hn_study *s) {
     hn_strbuf_add(b, "</tbody></table></div></details>\n");
 }
 
-/// A list of what did not come to the end, with why: on paper too.
+/// Writes the list of failed points with their reasons; it is printed on paper too.
 void hn_study_put_failures(hn_strbuf *b, const hn_study *s, int level) {
     const hn_wp *wp = hn_study_wp(s);
     int any = 0;

@@ -23,7 +23,7 @@ typedef struct part {
     double time_limit, elapsed;
 } part;
 
-/// The record of a point that counts so far; NULL: none yet.
+/// The best record of a point so far; NULL: none yet.
 typedef struct record {
     const part *from;
     const cJSON *o;
@@ -41,7 +41,7 @@ static const cJSON *member(const cJSON *o, const char *key) {
     return cJSON_GetObjectItemCaseSensitive(o, key);
 }
 
-/// A member by its path: "request/time". NULL: there is none.
+/// Returns a member by its path, such as "request/time"; NULL: there is none.
 static const cJSON *at_path(const cJSON *o, const char *path) {
     char key[32];
     while (o && *path) {
@@ -58,7 +58,7 @@ static const char *text_of(const cJSON *o, const char *path) {
     return text ? text : "";
 }
 
-/// A whole number from low to high; 0: it is none.
+/// Reads a whole number from low to high. Returns 0 when there is none.
 static int whole_of(const cJSON *o, const char *path, int low, int high, int *out) {
     const cJSON *item = at_path(o, path);
     const double x = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
@@ -106,7 +106,7 @@ static hn_status read_part(merging *g, const hn_study_part_text *text, part *p) 
 
 // agreeing ----
 
-/// 1 when both say the same; otherwise what they say, shortened.
+/// Returns 1 when both are equal. `said` receives both, shortened, for a message.
 static int say_the_same(const cJSON *a, const cJSON *b, char said[2][SHOWN]) {
     char *x = cJSON_PrintUnformatted(a), *y = cJSON_PrintUnformatted(b);
     const int same = x && y && strcmp(x, y) == 0;
@@ -124,7 +124,7 @@ static hn_status contradict(merging *g, const part *a, const part *b, const char
                         b->name, field, said[0], said[1]);
 }
 
-/// Everything but the points: of one scene, one request, one build, against one reference.
+/// Checks that all parts agree in scene, request, build and reference.
 static hn_status compare_heads(merging *g) {
     static const char *const fields[] = {"scene/hash",      "scene/id",       "build",
                                          "request/time",    "request/levels", "request/samples",
@@ -142,7 +142,7 @@ static hn_status compare_heads(merging *g) {
     return HN_OK;
 }
 
-// the study that they are of ----
+// the study ----
 
 static hn_status load_scene(merging *g) {
     const part *p = &g->parts[0];
@@ -208,7 +208,7 @@ static hn_status read_methods(merging *g, hn_method_spec *specs, int *n) {
     return HN_OK;
 }
 
-/// The largest of the parts'; 0, none, is larger than all.
+/// Returns the largest time limit of the parts; 0 means no limit and counts as the largest.
 static double largest_limit(const merging *g) {
     double largest = g->parts[0].time_limit;
     for (int i = 1; i < g->n; i++) {
@@ -262,7 +262,7 @@ static int samples_of(const cJSON *o) {
     return cJSON_GetArraySize(member(o, "cpu"));
 }
 
-/// Which of two records of one point counts: the same whichever comes first.
+/// Returns 1 if record a counts rather than b. The result does not depend on their order.
 static int is_better(const cJSON *a, const cJSON *b) {
     const int skipped_a = state_of(a) == HN_WP_SKIPPED, skipped_b = state_of(b) == HN_WP_SKIPPED;
     if (skipped_a != skipped_b) {
@@ -278,7 +278,7 @@ static int is_better(const cJSON *a, const cJSON *b) {
     return better;
 }
 
-/// What no clock said must be the same in both.
+/// Checks that two records of a point agree in everything but CPU times.
 static hn_status compare_records(merging *g, const record *a, const record *b, int i) {
     static const char *const fields[] = {"state", "status", "reason", "numbers",
                                          "worst", "end",    "q",      "cost"};
@@ -364,7 +364,7 @@ static hn_status take_points(merging *g) {
 
 // what is missing ----
 
-/// The name of the part shard/of when it was given, NULL otherwise.
+/// Returns the name of the part shard/of, or NULL when it was not given.
 static const char *given(const merging *g, int shard, int of) {
     for (int i = 0; i < g->n; i++) {
         if (g->parts[i].shard == shard && g->parts[i].of == of) {
@@ -374,7 +374,8 @@ static const char *given(const merging *g, int shard, int of) {
     return NULL;
 }
 
-/// lacks[i] of shard i + 1 of n: points that no part brought. Returns how many shards have some.
+/// Counts in lacks[i] the points of shard i + 1 of n that no part holds. Returns the number of
+/// incomplete shards.
 static int find_lacking(const merging *g, int n, int lacks[HN_WP_SHARDS]) {
     const hn_wp *wp = g->study->wp;
     int shard[HN_WP_METHODS * HN_WP_LEVELS], found = 0;
@@ -387,7 +388,7 @@ static int find_lacking(const merging *g, int n, int lacks[HN_WP_SHARDS]) {
     return found;
 }
 
-/// Names the parts without which it is not whole: of the split that lacks fewest.
+/// Reports the missing parts, for the split of which the fewest are missing.
 static hn_status find_missing(merging *g) {
     int lacks[HN_WP_SHARDS], of = 0, least = HN_WP_SHARDS + 1;
 
@@ -426,7 +427,8 @@ static hn_status find_missing(merging *g) {
 
 // clocks ----
 
-/// The median of a part's yardstick; NaN: it has none, or not the first part's.
+/// Returns the median time of a part's yardstick; NaN when it has none, or when its method is not
+/// that of the first part.
 static double yardstick_of(const merging *g, const part *p) {
     hn_wp_point y = {0};
     char said[2][SHOWN];
@@ -442,7 +444,7 @@ static double yardstick_of(const merging *g, const part *p) {
                : (double)NAN;
 }
 
-/// One part has one clock, however often it is given.
+/// Computes the ratio of the slowest to the fastest clock; 1 when all texts are copies of one part.
 static void compare_clocks(merging *g) {
     double low = HUGE_VAL, high = 0;
     int several = 0;
@@ -472,7 +474,7 @@ static double all_elapsed(const merging *g) {
     return sum;
 }
 
-/// As after a run: what the points say together.
+/// Evaluates the merged points, as after a run.
 static void conclude(merging *g) {
     hn_study *s = g->study;
     hn_wp_compare_ends(s->wp);

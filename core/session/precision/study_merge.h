@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_PRECISION_STUDY_MERGE_H
 #define HN_SESSION_PRECISION_STUDY_MERGE_H
-// Parts of a study put together. What two parts both say must be the same in every bit, but for
-// what a clock said: of that the record with more samples is taken, and of equals the one that
-// comes first in the alphabet, so that neither order nor repetition matters.
+// Merges the parts of a study. Two parts that hold the same point must agree in every bit, except
+// for CPU times. Of two records the one with more CPU samples counts; of equals the first in
+// alphabetical order. So neither order nor repetition of the parts matters.
 
 #include "session/precision/study.h"
 
-/// The study that these parts are of, as hn_study_run() would have left it: the same numbers (but a
-/// clock's) however it was split, whatever the order, and as often as one is given. Overlapping
-/// parts are allowed. Fails: HN_ERR_INPUT, told: a text that is no part, parts that contradict each
-/// other (in which field), parts that are missing or unfinished (which). HN_ERR_MEMORY.
+/// Returns the whole study, as hn_study_run() would have left it. The numbers, except for CPU
+/// times, do not depend on how the study was split. Parts may overlap or be repeated.
+/// Fails: HN_ERR_INPUT when a text is no part of a study, when parts contradict each other (names
+/// the field), when parts are missing or unfinished (names them); HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_study_merge(const hn_study_part_text *parts, int n, hn_study **out,
                                        hn_diags *diags);
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_STUDY_PAGE_H
 #define HN_SESSION_STUDY_PAGE_H
-// Parts of a page about studies, for the page of one (study_html.c) and the report over several
+// Sections shared by the page of one study (study_html.c) and the report over several
 // (report_html.c).
 
 #include "render/look.h"

@@ -95,7 +95,8 @@ static double y_of(const frame *f, double error) {
     return TOP + fmin(1, fmax(0, share)) * (HEIGHT - TOP - BOTTOM);
 }
 
-/// Whole decades of the error, the costs with a margin. 0 when nothing can be drawn.
+/// Finds the ranges of the axes: whole decades of the error, the costs with a margin. Returns 0
+/// when nothing can be drawn.
 static int find_frame(const hn_wp *wp, frame *f) {
     f->x0 = HUGE_VAL;
     f->x1 = -HUGE_VAL;
@@ -124,7 +125,7 @@ static int find_frame(const hn_wp *wp, frame *f) {
     return f->x1 > f->x0 && f->y1 > f->y0;
 }
 
-/// Of method m; from the eighth on, where colours begin anew, with a ring around it.
+/// Draws the marker of method m. From the eighth method on colours repeat, and a ring is added.
 static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
     static const char *const shapes[HN_MARKER_COUNT] = {
         [HN_MARKER_DISC] = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0Z",
@@ -157,7 +158,7 @@ static void put_marker(hn_strbuf *b, int m, double x, double y, double r) {
     }
 }
 
-/// "curve", thinner where colours begin anew, and the dashes.
+/// Writes the class "curve", thinner where colours repeat, and the dashes.
 static void put_line_style(hn_strbuf *b, int m, const char *more) {
     const hn_look *look = hn_look_get(hn_look_slot(m));
     hn_strbuf_printf(b, " class=\"curve%s%s\" style=\"stroke:var(--slot-%d)\"",
@@ -208,7 +209,7 @@ static void put_cost_axis(hn_strbuf *b, const frame *f) {
                  titles[f->cost]);
 }
 
-/// What the reference cannot resolve.
+/// Draws the band of errors that the reference cannot resolve.
 static void put_band(hn_strbuf *b, const hn_wp *wp, const frame *f) {
     const double floor = floor_of(wp, f->error);
     if (floor > 0 && log10(floor) > f->y0) {
@@ -269,7 +270,7 @@ static void put_curve(hn_strbuf *b, const hn_study *s, const frame *f, int m) {
     }
 }
 
-/// Cost of a failed run when it ended: its counts, or the time of that one run.
+/// Returns the cost of a failed run until its end: its counts, or the CPU time of that run.
 static double cost_until_failure(const hn_wp_point *p, hn_cost_kind cost) {
     return cost == HN_COST_TIME ? p->first_cpu : hn_wp_cost(p, cost);
 }
@@ -317,7 +318,7 @@ static int collect_labels(const hn_wp *wp, const frame *f, label *list) {
     return n;
 }
 
-/// Moved apart downwards, then back up from the lower edge.
+/// Moves labels apart downwards, then up again from the lower edge.
 static void spread_labels(label *list, int n) {
     for (int i = 1; i < n; i++) {
         list[i].at = fmax(list[i].at, list[i - 1].at + LABEL_STEP);

@@ -2,24 +2,24 @@
 #ifndef HN_SESSION_STUDY_PLOT_H
 #define HN_SESSION_STUDY_PLOT_H
 // Error against cost as an SVG picture, in the colours, dashes and markers of render/look.h.
-// Colours are the variables --slot-0 ..
-// --slot-6, --ink, --muted, --hairline, --raised of the page around it, so that one picture serves
-// light, dark and paper.
+// Colours are variables of the page (--slot-0 to --slot-6, --ink, --muted, --hairline, --raised),
+// so that one picture serves the light theme, the dark theme and paper.
 
 #include "session/precision/study.h"
 
-/// One <svg> element. Curves are labelled at their ends; failed points stand on the upper edge, at
-/// what they had cost by then; the band at the lower edge is what the reference cannot resolve.
+/// Writes one <svg> element. Labels stand at the ends of the curves. A failed run is a cross on the
+/// upper edge, at its cost until the failure. The band at the lower edge is below the resolution of
+/// the reference.
 void hn_study_plot(hn_strbuf *b, const hn_study *study, hn_error_kind error, hn_cost_kind cost);
-/// Line and marker of method m on their own, for legends.
+/// Writes the line and the marker of method m, for legends.
 void hn_study_key(hn_strbuf *b, int m);
-/// What plots need of a style sheet, beside the variables.
+/// Returns the style rules that plots need besides the variables.
 const char *hn_plot_style(void);
-/// Begins an <svg> of this size, with what it shows in words.
+/// Opens an <svg> of this size; `about` is its accessible name.
 void hn_plot_begin(hn_strbuf *b, int width, int height, const char *about);
-/// Text at (x, y) in a class of hn_plot_style().
+/// Writes a text at (x, y) in a class of hn_plot_style().
 void hn_plot_text(hn_strbuf *b, double x, double y, const char *class_name, const char *text);
-/// Text with &, <, > and " escaped.
+/// Writes a text with &, <, > and " escaped.
 void hn_html_text(hn_strbuf *b, const char *text);
 void hn_html_text_n(hn_strbuf *b, const char *text, size_t n); ///< its first n bytes
 #endif

@@ -13,8 +13,8 @@
 enum { FORMAT = 2 };
 static const double LARGEST_COUNT = 9e15; // whole numbers are exact up to here
 
-/// All that decides what the points are: everything but the budget. A part of a study has a journal
-/// of its own.
+/// Returns the hash of everything that determines the points; the time limit does not. A part of a
+/// study has its own journal.
 static uint64_t study_key(const hn_study *s) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &s->ref->scene, sizeof s->ref->scene);
     hash = hn_hash_double(hash, s->ref->T);
@@ -80,7 +80,7 @@ void hn_store_put_point(hn_strbuf *b, const hn_study *s, int m, int k) {
     hn_json_put_numbers(b, "cost", counts, N_COUNTS);
 }
 
-/// 1 when all are what a counter can hold.
+/// Returns 1 when all values fit a counter.
 static int are_counts(const double *n, int count) {
     int ok = 1;
     for (int i = 0; i < count; i++) {
@@ -125,7 +125,7 @@ int hn_store_take_sample(hn_wp_point *p, double cpu, double busy) {
     return 1;
 }
 
-/// A line of a point: 0 when it is not one.
+/// Takes the line of a point. Returns 0 when it is not valid.
 static int take_point_line(hn_study *s, const cJSON *o, hn_wp_point *p) {
     const int ok = hn_stored_number(o, "first_cpu", &p->first_cpu) &&
                    hn_store_take_point(s, o, p) && p->state != HN_WP_SKIPPED;
@@ -139,7 +139,7 @@ static int take_sample_line(hn_wp_point *p, const cJSON *o) {
            hn_store_take_sample(p, cpu, busy);
 }
 
-/// m = -1 is the yardstick.
+/// Takes one line of the journal; m = -1 is the yardstick.
 static int take_line(void *user, const cJSON *o) {
     hn_study *s = user;
     const int is_sample = cJSON_HasObjectItem(o, "cpu");

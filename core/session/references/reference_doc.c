@@ -12,8 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-// The second goes through poses where J loses rank: steps that are chosen by so small a tolerance
-// end up inside them.
+// The second method, with its fixed step, passes singular configurations. There an adaptive method
+// with so small a tolerance gets stuck.
 static const char *const MOTION_METHODS[] = {"projection@dop853:rtol=1e-13",
                                              "projection@rk4:h=2e-4"};
 enum { N_MOTION_METHODS = sizeof MOTION_METHODS / sizeof *MOTION_METHODS };
@@ -73,7 +73,7 @@ static void put_times(hn_strbuf *b, const hn_ref *ref) {
     hn_json_end_array(b);
 }
 
-/// Everything but the closing brace.
+/// Writes the object without its closing brace.
 static void put_stored(hn_strbuf *b, const hn_model *model, const hn_ref *ref,
                        hn_ref_source source) {
     hn_json_object(b);
@@ -151,7 +151,7 @@ static void keep(motion *m, int k, const hn_sample *s) {
     m->energy[k] = s->energy;
 }
 
-/// Stored times and asked ones in their order.
+/// Goes through the stored and the requested times in ascending order.
 static hn_status follow(motion *m) {
     int k = 0, node = 0;
     while (k <= m->n || node <= m->ref->n) {
@@ -218,7 +218,7 @@ static hn_status add_failure(const motion *m, hn_status status, hn_diags *diags)
                         s.reason[0] ? s.reason : hn_status_text(status));
 }
 
-/// By the first method that comes to the end; the failure of the last is told.
+/// Integrates by the first method that reaches the end; reports the failure of the last one.
 static hn_status move(motion *m, const hn_model *model, hn_diags *diags) {
     hn_status status = HN_ERR_INPUT;
     m->pace = hn_pace_begin();

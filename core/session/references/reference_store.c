@@ -26,7 +26,7 @@ hn_ref_request hn_ref_request_default(void) {
 
 // reading ----
 
-/// A state that is no number is no reference; null is read as NaN.
+/// Returns 1 if all values are finite. A null, read as NaN, makes a reference invalid.
 static int are_finite(const double *x, size_t n) {
     for (size_t i = 0; i < n; i++) {
         if (!isfinite(x[i])) {
@@ -221,7 +221,7 @@ double hn_reference_horizon(const hn_ref *ref, double digits) {
     if (k == ref->n || k == 0) {
         return k == 0 ? 0 : ref->T;
     }
-    // two digits, as they are typed: 28 / 10, not 28 * 0.1
+    // two decimal digits, rounded like a literal: 28 / 10, not 28 * 0.1
     const double power = floor(log10(t)) - 1, unit = pow(10, fabs(power));
     return power < 0 ? floor(t * unit + 1e-9) / unit : floor(t / unit + 1e-9) * unit;
 }

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_SESSION_REFERENCES_REFERENCE_STORE_H
 #define HN_SESSION_REFERENCES_REFERENCE_STORE_H
-// Where references are kept. A file that does not fit is not used, never trusted halfway; one that
-// is written appears whole.
+// Stores reference solutions. A file that does not fit the scene is ignored as a whole. A file is
+// written atomically.
 
 #include "session/references/references.h"
 
 const char *hn_ref_source_name(hn_ref_source source); ///< "shipped", "kept", "computed"
-/// Returns owned in *out; source may be NULL. A computed one is kept where there is a folder. Fails
-/// as hn_ref_create(); HN_ERR_UNSUPPORTED: it would have to be computed.
+/// Finds or computes the reference. *out is owned by the caller; source may be NULL. A computed
+/// reference is cached if the request has a folder.
+/// Fails: as hn_ref_create(); HN_ERR_UNSUPPORTED when only_stored is set and none is stored.
 HN_MUST_CHECK hn_status hn_reference_get(const hn_model *model, const hn_ref_request *request,
                                          hn_ref **out, hn_ref_source *source, hn_diags *diags);
-/// The longest time, a number of two digits, to which the reference keeps this many digits of the
-/// coordinates; its own end when it does throughout, 0 when not even at its first time.
+/// Returns the longest time [s], to two digits, up to which the reference has this many correct
+/// digits of the coordinates; its end time when it has them throughout, 0 when it lacks them at its
+/// first time.
 double hn_reference_horizon(const hn_ref *ref, double digits);
-/// As it is shipped: one JSON object, compact. HN_ERR_IO with the reason.
+/// Writes the reference to a file, as one compact JSON object. Fails: HN_ERR_IO, HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_reference_save(const char *path, const hn_model *model,
                                           const hn_ref *ref, hn_diag *diag);
+/// Reads such an object. The result is owned by the caller; NULL unless the object belongs to this
+/// model and has n intervals to the end time T (NaN: any end time).
 hn_ref *hn_reference_take(const struct cJSON *o, const hn_model *model, double T, int n);
 hn_ref_request hn_ref_request_default(void);
-/// The same object into a document, and back: owned; NULL where it is not this model's over n
-/// intervals to T (NaN: any).
+/// Appends the reference to a document, as the object that hn_reference_save() writes to its file.
 void hn_reference_put(hn_strbuf *b, const hn_model *model, const hn_ref *ref);
 #endif

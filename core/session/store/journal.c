@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/// Hands whole lines over; returns the bytes of those that were taken.
+/// Passes complete lines to `take`; returns the number of bytes of the accepted lines.
 static size_t take_lines(char *text, hn_journal_take take, void *user) {
     size_t used = 0;
     for (char *end; (end = strchr(text + used, '\n')) != NULL;) {
@@ -27,7 +27,7 @@ static size_t take_lines(char *text, hn_journal_take take, void *user) {
     return used;
 }
 
-/// The key of this very program: its file is another one once it is built anew.
+/// Adds size and time of the program's file to the key, so that another build has another key.
 static uint64_t add_program(uint64_t key) {
     struct stat program;
     if (stat("/proc/self/exe", &program) == 0) {
@@ -78,7 +78,7 @@ hn_status hn_journal_open(hn_journal *j, const char *folder, const char *kind, u
     char *text = hn_stored_text_of(j->file, &n);
     const size_t used = text ? take_lines(text, take, user) : 0;
     free(text);
-    // what comes next is written behind the last whole line
+    // drop what was not accepted, so that new lines follow the last accepted one
     j->failed = ftruncate(fileno(j->file), (off_t)used) != 0;
     return HN_OK;
 }
