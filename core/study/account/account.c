@@ -118,7 +118,8 @@ static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const
                            : status;
 }
 
-/// B for a step that has been made: of a copy of the formulation started at its beginning.
+/// The flow B over a step that is already made, by a copy of the formulation that starts where the
+/// step started.
 static hn_status follow_aside(hn_books *b, double t, double h, const double *y) {
     hn_engine *side = hn_run_side_engine(b->run);
     const hn_status status = hn_engine_start(side, t, y, y + b->info.nq);
@@ -150,7 +151,8 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
     return HN_OK;
 }
 
-/// Books one step: the run's, the two flows beside it, their differences and energies.
+/// Makes one step of the run and records it: the exact flows over the same time, the differences
+/// between them and the step, and the energies.
 static hn_status book_step(hn_books *b, hn_diag *diag) {
     hn_stepping *steps = b->steps;
     hn_account *out = b->out;
@@ -158,18 +160,25 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     if (status != HN_OK) {
         return status;
     }
+
+    // state at the start of the step, and the step size where it is known beforehand
     double *r = hn_books_record(b, b->kept), *y = r + 2, *part = y + b->ny, work = 0;
     const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
     hn_books_present(b, y);
-    // with a fixed step the formulation's own chart or basis is still the one the step will be made
-    // in
+
+    // B comes before the step where the step size is known: the formulation still has the chart or
+    // basis that the step will use
     int owned = is_ode(b) && planned > 0 &&
                 follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
+
+    // the step of the run itself
     status = hn_run_step(b->run);
     if (status != HN_OK) {
         return status;
     }
     const double h = steps->now.t - t;
+
+    // the exact flows I and B over the same time
     status = follow(b, t, h, y, &work);
     if (status == HN_OK && is_ode(b) && (!owned || fabs(h - planned) > 1e-9 * h)) {
         status = follow_aside(b, t, h, y);
@@ -181,6 +190,8 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
                            "%.4g to %.4g s: %s",
                            t, steps->now.t, hn_status_text(status));
     }
+
+    // record: the three parts of (1) as displacements
     const double *after_own = is_ode(b) ? b->owned : b->flowed;
     double *unmended = b->unmended.q; // q and v stand together
     r[0] = t;
@@ -189,6 +200,8 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     difference(b, after_own, unmended, part + HN_PART_TRUNCATION * b->nd);
     difference(b, b->flowed, after_own, part + HN_PART_FORMULATION * b->nd);
     difference(b, unmended, b->y, part + HN_PART_PROJECTION * b->nd);
+
+    // energy: each part from the states that it lies between
     const double e0 = energy_at(b, t, y), e1 = energy_at(b, t + h, b->flowed),
                  e2 = energy_at(b, t + h, after_own), e3 = energy_at(b, t + h, unmended),
                  e4 = energy_at(b, t + h, b->y);
@@ -227,6 +240,8 @@ static hn_status book_steps(hn_books *b, double T, hn_diag *diag) {
 static hn_status create_memory(hn_books *b) {
     hn_arena *arena = b->arena;
     const size_t ny = (size_t)b->ny, nd = (size_t)b->nd, nv = (size_t)b->info.nv;
+
+    // vectors, by their sizes
     double **states[] = {&b->y, &b->y_own, &b->flowed, &b->owned, &b->up, &b->down};
     for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
         *states[i] = hn_arena_doubles(arena, ny + nv); // room for user coordinates too
@@ -240,6 +255,8 @@ static hn_status create_memory(hn_books *b) {
     b->gap = hn_arena_doubles(arena, (size_t)b->info.nc);
     b->lambda = hn_arena_doubles(arena, (size_t)b->info.nc);
     b->unmended.q = hn_arena_doubles(arena, ny);
+
+    // constant entries, and the layout of a record
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
@@ -252,6 +269,8 @@ static hn_status create_memory(hn_books *b) {
 static hn_status create_parts(hn_books *b) {
     const hn_accel_opts with = {.want_lambda = 1};
     hn_status status = create_memory(b);
+
+    // evaluators of the mechanism
     if (status == HN_OK) {
         status = hn_accel_create(b->sys, &with, b->arena, &b->accel);
     }
@@ -272,12 +291,15 @@ static hn_status create_parts(hn_books *b) {
     if (status == HN_OK) {
         status = hn_flow_carrier_create(b->info.nq, b->info.nv, b->nd, b->arena, &b->carrier);
     }
+
+    // the splitting of displacements, and the equations that the flows solve
     b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
     b->plain = (hn_ode){.n_pos = b->info.nq, .n_vel = b->info.nv, .self = b, .rhs = plain_rhs};
     return status == HN_OK && !b->saddle ? HN_ERR_MEMORY : status;
 }
 
-/// Where flows cannot be followed, a singular pose on the way is mostly why.
+/// Adds to the message the singular configuration that the run has passed: it is the usual reason
+/// why a flow cannot be followed.
 static void explain(const hn_books *b, hn_diag *diag) {
     double t;
     if (hn_run_passed_singular(b->run, &t)) {
@@ -294,8 +316,12 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     hn_books_present(b, b->y);
     const double start = energy_at(b, b->steps->now.t, b->y);
     out->conservative = hn_run_is_conservative(b->run);
+
+    // the run, step by step
     b->steps->engine.uncorrected = &b->unmended;
     hn_status status = book_steps(b, T, diag);
+
+    // how far it got, and its energy
     const hn_run_summary s = hn_run_get_summary(b->run);
     const int failed = s.state == HN_RUN_FAILED;
     out->state = failed ? HN_RUN_FAILED : HN_RUN_FINISHED;
@@ -306,8 +332,10 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     out->energy = energy_at(b, out->t, b->y) - start;
     out->swing = b->t_max + b->v_max - b->v_min;
     if (failed) {
-        return HN_OK; // up to there the bill of energy stands; an error at the end there is none
+        return HN_OK; // the energy holds as far as the run got; there is no error at the end
     }
+
+    // the error at the end and its causes
     if (status == HN_OK) {
         status = hn_books_look_back(b, out->t, diag);
     }
@@ -331,10 +359,13 @@ hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, cons
     *out = (hn_account){.coordinate = -1};
     b.ny = b.info.nq + b.info.nv;
     b.nd = 2 * b.info.nv;
+
     if (!(T > 0) || !isfinite(T)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/time", NULL,
                            "the end must lie after 0, not at %g s", T);
     }
+
+    // the run, and the budget kept beside it
     const hn_run_opts run_opts = hn_run_opts_default();
     hn_status status = hn_run_create(sys, spec, q, v, &run_opts, &b.run, diag);
     if (status == HN_OK) {
@@ -346,6 +377,7 @@ hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec, cons
                      ? keep_books(&b, T, diag)
                      : hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
     }
+
     hn_accel_free(b.accel);
     hn_eval_free(b.eval);
     hn_linear_free(b.linear);

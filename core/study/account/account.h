@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_ACCOUNT_H
 #define HN_STUDY_ACCOUNT_H
-// Where the error of a run comes from, and the energy: an account of every step, that adds up.
+// The error budget of a run: what each step adds to the error at the end, and to the energy, split
+// by cause. The parts add up to the whole.
 //
 // Step k takes y_k = (q, v) to y_k+1. Beside it two flows start from the same y_k and are followed
 // to all digits: B of the formulation's own differential equation, and I of the equations of motion
@@ -66,15 +67,16 @@ typedef struct hn_account {
     long long steps;
     int coordinate; ///< user coordinate whose error is largest at the end; -1: the run ended early
     double error;   ///< of it, signed: the run's value less the reference's [rad or m]
-    double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: cannot be told for this method
+    double part[HN_CAUSE_COUNT]; ///< signed, same unit; NaN: not known for this method
     double sum;                  ///< of the parts: equals `error` as far as first order holds
     /// 0: the integrator takes the constraints as they are: formulation and truncation are one
     int has_equations;
     double energy;              ///< E(end) - E(start) [J]
     double bill[HN_BILL_COUNT]; ///< [J], adds up to `energy`
-    /// sum of |work of the loop forces| over the steps [J]: what cancelled in the bill
+    /// sum of |work of the loop forces| over the steps [J]: in the bill positive and negative work
+    /// cancel
     double loop_work_abs;
-    double swing;     ///< largest T plus range of V [J]: what energies are judged by
+    double swing;     ///< largest T plus range of V [J]: the scale of energies
     int conservative; ///< nothing should come from outside
 } hn_account;
 
@@ -88,11 +90,12 @@ typedef struct hn_account_opts {
     void *user;
 } hn_account_opts;
 
-/// The account of one method from the assembled state (q, v) in system coordinates to T. Costs some
-/// 100 times the run, whatever the number of its freedoms. Fails: HN_ERR_LIMIT (more steps than can
-/// be kept: told with the number), HN_ERR_BUDGET (stopped on request), HN_ERR_NO_CONVERGENCE (the
-/// flows beside the run, or the exact motion, could not be followed: where J loses rank on the way,
-/// neighbours off the loops cannot be), HN_ERR_MEMORY; and as hn_run_create().
+/// Computes the error budget of one method from the assembled state (q, v) in system coordinates to
+/// the time T [s]. Costs some 100 times the run, whatever the number of degrees of freedom.
+/// Fails: HN_ERR_LIMIT (more steps than can be kept; the message has the number), HN_ERR_BUDGET
+/// (stopped on request), HN_ERR_NO_CONVERGENCE (the flows beside the run, or the exact motion,
+/// could not be followed: past a configuration where J loses rank there is no flow off the loops),
+/// HN_ERR_MEMORY; and as hn_run_create().
 HN_MUST_CHECK hn_status hn_account_make(const hn_system *sys, const hn_method_spec *spec,
                                         const double *q, const double *v, double T,
                                         const hn_account_opts *opts, hn_account *out,

@@ -12,8 +12,8 @@
 #define TRANSPORT_TOL 1e-9 // of flows whose derivative carries parts to the end
 #define REFERENCE "projection@dop853:rtol=1e-13"
 
-/// Splits a displacement at the state of `linear` and `saddle`: what leads off the loops replaces
-/// `d`'s copy in b->split, the rest stays in d.
+/// Splits a displacement d (2 nv) at the state of `linear` and `saddle`: the part that opens the
+/// loops goes to b->split, the part along their motion stays in d.
 static hn_status split_off(hn_books *b, double *d) {
     const int nv = b->info.nv, nc = b->info.nc;
     double *off = b->split;
@@ -21,6 +21,8 @@ static hn_status split_off(hn_books *b, double *d) {
     if (nc == 0) {
         return HN_OK;
     }
+
+    // position: the smallest displacement that takes J d to 0
     const double *J = hn_linear_get(b->linear, HN_LINEAR_J);
     const double *V = hn_linear_get(b->linear, HN_LINEAR_V);
     hn_saddle_info info = {0};
@@ -30,6 +32,8 @@ static hn_status split_off(hn_books *b, double *d) {
     }
     hn_status status = hn_saddle_apply(b->zero, b->gap, off, b->lambda, &info, b->saddle);
     hn_axpy(nv, -1, off, d);
+
+    // velocity: the same for J dv + V dq, V being the derivative of J v by q
     for (int i = 0; i < nc; i++) {
         b->gap[i] = -hn_dot(nv, J + i * nv, d + nv) - hn_dot(nv, V + i * nv, d);
     }
@@ -137,6 +141,8 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
     double *q = b->up, *delta = b->split, *user = b->column;
     const hn_scene *scene = hn_system_scene(b->sys);
     double worst = -1;
+
+    // the user coordinate with the largest error; lengths are compared by that of the mechanism
     hn_system_from_user(b->sys, reference, q);
     hn_system_difference(b->sys, q, b->steps->now.q, delta);
     hn_system_rates_to_user(b->sys, delta, user);
@@ -150,9 +156,12 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
             b->out->error = user[i];
         }
     }
+
     if (b->out->coordinate < 0) {
         return hn_diag_set(diag, HN_ERR_DIVERGED, NULL, NULL, "the end of the run is not finite");
     }
+
+    // its derivative by the state at the end
     memset(b->w, 0, (size_t)b->nd * sizeof *b->w);
     for (int i = 0; i < nv; i++) {
         memset(b->a, 0, (size_t)nv * sizeof *b->a);
@@ -163,8 +172,9 @@ static hn_status choose_coordinate(hn_books *b, const double *reference, hn_diag
     return HN_OK;
 }
 
-/// The same run with one setting changed: how far apart the ends are in the coordinate; NaN where
-/// there is no such setting or the run chooses its steps, which would change with it.
+/// Returns the difference that one option of the method makes to the coordinate at the end, by a
+/// second run. NaN where the method has no such option, or where it chooses its steps: they would
+/// change with the option.
 static double told_by(const hn_books *b, const char *key, double value, double T) {
     hn_method_spec spec = *hn_run_spec(b->run);
     double *end = b->up, *delta = b->split, *q = b->down, *user = b->column, t;

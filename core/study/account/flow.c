@@ -70,7 +70,8 @@ static hn_status keep_step(path *p, double done, double part, const double *y) {
     return HN_OK;
 }
 
-/// To the size that would just do: a flow is a few steps, and has none to spare for finding it.
+/// Returns the factor to the step size that just meets the tolerance. A flow has only a few steps,
+/// so the size is not approached slowly.
 static double factor_of(double err, int order) {
     const double least = 1e-10; // of an error that may be 0
     return isfinite(err)
@@ -79,8 +80,8 @@ static double factor_of(double err, int order) {
                : HN_STEP_SHRINK;
 }
 
-/// The rest of a flow in equal steps of at most `size`: a last one that is left over costs as much
-/// as the others.
+/// Divides the rest of a flow into equal steps of at most `size`: a short last step would cost as
+/// much as a full one.
 static double even_part(double rest, double size) {
     return size < rest ? rest / ceil(rest / size) : rest;
 }
@@ -90,20 +91,26 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
                     path *along) {
     const hn_stepper *dop853 = &hn_stepper_dop853;
     double done = 0, next = f->size > 0 ? f->size : h;
-    double refused = 0,
-           refused_part = h; // error and size of the trial before, where that was turned down
+    // error and size of the trial before, where it was rejected
+    double refused = 0, refused_part = h;
+
     memcpy(f->y, y, (size_t)f->n * sizeof *y);
     dop853->on_accepted(f->stepper, 1); // slopes kept from another flow belong to another y
+
     for (int trial = 0; h - done > LANDED * h; trial++) {
         if (trial == MOST_TRIALS) {
             return HN_ERR_NO_CONVERGENCE;
         }
+
+        // one trial step and its error
         const double part = even_part(h - done, next);
         const hn_status status =
             dop853->step(f->stepper, ode, t + done, part, f->y, f->y_new, f->err);
         const double err =
             status == HN_OK ? hn_error_norm(f->n, f->err, f->y, f->y_new, tol, tol) : HUGE_VAL;
         next = part * factor_of(err, dop853->order);
+
+        // an error that does not fall with the step is rounding, and is accepted
         const double shorter = part / refused_part;
         const int is_noise =
             isfinite(err) && refused > 0 && err > refused * fmax(NO_BETTER, shorter * shorter);
@@ -112,6 +119,8 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
         if (is_noise) {
             next = part * HN_STEP_GROW;
         }
+
+        // accept the step, or give up where steps become too small
         if (err <= 1 || is_noise) {
             const hn_status kept = along ? keep_step(along, done, part, f->y) : HN_OK;
             if (kept != HN_OK) {
@@ -173,7 +182,7 @@ static double weight_of(int i, int j) {
     return i < tab->stages ? tab->A[i * (tab->stages + tab->extra) + j] : tab->b[j];
 }
 
-/// Y_i of one step, again.
+/// Computes the stages Y_i of one recorded step again.
 static hn_status find_stages(hn_flow_carrier *c, const hn_ode *ode, double t, double h,
                              const double *y) {
     const hn_tableau *tab = &hn_tableau_dop853;

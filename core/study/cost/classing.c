@@ -58,8 +58,8 @@ static double slope(const ladder *l, int i) {
     return dx > 1e-3 && l->e[i] > 0 && l->e[i - 1] > 0 ? log(l->e[i - 1] / l->e[i]) / dx : 0;
 }
 
-/// A tolerance that is passed on unchanged makes the same steps: then neither error nor distance
-/// says anything.
+/// Returns 1 and fills `c` where the finest points agree with each other but not with the
+/// reference. Points with the same steps (a tolerance that has no effect) prove nothing.
 static int goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
     if (l->n < 3) {
         return 0;
@@ -83,7 +83,7 @@ static int find_floor(const ladder *l, double theory, double known) {
     for (int i = 0; i < l->n; i++) {
         if (l->e[i] > sure &&
             (i == 0 || slope(l, i) >= FLAT * theory || l->e[i] > HN_CLASS_OFFSET)) {
-            // still falling; or not small: that is no floor but a method that has not settled
+            // still falling, or too large for a floor: the method is not yet convergent
             continue;
         }
         int stays = 1;
@@ -124,8 +124,9 @@ static int first_of(const ladder *l, int last, int most) {
     return first;
 }
 
-/// Rounding bends the fine end of a ladder before it stops the fall. Looks for the finest straight
-/// part above: errors small enough for rounding to show behind it, and only flatter slopes there.
+/// Fits the finest straight part of the ladder above the sizes where rounding flattens the slope.
+/// That part counts only if its errors are so small that rounding can follow, and if all finer
+/// slopes are flatter; otherwise c stays as it is.
 static void fit_above_rounding(const ladder *l, int last, int most, hn_class *c) {
     const hn_class bent = *c;
     double steepest = -HUGE_VAL;
@@ -186,6 +187,8 @@ static void describe_failure(const hn_wp *wp, int m, const ladder *l, hn_class *
 
 static void describe_order(const hn_wp *wp, int m, hn_class *c) {
     char floor[120] = "", size[HN_SI_TEXT];
+
+    // the fine end of the ladder: a floor, or rounding
     if (!isnan(c->floor)) {
         hn_si_format(c->floor_size, wp->methods[m].adaptive ? "" : "s", 2, size);
         if (wp->methods[m].adaptive) {
@@ -198,6 +201,8 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
         hn_si_format(wp->methods[m].point[c->rounding].size, "s", 2, size);
         snprintf(floor, sizeof floor, "; from h = %s on rounding adds to the error", size);
     }
+
+    // the observed order, or why there is none
     if (c->kind == HN_CLASS_CONVERGES && c->as_theory) {
         snprintf(c->text, sizeof c->text, "converges with order %.2f (theory %g)%s", c->order,
                  c->theory, floor);
@@ -235,6 +240,8 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
                   .last = -1,
                   .rounding = -1};
     *out = c;
+
+    // methods that have no order: too few points, a chaotic motion, another limit
     if (l.n < 2) {
         out->kind = HN_CLASS_FAILED;
         describe_failure(wp, m, &l, out);
@@ -254,6 +261,8 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
                  out->offset, out->own);
         return;
     }
+
+    // the floor: its size and the largest error there
     const int floor = find_floor(&l, c.theory, known);
     if (floor < l.n) {
         out->floor_size = method->point[l.level[floor]].size;
@@ -262,8 +271,11 @@ void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
             out->floor = fmax(out->floor, l.e[i]);
         }
     }
-    // chosen steps do not halve evenly: single slopes say little, the line through all points does
+
+    // the order: adaptive steps do not halve evenly, so all points are fitted and not the last few
     fit(&l, floor, method->adaptive ? HN_WP_LEVELS : FITTED, out);
+
+    // the verdict
     const double allowed =
         method->adaptive ? HN_CLASS_FROM_THEORY_ADAPTIVE * out->theory : HN_CLASS_FROM_THEORY_FIXED;
     out->as_theory = fabs(out->order - out->theory) <= allowed;

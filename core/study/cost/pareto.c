@@ -43,7 +43,7 @@ hn_error_kind hn_wp_ranked_error(const hn_wp *wp) {
     return hn_wp_is_beyond_horizon(wp) ? HN_ERROR_ENERGY : HN_ERROR_Q;
 }
 
-/// The error as it may be claimed.
+/// Returns the error, or the bound that the accuracy of the reference sets.
 static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error) {
     return fmax(p->worst[error], HN_WP_ABOVE_REFERENCE * wp->ref->error[error]);
 }
@@ -61,7 +61,7 @@ static double between(double x, double x0, double y0, double x1, double y1) {
     return exp(log(y0) + share * (log(y1) - log(y0)));
 }
 
-/// Where a method reaches the accuracy for the least, or level -1.
+/// Returns the point where a method reaches the accuracy at the least cost; level -1: nowhere.
 static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
                          hn_cost_kind kind, int m, double accuracy) {
     hn_place best = {m, -1, -1, 0};
@@ -71,8 +71,11 @@ static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind
         if (!takes_part(wp, classes, error, kind, m, k)) {
             continue;
         }
+
         const double e = claimed(wp, p, error);
         hn_place here = {m, k, -1, hn_wp_cost(p, kind)};
+
+        // accurate enough: the cost of just reaching it lies between this point and the coarser one
         if (e <= accuracy) {
             const hn_wp_point *coarser = before >= 0 ? &wp->methods[m].point[before] : NULL;
             if (coarser && e < accuracy && claimed(wp, coarser, error) > accuracy &&
@@ -85,21 +88,22 @@ static hn_place cheapest(const hn_wp *wp, const hn_class *classes, hn_error_kind
                 best = here;
             }
         }
+
         before = k;
     }
     return best;
 }
 
-// ---- what may be said of times ----
+// ---- how reliable times are ----
 
-/// Smallest and largest that was met of a point's time, over its median: quartiles, and medians of
-/// the halves.
+/// Widens [low, high] by the smallest and the largest time of a point over its median; quartiles
+/// and medians of the halves count.
 static void widen(const hn_wp_point *p, double *low, double *high) {
     *low = fmin(*low, fmin(p->low, fmin(p->half[0], p->half[1])) / p->median);
     *high = fmax(*high, fmax(p->high, fmax(p->half[0], p->half[1])) / p->median);
 }
 
-/// The same of the time at a place, from the points that it is read off.
+/// Returns the range of the time at a place [s], from the one or two points that it comes from.
 static void range_of(const hn_wp *wp, hn_place place, double *low, double *high) {
     const hn_wp_point *points = wp->methods[place.method].point;
     *low = *high = 1;
@@ -111,7 +115,7 @@ static void range_of(const hn_wp *wp, hn_place place, double *low, double *high)
     *high *= place.cost;
 }
 
-/// 1 if the second cannot be told from the first: counts are exact, times are not.
+/// Returns 1 if two costs do not differ significantly: counts are exact, times are not.
 static int too_close(const hn_wp *wp, hn_place a, hn_place b, hn_cost_kind cost) {
     double low, high, unused;
     if (cost != HN_COST_TIME) {
@@ -152,6 +156,8 @@ static void fill_band(const hn_wp *wp, const hn_class *classes, hn_error_kind er
                       hn_cost_kind cost, hn_band *band) {
     hn_place place[HN_WP_METHODS];
     band->best = band->next = (hn_place){-1, -1, -1, 0};
+
+    // the cheapest method and the next one
     for (int m = 0; m < wp->n_methods; m++) {
         place[m] = cheapest(wp, classes, error, cost, m, band->accuracy);
         if (place[m].level < 0) {
@@ -164,6 +170,8 @@ static void fill_band(const hn_wp *wp, const hn_class *classes, hn_error_kind er
             band->next = place[m];
         }
     }
+
+    // their ratio, and the methods that do not differ significantly from the cheapest
     if (band->next.level >= 0) {
         band->ratio = band->next.cost / band->best.cost;
     }
@@ -173,6 +181,7 @@ static void fill_band(const hn_wp *wp, const hn_class *classes, hn_error_kind er
             band->close[band->n_close++] = place[m];
         }
     }
+
     judge(wp, cost, band);
 }
 
@@ -268,6 +277,8 @@ static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind er
                       double cost[HN_RACE_COSTS]) {
     double low[HN_WP_METHODS], high[HN_WP_METHODS];
     int n = 0;
+
+    // the cheapest and the dearest point of every method
     for (int m = 0; m < wp->n_methods; m++) {
         double lo = HUGE_VAL, hi = 0;
         for (int k = 0; k < wp->n_levels; k++) {
@@ -281,9 +292,12 @@ static int race_costs(const hn_wp *wp, const hn_class *classes, hn_error_kind er
             high[n++] = hi;
         }
     }
+
     if (n == 0) {
         return 0;
     }
+
+    // costs in equal ratios between the two medians
     hn_timing_sort(low, n);
     hn_timing_sort(high, n);
     const double a = low[n / 2], b = high[n / 2];
@@ -305,7 +319,7 @@ void hn_wp_race(const hn_wp *wp, const hn_class *classes, hn_error_kind error, h
 
 // ---- words ----
 
-/// The methods that share the first place, a bit each.
+/// Returns the methods that share the first place, one bit each.
 static unsigned winners(const hn_band *band) {
     unsigned set = 1u << band->best.method;
     for (int i = 0; i < band->n_close; i++) {
@@ -314,7 +328,7 @@ static unsigned winners(const hn_band *band) {
     return set;
 }
 
-/// 1 if the sentence of one band is the other's too.
+/// Returns 1 if two bands get the same sentence.
 static int say_the_same(const hn_pareto *p, int i, int j) {
     const hn_band *a = &p->band[i], *b = &p->band[j];
     if (a->ranking != b->ranking || winners(a) != winners(b)) {
@@ -409,6 +423,7 @@ static void put_clocks(hn_strbuf *b, const hn_wp *wp) {
 }
 
 void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
+    // reasons why nothing is ranked
     if (p->beyond_horizon) {
         hn_strbuf_printf(
             b,
@@ -427,6 +442,8 @@ void hn_pareto_sentences(hn_strbuf *b, const hn_wp *wp, const hn_pareto *p) {
         put_clocks(b, wp);
         return;
     }
+
+    // one sentence for neighbouring bands with the same answer
     for (int i = 0; i < p->n_bands;) {
         int last = i;
         while (last + 1 < p->n_bands && say_the_same(p, i, last + 1)) {

@@ -36,7 +36,7 @@ typedef struct hn_place {
     X(HN_RANKING_CLEAR, "ranked")            \
     X(HN_RANKING_CLOSE, "too close to rank") \
     X(HN_RANKING_UNSTEADY, "the halves of the timing disagree")
-/// What may be claimed of a band's times.
+/// How reliable the ranking of a band's times is.
 typedef enum hn_ranking {
 #define HN_RANKING_ENUM(code, name) code,
     HN_RANKING_LIST(HN_RANKING_ENUM)
@@ -49,11 +49,11 @@ const char *hn_ranking_name(hn_ranking ranking);
 /// nothing; the coarsest point of a method is never undercut.
 typedef struct hn_band {
     double accuracy;
-    hn_place best; ///< -1: nobody reaches it
+    hn_place best; ///< -1: no method reaches it
     hn_place next; ///< the cheapest of another method
     double ratio;  ///< its cost over the best one's
     hn_ranking ranking;
-    int n_close; ///< other methods that cannot be told from the best
+    int n_close; ///< other methods that do not differ significantly from the best
     hn_place close[HN_WP_METHODS];
     /// the point, of the best or of the next, whose halves are furthest apart; -1: they agree
     hn_place unsteady;
@@ -71,7 +71,7 @@ typedef struct hn_pareto {
     hn_band counted[HN_PARETO_BANDS]; ///< of times: the same bands by operations
 } hn_pareto;
 
-/// What methods are ranked by first: the coordinates; beyond the horizon the energy.
+/// Returns the error that methods are ranked by: coordinates, or energy beyond the horizon.
 hn_error_kind hn_wp_ranked_error(const hn_wp *wp);
 /// `classes` one per method. Errors below the reference's own count as HN_WP_ABOVE_REFERENCE times
 /// that.

@@ -36,8 +36,8 @@ typedef struct load {
     int index;
 } load;
 
-/// Dear ones first; the order of the study among equals, so that sorting is never a matter of the
-/// library.
+/// Compares by cost, expensive points first. Equal ones keep the order of the study, so that the
+/// result does not depend on the sorting algorithm.
 static int dearest_first(const void *a, const void *b) {
     const load *x = a, *y = b;
     if (x->seconds != y->seconds) {

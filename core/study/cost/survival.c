@@ -33,7 +33,7 @@ double hn_survival_step(double usual, int k, int n) {
     return usual * (LEAST_STEP + (MOST_STEP - LEAST_STEP) * k / (n - 1));
 }
 
-/// Of a run that is wrong: did it say so?
+/// Returns whether a run that is wrong has reported it.
 static hn_survival_end told_or_silent(const hn_run *run) {
     const hn_incident *incident = NULL;
     const int n = hn_run_incidents(run, &incident);
@@ -45,7 +45,7 @@ static hn_survival_end told_or_silent(const hn_run *run) {
         case HN_INCIDENT_STEP_LIMIT:
             return HN_SURVIVAL_TOLD;
         default:
-            break; // that a pose was near singular does not say that the run is wrong
+            break; // a configuration near a singular one does not make a run wrong
         }
     }
     return HN_SURVIVAL_SILENT;
@@ -68,6 +68,8 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
     double left = j->T, folded_at = j->T;
     int folded = 0;
     *out = (hn_survival){.end = HN_SURVIVAL_SURVIVED, .t = j->T};
+
+    // advance to each check time; stop where the limits or the run end it
     for (int k = 1; k <= j->n; k++) {
         const double t = j->T * (k - j->before) / j->n;
         hn_sample sample = {0};
@@ -79,6 +81,8 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
             set_stopped(run, out);
             return 1;
         }
+
+        // compare with the exact motion: distance, and loops that have folded over
         const hn_survival_seen seen = j->look(j->user, k, &sample);
         if (!(out->worst > j->limit) && !(seen.distance <= j->limit)) {
             left = t;
@@ -89,6 +93,8 @@ int hn_survival_try(hn_run *run, const hn_survival_judge *j, hn_survival *out) {
         folded |= seen.folded;
         out->worst = isnan(seen.distance) ? HUGE_VAL : fmax(out->worst, seen.distance);
     }
+
+    // a run that left the motion: whether it reported this
     if (!(out->worst <= j->limit)) {
         const hn_survival_end told = told_or_silent(run);
         out->end =

@@ -27,7 +27,7 @@ static const char *size_key(const hn_wp_method *m) {
     return m->adaptive ? "rtol" : "h";
 }
 
-/// "index1@rk4:h=0.1,x=2" -> "index1@rk4:x=2": a ladder has no one size.
+/// "index1@rk4:h=0.1,x=2" -> "index1@rk4:x=2": the ladder sets the step sizes.
 static void strip_size(char *spelling, const char *key) {
     char token[16];
     char *at = strchr(spelling, '@');
@@ -99,6 +99,8 @@ static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag 
     o->n_levels = o->n_levels == 0 ? DEFAULT_LEVELS : o->n_levels;
     o->n_samples = o->n_samples == 0 ? HN_WP_SAMPLES : o->n_samples;
     o->step = o->step == 0 ? COARSER * hn_system_scene(sys)->step : o->step;
+
+    // numbers of methods, sizes and samples
     if (n < 1 || n > HN_WP_METHODS) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/methods", NULL,
                            "%d methods were given; a study takes 1 to %d", n, HN_WP_METHODS);
@@ -113,10 +115,14 @@ static hn_status check_opts(hn_wp_opts *o, int n, const hn_system *sys, hn_diag 
                            "more samples of time were asked for than the %d that a study takes",
                            HN_WP_SAMPLES);
     }
+
+    // step and budget
     if (!(o->step > 0) || !(o->budget >= 0)) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, NULL,
                            "a study takes a step above 0 and a budget that is not negative");
     }
+
+    // part of a divided study
     if (o->n_shards < 0 || o->n_shards > HN_WP_SHARDS || o->shard > o->n_shards ||
         o->shard < (o->n_shards > 0)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/shard", "as 2/4: the second of four",
@@ -237,7 +243,7 @@ static void set_reason(hn_wp_point *p, hn_wp_state state, hn_status status, cons
     snprintf(p->reason, sizeof p->reason, "%s", reason);
 }
 
-/// What a walk that did not reach the end says of its point.
+/// Records in the point why its run did not reach the end.
 static void set_failure(const hn_wp *wp, hn_wp_point *p, const hn_run *run, hn_walk_end end) {
     const hn_run_summary s = hn_run_get_summary(run);
     char text[256];
@@ -274,7 +280,8 @@ void hn_wp_compare_ends(hn_wp *wp) {
     }
 }
 
-/// The run with looks, then one without, which counts and warms up. 0: stopped on request.
+/// Runs a point twice: once with checks against the reference, once without them for the counts
+/// and as a warm-up. Returns 0 if stopped on request.
 static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     hn_wp_point *p = &wp->methods[m].point[k];
     hn_diag diag = {0};
@@ -283,6 +290,8 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
         set_reason(p, HN_WP_FAILED, diag.status, diag.message);
         return 1;
     }
+
+    // errors at the times of the reference, then the counts of an undisturbed run
     looker l = {wp, p};
     const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
     memset(p->worst, 0, sizeof p->worst);
@@ -291,6 +300,8 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
         end = hn_run_reset(run) == HN_OK ? hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL)
                                          : HN_WALK_FAILED;
     }
+
+    // the result: stopped, failed or done
     if (end == HN_WALK_STOPPED) {
         drop_run(wp, m, k);
         return 0;
@@ -308,7 +319,7 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
 
 // ---- the budget ----
 
-/// The next coarser point that is run here, or -1: a part has not all of them.
+/// Returns the next coarser point of this part of the study, or -1.
 static int coarser_mine(const hn_wp *wp, int m, int k) {
     do {
         k--;
@@ -316,7 +327,7 @@ static int coarser_mine(const hn_wp *wp, int m, int k) {
     return k;
 }
 
-/// CPU time that a point will take, from the coarser ones; 0: not known.
+/// Returns the CPU time that a point is expected to take, from the coarser ones [s]; 0: not known.
 static double expected_cpu(const hn_wp *wp, int m, int k) {
     const hn_wp_method *method = &wp->methods[m];
     const int j = coarser_mine(wp, m, k);
@@ -336,7 +347,7 @@ static double sample_cost(double cpu) {
     return fmax(HN_TIMING_BATCH, cpu);
 }
 
-/// Time kept for samples of the points that are done.
+/// Returns the time reserved for samples of the points that are done [s].
 static double reserved(const hn_wp *wp) {
     double sum = 0;
     for (int m = 0; m < wp->n_methods; m++) {
@@ -352,7 +363,7 @@ static double reserved(const hn_wp *wp) {
     return sum;
 }
 
-/// 1 if a point fits into what is left; otherwise it says so.
+/// Returns 1 if the rest of the budget is enough for a point; otherwise marks it as left out.
 static int fits(hn_wp *wp, int m, int k, double started) {
     if (!(wp->opts.budget > 0)) {
         return 1;
@@ -363,14 +374,18 @@ static int fits(hn_wp *wp, int m, int k, double started) {
                    "left out, as the coarser size before it, to keep the budget");
         return 0;
     }
+
+    // time that the point needs, and what is left
     const double cpu = expected_cpu(wp, m, k);
     const double sampling = wp->opts.n_samples > 0 ? RESERVED_SAMPLES * sample_cost(cpu) : 0;
     const double needed = 2 * cpu + sampling;
     const double left = wp->opts.budget - (hn_clock_wall() - started) - reserved(wp);
     char text[256];
+
     if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
         return 1;
     }
+
     snprintf(text, sizeof text,
              "left out: about %.2g s of computing, and %.2g s are left of the budget of %.3g s",
              needed, fmax(0, left), wp->opts.budget);
@@ -380,7 +395,7 @@ static int fits(hn_wp *wp, int m, int k, double started) {
 
 // ---- time ----
 
-/// In ascending order, and where the middle is.
+/// Sorts the list in ascending order and returns its median.
 static double sort_and_halve(double *list, int n) {
     hn_timing_sort(list, n);
     return hn_timing_quantile(list, n, 0.5);
@@ -413,8 +428,8 @@ static int is_stopped(const hn_wp_hooks *hooks) {
     return hooks->stop && hooks->stop(hooks->user);
 }
 
-/// A sample of a run that is known to come to its end, told as that of point (m, k). 0: stopped or
-/// failed.
+/// Takes a sample of a run that is known to reach its end and reports it as one of point (m, k).
+/// Returns 0 if stopped or failed.
 static int take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
                        const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {0, hooks->stop, hooks->user};
@@ -470,9 +485,11 @@ static int sample_yardstick(hn_wp *wp, int round, const hn_wp_hooks *hooks) {
 
 // ---- the whole ----
 
-/// Share done: points count for what their finer sizes cost, samples for the rest.
+/// Reports the share that is done, by computing time: two runs of each point, then its samples.
 static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double started) {
     double all = 0, done = 0;
+
+    // expected time of all points, and of those that are done
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             const hn_wp_point *p = &wp->methods[m].point[k];
@@ -487,16 +504,18 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
             done += p->state == HN_WP_DONE ? 2 * cpu + sample_cost(cpu) * p->n_samples : 0;
         }
     }
+
     double share = all > 0 ? done / all : 0;
-    if (wp->opts.budget > 0) { // whichever end comes first
+    if (wp->opts.budget > 0) { // the study ends at whichever comes first
         share = fmax(share, (hn_clock_wall() - started) / wp->opts.budget);
     }
+
     if (hooks->progress) {
         hooks->progress(hooks->user, fmin(1, share));
     }
 }
 
-/// Every size of every method, coarse ones first. 0: stopped.
+/// Runs every size of every method, coarse ones first. Returns 0 if stopped.
 static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
     for (int k = 0; k < wp->n_levels; k++) {
         for (int m = 0; m < wp->n_methods; m++) {
@@ -505,12 +524,15 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
                 p->state = HN_WP_PENDING; // another try, with a budget of its own
                 p->reason[0] = 0;
             }
+
             if (is_stopped(hooks)) {
                 return 0;
             }
             if (p->state != HN_WP_PENDING || !hn_wp_is_mine(wp, m, k)) {
                 continue;
             }
+
+            // run the point if the budget allows, then report it
             if (fits(wp, m, k, started) && !measure_point(wp, m, k, hooks)) {
                 return 0;
             }
@@ -524,17 +546,20 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
     return 1;
 }
 
-/// Sample number `round` of every point that has fewer. 0: stopped or out of time.
+/// Takes sample number `round` of every point that has fewer. Returns 0 if stopped or out of time.
 static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double started) {
     if (!sample_yardstick(wp, round, hooks)) {
         return 0;
     }
+
     for (int k = 0; k < wp->n_levels; k++) {
         for (int m = 0; m < wp->n_methods; m++) {
             hn_wp_point *p = &wp->methods[m].point[k];
             if (p->state != HN_WP_DONE || p->n_samples > round || !hn_wp_is_mine(wp, m, k)) {
                 continue;
             }
+
+            // no sample that the budget would cut off
             const double left = wp->opts.budget - (hn_clock_wall() - started);
             if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
                 wp->out_of_time = 1;

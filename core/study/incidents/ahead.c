@@ -9,16 +9,19 @@
 /// Of the largest sigma_min: a configuration this close counts as the one that was announced.
 static const double REACHED = 0.02;
 
-/// A prediction whose time has passed: withdrawn in words where the run did not get there.
+/// Closes a prediction whose time has passed; its text says so where the run did not reach the
+/// configuration.
 static void conclude(hn_watch *w) {
     hn_singular_record *s = &w->singular;
     hn_incident *i = s->announced <= w->log.n ? &w->log.list[s->announced - 1] : NULL;
     s->announced = 0;
     hn_incident_over(&w->log, HN_INCIDENT_RANK_AHEAD);
+
     if (!i || s->lowest < REACHED * s->largest) {
         return;
     }
-    // the pilot run and a step across say the same: look for a report of the configuration
+
+    // a report of the configuration itself confirms the prediction
     for (int k = 0; k < w->log.n; k++) {
         const hn_incident *other = &w->log.list[k];
         const bool singular =
@@ -27,6 +30,7 @@ static void conclude(hn_watch *w) {
             return;
         }
     }
+
     hn_incident_append(
         &w->log, i,
         "; withdrawn at t = %.4g s: the run did not get there, sigma_min was %.2g or "

@@ -29,8 +29,8 @@ static int find_flipped_loop(const hn_watch *w) {
     return loop;
 }
 
-// A change of sign in smooth motion is a dead point that was passed; with a jump it is the other
-// branch.
+// A change of sign in smooth motion means that a dead point was passed; with a jump it means the
+// other branch.
 static void check_mode(hn_watch *w) {
     const hn_system *sys = w->run->sys;
     hn_mode_watch_values(w->mode, w->run->now.t, w->run->now.q, w->modes);

@@ -59,7 +59,7 @@ static bool is_large(const hn_watch *w, double change, double limit) {
     return w->energy.conservative && limit != 0 && fabs(change) > fmax(limit, w->energy.noise);
 }
 
-// little by little, a method can lose all the energy there is without a jump
+// a method can lose all energy little by little, without a jump
 static void check_drift(hn_watch *w) {
     const hn_energy_record *e = &w->energy;
     const double change = e->last - e->start;

@@ -16,22 +16,28 @@ static const hn_incident_kind *kind_of_iteration(const hn_watch *w) {
 
 static const hn_incident_kind *kind_of(const hn_watch *w, hn_status status) {
     switch (status) {
+    // charts and iterations of the method
     case HN_ERR_CHART:
-    // no choice of coordinates serves: at the start, or where another was to take over
+    // no chart is regular here: at the start, or when the chart was to change
     case HN_ERR_UNSUPPORTED:
         return &hn_incident_chart_lost;
     case HN_ERR_NO_CONVERGENCE:
         return kind_of_iteration(w);
+
+    // limits of the run
     case HN_ERR_STEP_UNDERFLOW:
         return &hn_incident_step_underflow;
     case HN_ERR_BUDGET:
         return &hn_incident_budget;
+
+    // singular matrices of the mechanism
     case HN_ERR_MASS:
         return &hn_incident_mass;
     case HN_ERR_SINGULAR:
     case HN_ERR_NOT_SPD:
     case HN_ERR_INCONSISTENT:
         return &hn_incident_rank_loss;
+
     default:
         return &hn_incident_diverged;
     }

@@ -93,8 +93,8 @@ static double continue_heading(hn_heading_record *r, int n) {
 /// looks like a jump.
 static bool is_suspect(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
-    // where a motion turns back it hardly moves, and half of that is no jump: one goes as far as a
-    // step does elsewhere
+    // near a turning point the steps are short, and half of one is no jump: a jump is as long as a
+    // step elsewhere
     const double way = w->swiftest * (w->run->now.t - w->run->before.t);
     return s->passing || s->info.sigma_min < RANGE * s->largest ||
            hn_motion_unexplained(w, way) > HN_RUN_WARN_JUMP;

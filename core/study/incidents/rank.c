@@ -6,7 +6,7 @@
 #include "study/incidents/remedies.h"
 #include "study/incidents/report.h"
 
-/// Constraints that always depend on others do no harm: the report of the start has no remedy.
+/// Reports redundant constraints at the start. They do no harm, so the report offers no remedy.
 static void report_redundant(hn_watch *w) {
     const int nc = w->run->info.nc, rank = w->accel_info.rank;
     hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
@@ -23,16 +23,21 @@ static void check_rank(hn_watch *w) {
     if (nc == 0 || w->accel_status != HN_OK) {
         return;
     }
+
+    // at the start: redundant loop equations are a property of the scene
     if (w->at_start) {
         if (rank < nc) {
             report_redundant(w);
         }
         return;
     }
+
+    // later: only a rank below that of the start is an incident
     if (rank >= w->start_rank) {
         hn_incident_over(&w->log, HN_INCIDENT_RANK_LOSS);
         return;
     }
+
     hn_incident *i = hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
                                         "%d of %d constraint equations depend on the others in "
                                         "this configuration: branches may cross here",

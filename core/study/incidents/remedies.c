@@ -57,7 +57,7 @@ bool hn_remedy_finer(const hn_watch *w, double factor, hn_remedy out) {
     const char *key = w->run->adaptive ? "rtol" : "h";
     snprintf(out, sizeof(hn_remedy), "%s=%.4g", key,
              hn_method_option(&w->run->spec, key, 0) * factor);
-    // no step, however short, brings coordinates where no choice of them serves
+    // where no chart is regular a shorter step does not help
     return w->failure != HN_ERR_UNSUPPORTED;
 }
 

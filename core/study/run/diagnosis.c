@@ -10,14 +10,14 @@
 /// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
 enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, MOST_EIGENVALUES = 256, MOST_SPEEDS = 60 };
 
-/// A pilot runs past the event by this share of the way to it, so that what is only put off comes
-/// to light.
+/// A pilot run goes past the event by this share of the time to it: a remedy that only postpones
+/// the event is found out.
 static const double BEYOND = 0.5;
 
 // ---- the cause ----
 
-/// The largest stable step at a state, and the eigenvalue of the motion that is fastest there.
-/// HUGE_VAL: none can be told.
+/// Returns the largest stable step at a state [s], and the fastest eigenvalue of the motion there;
+/// HUGE_VAL where there is no limit or none can be computed.
 static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_eigenvalue *fastest) {
     hn_arena *arena = hn_arena_create(0);
     hn_spectrum *spectrum = NULL;
@@ -43,15 +43,20 @@ static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
     const double h = hn_method_option(&s->spec, "h", 0);
     const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
     hn_eigenvalue fastest = {0, 0};
+
+    // methods and mechanisms for which a limit cannot be computed
     if (s->adaptive || !is_ode || s->info.nv > MOST_SPEEDS ||
         hn_stability_why_not(s->spec.stepper) ||
         (s->spec.formulation->traits & HN_TRAIT_ADDS_VIBRATIONS)) {
         return false;
     }
+
     const double limit = stability_limit(s, &s->earlier, &fastest);
     if (!(h > limit)) {
         return false;
     }
+
+    // the fastest eigenvalue in words
     const bool decays = fabs(fastest.re) > fabs(fastest.im);
     snprintf(out, size,
              "h = %.4g s is above the stability limit of %s here, %.3g s: a %s of the mechanism "
@@ -113,27 +118,33 @@ static bool is_right(const hn_run *pilot, hn_status status) {
 
 typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
 
-/// Runs a remedy from the state before the event to a time past it, and says what it gave.
+/// Runs a remedy from the state before the event to a time past it and writes the result to `said`.
 static outcome try_remedy(const hn_stepping *s, double event, const char *text, hn_remedy said) {
     hn_run_opts opts = hn_run_opts_default();
     hn_method_spec spec;
     hn_run *pilot = NULL;
     hn_diag diag = {0};
+
+    // from the last state before the event to some time after it; large mechanisms get fewer steps
     const hn_state_at *from = s->earlier.t < event ? &s->earlier : &s->start;
     const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
     const double end = event + BEYOND * (event - from->t) + 10 * s->h;
     opts.t0 = from->t;
     opts.max_steps = PILOT_STEPS * PILOT_SIZE / size;
+
     if (!read_remedy(s, text, &spec)) {
         return UNKNOWN;
     }
     if (hn_run_create(s->sys, &spec, from->q, from->v, &opts, &pilot, &diag) != HN_OK) {
         return FAILS;
     }
+
+    // the pilot run and its result
     const hn_status status = hn_run_advance(pilot, end);
     const hn_run_summary sum = hn_run_get_summary(pilot);
     const bool right = is_right(pilot, status);
     hn_run_free(pilot);
+
     if (status == HN_ERR_BUDGET) {
         snprintf(said, sizeof(hn_remedy), "not tried to the end: %lld steps to t = %.3g s",
                  sum.steps, sum.t);
@@ -150,11 +161,15 @@ static void try_remedies(hn_run *run, hn_incident *i) {
     hn_remedy texts[HN_REMEDIES], said[HN_REMEDIES];
     outcome outcomes[HN_REMEDIES];
     int n = 0, kept = 0;
+
+    // try every remedy
     for (; n < HN_REMEDIES && i->remedy[n][0]; n++) {
         memcpy(texts[n], i->remedy[n], sizeof texts[n]);
         said[n][0] = '\0';
         outcomes[n] = try_remedy(w->run, i->t, texts[n], said[n]);
     }
+
+    // keep those that work, then those that could not be tried; drop those that fail
     for (int pass = REMOVES; pass <= UNKNOWN; pass += UNKNOWN - REMOVES) {
         for (int k = 0; k < n; k++) {
             if ((int)outcomes[k] == pass) {
@@ -163,6 +178,7 @@ static void try_remedies(hn_run *run, hn_incident *i) {
             }
         }
     }
+
     if (kept < HN_REMEDIES) {
         i->remedy[kept][0] = i->tried[kept][0] = '\0';
     }

@@ -128,14 +128,18 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
     hn_stepping *s = &run->stepping;
     hn_status status = HN_OK;
     bool ticking = false;
+
     if (run->state == HN_RUN_FAILED) {
         return run->status;
     }
+
     run->state = HN_RUN_RUNNING;
     s->t_asked = t_end;
     if (hn_headway_check_budget(s, t_end) != HN_OK) {
         return fail(run, HN_ERR_BUDGET);
     }
+
+    // a fixed step may end just short of the time that was asked for
     do {
         const double slack = s->adaptive ? 0 : HN_STEPPING_LANDING * s->h_next;
         if (!one && s->now.t >= t_end - slack) {
@@ -143,6 +147,7 @@ static hn_status step_until(hn_run *run, double t_end, bool one) {
         }
         status = step_and_check(run, &ticking);
     } while (status == HN_OK && !one);
+
     if (ticking) {
         stop_clock(run);
     }
@@ -194,7 +199,7 @@ static hn_status create_parts(hn_run *run, const hn_system *sys, const hn_method
     run->watch.t_end = run->opts.t_end;
     HN_TRY(hn_sampling_create(s, &run->watch, run->opts.raw_lambda, &run->sampling, diag));
 
-    // a formulation that cannot start here gives a run that has failed already
+    // a formulation that cannot start at this state gives a run in the failed state
     clear(run);
     status = hn_stepping_start_engine(s, &s->engine);
     if (status == HN_OK) {
@@ -218,6 +223,8 @@ hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const 
         hn_arena_free(arena);
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
+
+    // options, with their default values
     run->arena = arena;
     run->clock.grain = calc_clock_grain();
     run->opts = opts ? *opts : hn_run_opts_default();
@@ -227,6 +234,8 @@ hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const 
     if (!(run->opts.warn_gap > 0)) {
         run->opts.warn_gap = HN_RUN_WARN_GAP;
     }
+
+    // stepping, sampling and the watch
     const hn_status status = create_parts(run, sys, spec, q, v, diag);
     if (status != HN_OK) {
         hn_run_free(run);

@@ -48,7 +48,7 @@ static hn_status side_step(hn_sampling *s, const hn_state_at *from, double t) {
     return finish_side(s, t, e->y_new);
 }
 
-/// The same from the present state, stopping at corners of loads on the way as the run will.
+/// The same from the present state; stops at corners of loads on the way, as the run does.
 static hn_status side_steps_ahead(hn_sampling *s, double t) {
     hn_state_at from = s->run->now;
     double corner = s->run->corner;
@@ -84,7 +84,7 @@ static void take_present(hn_sampling *s) {
 
 static bool is_present(const hn_stepping *run, double t) {
     const double tol = SAME_TIME * (run->h > 0 ? run->h : fabs(run->h_next));
-    // steps that are chosen may end a rounding short of a time that somebody divided out
+    // adaptive steps may end short of the requested time by rounding
     const double ahead = t - run->now.t;
     return run->adaptive ? ahead >= 0 && ahead <= ROUNDED_TIME * fabs(t) : fabs(ahead) <= tol;
 }
@@ -149,6 +149,8 @@ hn_status hn_sampling_at(hn_sampling *s, double t, bool failed, hn_sample *out) 
     const hn_stepping *run = s->run;
     s->raw = NULL;
     HN_TRY(locate(s, t, failed));
+
+    // the state in user coordinates
     *out = (hn_sample){.t = t,
                        .q = s->user_q,
                        .v = s->user_v,
@@ -157,10 +159,14 @@ hn_status hn_sampling_at(hn_sampling *s, double t, bool failed, hn_sample *out) 
                        .points = s->points};
     hn_system_to_user(run->sys, s->q, s->user_q);
     hn_system_rates_to_user(run->sys, s->v, s->user_v);
+
+    // multipliers of the method itself
     if (s->raw_lambda && s->raw) {
         memcpy(s->raw_copy, s->raw, (size_t)run->info.nc * sizeof(double));
         out->raw_lambda = s->raw_copy;
     }
+
+    // quantities that are evaluated from the state
     fill_forces(s, t, out);
     fill_measures(s, t, out);
     hn_eval_run(s->points_eval, t, s->q, s->v);
@@ -176,6 +182,7 @@ hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
     hn_arena *arena = run->arena;
     const size_t nq = (size_t)run->info.nq, nv = (size_t)run->info.nv, nc = (size_t)run->info.nc;
     *s = (hn_sampling){.run = run, .watch = watch, .raw_lambda = raw_lambda};
+
     // user coordinates are never more than those of the system
     double **const positions[] = {&s->q, &s->user_q};
     double **const velocities[] = {&s->v, &s->a, &s->user_v, &s->user_a};
@@ -189,6 +196,8 @@ hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         *rows[i] = hn_arena_doubles(arena, nc);
     }
+
+    // evaluators: points, and a second engine beside the run
     s->points = hn_arena_doubles(arena, 3 * (size_t)run->info.n_points);
     if (hn_arena_failed(arena) ||
         hn_eval_create(run->sys, HN_TERM_POINTS, arena, &s->points_eval) != HN_OK) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_STUDY_WALK_H
 #define HN_STUDY_WALK_H
-// A run taken to its end with a look at equal intervals, within a limit of computing time, and
-// stopped on request.
+// Takes a run to its end, with a callback at equal intervals, within a limit of computing time, and
+// stops on request.
 
 #include "study/run/run.h"
 

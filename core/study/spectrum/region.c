@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stability regions by trial: a step of length 1 of the integrator itself on a linear problem with
-// the eigenvalue z. Nothing is known here about any integrator but how to call it, so what is said
-// is true of the code that runs.
+// Stability regions by trial: one step of length 1 of the integrator itself on a linear problem
+// with the eigenvalue z. No formula of a stability function is used, so the result holds for the
+// code that runs.
 #include "study/spectrum/region.h"
 
 #include <math.h>
@@ -71,6 +71,8 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
     if (hn_stability_why_not(stepper)) {
         return 0;
     }
+
+    // a stepper for one position and one velocity, with its default options
     p->arena = hn_arena_create(0);
     p->self = p->arena ? stepper->create(1, 1, p->arena) : NULL;
     if (!p->self) {
@@ -83,6 +85,8 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
     if (stepper->configure) {
         stepper->configure(p->self, settings);
     }
+
+    // the test equation
     p->ode = (hn_ode){.n_pos = 1,
                       .n_vel = 1,
                       .self = &p->problem,
@@ -151,9 +155,9 @@ static double next_trial(double z) {
     return z < FINE_Z ? 2 * z : z < COARSE_Z ? z + FINE_Z : RATIO * z;
 }
 
-// Growth found between h_below and h_above, halved down to the limit. Explicit Euler and its like
-// grow on the imaginary axis by a power of the step that rounding hides near 0: no decay below the
-// limit found and growth that sets in gently tell it.
+// Bisects between h_below (no growth) and h_above (growth) down to the limit. Methods such as
+// explicit Euler grow on the imaginary axis at any step, by a power of h that rounding hides near
+// 0: there is no decay below the limit found, growth sets in gently, and their limit is 0.
 static double refine(probe *p, const hn_eigenvalue pair[2], double h_below, double h_above) {
     for (int k = 0; k < 60 && h_above - h_below > 1e-13 * h_above; k++) {
         const double middle = (h_below + h_above) / 2;
@@ -165,7 +169,7 @@ static double refine(probe *p, const hn_eigenvalue pair[2], double h_below, doub
     return decays || sharp ? h_below : 0;
 }
 
-// the first h where the pair grows, or at_most
+// returns the first h where the pair grows, or at_most
 static double limit_of(probe *p, const hn_eigenvalue pair[2], double at_most) {
     const double modulus = hypot(pair[0].re, pair[0].im);
     double below = 0;
@@ -178,7 +182,8 @@ static double limit_of(probe *p, const hn_eigenvalue pair[2], double at_most) {
     return at_most;
 }
 
-// the slowest real eigenvalue but so many, which an overdamped mode shares with its fast one
+// the real eigenvalue number `so_many` from the slow end: in an overdamped mode it is the partner
+// of a fast one
 static hn_eigenvalue slow_partner(const hn_eigenvalue *s, int n, int so_many) {
     for (int i = n - 1; i >= 0; i--) {
         if (s[i].im == 0 && so_many-- == 0) {
@@ -195,10 +200,15 @@ double hn_stability_limit(const hn_stepper *stepper, const hn_eigenvalue *s, int
     if (!open_probe(&p, stepper)) {
         return (double)NAN;
     }
+
+    // scale of the spectrum
     for (int i = 0; i < n; i++) {
         fastest = fmax(fastest, hypot(s[i].re, s[i].im));
         n_real += s[i].im == 0;
     }
+
+    // the smallest limit over all eigenvalues; in a partitioned integrator a fast real eigenvalue
+    // acts together with a slow one
     for (int i = 0; i < n; i++) {
         const double modulus = hypot(s[i].re, s[i].im);
         const int is_real = s[i].im == 0, grows = s[i].re > OSCILLATES * fabs(s[i].im);
@@ -206,11 +216,13 @@ double hn_stability_limit(const hn_stepper *stepper, const hn_eigenvalue *s, int
         hn_eigenvalue pair[2] = {{fmin(s[i].re, 0), s[i].im}};
         pair[1] = is_real ? slow_partner(s, n, place) : conjugate(&pair[0]);
         place += is_real;
+
         if (grows || is_slow || s[i].im < 0 || !(modulus > NEGLIGIBLE * fastest)) {
             continue;
         }
         limit = limit_of(&p, pair, limit);
     }
+
     close_probe(&p);
     return limit;
 }

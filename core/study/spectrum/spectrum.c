@@ -45,6 +45,8 @@ hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena, hn_spectrum 
     }
     gsl_set_error_handler_off();
     *s = (hn_spectrum){.nv = info.nv, .nc = info.nc};
+
+    // memory: vectors, matrices, eigenvalues
     const int ok = hn_qr_init(&s->qr, arena, info.nv, info.nc);
     double **const vectors[] = {&s->scale, &s->a, &s->lambda};
     for (size_t k = 0; k < sizeof vectors / sizeof vectors[0]; k++) {
@@ -56,6 +58,8 @@ hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena, hn_spectrum 
     }
     s->companion = hn_arena_doubles(arena, 4 * nv * nv);
     s->values = hn_arena_get(arena, 2 * (nv + 1) * sizeof *s->values);
+
+    // evaluators of accelerations and of the linearised equations
     hn_status status = ok && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
     if (status == HN_OK) {
         status = hn_accel_create(sys, &opts, arena, &s->accel);
@@ -64,6 +68,7 @@ hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena, hn_spectrum 
         status = hn_linear_create(sys, HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J, arena,
                                   &s->linear);
     }
+
     if (status != HN_OK) {
         hn_spectrum_free(s);
         return status;
@@ -93,11 +98,13 @@ void hn_spectrum_free(hn_spectrum *s) {
     }
 }
 
-// basis of ker J in s->N; returns r, or -1 where J has fewer independent rows than elsewhere
+// basis of ker J in s->N; returns its dimension r, or -1 where J has lost rank
 static int find_basis(hn_spectrum *s) {
     const size_t nv = (size_t)s->nv;
     const double *M = hn_linear_get(s->linear, HN_LINEAR_M),
                  *J = hn_linear_get(s->linear, HN_LINEAR_J);
+
+    // rows of J in coordinates scaled by the mass
     for (size_t j = 0; j < nv; j++) {
         s->scale[j] = M[j * nv + j] > 0 ? 1 / sqrt(M[j * nv + j]) : 1;
     }
@@ -106,11 +113,15 @@ static int find_basis(hn_spectrum *s) {
             s->qr.a[i * nv + j] = J[i * nv + j] * s->scale[j];
         }
     }
+
+    // the rank must not fall below that of earlier states
     hn_qr_factor(&s->qr, s->nv, s->nc, RANK_TOL);
     if (s->qr.rank < s->rank) {
         return -1;
     }
     s->rank = s->qr.rank;
+
+    // the basis: the last columns of Q, in the original coordinates
     const int r = s->nv - s->rank;
     double *e = s->product;
     for (int k = 0; k < r; k++) {
@@ -188,6 +199,8 @@ static int compare(const void *a, const void *b) {
 
 static hn_status find_eigenvalues(hn_spectrum *s, int r) {
     const size_t n = 2 * (size_t)r;
+
+    // workspaces for this size
     if (s->gsl_size != n) {
         free_gsl(s);
         s->gsl_values = gsl_vector_complex_alloc(n);
@@ -198,6 +211,8 @@ static hn_status find_eigenvalues(hn_spectrum *s, int r) {
         }
         gsl_eigen_nonsymm_params(0, 1, s->gsl_work);
     }
+
+    // eigenvalues in a fixed order
     gsl_matrix_view A = gsl_matrix_view_array(s->companion, n, n);
     if (gsl_eigen_nonsymm(&A.matrix, s->gsl_values, s->gsl_work) != 0) {
         return HN_ERR_NO_CONVERGENCE;
@@ -222,6 +237,8 @@ hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const doub
     hn_accel_info info;
     *out = s->values;
     *n = 0;
+
+    // linearise about the state and its accelerations
     hn_status status = hn_accel_eval(s->accel, t, q, v, 0, 0, s->a, s->lambda, &info);
     if (status != HN_OK) {
         return status == HN_ERR_DIVERGED ? status : HN_ERR_SINGULAR;
@@ -230,6 +247,8 @@ hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const doub
     if (!is_finite(s)) {
         return HN_ERR_DIVERGED;
     }
+
+    // reduce to the directions that the loops allow
     const int r = find_basis(s);
     if (r < 0) {
         return HN_ERR_SINGULAR;
@@ -240,12 +259,15 @@ hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const doub
     reduce(s, HN_LINEAR_M, r, s->M);
     reduce(s, HN_LINEAR_C, r, s->C);
     reduce(s, HN_LINEAR_K, r, s->K);
+
+    // from M x" + C x' + K x = 0 to a first-order system
     if (hn_cholesky(r, s->M, r, MASS_TOL * hn_norm_max(r * r, s->M)) != HN_OK) {
         return HN_ERR_SINGULAR;
     }
     normalise(r, s->M, s->C, s->product);
     normalise(r, s->M, s->K, s->product);
     fill_companion(s, r);
+
     status = find_eigenvalues(s, r);
     *n = status == HN_OK ? 2 * r : 0;
     return status;

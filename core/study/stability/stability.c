@@ -62,16 +62,21 @@ static int see_path(void *user, int k, const hn_sample *s) {
     const size_t nv = (size_t)p->info.nv;
     double *v = p->v + (size_t)k * nv;
     const hn_eigenvalue *values;
+
+    // velocities and mass matrix
     hn_system_from_user(p->sys, s->q, p->q);
     hn_system_rates_from_user(p->sys, s->v, v);
     hn_eval_run(p->mass, s->t, p->q, v);
     memcpy(p->M + (size_t)k * nv * nv, hn_eval_get(p->mass, HN_TERM_M), nv * nv * sizeof(double));
+
+    // energies and their ranges
     p->energy[k] = s->energy;
     p->highest = fmax(p->highest, s->energy);
     p->highest_kinetic = fmax(p->highest_kinetic, s->kinetic);
     m->v_min = fmin(m->v_min, s->potential);
     m->v_max = fmax(m->v_max, s->potential);
-    // where it does not exist nothing is predicted, the other looks serve
+
+    // the spectrum; where it does not exist, the prediction rests on the other states
     if (hn_spectrum_calc(m->spectrum, s->t, p->q, v, &values, &p->n_values[k]) != HN_OK) {
         p->n_values[k] = 0;
     }
@@ -85,6 +90,8 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
     hn_method_spec spec;
     hn_run *run = NULL;
     hn_sample start;
+
+    // the run by this method
     hn_status status = hn_method_parse(means, &spec, diag);
     if (status == HN_OK) {
         status = hn_run_create(p->sys, &spec, p->q0, p->v0, NULL, &run, diag);
@@ -96,15 +103,21 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
         hn_run_free(run);
         return status;
     }
+
+    // start anew: an earlier method may have failed on the way
     p->means = means;
     p->highest_kinetic = 0;
     p->highest = -HUGE_VAL;
     m->v_min = HUGE_VAL;
     m->v_max = -HUGE_VAL;
+
+    // walk along the path
     hn_run_watch(run, 0);
     see_path(m, 0, &start);
     const hn_walk_end end = hn_walk(run, p->T, HN_STABILITY_LOOKS, limits, see_path, m);
     const hn_run_summary s = hn_run_get_summary(run);
+
+    // why it ended early
     if (end == HN_WALK_FAILED) {
         status = hn_diag_set(diag, s.status, NULL, NULL, "%s ended at t = %.4g s: %s", means, s.t,
                              s.reason);
@@ -114,6 +127,7 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
                                                  : "stopped on request",
                              s.t);
     }
+
     hn_run_free(run);
     return status;
 }
@@ -204,7 +218,7 @@ int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_ei
 
 // ---- the prediction ----
 
-// why the spectrum on the loops is not what this method meets; NULL when it is
+// why the spectrum on the loops does not apply to this method; NULL when it does
 static const char *why_not(const hn_method_spec *spec) {
     const unsigned traits = spec->formulation->traits;
     if (hn_method_form(spec->formulation, spec->stepper) != HN_FORM_ODE) {
@@ -231,7 +245,7 @@ static int feedback_roots(const hn_method_spec *spec, hn_eigenvalue out[2]) {
     return 2;
 }
 
-// growth over so many steps of the fastest growing eigenvalue, at the look where the limit is
+// growth over so many steps of the fastest growing eigenvalue, at the state with the smallest limit
 static double growth_over(const hn_stepper *stepper, const hn_eigenvalue *s, int n, double h,
                           double steps) {
     double most = 0;
@@ -264,13 +278,17 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
         f.limit = f.start = f.visible = (double)NAN;
         return f;
     }
+
+    // limit of the stabilised gap equation; with a root in the right half-plane the gap grows at
+    // any step
     hn_eigenvalue roots[2];
     const int n_roots = feedback_roots(spec, roots);
-    // a root to the right makes the gap itself grow, at any step
     const double gap = n_roots == 0 ? HUGE_VAL
                        : roots[0].re > 0 || roots[1].re > 0
                            ? 0
                            : hn_stability_limit(spec->stepper, roots, 2);
+
+    // limit along the path: the smallest, and the one at the start
     for (int k = 0; k <= HN_STABILITY_LOOKS; k++) {
         const hn_eigenvalue *s;
         const int n = hn_stability_path_eigenvalues(p, k, &s);
@@ -281,6 +299,8 @@ hn_stability_forecast hn_stability_predict(const hn_stability_path *p, const hn_
             f.look = k;
         }
     }
+
+    // the step from which growth shows within the run
     if (f.limit > 0 && isfinite(f.limit)) {
         const hn_eigenvalue *s;
         const int n = hn_stability_path_eigenvalues(p, f.look, &s);
@@ -375,9 +395,12 @@ static void conclude(trial *t, hn_walk_end end, const hn_run *run, const hn_walk
     hn_stability_trial *o = t->out;
     o->steps = s.steps;
     o->t_reached = s.t;
+
     if (o->kind == HN_STABILITY_GREW) {
         return;
     }
+
+    // why the walk ended; one that reached the end is judged by its errors
     switch (end) {
     case HN_WALK_FAILED:
         o->kind = s.status == HN_ERR_DIVERGED ? HN_STABILITY_GREW : HN_STABILITY_STOPPED;
@@ -402,21 +425,26 @@ static void conclude(trial *t, hn_walk_end end, const hn_run *run, const hn_walk
     }
 }
 
-// to the path's end, and on until there were steps enough to see growth
+// to the end of the path, and beyond it until there are enough steps for growth to show
 static hn_walk_end walk(trial *t, hn_run *run, double h, const hn_walk_limits *limits) {
     const double T = t->path->T, least = HN_STABILITY_LEAST_STEPS * h, more = fmax(0, least - T);
     const int looks = more > 0 ? 2 * HN_STABILITY_LOOKS : HN_STABILITY_LOOKS;
     t->looks = looks;
     hn_walk_limits left = *limits;
+
     for (int k = 1; k <= looks; k++) {
         const int beyond = k > HN_STABILITY_LOOKS;
         const double time = beyond ? T + more * (k - HN_STABILITY_LOOKS) / HN_STABILITY_LOOKS
                                    : T * k / HN_STABILITY_LOOKS;
+
+        // advance to the check time, and compare there
         const double before = hn_clock_thread();
         const hn_walk_end end = hn_walk(run, time, 1, &left, NULL, NULL);
         if (end != HN_WALK_DONE || look(t, run, k, time)) {
             return end;
         }
+
+        // computing time left, and requests to stop
         if (limits->seconds > 0) {
             left.seconds -= hn_clock_thread() - before;
             if (left.seconds <= 0) {
@@ -438,6 +466,8 @@ int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
     hn_run *run = NULL;
     hn_diag diag = {0};
     trial t = {.path = p, .out = out};
+
+    // memory and the run; a refused method keeps its reason
     *out = (hn_stability_trial){.kind = HN_STABILITY_REFUSED};
     if (arena) {
         t.v = hn_arena_doubles(arena, (size_t)p->info.nv);
@@ -452,9 +482,11 @@ int hn_stability_try(const hn_stability_path *p, const hn_method_spec *spec,
         hn_arena_free(arena);
         return 1;
     }
-    // often enough to see a gap or an energy run away, seldom enough to cost nothing
+
+    // often enough to detect a growing gap or energy, seldom enough to cost little
     hn_run_watch(run, (int)fmax(1, fmin(1000, wanted / 200)));
     conclude(&t, walk(&t, run, h, limits), run, limits);
+
     hn_run_free(run);
     hn_arena_free(arena);
     return out->kind != HN_STABILITY_PENDING;

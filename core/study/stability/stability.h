@@ -19,9 +19,9 @@ enum { HN_STABILITY_LOOKS = 48, HN_STABILITY_REASON = 256, HN_STABILITY_LEAST_ST
     1.0 ///< energy above the path's, in its scale, that counts as growth if it still rises:
 #define HN_STABILITY_RISING \
     3.0 ///< the highest in the last third of a trial is so many times that in the first
-#define HN_STABILITY_RUNAWAY 100.0 ///< energy above the path's that counts without a second look
+#define HN_STABILITY_RUNAWAY 100.0 ///< energy above the path's that always counts as growth
 #define HN_STABILITY_OPEN 0.1      ///< loop gap / characteristic length that counts as growth
-#define HN_STABILITY_SLOW 10.0     ///< growth over a whole trial that nobody would see
+#define HN_STABILITY_SLOW 10.0     ///< growth over a whole trial that is visible
 
 #define HN_STABILITY_CLASS_LIST(X)           \
     X(HN_STABILITY_PENDING, "pending")       \
@@ -58,7 +58,7 @@ typedef struct hn_stability_path hn_stability_path;
 /// The motion from (q, v), system coordinates, to T, by explicit and failing that implicit
 /// high-order integration within `limits`; the system must outlive it. Fails: HN_ERR_BUDGET or what
 /// the integration ended with, HN_ERR_INPUT (nothing moves: there is no scale of growth),
-/// HN_ERR_MEMORY; told in diag.
+/// HN_ERR_MEMORY; reason in diag.
 HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const double *q,
                                                  const double *v, double T,
                                                  const hn_walk_limits *limits,
@@ -66,7 +66,7 @@ HN_MUST_CHECK hn_status hn_stability_path_create(const hn_system *sys, const dou
 void hn_stability_path_free(hn_stability_path *p);               ///< NULL is legal
 const char *hn_stability_path_means(const hn_stability_path *p); ///< the method that computed it
 /// Eigenvalues at look k (0 .. HN_STABILITY_LOOKS), fastest first; 0 of them where the spectrum
-/// does not exist (a singular pose).
+/// does not exist (a singular configuration).
 int hn_stability_path_eigenvalues(const hn_stability_path *p, int k, const hn_eigenvalue **out);
 
 /// A predicted limit of the step of one method.

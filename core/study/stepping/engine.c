@@ -51,7 +51,7 @@ static hn_status ode_start(hn_engine *e, double t, const double *q, const double
         return HN_OK;
     }
 
-    // the first time: the size is known only now
+    // first start: the size of the stepper depends on the state
     e->stepper = stepper->create(e->ode.n_pos, e->ode.n_vel, e->arena);
     if (!e->stepper) {
         return HN_ERR_MEMORY;
@@ -276,7 +276,7 @@ hn_status hn_engine_create(const hn_system *sys, const hn_method_spec *spec, hn_
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
 
-    // pairs that do not fit
+    // formulation and integrator of different kinds
     if (!hn_method_fits(f, spec->stepper)) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s does not serve %s",
                            spec->stepper->name, f->name);

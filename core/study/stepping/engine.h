@@ -4,7 +4,7 @@
 // An engine: a formulation and an integrator put together. There are two kinds of pair, an ordinary
 // differential equation with a stepper of it, and a differential-algebraic system with an
 // integrator that takes it as it is (integrators/step/dae.h). The difference between the two is a
-// table of functions in engine.c; everybody else knows engines only.
+// table of functions in engine.c; all other code knows engines only.
 
 #include "dynamics/evaluate/accel.h"
 #include "integrators/method/method_spec.h"

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
-// Trial steps in a window: few enough to take a fraction of a second, enough to see a pace that is
-// no accident of one corner of the motion.
+// Trial steps in a window: few enough to take a fraction of a second, enough to measure a pace that
+// one difficult part of the motion does not decide.
 enum { WINDOW = 1000, WINDOWS_TO_END = 4 };
 
 hn_status hn_headway_check_budget(hn_stepping *s, double t_end) {
@@ -53,7 +53,7 @@ hn_status hn_headway_step(hn_stepping *s) {
     p->attempts = attempts;
     p->rejected = s->rejected;
 
-    // one slow window may be a corner of the motion; several are a collapse
+    // one slow window may be a difficult part of the motion; several are a collapse
     p->slow = p->needed > (double)(s->max_steps - attempts) ? p->slow + 1 : 0;
     if (p->slow < WINDOWS_TO_END) {
         return HN_OK;

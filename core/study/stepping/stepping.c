@@ -170,14 +170,18 @@ static double try_adaptive(hn_stepping *s, double h, const tolerances *tol, int 
     if (*status != HN_OK) {
         return HUGE_VAL;
     }
+
+    // the error of the trial; without degrees of freedom it is that of the drive
     const int n = e->ode.n_pos + e->ode.n_vel;
     double err = hn_error_norm(n, e->err, e->y, e->y_new, tol->rtol, tol->atol);
     if (is_driven(s)) {
         *status = hn_engine_read(e, s->now.t + h, e->y_new, s->work, s->work + s->info.nq);
         err = *status == HN_OK ? hn_drive_norm(s->sys, s->now.q, s->work) : HUGE_VAL;
     }
+
+    // accepted: prepare dense output, and correct the loops
     if (err <= 1) {
-        // a step that nobody samples inside is spared the slopes that only dense output needs
+        // dense output costs extra evaluations: only for a step that may be sampled inside
         s->has_dense = s->now.t + h >= s->t_asked - HN_STEPPING_LANDING * h;
         *status = s->has_dense ? hn_engine_finish(e) : HN_OK;
         if (*status == HN_OK) {

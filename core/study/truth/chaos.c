@@ -68,10 +68,13 @@ static double distance(twins *w, const double *q, const double *v, const double 
                  hn_errors_between_rates(w->errors, v, other_v, &w->scales));
 }
 
-/// The twin at `factor` times its distance from (q, v), on closed loops; what its distance is then.
+/// Moves the twin to `factor` times its distance from (q, v), on closed loops; *apart: the distance
+/// that it then has.
 static hn_status bring_near(twins *w, double t, const double *q, const double *v, double factor,
                             double *apart) {
     const int n = w->info.n_user;
+
+    // scale the differences of positions and velocities by the factor
     hn_system_from_user(w->sys, q, w->from);
     hn_system_from_user(w->sys, w->twin_q, w->sys_q);
     hn_system_difference(w->sys, w->from, w->sys_q, w->delta);
@@ -83,10 +86,14 @@ static hn_status bring_near(twins *w, double t, const double *q, const double *v
         w->user[i] = v[i] + factor * (w->twin_v[i] - v[i]);
     }
     hn_system_rates_from_user(w->sys, w->user, w->sys_v);
+
+    // onto the closed loops
     hn_status status = hn_project_position(w->projector, t, w->from, 1e-14, NULL);
     if (status == HN_OK) {
         status = hn_project_velocity(w->projector, t, w->from, w->sys_v, NULL);
     }
+
+    // distance after the projection
     if (status == HN_OK) {
         hn_system_to_user(w->sys, w->from, w->twin_q);
         hn_system_rates_to_user(w->sys, w->sys_v, w->twin_v);
@@ -95,7 +102,7 @@ static hn_status bring_near(twins *w, double t, const double *q, const double *v
     return status;
 }
 
-/// A direction that no symmetry of a mechanism singles out.
+/// Sets the twin apart from the start, in a direction that belongs to no symmetry of a mechanism.
 static void set_apart(twins *w) {
     for (int i = 0; i < w->info.n_user; i++) {
         w->twin_q[i] = w->q[i] + 1e-3 * sin(1 + 2.3 * i) * w->scales.length;
@@ -165,19 +172,23 @@ static hn_status create(twins *w, const double *q, const double *v, int windows)
     hn_diag diag;
     w->q = hn_arena_doubles(w->arena, (size_t)(windows + 1) * n);
     w->v = hn_arena_doubles(w->arena, (size_t)(windows + 1) * n);
+
     double **vectors[] = {&w->twin_q, &w->twin_v, &w->sys_v, &w->delta, &w->user};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = hn_arena_doubles(w->arena, nv);
     }
     w->sys_q = hn_arena_doubles(w->arena, nq);
     w->from = hn_arena_doubles(w->arena, nq);
+
     if (hn_arena_failed(w->arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // the start, and the evaluators of distances and projections
     hn_system_to_user(w->sys, q, w->q);
     hn_system_rates_to_user(w->sys, v, w->v);
-    w->scales.length =
-        1; // states are compared in user units; lengths are weighed by hn_errors itself
+    // states are compared in user units; hn_errors scales lengths itself
+    w->scales.length = 1;
     hn_status status = hn_errors_create(w->sys, w->arena, &w->errors);
     if (status == HN_OK) {
         status = hn_projector_create(w->sys, HN_WEIGHT_MASS, w->arena, &w->projector);
@@ -185,7 +196,8 @@ static hn_status create(twins *w, const double *q, const double *v, int windows)
     return status == HN_OK ? hn_method_parse(METHOD, &w->spec, &diag) : status;
 }
 
-/// 0 where two unknowns and no clock leave no room for chaos.
+/// Returns 1 where the motion can be chaotic: with two degrees of freedom or more, or with one and
+/// an explicit dependence on time. Otherwise out->why has the reason, or *status the failure.
 static int is_possible(const hn_system *sys, const double *q, const double *v, hn_chaos *out,
                        hn_diag *diag, hn_status *status) {
     hn_run *run = NULL;
@@ -193,10 +205,13 @@ static int is_possible(const hn_system *sys, const double *q, const double *v, h
     hn_method_spec spec;
     const hn_run_opts opts = hn_run_opts_default();
     const hn_system_info info = hn_system_get_info(sys);
+
     *status = hn_method_parse(METHOD, &spec, diag);
     if (*status == HN_OK) {
         *status = hn_run_create(sys, &spec, q, v, &opts, &run, diag);
     }
+
+    // degrees of freedom at the start, by the rank of J
     if (*status == HN_OK) {
         *status = hn_run_sample(run, 0, &s);
         const int freedoms = *status == HN_OK ? info.nv - s.rank : 0;
@@ -209,6 +224,7 @@ static int is_possible(const hn_system *sys, const double *q, const double *v, h
                     : "there is no freedom left");
         }
     }
+
     hn_run_free(run);
     return *status == HN_OK && out->possible;
 }
@@ -217,6 +233,7 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
                             const hn_walk_limits *limits, hn_chaos *out, hn_diag *diag) {
     hn_status status;
     *out = (hn_chaos){.T = T};
+
     if (!(T > 0) || !isfinite(T)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/time", NULL,
                            "the end must lie after 0, not at %g s", T);
@@ -224,9 +241,13 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
     if (!is_possible(sys, q, v, out, diag, &status)) {
         return status;
     }
+
+    // an even number of windows: the two halves of the time are compared
     const double least = ceil(T / LONGEST_WINDOW);
     out->windows = least > 1e4 ? 10000 : least < WINDOWS ? WINDOWS : (int)least + (int)least % 2;
     out->window = T / out->windows;
+
+    // the motion, its twin, and the verdict
     twins w = {.sys = sys,
                .info = hn_system_get_info(sys),
                .limits = limits,
@@ -242,6 +263,7 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
     if (status == HN_OK) {
         judge(out);
     }
+
     hn_errors_free(w.errors);
     hn_projector_free(w.projector);
     hn_arena_free(w.arena);

@@ -44,8 +44,11 @@ hn_status hn_errors_create(const hn_system *sys, hn_arena *arena, hn_errors **ou
     if (!e) {
         return HN_ERR_MEMORY;
     }
+
     const size_t nq = (size_t)info.nq, nv = (size_t)info.nv, nc = (size_t)info.nc;
     *e = (hn_errors){.sys = sys, .info = info, .length = hn_system_length(sys)};
+
+    // memory
     e->is_length = hn_arena_ints(arena, (size_t)info.n_user);
     e->q = hn_arena_doubles(arena, nq);
     e->other = hn_arena_doubles(arena, nq);
@@ -57,10 +60,14 @@ hn_status hn_errors_create(const hn_system *sys, hn_arena *arena, hn_errors **ou
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // which user coordinates are lengths: they are scaled by that of the mechanism
     const hn_scene *scene = hn_system_scene(sys);
     for (int i = 0; i < info.n_user; i++) {
         e->is_length[i] = scene->coordinates[hn_system_user_coordinate(sys, i)].kind == HN_LENGTH;
     }
+
+    // constraint forces need J
     const hn_status status = hn_eval_create(sys, HN_TERM_J, arena, &e->jacobian);
     if (status == HN_OK) {
         *out = e;

@@ -63,7 +63,10 @@ static hn_status create(precise *p, hn_precise_kind kind, const hn_system *sys, 
     if (status != HN_OK) {
         return status;
     }
+
     const size_t nq = (size_t)p->model->nq, nv = (size_t)p->model->nv, nc = (size_t)p->model->nc;
+
+    // memory: the state in long double, samples in double
     p->solver = KINDS[kind].solver;
     p->stepper = KINDS[kind].stepper;
     p->y = hn_arena_reals(arena, nq + nv);
@@ -78,14 +81,18 @@ static hn_status create(precise *p, hn_precise_kind kind, const hn_system *sys, 
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // the solver of accelerations, and the stepper above it
     p->ode = (hn_precise_ode){p->model->nq + p->model->nv, rate_of, p, p->scale, TOLERANCES[0]};
     status = p->solver->create(p->model, arena, &p->solving);
     return status == HN_OK ? p->stepper->create(&p->ode, arena, &p->stepping) : status;
 }
 
-/// The start, closed; speeds that count as one.
+/// Starts at (q, v), projected onto closed loops, and sets the rate that velocities are scaled by.
 static hn_status start(precise *p, const double *q, const double *v, double T) {
     const int nq = p->model->nq, nv = p->model->nv;
+
+    // the state in long double, projected onto closed loops
     for (int i = 0; i < nq; i++) {
         p->y[i] = (hn_real)q[i];
     }
@@ -98,10 +105,13 @@ static hn_status start(precise *p, const double *q, const double *v, double T) {
     if (status == HN_OK) {
         status = p->solver->accelerate(p->solving, 0, p->y, p->y + nq, p->a, NULL);
     }
+
+    // the fastest rate of the motion, from its accelerations
     p->rate = 1 / (hn_real)T;
     for (int i = 0; status == HN_OK && i < nv; i++) {
         p->rate = fmaxl(p->rate, sqrtl(fabsl(p->a[i]) / p->model->floor[i]));
     }
+
     p->h = FIRST_STEP * (hn_real)T;
     p->t = 0;
     p->stepper->forget(p->stepping);
@@ -175,10 +185,14 @@ static hn_walk_end walk_to(precise *p, double t, hn_real least, hn_status *statu
 
 static hn_status sample(precise *p, double t, hn_sample *out) {
     const hn_precise_model *m = p->model;
+
+    // accelerations, multipliers and energy at the state reached
     p->solver->choose_rows(p->solving, p->t, p->y);
     const hn_status status =
         p->solver->accelerate(p->solving, p->t, p->y, p->y + m->nq, p->a, p->lambda);
     hn_precise_model_energy(p->model, p->t, p->y, p->y + m->nq);
+
+    // in double and user coordinates
     for (int i = 0; i < m->nq; i++) {
         p->q[i] = (double)p->y[i];
     }
@@ -190,6 +204,7 @@ static hn_status sample(precise *p, double t, hn_sample *out) {
     }
     hn_system_to_user(m->sys, p->q, p->user_q);
     hn_system_rates_to_user(m->sys, p->v, p->user_v);
+
     *out = (hn_sample){.t = t,
                        .q = p->user_q,
                        .v = p->user_v,

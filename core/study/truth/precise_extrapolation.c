@@ -48,18 +48,24 @@ static int substeps(int column) {
 static hn_status midpoint(extrapolation *s, hn_real t, const hn_real *y, hn_real H, int n) {
     const int size = s->ode->n;
     const hn_real h = H / n;
+
+    // the first substep: Euler
     memset(s->before, 0, (size_t)size * sizeof *s->before);
     for (int i = 0; i < size; i++) {
         s->now[i] = h * s->start[i];
     }
+
+    // the others: midpoint, on increments, so that y is not rounded in each
     for (int k = 1; k < n; k++) {
         for (int i = 0; i < size; i++) {
             s->y[i] = y[i] + s->now[i];
         }
+
         const hn_status status = s->ode->rate(s->ode->user, t + k * h, s->y, s->dy);
         if (status != HN_OK) {
             return status;
         }
+
         for (int i = 0; i < size; i++) {
             const hn_real next = s->before[i] + 2 * h * s->dy[i];
             s->before[i] = s->now[i];
@@ -114,10 +120,14 @@ static int attempt(extrapolation *s, hn_real t, const hn_real *y, hn_real H, hn_
         if (*status != HN_OK) {
             return -1;
         }
+
+        // a new column of the table
         const hn_real error = extrapolate(s, k);
         if (k < FEWEST) {
             continue;
         }
+
+        // the step that gives the least work for its length
         hn_real g = growth(error, k), work = cost(k) / g;
         if (error <= 1 && k + 1 < COLUMNS && work < best) {
             // one column more might carry a longer step at less cost for its length
@@ -127,10 +137,13 @@ static int attempt(extrapolation *s, hn_real t, const hn_real *y, hn_real H, hn_
             best = work;
             *factor = g;
         }
+
         if (error <= 1) {
             return k;
         }
     }
+
+    // no column is accurate enough: repeat with a shorter step
     *factor = fminl(*factor, 0.7L);
     return -1;
 }

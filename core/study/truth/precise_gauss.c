@@ -37,6 +37,8 @@ static void legendre(int n, hn_real x, hn_real *P) {
 /// Nodes and weights on (0, 1); the matrix by integrating the Lagrange polynomials' expansions.
 static void make_tableau(gauss *s) {
     const int n = STAGES;
+
+    // nodes: zeros of the Legendre polynomial by Newton, from the asymptotic approximation
     for (int i = 0; i < n; i++) {
         hn_real P[STAGES + 1], x = -cosl(acosl(-1) * (i + 0.75L) / (n + 0.5L)), slope = 1;
         for (int k = 0; k < 12; k++) {
@@ -48,6 +50,8 @@ static void make_tableau(gauss *s) {
         s->c[i] = (1 + x) / 2;
         s->w[i] = 1 / ((1 - x * x) * slope * slope);
     }
+
+    // matrix: integrals of the Lagrange polynomials, by their Legendre expansions
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             hn_real sum = s->c[i];
@@ -103,8 +107,10 @@ static hn_status guess(gauss *s, hn_real t, const hn_real *y, hn_real h) {
 /// Every stage once; the largest change of h f, in scales.
 static hn_status iterate(gauss *s, hn_real t, const hn_real *y, hn_real h, hn_real *change) {
     const int n = s->ode->n;
+
     *change = 0;
     for (int i = 0; i < STAGES; i++) {
+        // the state at the stage, with the latest rates of all stages
         for (int m = 0; m < n; m++) {
             hn_real sum = 0;
             for (int j = 0; j < STAGES; j++) {
@@ -112,10 +118,13 @@ static hn_status iterate(gauss *s, hn_real t, const hn_real *y, hn_real h, hn_re
             }
             s->y[m] = y[m] + h * sum;
         }
+
         const hn_status status = s->ode->rate(s->ode->user, t + s->c[i] * h, s->y, s->dy);
         if (status != HN_OK) {
             return status;
         }
+
+        // the change of its rate, in scales
         for (int m = 0; m < n; m++) {
             const hn_real moved = h * fabsl(s->dy[m] - s->rate[i][m]) / s->ode->scale[m];
             *change = moved > *change || isnan(moved) ? moved : *change;
@@ -168,7 +177,9 @@ static hn_status step(void *ws, hn_real t, hn_real *y, hn_real least, hn_real *h
     gauss *s = ws;
     hn_status status = HN_ERR_STEP_UNDERFLOW;
     int refused = 0;
+
     while (*h >= least) {
+        // stages; half the step where the iteration fails
         status = solve(s, t, y, *h);
         if (status != HN_OK) {
             *h /= 2;
@@ -176,11 +187,15 @@ static hn_status step(void *ws, hn_real t, hn_real *y, hn_real least, hn_real *h
             refused = 1;
             continue;
         }
+
+        // the step size that the error allows
         const hn_real error = expand(s, *h);
         hn_real factor = SAFETY * powl(fmaxl(error, 1e-30L), -1.0L / (2 * STAGES - 2));
         factor = fminl(refused ? 1 : MOST_GROWTH, fmaxl(LEAST_SHRINK, factor));
         s->last = *h;
         *h *= factor;
+
+        // accept, or try again
         if (error <= 1) {
             for (int m = 0; m < s->ode->n; m++) {
                 y[m] += s->last * s->expansion[0][m];
@@ -188,6 +203,7 @@ static hn_status step(void *ws, hn_real t, hn_real *y, hn_real least, hn_real *h
             *taken = s->last;
             return HN_OK;
         }
+
         s->last = 0;
         refused = 1;
         status = HN_ERR_STEP_UNDERFLOW;

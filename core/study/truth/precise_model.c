@@ -56,7 +56,7 @@ static hn_status begin(gathering *b, hn_precise_part *part, size_t most, hn_aren
     return b->outputs && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
-/// Inputs of every tape: q, v, t.
+/// Compiles the gathered outputs to a tape with the inputs q, v, t.
 static hn_status compile(gathering *b, const hn_precise_model *m, hn_arena *arena) {
     const hn_system_exprs ex = hn_system_get_exprs(m->sys);
     const int n_in = m->nq + m->nv + 1;
@@ -65,14 +65,19 @@ static hn_status compile(gathering *b, const hn_precise_model *m, hn_arena *aren
     if (!symbols) {
         return HN_ERR_MEMORY;
     }
+
+    // inputs and outputs into one tape
     memcpy(symbols, ex.q_symbols, (size_t)m->nq * sizeof *symbols);
     memcpy(symbols + m->nq, ex.v_symbols, (size_t)m->nv * sizeof *symbols);
     symbols[n_in - 1] = ex.t_symbol;
+
     const hn_status status =
         hn_tape_compile(hn_system_graph(m->sys), b->outputs, b->n_outputs, symbols, n_in, &p->tape);
     if (status != HN_OK) {
         return status;
     }
+
+    // its constants in long double
     p->work = hn_arena_reals(arena, hn_tape_work_size(p->tape));
     if (!p->work) {
         return HN_ERR_MEMORY;
@@ -87,6 +92,8 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     const size_t nv = (size_t)m->nv, nc = (size_t)m->nc;
     const size_t most = 2 * nv * nv + nc * nv + nv + 3 * nc + 2;
     gathering b;
+
+    // for accelerations: M, f, J, gamma
     hn_status status = begin(&b, &m->dynamics, most, arena);
     if (status == HN_OK) {
         put_mass(&b, m, ex.M);
@@ -99,6 +106,8 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     if (status != HN_OK) {
         return status;
     }
+
+    // for projections: M, J, phi, phi_t
     status = begin(&b, &m->closure, most, arena);
     if (status == HN_OK) {
         put_mass(&b, m, ex.M);
@@ -111,6 +120,8 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     if (status != HN_OK) {
         return status;
     }
+
+    // energies
     status = begin(&b, &m->energies, 2, arena);
     if (status == HN_OK) {
         put(&b, ex.kinetic, &m->energy[0], NULL);
@@ -121,21 +132,27 @@ static hn_status create_parts(hn_precise_model *m, hn_arena *arena) {
     return status;
 }
 
-/// Quaternions lie between the other entries of q in the order of their speeds.
+/// Finds the place in q of every velocity, and the scale of its coordinate. Quaternions lie between
+/// the other entries of q, in the order of their angular velocities.
 static void find_positions(hn_precise_model *m) {
     const hn_scene *scene = hn_system_scene(m->sys);
     const int n_user = hn_system_get_info(m->sys).n_user;
     int next = 0;
+
     for (int i = 0; i < m->nv; i++) {
         const int at = hn_system_position_of(m->sys, i);
         const hn_unit_kind kind =
             i < n_user ? scene->coordinates[hn_system_user_coordinate(m->sys, i)].kind : HN_OTHER;
+
+        // a coordinate with one velocity
         m->floor[i] = kind == HN_LENGTH ? (hn_real)hn_system_length(m->sys) : 1;
         m->position[i] = at >= 0 ? at : next;
         if (at >= 0) {
             next = at + 1;
             continue;
         }
+
+        // a quaternion: three velocities, four entries of q
         m->is_ball[i] = 1;
         m->floor[i + 1] = m->floor[i + 2] = 1;
         m->position[i + 1] = m->position[i + 2] = next;
@@ -153,6 +170,8 @@ hn_status hn_precise_model_create(const hn_system *sys, hn_arena *arena, hn_prec
     }
     *m = (hn_precise_model){.sys = sys, .nq = info.nq, .nv = info.nv, .nc = info.nc};
     const size_t nv = (size_t)m->nv, nc = (size_t)m->nc;
+
+    // memory
     m->M = hn_arena_reals(arena, nv * nv);
     m->J = hn_arena_reals(arena, nc * nv);
     m->f = hn_arena_reals(arena, nv);
@@ -165,6 +184,8 @@ hn_status hn_precise_model_create(const hn_system *sys, hn_arena *arena, hn_prec
     if (hn_arena_failed(arena)) {
         return HN_ERR_MEMORY;
     }
+
+    // places in q, then the tapes
     find_positions(m);
     const hn_status status = create_parts(m, arena);
     if (status != HN_OK) {

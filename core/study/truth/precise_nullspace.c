@@ -140,10 +140,14 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
     nullspace *s = ws;
     const int nv = s->m->nv, nc = s->m->nc;
     hn_precise_model_closure(s->m, t, q);
+
+    // all rows in their own order
     for (int i = 0; i < nc; i++) {
         s->column[i] = i;
     }
     take_rows(s, nc);
+
+    // QR with column exchange: the row with the largest rest is next
     s->rank = 0;
     while (s->rank < nc && s->rank < nv) {
         int best = s->rank;
@@ -153,9 +157,11 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
         if (!(rest_of(s, best) > RANK_TOL * RANK_TOL)) {
             break;
         }
+
         exchange(s, s->rank, best);
         eliminate(s, nc);
     }
+
     s->n_rows = s->rank;
 }
 
@@ -203,12 +209,14 @@ static void times_mass(const hn_precise_model *m, const hn_real *x, hn_real *out
 
 /// Cholesky factor of S (r x r) and the solution in z.
 static hn_status solve_reduced(nullspace *s, int r) {
+    // factor, and forward substitution in the same sweep
     for (int j = 0; j < r; j++) {
         hn_real *row = s->S + (size_t)j * r;
         for (int i = 0; i < j; i++) {
             const hn_real *above = s->S + (size_t)i * r;
             row[i] = (row[i] - inner(i, row, above)) / above[i];
         }
+
         const hn_real pivot = row[j] - inner(j, row, row);
         if (!(pivot > 0)) {
             return HN_ERR_SINGULAR;
@@ -216,6 +224,8 @@ static hn_status solve_reduced(nullspace *s, int r) {
         row[j] = sqrtl(pivot);
         s->z[j] = (s->z[j] - inner(j, row, s->z)) / row[j];
     }
+
+    // backward substitution
     for (int j = r - 1; j >= 0; j--) {
         for (int i = j + 1; i < r; i++) {
             s->z[j] -= s->S[(size_t)i * r + j] * s->z[i];
@@ -263,22 +273,29 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
                             hn_real *lambda) {
     nullspace *s = ws;
     const int nv = s->m->nv;
+
+    // the shortest acceleration that the loops demand
     hn_precise_model_dynamics(s->m, t, q, v);
     factor(s);
     const int r = nv - s->rank;
     shortest(s, s->m->gamma, s->c);
+
+    // motion along the loops: N' M N z = N' (f - M c)
     make_basis(s);
     reduce(s, r);
     const hn_status status = solve_reduced(s, r);
     if (status != HN_OK) {
         return status;
     }
+
+    // a = c + N z
     memcpy(a, s->c, (size_t)nv * sizeof *a);
     for (int j = 0; j < r; j++) {
         for (int i = 0; i < nv; i++) {
             a[i] += s->N[(size_t)j * nv + i] * s->z[j];
         }
     }
+
     if (lambda) {
         find_multipliers(s, a, lambda);
     }
@@ -315,25 +332,33 @@ static int is_closed(const nullspace *s, const hn_real *q) {
 static hn_status close_loops(void *ws, hn_real t, hn_real *q, hn_real *v) {
     nullspace *s = ws;
     const int nv = s->m->nv;
+
+    // rows for this configuration; near a singular one it is left as it is
     choose_rows(ws, t, q);
     hn_precise_model_closure(s->m, t, q);
     factor(s);
     if (is_weak(s)) {
         return HN_OK;
     }
+
+    // positions: Newton, with the shortest correction
     for (int k = 0; !is_closed(s, q); k++) {
         hn_real size = 0;
         shortest(s, s->m->phi, s->y);
         for (int i = 0; i < nv; i++) {
             size = fmaxl(size, fabsl(s->y[i]) / s->m->floor[i]);
         }
+
         if (k >= MAX_NEWTON || !(size < 1)) {
             return k >= MAX_NEWTON && size < SETTLED ? HN_OK : HN_ERR_NO_CONVERGENCE;
         }
+
         hn_precise_model_nudge(s->m, q, s->y);
         hn_precise_model_closure(s->m, t, q);
         factor(s);
     }
+
+    // velocities: linear, so one correction
     for (int i = 0; i < s->m->nc; i++) {
         s->gap[i] = s->m->phi_t[i] + inner(nv, s->m->J + (size_t)i * nv, v);
     }

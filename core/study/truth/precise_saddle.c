@@ -66,14 +66,16 @@ static void copy_unit_rows(saddle *s) {
     }
 }
 
-/// Gram-Schmidt, the row with most left first.
+/// Chooses independent rows of J by Gram-Schmidt: the row with the largest rest is next.
 static void choose_rows(void *ws, hn_real t, const hn_real *q) {
     saddle *s = ws;
     const int nv = s->m->nv, nc = s->m->nc;
     hn_precise_model_closure(s->m, t, q);
     copy_unit_rows(s);
+
     s->weakest = 1;
     for (s->n_rows = 0; s->n_rows < nc; s->n_rows++) {
+        // the row with the largest rest
         int best = -1;
         hn_real most = DEPENDENT * DEPENDENT;
         for (int i = 0; i < nc; i++) {
@@ -84,9 +86,12 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
                 most = size;
             }
         }
+
         if (best < 0) {
             return;
         }
+
+        // its direction becomes a basis vector
         hn_real *chosen = s->basis + (size_t)best * nv;
         const hn_real length = s->weakest = sqrtl(most);
         for (int j = 0; j < nv; j++) {
@@ -94,6 +99,8 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
         }
         s->row[s->n_rows] = best;
         s->left[best] = 0;
+
+        // and is taken out of the rows that are left
         for (int i = 0; i < nc; i++) {
             hn_real *row = s->basis + (size_t)i * nv;
             const hn_real along = s->left[i] ? dot(nv, row, chosen) : 0;
@@ -111,6 +118,8 @@ static void choose_rows(void *ws, hn_real t, const hn_real *q) {
 static void fill(saddle *s) {
     const int nv = s->m->nv, n = nv + s->n_rows;
     s->size = n;
+
+    // scales of velocities and of rows
     for (int i = 0; i < nv; i++) {
         const hn_real diagonal = s->m->M[(size_t)i * nv + i];
         s->scale[i] = diagonal > 0 ? 1 / sqrtl(diagonal) : 1;
@@ -123,6 +132,8 @@ static void fill(saddle *s) {
         }
         s->scale[nv + k] = most > 0 ? 1 / most : 1;
     }
+
+    // the matrix [M J'; J 0], scaled
     memset(s->K, 0, (size_t)n * n * sizeof *s->K);
     for (int i = 0; i < nv; i++) {
         for (int j = 0; j < nv; j++) {
@@ -151,15 +162,20 @@ static hn_status factor(saddle *s) {
     const int n = s->size;
     hn_real *K = s->K;
     for (int k = 0; k < n; k++) {
+        // the largest pivot of the column
         int best = k;
         for (int i = k + 1; i < n; i++) {
             best = fabsl(K[(size_t)i * n + k]) > fabsl(K[(size_t)best * n + k]) ? i : best;
         }
+
         if (!(fabsl(K[(size_t)best * n + k]) > LOST_PIVOT)) {
             return HN_ERR_SINGULAR;
         }
+
         s->pivot[k] = best;
         swap_rows(s, k, best);
+
+        // elimination below it
         for (int i = k + 1; i < n; i++) {
             if (K[(size_t)i * n + k] == 0) {
                 continue;
@@ -177,6 +193,8 @@ static hn_status factor(saddle *s) {
 static void substitute(saddle *s) {
     const int n = s->size;
     hn_real *x = s->x;
+
+    // scale the right-hand side, and exchange its entries as the rows were
     for (int i = 0; i < n; i++) {
         x[i] *= s->scale[i];
     }
@@ -185,6 +203,8 @@ static void substitute(saddle *s) {
         x[k] = x[s->pivot[k]];
         x[s->pivot[k]] = keep;
     }
+
+    // forward, backward, then undo the scaling
     for (int i = 0; i < n; i++) {
         x[i] -= dot(i, s->K + (size_t)i * n, x);
     }
@@ -201,18 +221,24 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
                             hn_real *lambda) {
     saddle *s = ws;
     const int nv = s->m->nv;
+
+    // matrix and right-hand side [f; -gamma]
     hn_precise_model_dynamics(s->m, t, q, v);
     fill(s);
     memcpy(s->x, s->m->f, (size_t)nv * sizeof *s->x);
     for (int k = 0; k < s->n_rows; k++) {
         s->x[nv + k] = -s->m->gamma[s->row[k]];
     }
+
     const hn_status status = factor(s);
     if (status != HN_OK) {
         return status;
     }
+
     substitute(s);
     memcpy(a, s->x, (size_t)nv * sizeof *a);
+
+    // rows that were left out carry no force
     if (lambda) {
         memset(lambda, 0, (size_t)s->m->nc * sizeof *lambda);
         for (int k = 0; k < s->n_rows; k++) {
@@ -267,10 +293,14 @@ static int is_closed(const saddle *s, const hn_real *q) {
 
 static hn_status close_loops(void *ws, hn_real t, hn_real *q, hn_real *v) {
     saddle *s = ws;
+
+    // rows for this configuration; near a singular one it is left as it is
     choose_rows(ws, t, q);
     if (s->weakest < WEAK) {
         return HN_OK;
     }
+
+    // positions: Newton
     hn_precise_model_closure(s->m, t, q);
     for (int k = 0; !is_closed(s, q); k++) {
         const hn_status status = solve_gap(s, s->m->phi, NULL);
@@ -281,6 +311,8 @@ static hn_status close_loops(void *ws, hn_real t, hn_real *q, hn_real *v) {
         hn_precise_model_nudge(s->m, q, s->step);
         hn_precise_model_closure(s->m, t, q);
     }
+
+    // velocities: linear, so one correction
     const hn_status status = solve_gap(s, s->m->phi_t, v);
     for (int i = 0; status == HN_OK && i < s->m->nv; i++) {
         v[i] += s->step[i];

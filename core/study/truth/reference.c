@@ -87,18 +87,25 @@ static int record(void *user, int k, const hn_sample *s) {
     recorder *r = user;
     hn_ref *ref = r->ref;
     const size_t nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
+
+    // the sample into the reference
     memcpy(ref->q + (size_t)k * nu, s->q, nu * sizeof(double));
     memcpy(ref->v + (size_t)k * nu, s->v, nu * sizeof(double));
     if (nc > 0) {
         memcpy(ref->lambda + (size_t)k * nc, s->lambda, nc * sizeof(double));
     }
     ref->energy[k] = s->energy;
+
     if (r->opts->progress) {
         r->opts->progress(r->opts->user, (r->found + (double)k / ref->n) / HN_REF_MEANS);
     }
+
+    // ranges that energies are judged by
     r->kinetic = k == 0 ? s->kinetic : fmax(r->kinetic, s->kinetic);
     r->low = k == 0 ? s->potential : fmin(r->low, s->potential);
     r->high = k == 0 ? s->potential : fmax(r->high, s->potential);
+
+    // a motion that is not finite ends here
     for (size_t i = 0; i < nu; i++) {
         if (!isfinite(s->q[i]) || !isfinite(s->v[i])) {
             return 0;
@@ -246,10 +253,13 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
     hn_ref *kept[HN_REF_MEANS] = {NULL, NULL};
     recorder seen[HN_REF_MEANS];
     char refused[320] = "";
+
     if (!(T > 0) || !isfinite(T)) {
         return hn_diag_set(diag, HN_ERR_INPUT, "/time", NULL,
                            "the end time is %g s; it must be above 0", T);
     }
+
+    // two independent solutions
     hn_arena *arena = hn_arena_create(0);
     hn_errors *errors = NULL;
     hn_status status = arena ? hn_errors_create(sys, arena, &errors) : HN_ERR_MEMORY;
@@ -258,6 +268,7 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
             find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o, kept, seen, refused, diag);
     }
     if (status == HN_OK) {
+        // their difference is the error of the first
         set_scales(kept[0], errors, sys, &seen[0]);
         compare(kept[0], kept[1], errors);
         memcpy(kept[0]->means[1], kept[1]->means[0], HN_SPEC_MAX);
@@ -265,6 +276,7 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
         *out = kept[0];
         kept[0] = NULL;
     }
+
     hn_ref_free(kept[0]);
     hn_ref_free(kept[1]);
     hn_errors_free(errors);
