@@ -18,7 +18,7 @@ static double height_of(const hn_plot *plot, double y) {
 }
 
 static range find_range(const hn_plot *plot) {
-    range r = {INFINITY, -INFINITY};
+    range r = {(double)INFINITY, -(double)INFINITY};
     for (int s = 0; s < plot->n; s++) {
         for (int k = 0; k < plot->series[s].n; k++) {
             const double h = height_of(plot, plot->series[s].y[k]);

@@ -35,7 +35,7 @@ typedef struct hn_track {
 typedef struct hn_track_end {
     bool failed;
     double t; ///< [s] reached
-    char reason[256];
+    char reason[480];
 } hn_track_end;
 
 /// Starts recording; the model must outlive it. duration 0: the scene's. Faults of a spelling are

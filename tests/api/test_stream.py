@@ -367,7 +367,7 @@ class Crowd(driver.ServerCase):
                 reader.until("end")
 
     def test_short_questions_are_answered_while_long_ones_run(self):
-        long = {"scene": "four-bar", "method": "index1@rk4:h=1e-6", "time": 100, "at": [100]}
+        long = {"scene": "four-bar", "method": "index1@rk4:h=2.5e-6", "time": 100, "at": [100]}
         answers = []
 
         def ask(i):

@@ -133,7 +133,7 @@ static hn_status parse_option(piece p, const hn_option *table, int n, double *se
         *given |= 1u << i;
         return at_column(diag, right, hn_option_parse(&table[i], value, &set[i], diag));
     }
-    return unknown_name(diag, left, "setting", key, keys, n);
+    return unknown_name(diag, left, "option", key, keys, n);
 }
 
 // A comma followed by bare digits and no '=' is a decimal comma: "h=0,02" is one setting.
@@ -269,7 +269,8 @@ hn_status hn_method_parse(const char *text, hn_method_spec *out, hn_diag *diag) 
     const size_t at = find_char(all, '@');
     if (at == n) {
         hn_diag_set(diag, HN_ERR_INPUT, NULL, "write for example index1@rk4:h=1e-3",
-                    "'@' and an integrator are missing");
+                    "'%.60s' names no method: a formulation, '@' and an integrator are needed",
+                    text);
         if (diag) {
             diag->column = (int)n + 1;
         }

@@ -102,7 +102,7 @@ typedef struct holonom_sample {
 /// What a run has cost and how well it has kept the constraints, so far.
 typedef struct holonom_result {
     holonom_status status; ///< HOLONOM_ENDED when it ended early
-    char reason[256];      ///< why, or ""
+    char reason[480];      ///< why, or ""
     double t;              ///< reached [s]
     double gap;            ///< largest, over all steps
     double velocity_gap;   ///< largest, over all steps

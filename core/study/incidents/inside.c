@@ -20,8 +20,8 @@ static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
     const double limit = w->warn_gap * w->length;
     if (gap > limit) {
         set_time(hn_incident_report(w, &hn_incident_gap_open, "gap", gap, limit,
-                                    "the output between two steps is open: the constraint "
-                                    "violation of %.3g m at t = %.6g s exceeds the limit of %.3g m",
+                                    "the loop is open by %.3g m at t = %.6g s, inside a step; "
+                                    "the limit is %.3g m",
                                     gap, at->t, limit),
                  at->t);
     }
@@ -36,8 +36,8 @@ static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m
     if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
         fabs(energy - e->start) > limit) {
         set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
-                                    "the output between two steps has another energy: it changes "
-                                    "by %.3g J up to t = %.6g s, more than %.3g J",
+                                    "the energy changes by %.3g J up to t = %.6g s, inside a step; "
+                                    "the limit is %.3g J",
                                     change, at->t, limit),
                  at->t);
     }

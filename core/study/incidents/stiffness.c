@@ -100,10 +100,11 @@ void hn_step_limit_check(hn_watch *w) {
 void hn_step_long_check(hn_watch *w) {
     const double h = hn_method_option(&w->run->spec, "h", 0), whole = w->t_end - w->run->t0;
     if (!w->run->adaptive && w->t_end > 0 && h > whole * (1 + HN_STEPPING_LANDING)) {
-        hn_incident_report(w, &hn_incident_step_long, "h", h, whole,
-                           "the step of %.4g s is longer than the run of %.4g s: no whole step is "
-                           "made, and the output is that of one shorter step",
-                           h, whole);
+        hn_incident_report(
+            w, &hn_incident_step_long, "h", h, whole,
+            "the step of %.4g s is longer than the run of %.4g s: the output is that "
+            "of one shorter step; choose h below %.4g s",
+            h, whole, whole);
     }
 }
 

@@ -182,9 +182,10 @@ static void try_remedies(hn_run *run, hn_incident *i) {
     if (kept < HN_REMEDIES) {
         i->remedy[kept][0] = i->tried[kept][0] = '\0';
     }
-    hn_incident_append(&w->log, i, "%s",
-                       n > 0 && kept == 0 ? "; none of the remedies that were tried removes it"
-                                          : "");
+    if (n > 0 && kept == 0) {
+        hn_incident_append(&w->log, i, "; tried in vain: %s%s%s%s%s", texts[0], n > 1 ? ", " : "",
+                           n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
+    }
 }
 
 void hn_run_diagnose(hn_run *run) {

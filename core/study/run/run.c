@@ -27,7 +27,7 @@ struct hn_run {
     hn_run_opts opts;
     hn_run_state state;
     hn_status status;
-    char reason[256];
+    char reason[480];
     int since; ///< accepted steps since the last check
     cost_clock clock;
     hn_stepping stepping;
@@ -340,7 +340,7 @@ hn_watch *hn_run_watching(hn_run *run) {
 }
 
 void hn_run_set_reason(hn_run *run, const char *reason) {
-    snprintf(run->reason, sizeof run->reason, "%.255s", reason);
+    snprintf(run->reason, sizeof run->reason, "%.479s", reason);
 }
 
 bool hn_run_is_conservative(const hn_run *run) {

@@ -27,7 +27,7 @@ hn_run_opts hn_run_opts_default(void);
 typedef struct hn_run_summary {
     hn_run_state state;
     hn_status status; ///< HN_OK while all is well
-    char reason[256]; ///< why it failed, "" otherwise
+    char reason[480]; ///< why it failed, "" otherwise
     double t;         ///< reached
     long long steps, rejected;
     double h_last;

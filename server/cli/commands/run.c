@@ -342,10 +342,10 @@ hn_exit hn_command_run(const hn_library *lib, const hn_args *args) {
 
     // people get a table or a plot, and what was noticed
     cJSON *run = NULL;
-    char reason[300] = "";
+    char reason[560] = "";
     if (strcmp(format, "json") != 0) {
         run = hn_document_parse(&b);
-        snprintf(reason, sizeof reason, "at t = %.6g s: %.200s",
+        snprintf(reason, sizeof reason, "at t = %.6g s: %.480s",
                  hn_document_number(run, "t_reached"), hn_document_text(run, "reason"));
         tell_marks(run);
         tell_incidents(run);
