@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_TUI_LINK_H
 #define HN_TUI_LINK_H
-// Links of the page: the part after # holds scene, parameters, methods and frame (web/state/link.js).
+// Links of the page: the part after # holds scene, parameters, methods and frame
+// (web/state/link.js).
 
 #include "tui/workbench.h"
 

@@ -186,4 +186,4 @@ class CollapsingSteps(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    driver.main()

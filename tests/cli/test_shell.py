@@ -16,9 +16,11 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
 
+PROGRAM = os.path.abspath(driver.PROGRAM)
+
 
 def call(*words):
-    return subprocess.run([driver.PROGRAM, *words], capture_output=True, text=True, timeout=60)
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=60)
 
 
 def candidates(*words):
@@ -51,8 +53,8 @@ class Completion(unittest.TestCase):
     def test_bash_completes_with_what_the_program_says(self):
         script = ('source <("$0" completion bash); holonom() { "$PROGRAM" "$@"; }; '
                   'COMP_WORDS=(holonom run four-b); COMP_CWORD=2; _holonom; echo "${COMPREPLY[@]}"')
-        done = subprocess.run(["bash", "-c", script, driver.PROGRAM], capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "PROGRAM": driver.PROGRAM})
+        done = subprocess.run(["bash", "-c", script, PROGRAM], capture_output=True, text=True, timeout=60,
+                              env={**os.environ, "PROGRAM": PROGRAM})
         self.assertEqual(done.stdout.strip(), "four-bar")
 
     def test_an_unknown_shell_is_refused(self):
@@ -81,7 +83,7 @@ class Help(unittest.TestCase):
                 self.assertEqual(len(lines), 3, command)
                 for line in lines:
                     if command not in LEFT_OUT and not re.search(r"[|>]", line) and line != "tui":
-                        done = subprocess.run([driver.PROGRAM, *line.split()], capture_output=True, text=True, timeout=300, cwd=folder,
+                        done = subprocess.run([PROGRAM, *line.split()], capture_output=True, text=True, timeout=300, cwd=folder,
                                               stdin=subprocess.DEVNULL)
                         self.assertEqual((line, done.returncode), (line, 0), done.stderr)
 
@@ -93,7 +95,7 @@ class Help(unittest.TestCase):
         master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 10, 80, 0, 0))
         env = {**os.environ, "PAGER": "sed -n 's/^/paged /;1p'", "LC_ALL": "C.UTF-8"}
-        with subprocess.Popen([driver.PROGRAM, "list", "scenes"], stdin=slave, stdout=slave, env=env) as process:
+        with subprocess.Popen([PROGRAM, "list", "scenes"], stdin=slave, stdout=slave, env=env) as process:
             process.wait(timeout=60)
         os.close(slave)
         self.assertTrue(os.read(master, 4096).startswith(b"paged "))
@@ -103,7 +105,7 @@ class Help(unittest.TestCase):
 class Plots(unittest.TestCase):
     def test_compare_draws_every_method_within_the_width(self):
         env = {**os.environ, "COLUMNS": "70", "LC_ALL": "C.UTF-8"}
-        done = subprocess.run([driver.PROGRAM, "compare", "four-bar", "--time", "2", "--plot"], capture_output=True, text=True,
+        done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "2", "--plot"], capture_output=True, text=True,
                               timeout=60, env=env)
         self.assertEqual(done.returncode, 0, done.stderr)
         plot = done.stdout[done.stdout.index("loop gap (constraint violation)"):]
@@ -116,7 +118,7 @@ class Plots(unittest.TestCase):
 
     def test_run_draws_in_place_of_samples_and_in_ascii_where_the_locale_asks(self):
         env = {**os.environ, "LC_ALL": "C"}
-        done = subprocess.run([driver.PROGRAM, "run", "pendulum", "--time", "1", "--plot"], capture_output=True, text=True, timeout=60,
+        done = subprocess.run([PROGRAM, "run", "pendulum", "--time", "1", "--plot"], capture_output=True, text=True, timeout=60,
                               env=env)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(done.stdout.isascii())

@@ -325,7 +325,7 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     const hn_run_summary s = hn_run_get_summary(b->run);
     const int failed = s.state == HN_RUN_FAILED;
     out->state = failed ? HN_RUN_FAILED : HN_RUN_FINISHED;
-    snprintf(out->reason, sizeof out->reason, "%s", s.reason);
+    snprintf(out->reason, sizeof out->reason, "%.255s", s.reason);
     out->t = b->steps->now.t;
     out->steps = (long long)b->kept;
     hn_books_present(b, b->y);

@@ -55,7 +55,7 @@ static void set_stopped(const hn_run *run, hn_survival *out) {
     const hn_run_summary s = hn_run_get_summary(run);
     out->end = HN_SURVIVAL_STOPPED;
     out->t = s.t;
-    snprintf(out->reason, sizeof out->reason, "%s", s.reason);
+    snprintf(out->reason, sizeof out->reason, "%.255s", s.reason);
 }
 
 static int is_cut(const hn_walk_limits *l, double started) {

@@ -405,7 +405,7 @@ static void conclude(trial *t, hn_walk_end end, const hn_run *run, const hn_walk
     case HN_WALK_FAILED:
         o->kind = s.status == HN_ERR_DIVERGED ? HN_STABILITY_GREW : HN_STABILITY_STOPPED;
         o->status = s.status;
-        snprintf(o->reason, sizeof o->reason, "%s", s.reason);
+        snprintf(o->reason, sizeof o->reason, "%.255s", s.reason);
         break;
     case HN_WALK_OVER:
         o->kind = HN_STABILITY_SKIPPED;
