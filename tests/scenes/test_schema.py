@@ -45,7 +45,8 @@ def at(node, path):
 
 shipped = sorted(glob.glob("lessons/*/scenes/*.json"))
 report(len(shipped) >= 9, "the shipped scenes are found", str(shipped))
-for name in shipped + sorted(glob.glob("tests/scenes/*.json") + glob.glob("tests/reference/*.json")):
+others = set(glob.glob("tests/scenes/*.json") + glob.glob("tests/reference/*.json")) - {"tests/scenes/texts.json"}
+for name in shipped + sorted(others):
     with open(name) as f:
         scene = json.load(f)
     found = faults(scene)
