@@ -50,7 +50,7 @@ typedef enum hn_trait {
     HN_TRAIT_CLOSES_VELOCITY = 1 << 1,    ///< J v + phi_t = 0 after each step, to rounding
     HN_TRAIT_PULLS_GAP = 1 << 2,          ///< feedback makes the gap decay at a rate that is set
     HN_TRAIT_NEEDS_MASS_INVERSE = 1 << 3, ///< whichever solver is chosen: fails where M is singular
-    HN_TRAIT_ADDS_VIBRATIONS = 1 << 4,    ///< springs on the constraints: frequency omega, damping xi
+    HN_TRAIT_ADDS_VIBRATIONS = 1 << 4,    ///< springs on the constraints: omega, xi
     HN_TRAIT_HAS_CHART = 1 << 5,          ///< integrates independent coordinates of a chart
     HN_TRAIT_FIXED_CHART = 1 << 6,        ///< the user chose the chart; none takes its place
     HN_TRAIT_HAS_BASIS = 1 << 7,          ///< velocities from a basis of the null space of J
