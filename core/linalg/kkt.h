@@ -44,7 +44,7 @@ typedef struct hn_kkt_opts {
     int max_refine; ///< corrections at most; 4. Proximal: turns, never below 1
     int want_cond;  ///< estimate the condition number: about five more solves
     double rank_tol, residual_tol, noise, motion, row_floor; ///< as in hn_saddle_opts
-    const double *row_unit;                   ///< likewise
+    const double *row_unit;                                  ///< likewise
 } hn_kkt_opts;
 hn_kkt_opts hn_kkt_opts_default(void);
 
