@@ -395,7 +395,7 @@ class Crowd(driver.ServerCase):
         server = driver.Server()
         asked = []
         for i in range(45):
-            long = json.dumps({"scene": "four-bar", "method": "index1@rk4:h=1e-6", "time": 1000 + i, "at": [1000]})
+            long = json.dumps({"scene": "four-bar", "method": "index1@rk4:h=2.5e-5", "time": 1000 + i, "at": [1000]})
             connection = server.connect()
             connection.request("POST", "/api/v1/runs", body=long, headers={"Content-Type": "application/json"})
             asked.append(connection)
