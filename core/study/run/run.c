@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/run/run.h"
 
-#include "base/clock.h"
 #include "formulations/ground/flops.h"
 #include "study/incidents/chart.h"
 #include "study/incidents/failure.h"
 #include "study/incidents/pose.h"
 #include "study/incidents/stiffness.h"
+#include "study/run/step_clock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,8 +18,7 @@
 /// What the stepping has cost so far.
 typedef struct cost_clock {
     hn_cost cost, mark; ///< in all; of the engine when the present interval began
-    double seconds, cpu_mark;
-    double grain; ///< what one pair of readings adds to an interval [s]
+    hn_step_clock time;
 } cost_clock;
 
 struct hn_run {
@@ -41,33 +40,15 @@ hn_run_opts hn_run_opts_default(void) {
 
 // ---- the clock ----
 
-/// What one pair of readings adds to an interval: the median of some pairs with nothing between,
-/// taken off each interval. A reading is a call into the kernel and takes as long as a small
-/// mechanism's step.
-static double calc_clock_grain(void) {
-    enum { PAIRS = 15 };
-    double cost[PAIRS];
-    for (int i = 0; i < PAIRS; i++) {
-        const double mark = hn_clock_thread();
-        const double d = hn_clock_thread() - mark;
-        int k = i;
-        for (; k > 0 && cost[k - 1] > d; k--) {
-            cost[k] = cost[k - 1];
-        }
-        cost[k] = d;
-    }
-    return cost[PAIRS / 2];
-}
-
 /// Everything between start_clock and stop_clock is the method's own work.
 static void start_clock(hn_run *run) {
     run->clock.mark = hn_engine_cost(&run->stepping.engine);
-    run->clock.cpu_mark = hn_clock_thread();
+    hn_step_clock_start(&run->clock.time);
 }
 
 static void stop_clock(hn_run *run) {
     cost_clock *c = &run->clock;
-    c->seconds += fmax(0, hn_clock_thread() - c->cpu_mark - c->grain);
+    hn_step_clock_stop(&c->time);
     const hn_cost now = hn_engine_cost(&run->stepping.engine);
     const hn_cost spent = hn_cost_between(&c->mark, &now);
     hn_cost_add(&c->cost, &spent);
@@ -180,7 +161,7 @@ static void clear(hn_run *run) {
     run->reason[0] = '\0';
     run->since = 0;
     run->clock.cost = (hn_cost){0};
-    run->clock.seconds = 0;
+    hn_step_clock_clear(&run->clock.time);
     hn_stepping_clear(&run->stepping);
     hn_watch_start(&run->watch);
     run->sampling.inside = 0;
@@ -226,7 +207,7 @@ hn_status hn_run_create(const hn_system *sys, const hn_method_spec *spec, const 
 
     // options, with their default values
     run->arena = arena;
-    run->clock.grain = calc_clock_grain();
+    hn_step_clock_create(&run->clock.time);
     run->opts = opts ? *opts : hn_run_opts_default();
     if (run->opts.max_steps <= 0) {
         run->opts.max_steps = DEFAULT_MAX_STEPS;
@@ -277,7 +258,7 @@ hn_run_summary hn_run_get_summary(const hn_run *run) {
                           .rejected = s->rejected,
                           .h_last = s->h,
                           .cost = run->clock.cost,
-                          .cpu_seconds = run->clock.seconds,
+                          .cpu_seconds = hn_step_clock_read(&run->clock.time),
                           .worst_gap = run->watch.worst_gap,
                           .worst_velocity_gap = run->watch.worst_velocity_gap,
                           .worst_energy_change = run->watch.worst_energy_change,

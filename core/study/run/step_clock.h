@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_STUDY_STEP_CLOCK_H
+#define HN_STUDY_STEP_CLOCK_H
+// CPU time of the steps alone, of a run that also checks and samples between its steps. The CPU
+// clock of a thread is a call into the kernel and takes as long as a small mechanism's step, so it
+// is read once for a block of intervals. The wall clock, which needs no such call, says which share
+// of the block the steps took.
+
+typedef struct hn_step_clock {
+    double seconds; ///< CPU time of the blocks that have ended [s]
+    double grain;   ///< what one pair of wall readings adds to an interval [s]
+
+    double cpu_mark;         ///< CPU clock at the beginning of the present block [s]
+    double started, stopped; ///< wall clock at the ends of the last interval [s]
+    double own, between;     ///< wall time in the intervals of the block, and between them [s]
+    int n;                   ///< intervals of the block; 0: the next one opens a block
+} hn_step_clock;
+
+/// Measures the grain, and starts from zero.
+void hn_step_clock_create(hn_step_clock *c);
+
+/// Starts from zero; keeps the grain.
+void hn_step_clock_clear(hn_step_clock *c);
+
+/// What lies between a start and the next stop is counted.
+void hn_step_clock_start(hn_step_clock *c);
+void hn_step_clock_stop(hn_step_clock *c);
+
+/// Returns the CPU time counted so far [s], the present block included.
+double hn_step_clock_read(const hn_step_clock *c);
+#endif
