@@ -189,6 +189,12 @@ export function createBench() {
       t.after(() => line.close());
       return line;
     },
+    /** A server of the test's own, that it may end. @param {import("node:test").TestContext} t */
+    async server(t) {
+      const own = await startServer();
+      t.after(() => own.stop());
+      return own;
+    },
   };
 }
 
@@ -267,7 +273,8 @@ const ASKS_EVENTS = /^GET \S+\/events[? ]/m;
  * Held, the events of comparisons wait, and answers to all else overtake them, until they are let
  * go.
  */
-async function startLine(port) {
+async function startLine(first) {
+  let port = first;
   const open = new Set();
   let cut = false;
   let held = false;
@@ -309,7 +316,9 @@ async function startLine(port) {
       cut = true;
       open.forEach((socket) => socket.destroy());
     },
-    mend() {
+    /** @param {number} [to] port of another server */
+    mend(to = port) {
+      port = to;
       cut = false;
     },
     hold() {

@@ -189,8 +189,57 @@ test("a comparison that the server has forgotten is made again, and said so", as
   await page.keyboard.press("Space");
   await until(page, (data) => data.state === "running" && data.latest?.t > 0.3);
   assert.notEqual(await read(page, (data) => data.id), id);
-  assert.match(await page.textContent(".notice"), /started again/);
+  assert.match(await page.textContent(".notice"), /computed again and goes on/);
   assert.deepEqual(bench.faultsOf(page).splice(0), [
     `not found: ${bench.url}api/v1/comparisons/${id}`,
   ]);
+});
+
+test("a server that ends and starts again: said plainly, every frame stays, the run goes on", async (t) => {
+  const line = await bench.line(t);
+  const first = await bench.server(t);
+  line.mend(first.port);
+  const page = await open(t, { url: line.url });
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.5);
+  line.cut();
+  await first.stop();
+  await page.waitForSelector(".lost:not([hidden])");
+  assert.match(await page.textContent(".lost"), /does not answer.*What was received stays/);
+  const seen = await read(page, (data) => ({
+    id: data.id,
+    frame: data.latest.frame,
+    run: data.run,
+  }));
+  const again = await bench.server(t);
+  line.mend(again.port);
+  await until(page, `(data) => data.id !== "${seen.id}" && data.latest.frame > ${seen.frame} + 20`);
+  assert.ok(await page.isHidden(".lost"));
+  assert.match(await page.textContent(".notice"), /computed again and goes on/);
+  const { run, times, dt } = await read(page, (data) => ({
+    run: data.run,
+    times: Array.from(data.history.t.subarray(0, data.history.count)),
+    dt: data.frameDt,
+  }));
+  assert.equal(run, seen.run, "it is the same run");
+  assert.ok(
+    times.every((at, k) => Math.abs(at - k * dt) < 1e-9),
+    "every frame is there",
+  );
+});
+
+test("pause pressed while the server is away holds when it is back", async (t) => {
+  const line = await bench.line(t);
+  const page = await open(t, { url: line.url });
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.latest?.t > 0.2);
+  line.cut();
+  await until(page, (data) => data.stream.state === "reconnecting");
+  await page.keyboard.press("Space");
+  await until(page, (data) => data.state === "paused");
+  assert.match(await page.textContent(".notice"), /will be done when it is back/);
+  const id = await read(page, (data) => data.id);
+  line.mend();
+  await stateOnServer(id, "paused");
+  await until(page, (data) => data.stream.state === "live" && data.state === "paused");
 });

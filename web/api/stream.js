@@ -7,15 +7,19 @@ import { api } from "./client.js";
 
 const EVENTS = ["hello", "frame", "incident", "reset", "state", "gap", "end"];
 const RETRY_FIRST = 500; // [ms]
-const RETRY_MOST = 8000;
+const RETRY_MOST = 2000;
 
 /**
  * @typedef {"connecting" | "live" | "reconnecting" | "hidden" | "ended"} StreamState
+ * @typedef {{
+ *   onEvent: (name: string, data: any, lastId: string) => void,
+ *   onState: (state: StreamState, lastId: string) => void,
+ *   onForgotten: () => Promise<void>,
+ * }} Listener onForgotten: the server is there and has no such comparison any more
  * @param {string} id of the comparison
- * @param {(name: string, data: any, lastId: string) => void} onEvent
- * @param {(state: StreamState, lastId: string) => void} onState
+ * @param {Listener} listener
  */
-export function createStream(id, onEvent, onState) {
+export function createStream(id, { onEvent, onState, onForgotten }) {
   /** @type {EventSource | null} */
   let source = null;
   let lastId = "";
@@ -65,8 +69,27 @@ export function createStream(id, onEvent, onState) {
   function onError() {
     drop();
     tell("reconnecting");
-    timer = window.setTimeout(() => open("reconnecting"), retry);
+    timer = window.setTimeout(lookForServer, retry);
     retry = Math.min(2 * retry, RETRY_MOST);
+  }
+
+  /** Connects once the server answers; one that was started anew has forgotten the comparison. */
+  async function lookForServer() {
+    try {
+      const ids = await api.comparisonIds();
+      if (closed || resting || source || document.hidden) {
+        return;
+      }
+      if (ids.includes(id)) {
+        open("reconnecting");
+      } else {
+        await onForgotten();
+      }
+    } catch {
+      if (!closed && !resting && !source && !document.hidden) {
+        onError();
+      }
+    }
   }
 
   function onVisibility() {
@@ -74,13 +97,14 @@ export function createStream(id, onEvent, onState) {
       drop();
       tell("hidden");
     } else if (!document.hidden && !source && !resting) {
-      open("reconnecting");
+      lookForServer();
     }
   }
 
   function onOnline() {
     if (!document.hidden && !resting) {
-      open("reconnecting");
+      drop();
+      lookForServer();
     }
   }
 

@@ -42,6 +42,15 @@ async function withoutRefused(body, ask) {
   }
 }
 
+const FRAMES_AT_ONCE = 600; // of the clock, in one request
+
+/** Is it a change of the clock alone, that can be made up for later? @param {object} change */
+const isOfClock = (change) => Object.keys(change).every((key) => ["state", "speed"].includes(key));
+
+/** Does a change start the runs anew? @param {object} change */
+const startsAnew = (change) =>
+  ["methods", "parameters", "reset"].some((key) => Object.hasOwn(change, key));
+
 /**
  * @param {import("../state/store.js").Store} store
  * @param {(text: string) => void} notice shows a sentence to the user
@@ -53,6 +62,40 @@ export function createExchange(store, notice) {
   let stream = null;
   /** changes go out one after the other, in the order of asking */
   let queue = Promise.resolve();
+  /** what was asked of the clock while the server did not answer */
+  let owed = {};
+
+  /** @param {() => Promise<void>} task @returns {Promise<void>} */
+  function inQueue(task) {
+    const done = queue.then(task);
+    queue = done.catch(() => undefined);
+    return done;
+  }
+
+  /** Opens the event stream of the comparison. */
+  function listen() {
+    stream?.dispose();
+    stream = createStream(data.id, {
+      onEvent(name, detail, lastId) {
+        data.stream.id = lastId;
+        if (receiver.take(name, detail, Number(lastId))) {
+          stream?.rest();
+        }
+      },
+      onState(state, id) {
+        data.stream = { state, id };
+        store.emit("stream");
+        if (state === "live" && Object.keys(owed).length > 0) {
+          change(owed).catch((error) => notice(sentenceOf(error)));
+          owed = {};
+        }
+      },
+      onForgotten() {
+        const { id } = data;
+        return inQueue(async () => (data.id === id ? resume() : undefined));
+      },
+    });
+  }
 
   /** @param {any} description of a comparison that was just made */
   function adopt(description) {
@@ -60,19 +103,7 @@ export function createExchange(store, notice) {
     stream = null;
     receiver.begin(description.id);
     receiver.applyDescription(description);
-    stream = createStream(
-      description.id,
-      (name, detail, lastId) => {
-        data.stream.id = lastId;
-        if (receiver.take(name, detail, Number(lastId))) {
-          stream?.rest();
-        }
-      },
-      (state, id) => {
-        data.stream = { state, id };
-        store.emit("stream");
-      },
-    );
+    listen();
   }
 
   /** @param {{methods: string[], [key: string]: any}} body */
@@ -90,26 +121,76 @@ export function createExchange(store, notice) {
     }
   }
 
+  /** What makes the present comparison again. */
+  const presentBody = () => ({
+    scene: data.scene.id,
+    parameters: data.settings,
+    methods: data.methods.map((m) => m.spelling),
+    speed: data.speed,
+  });
+
   /**
-   * The server closes a comparison that nobody used for long: the same one is made again.
-   * @param {object} change
+   * Runs a comparison that was made anew up to a frame of the clock.
+   * @param {any} description @param {number} frame
    */
-  async function changeOrRevive(change) {
+  async function catchUp(description, frame) {
+    let now = description;
+    while (now.frame < frame && now.state !== "finished") {
+      const step = Math.min(FRAMES_AT_ONCE, frame - now.frame);
+      now = await api.changeComparison(description.id, { step });
+    }
+    return now;
+  }
+
+  /**
+   * The server has forgotten the comparison: it was started anew, or nobody looked for long. The
+   * same one is made again and computed up to where it stood; what was received stays.
+   */
+  async function resume() {
+    const { latest, state } = data;
+    const made = await api.createComparison({ ...presentBody(), paused: true });
+    const now = await catchUp(made, latest?.frame ?? 0);
+    const states = (frame) => JSON.stringify(frame?.methods.map(({ q }) => q));
+    data.id = "";
+    if (states(now.latest) === states(latest)) {
+      receiver.resume(now);
+      listen();
+      notice(`the server had forgotten this comparison; it was computed again and goes on`);
+    } else {
+      adopt(made);
+      notice("the server has changed and computes other digits: the runs start again");
+    }
+    if (state === "running") {
+      await changeNow({ state });
+    }
+  }
+
+  /** @param {object} wanted */
+  async function changeNow(wanted) {
+    receiver.applyDescription(await api.changeComparison(data.id, wanted));
+    if (data.state !== "finished") {
+      stream?.reopen();
+    }
+  }
+
+  /**
+   * A comparison that the server has forgotten is made again first.
+   * @param {object} wanted
+   */
+  async function changeOrRevive(wanted) {
     try {
-      return await api.changeComparison(data.id, change);
+      await changeNow(wanted);
     } catch (error) {
       if (!(error instanceof Problem) || error.status !== 404 || !data.scene) {
         throw error;
       }
-      data.id = "";
-      await create({
-        scene: data.scene.id,
-        parameters: data.settings,
-        methods: data.methods.map((m) => m.spelling),
-        speed: data.speed,
-      });
-      notice("the server had closed this comparison; it was started again");
-      return api.changeComparison(data.id, change);
+      if (startsAnew(wanted)) {
+        data.id = "";
+        await create(presentBody());
+      } else {
+        await resume();
+      }
+      await changeNow(wanted);
     }
   }
 
@@ -117,19 +198,24 @@ export function createExchange(store, notice) {
    * @param {() => object} ask the change to ask for, worked out when its turn has come
    * @returns {Promise<void>}
    */
-  function inTurn(ask) {
-    const done = queue.then(async () => {
-      receiver.applyDescription(await changeOrRevive(ask()));
-      if (data.state !== "finished") {
-        stream?.reopen();
-      }
-    });
-    queue = done.catch(() => undefined);
-    return done;
-  }
+  const inTurn = (ask) => inQueue(() => changeOrRevive(ask()));
 
   /** @param {object} wanted */
   const change = (wanted) => inTurn(() => wanted);
+
+  /**
+   * Play, pause or speed that nobody took: kept until the server is back.
+   * @param {object} wanted @param {unknown} error
+   */
+  function keepForLater(wanted, error) {
+    if (!(error instanceof Problem) || error.status !== 0 || !isOfClock(wanted)) {
+      notice(sentenceOf(error));
+      return;
+    }
+    owed = { ...owed, ...wanted };
+    receiver.applyState(wanted);
+    notice("the server does not answer: this will be done when it is back");
+  }
 
   return {
     create,
@@ -144,7 +230,7 @@ export function createExchange(store, notice) {
         data.state !== "paused" && !data.view.stepped ? { ...wanted, state: "running" } : wanted,
       ),
     /** A change whose failure has no field of its own. @param {object} wanted */
-    changeOrReport: (wanted) => change(wanted).catch((error) => notice(sentenceOf(error))),
+    changeOrReport: (wanted) => change(wanted).catch((error) => keepForLater(wanted, error)),
     dispose() {
       stream?.dispose();
       if (data.id) {

@@ -74,7 +74,7 @@ export function createReceiver(store, notice) {
     clearView();
   }
 
-  /** @param {{state: string, speed: number}} change */
+  /** @param {{state?: string, speed?: number}} change */
   function applyState(change) {
     data.state = change.state ?? data.state;
     data.speed = change.speed ?? data.speed;
@@ -156,6 +156,16 @@ export function createReceiver(store, notice) {
 
   return {
     applyDescription,
+    applyState,
+    /**
+     * The comparison made again and brought to where it stood: what was received stays.
+     * @param {any} description
+     */
+    resume(description) {
+      data.id = description.id;
+      data.generation = description.generation;
+      covered = description.last_event;
+    },
     /** Another comparison: its events are counted from the beginning. @param {string} id */
     begin(id) {
       data.id = id;

@@ -12,6 +12,10 @@ const STREAM = {
   hidden: "stream: paused while hidden",
   ended: "stream: run complete",
 };
+const LOST =
+  "The server does not answer. What was received stays here and can be replayed; " +
+  "the page goes on by itself when the server is back.";
+const LOST_AFTER = 700; // [ms] that a short drop is not worth a word
 const SHOWN_FOR = 9000; // [ms]
 
 /** @param {HTMLElement} el @param {HTMLElement} body @param {import("../state/store.js").Store} store */
@@ -31,9 +35,10 @@ export function createStatus(el, body, store) {
     "×",
   );
   const note = h("div", { class: "note", hidden: true }, notice, close);
-  const lost = h("div", { class: "lost", hidden: true }, STREAM.reconnecting);
+  const lost = h("div", { class: "lost", hidden: true }, LOST);
   body.append(h("div", { class: "notes" }, lost, note));
   let timer = 0;
+  let lostTimer = 0;
 
   function hide() {
     clearTimeout(timer);
@@ -65,7 +70,13 @@ export function createStatus(el, body, store) {
     say(stream, STREAM[state]);
     say(id, last && data.state !== "running" ? `at event ${last}` : "");
     stream.dataset.state = state;
-    lost.hidden = state !== "reconnecting";
+    if (state !== "reconnecting") {
+      clearTimeout(lostTimer);
+      lostTimer = 0;
+      lost.hidden = true;
+    } else if (!lostTimer) {
+      lostTimer = window.setTimeout(() => (lost.hidden = false), LOST_AFTER);
+    }
   }
 
   const stop = listen(store, {
