@@ -40,29 +40,44 @@ def journals(folder, kind):
     return [name for name in os.listdir(folder) if name.startswith(kind)]
 
 
+def kept_bytes(folder, kind):
+    """How much the journals of that kind hold."""
+    total = 0
+    for name in journals(folder, kind):
+        try:
+            total += os.path.getsize(os.path.join(folder, name))
+        except FileNotFoundError:  # the command has ended and removed it
+            pass
+    return total
+
+
 def interrupt(words, folder, kind, how=signal.SIGINT):
     """Ctrl-C, or another signal, once there is a piece in the journal: exit status, what was written and what was told."""
     argv, env = command(words, folder)
     with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         deadline = time.monotonic() + 60 * driver.SLOW
-        while time.monotonic() < deadline and not any(os.path.getsize(os.path.join(folder, k)) for k in journals(folder, kind)):
+        while time.monotonic() < deadline and kept_bytes(folder, kind) == 0:
             time.sleep(0.005)
         process.send_signal(how)
         out, err = process.communicate(timeout=60 * driver.SLOW)
     return process.returncode, out, err.decode()
 
 
-def kill_often(words, folder, seed, longest, times=10):
-    """Starts the command so many times and kills it at a random moment; how often it had not come to its end."""
+def kill_often(words, folder, kind, seed, times=10):
+    """Starts the command so many times and kills it: in turn at a random moment of its start, and a random moment after its journal has grown
+    by a piece, so that the work goes on from kill to kill whatever the machine's speed. How often the command had not come to its end."""
     argv, env = command(words, folder)
     chance = random.Random(seed)
     killed = 0
-    for _ in range(times):
-        with subprocess.Popen(argv, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-            time.sleep(chance.uniform(0.05, longest) * driver.SLOW)
+    for i in range(times):
+        kept = kept_bytes(folder, kind)
+        with subprocess.Popen(argv, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            deadline = time.monotonic() + 60 * driver.SLOW
+            while i % 2 and process.poll() is None and kept_bytes(folder, kind) <= kept and time.monotonic() < deadline:
+                time.sleep(0.001)
+            time.sleep(chance.uniform(0, 0.02 if i % 2 else 0.2))
             killed += process.poll() is None
             process.kill()
-            process.communicate()
     return killed
 
 

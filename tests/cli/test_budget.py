@@ -121,7 +121,7 @@ class Budget(unittest.TestCase):
     def test_killed_ten_times_it_ends_with_the_bytes_of_an_undisturbed_one(self):
         undisturbed = call(*SECONDS, "--json")
         with tempfile.TemporaryDirectory() as folder:
-            self.assertGreaterEqual(studies.kill_often(SECONDS, folder, 11, 0.4), 3)
+            self.assertGreaterEqual(studies.kill_often(SECONDS, folder, "budget", 11), 3)
             done = studies.call([*SECONDS, "--json"], folder, text=True)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(done.stdout, undisturbed.stdout)

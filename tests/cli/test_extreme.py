@@ -106,7 +106,7 @@ class Extreme(unittest.TestCase):
         words = [*SECONDS, "--json"]
         undisturbed = call(words)
         with tempfile.TemporaryDirectory() as folder:
-            self.assertGreaterEqual(studies.kill_often(["extreme", *words], folder, 3, 0.4), 3)
+            self.assertGreaterEqual(studies.kill_often(["extreme", *words], folder, "extreme", 3), 3)
             done = studies.call(["extreme", *words], folder, text=True)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(done.stdout, undisturbed.stdout)

@@ -263,7 +263,7 @@ class Merge(unittest.TestCase):
             self.assertEqual(self.call([*words, f"{i}/2", "--out", undisturbed[i - 1]]).returncode, DONE)
         out, cache = self.path("killed.json"), self.cache("cache-of-the-killed")
         words = [*words, "1/2", "--out", out]
-        self.assertGreaterEqual(studies.kill_often(words, cache, 7, 0.3), 3)
+        self.assertGreaterEqual(studies.kill_often(words, cache, "study", 7), 3)
         done = studies.call(words, cache)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(studies.journals(cache, "study"), [], "nothing is left of a finished part")

@@ -145,7 +145,7 @@ class Study(unittest.TestCase):
         whole = tempfile.TemporaryDirectory()
         undisturbed = strict(call(words, whole.name).stdout)
         whole.cleanup()
-        self.assertGreaterEqual(studies.kill_often(words, self.folder, 5, 0.25), 3)
+        self.assertGreaterEqual(studies.kill_often(words, self.folder, "study", 5), 3)
         done = call(words, self.folder)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertEqual(without_times(strict(done.stdout)), without_times(undisturbed))

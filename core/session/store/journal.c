@@ -5,11 +5,17 @@
 #include "session/store/stored_json.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
+
+// A process that was killed may hold its lock until the kernel has taken it down, and so may a
+// child between its fork and its exec: [attempts] of 20 ms each, 2 s in all.
+enum { LOCK_ATTEMPTS = 100, LOCK_PAUSE = 20000000 };
 
 /// Passes complete lines to `take`; returns the number of bytes of the accepted lines.
 static size_t take_lines(char *text, hn_journal_take take, void *user) {
@@ -38,14 +44,27 @@ static uint64_t add_program(uint64_t key) {
     return hn_hash_mix(key);
 }
 
+/// Takes the lock of an open file. Returns false while another program keeps it.
+static bool take_lock(int fd) {
+    const struct timespec pause = {.tv_nsec = LOCK_PAUSE};
+    for (int i = 0; i < LOCK_ATTEMPTS; i++) {
+        if (flock(fd, LOCK_EX | LOCK_NB) == 0) {
+            return true;
+        }
+        nanosleep(&pause, NULL);
+    }
+    return false;
+}
+
 static hn_status open_file(hn_journal *j, hn_diags *diags) {
-    j->file = fopen(j->path, "a+b");
+    // "e": no program that this one starts, such as a compiler, inherits the file and its lock
+    j->file = fopen(j->path, "a+be");
     if (!j->file) {
         return hn_diags_add(diags, HN_ERR_IO, NULL, NULL,
                             "cannot keep unfinished work in '%.200s': %s", j->path,
                             strerror(errno));
     }
-    if (flock(fileno(j->file), LOCK_EX | LOCK_NB) != 0) {
+    if (!take_lock(fileno(j->file))) {
         hn_journal_end(j, 0);
         return hn_diags_add(diags, HN_ERR_IO, NULL, "wait for it, or ask for something else",
                             "another program is at this very work");

@@ -28,7 +28,7 @@ typedef int (*hn_journal_take)(void *user, const cJSON *line);
 /// that another build does not continue this journal.
 /// A path that is too long turns the journal off: nothing is kept, and HN_OK is returned.
 /// Fails, reported in diags, with the journal closed: HN_ERR_IO when the file cannot be written, or
-/// when another program holds it.
+/// when another program has held it for two seconds.
 HN_MUST_CHECK hn_status hn_journal_open(hn_journal *journal, const char *folder, const char *kind,
                                         uint64_t key, hn_journal_take take, void *user,
                                         hn_diags *diags);

@@ -5,8 +5,11 @@
 #include "session/store/journal.h"
 #include "session/store/stored_json.h"
 
+#include <signal.h>
+#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 enum { KEY = 0x2a, MOST = 8 };
@@ -138,6 +141,27 @@ static void one_program_at_a_time_has_it(void **state) {
     end(&w);
 }
 
+static void a_program_that_it_started_does_not_keep_it(void **state) {
+    (void)state;
+    extern char **environ;
+    char *const argv[] = {"sleep", "60", NULL};
+    pid_t child;
+    work w;
+    begin(&w);
+    open_again(&w);
+    put(&w, 5);
+
+    // the child of a program that was killed, such as a compiler, lives on for a while
+    assert_int_equal(posix_spawnp(&child, argv[0], NULL, NULL, argv, environ), 0);
+    hn_journal_end(&w.journal, 0);
+    open_again(&w);
+    assert_int_equal(w.n, 1);
+
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    end(&w);
+}
+
 static void of_whole_work_nothing_is_left_and_without_a_place_nothing_is_kept(void **state) {
     (void)state;
     char far[600];
@@ -165,6 +189,7 @@ int main(void) {
         cmocka_unit_test(lines_come_back_in_order_and_new_ones_stand_behind_them),
         cmocka_unit_test(what_is_torn_or_does_not_fit_is_cut_off_with_all_behind_it),
         cmocka_unit_test(one_program_at_a_time_has_it),
+        cmocka_unit_test(a_program_that_it_started_does_not_keep_it),
         cmocka_unit_test(of_whole_work_nothing_is_left_and_without_a_place_nothing_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
