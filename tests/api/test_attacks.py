@@ -3,8 +3,10 @@
 
 import http.client
 import json
+import select
 import signal
 import socket
+import statistics
 import threading
 import time
 import unittest
@@ -12,8 +14,13 @@ import unittest
 import driver
 
 RK4 = "index1@rk4:h=1e-3"
-BESIDE = 0.2 * driver.SLOW  # the longest answer of healthz beside an attack [s]
 RING = {"scene": "ring", "parameters": {"n": 12}}
+JSON = {"Content-Type": "application/json"}
+
+
+def most_beside(server):
+    """The longest answer of healthz that is allowed beside an attack [s]: 0.2 s, or ten times what it takes on this machine without one."""
+    return max(0.2 * driver.SLOW, 10 * server.idle())
 
 
 def beside(server, attack):
@@ -23,9 +30,9 @@ def beside(server, attack):
     thread.start()
     times = []
     while thread.is_alive() or not times:
-        start = time.monotonic()
-        assert server.ask("GET", "/healthz").status == 200
-        times.append(time.monotonic() - start)
+        answer, took = server.timed("GET", "/healthz")
+        assert answer.status == 200
+        times.append(took)
         time.sleep(0.01)
     thread.join()
     return max(times), result[0]
@@ -36,7 +43,23 @@ def many_members(known, n_unknown=70000, n_known=20000):
     return ("{" + ",".join(members) + "}").encode()
 
 
-class NobodyWaitsForAnother(unittest.TestCase):
+class Timed(unittest.TestCase):
+    assert_within = driver.ServerCase.assert_within
+
+    def assert_unhindered(self, server, attack, check):
+        """Runs the attack, again if the machine was busy: the answer passes the check and healthz does not wait beside it.
+        check(answer, seconds of computing)"""
+
+        def attempt():
+            allowed, before = most_beside(server), server.cpu()
+            longest, answer = beside(server, attack)
+            check(answer, server.cpu() - before)
+            return longest, allowed
+
+        self.assert_within(attempt)
+
+
+class NobodyWaitsForAnother(Timed):
     def setUp(self):
         self.server = driver.Server("--run-cpu", "2")
 
@@ -44,87 +67,112 @@ class NobodyWaitsForAnother(unittest.TestCase):
         self.assertEqual(self.server.stop(), 0, self.server.errors)
 
     def post(self, path, body, method="POST"):
-        start = time.monotonic()
-        answer = self.server.ask(method, "/api/v1/" + path, body, {"Content-Type": "application/json"})
-        return answer, time.monotonic() - start
+        return self.server.ask(method, "/api/v1/" + path, body, {"Content-Type": "application/json"}, timeout=120)
 
     def test_a_body_of_many_members_is_checked_in_one_pass(self):
         c = self.server.compare()
+
+        def check(answer, cpu):
+            self.assertEqual(answer.status, 422, answer.body[:200])
+            self.assertLessEqual(len(answer.json()["errors"]), 16)
+            self.assertLess(cpu, 1 * driver.SLOW)  # 14 s when each member was looked up from the start
+
         for path, method, known in (("comparisons/" + c["id"], "PATCH", '"speed":1'), ("terms", "POST", '"t":1')):
             for body in (many_members(known), many_members(known, n_unknown=0, n_known=80000)):
-                longest, (answer, took) = beside(self.server, lambda: self.post(path, body, method))
-                self.assertEqual(answer.status, 422, answer.body[:200])
-                self.assertLessEqual(len(answer.json()["errors"]), 16)
-                self.assertLess(took, 1 * driver.SLOW)
-                self.assertLess(longest, BESIDE)
+                self.assert_unhindered(self.server, lambda: self.post(path, body, method), check)
 
     def test_many_members_by_name_are_refused(self):
         body = json.dumps({"scene": "four-bar", "state": {f"x{i}": 0 for i in range(50000)}})
-        longest, (answer, took) = beside(self.server, lambda: self.post("terms", body))
-        self.assertEqual(answer.status, 422)
-        self.assertLess(took, 1 * driver.SLOW)
-        self.assertLess(longest, BESIDE)
+
+        def check(answer, cpu):
+            self.assertEqual(answer.status, 422)
+            self.assertLess(cpu, 1 * driver.SLOW)
+
+        self.assert_unhindered(self.server, lambda: self.post("terms", body), check)
 
     def test_samples_at_one_time_count_against_the_limit(self):
         run = {"scene": "four-bar", "method": RK4, "time": 1, "at": [0.5005] * 99999, "reactions": True}
-        longest, (answer, took) = beside(self.server, lambda: self.post("runs", json.dumps({**run, "at": run["at"][:60000]})))
-        self.assertIn(answer.status, (201, 422), answer.body[:300])
-        self.assertLess(took, (2 + 2) * driver.SLOW)
-        self.assertLess(longest, BESIDE)
+        tried = []
+
+        def ask():
+            # another question each time, so that it is computed
+            tried.append(0)
+            return self.post("runs", json.dumps({**run, "at": run["at"][: 60000 - len(tried)]}))
+
+        def check(answer, cpu):
+            self.assertIn(answer.status, (201, 202, 422), answer.body[:300])
+            self.assertLess(cpu, (2 + 2) * driver.SLOW)
+
+        self.assert_unhindered(self.server, ask, check)
         # more numbers than one answer holds are refused before anything is computed
-        answer, took = self.post("runs", json.dumps({**run, **RING, "method": "projection@rk4:h=1e-3"}))
+        before = self.server.cpu()
+        answer = self.post("runs", json.dumps({**run, **RING, "method": "projection@rk4:h=1e-3"}))
         self.assertEqual(answer.status, 422)
         self.assertIn("more than one answer may hold", answer.json()["errors"][0]["detail"])
-        self.assertLess(took, 2 * driver.SLOW)
+        self.assertLess(self.server.cpu() - before, 2 * driver.SLOW)
 
     def test_a_scene_has_a_budget_of_characters(self):
         with open("lessons/02-mechanisms/scenes/ring.json") as f:
             scene = json.load(f)
         long = "+".join(["sin(th_0)*cos(th_0)"] * 1000)
         scene["draw"] = {"points": {f"p{k} {{i}}": {"for": {"i": [1, 4999]}, "body": "link 1", "at": [long, long]} for k in range(2)}}
-        longest, (answer, took) = beside(self.server, lambda: self.post("assemble", json.dumps({"scene": scene})))
-        self.assertEqual(answer.status, 422)
-        self.assertIn("characters", json.dumps(answer.json()))
-        self.assertLess(took, 2 * driver.SLOW)
-        self.assertLess(longest, BESIDE)
+
+        def check(answer, cpu):
+            self.assertEqual(answer.status, 422)
+            self.assertIn("characters", json.dumps(answer.json()))
+            self.assertLess(cpu, 2 * driver.SLOW)  # 27 s without the budget
+
+        self.assert_unhindered(self.server, lambda: self.post("assemble", json.dumps({"scene": scene})), check)
         with open(f"/proc/{self.server.process.pid}/status") as f:
             peak = next(int(line.split()[1]) for line in f if line.startswith("VmHWM"))
         self.assertLess(peak, 250000 * driver.SLOW)  # 607 MB without the budget
 
     def test_a_change_interrupts_a_frame(self):
         slow = ["index1@rk4:h=1e-9", "baumgarte@rk4:h=1e-9", "projection@rk4:h=1e-9"]
-        c = self.server.compare(methods=slow, paused=False)
-        time.sleep(0.5)
-        fast = [m.replace("1e-9", "0.01") for m in slow]
-        answer, took = self.post("comparisons/" + c["id"], json.dumps({"methods": fast}), "PATCH")
-        self.assertEqual(answer.status, 200)
-        self.assertLess(took, 0.3 * driver.SLOW)
-        time.sleep(0.5)
-        self.assertGreater(self.server.ask("GET", "/api/v1/comparisons/" + c["id"]).json()["frame"], 3)
+        fast = json.dumps({"methods": [m.replace("1e-9", "0.01") for m in slow]})
+
+        def attempt():
+            # the same change of one that is at rest, then of one in the middle of a frame of 96 s
+            at_rest, busy = self.server.compare(methods=slow), self.server.compare(methods=slow, paused=False)
+            usual = min(self.server.timed("PATCH", "/api/v1/comparisons/" + at_rest["id"], fast, JSON)[1] for _ in range(3))
+            time.sleep(0.5)
+            answer, took = self.server.timed("PATCH", "/api/v1/comparisons/" + busy["id"], fast, JSON)
+            self.assertEqual(answer.status, 200)
+            self.assertTrue(driver.until(lambda: self.server.ask("GET", "/api/v1/comparisons/" + busy["id"]).json()["frame"] > 3))
+            for c in (at_rest, busy):
+                self.server.ask("DELETE", "/api/v1/comparisons/" + c["id"])
+            return took, max(0.3 * driver.SLOW, 10 * usual)
+
+        self.assert_within(attempt)
 
     def test_a_frame_that_takes_too_long_says_how_slow_it_is(self):
         c = self.server.compare(methods=["index1@rk4:h=1e-9"])
-        answer, took = self.post("comparisons/" + c["id"], '{"step": 1}', "PATCH")
+        answer = self.post("comparisons/" + c["id"], '{"step": 1}', "PATCH")
         reason = answer.json()["latest"]["methods"][0]["reason"]
         self.assertRegex(reason, r"times slower than the clock; take a larger step")
 
     def test_steps_make_way_for_a_later_request(self):
-        c = self.server.compare(**RING, methods=["projection@rk4:h=1e-4"])
-        replies = []
-        steps = threading.Thread(target=lambda: replies.append(self.post("comparisons/" + c["id"], '{"step": 600}', "PATCH")))
-        steps.start()
-        time.sleep(0.3)
-        answer, took = self.post("comparisons/" + c["id"], '{"reset": true}', "PATCH")
-        steps.join()
-        self.assertEqual((answer.status, replies[0][0].status, answer.json()["frame"]), (200, 200, 0))
-        self.assertLess(took, 1 * driver.SLOW)
+        def attempt():
+            c = self.server.compare(**RING, methods=["projection@rk4:h=1e-4"])
+            address, replies = "/api/v1/comparisons/" + c["id"], []
+            usual = min(self.server.timed("PATCH", address, '{"reset": true}', JSON)[1] for _ in range(3))
+            steps = threading.Thread(target=lambda: replies.append(self.post("comparisons/" + c["id"], '{"step": 600}', "PATCH")))
+            steps.start()
+            time.sleep(0.3)
+            answer, took = self.server.timed("PATCH", address, '{"reset": true}', JSON)
+            steps.join()
+            self.assertEqual((answer.status, replies[0].status, answer.json()["frame"]), (200, 200, 0))
+            self.server.ask("DELETE", address)
+            return took, max(1 * driver.SLOW, 10 * usual)
+
+        self.assert_within(attempt)
 
 
-class ManySockets(unittest.TestCase):
+class ManySockets(Timed):
     def test_any_number_of_sockets_that_are_ready_at_one_instant_is_served(self):
         for n in (127, 128, 129, 255, 256):
             server = driver.Server()
-            clients = [socket.create_connection(("127.0.0.1", server.port), timeout=10 * driver.SLOW) for _ in range(n)]
+            clients = [socket.create_connection(("127.0.0.1", server.port), timeout=20 * driver.SLOW) for _ in range(n)]
             time.sleep(0.5)
             # held back, so that they arrive together
             server.process.send_signal(signal.SIGSTOP)
@@ -135,40 +183,62 @@ class ManySockets(unittest.TestCase):
             start = time.monotonic()
             for c in clients:
                 self.assertTrue(c.recv(4096).startswith(b"HTTP/1.1 200"), n)
-            self.assertLess(time.monotonic() - start, 2 * driver.SLOW, n)
+            self.assertLess(time.monotonic() - start, 8 * driver.SLOW, n)  # 28 s where the library waits for a 129th
             for c in clients:
                 c.close()
             self.assertEqual(server.stop(), 0)
 
+    def test_a_crowd_that_connects_at_once_is_taken_in(self):
+        """A full queue of new connections drops some, which try again after 1 s, 3 s, 7 s: none may be held up so."""
+        server = driver.Server()
+        with open("/proc/sys/net/core/somaxconn") as f:
+            crowd = min(400, int(f.read()))  # the system's own bound
+        server.process.send_signal(signal.SIGSTOP)  # nobody is accepted meanwhile
+        clients = []
+        for _ in range(crowd):
+            c = socket.socket()
+            c.setblocking(False)
+            c.connect_ex(("127.0.0.1", server.port))
+            clients.append(c)
+        pending = set(clients)
+        driver.until(lambda: not pending.difference_update(select.select([], list(pending), [], 0)[1]) and not pending, 10)
+        server.process.send_signal(signal.SIGCONT)
+        self.assertEqual(len(pending), 0)
+        for c in clients:
+            c.close()
+        self.assertEqual(server.stop(), 0)
+
     def test_a_head_that_never_ends_loses_its_place(self):
         server = driver.Server()
-        clients = []
+        idle, clients = server.idle(), []
         for _ in range(200):
-            c = socket.create_connection(("127.0.0.1", server.port), timeout=1)
+            c = socket.create_connection(("127.0.0.1", server.port), timeout=10 * driver.SLOW)
             c.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-A: ")
+            c.setblocking(False)
             clients.append(c)
-        times, end = [], time.monotonic() + 11.5
-        while time.monotonic() < end:
-            start = time.monotonic()
-            self.assertEqual(server.ask("GET", "/healthz").status, 200)
-            times.append(time.monotonic() - start)
-            for c in clients:
-                try:
-                    c.send(b"a")
-                except OSError:
-                    pass
-            time.sleep(0.5)
-        self.assertLess(max(times), BESIDE)
-        alive = 0
-        for c in clients:
+
+        def is_gone(c):
             try:
-                alive += c.recv(1) != b""
-            except ConnectionError:
-                pass
+                c.send(b"a")
+                return c.recv(1) == b""
+            except BlockingIOError:
+                return False
             except OSError:
-                alive += 1
+                return True
+
+        # a byte from each now and then: the library alone would let them go on for ever
+        times, alive, end = [], clients, time.monotonic() + 25 * driver.SLOW
+        while alive and time.monotonic() < end:
+            answer, took = server.timed("GET", "/healthz")
+            self.assertEqual(answer.status, 200)
+            times.append(took)
+            alive = [c for c in alive if not is_gone(c)]
+            time.sleep(0.5)
+        self.assertEqual(len(alive), 0)
+        self.assertLess(statistics.median(times), max(0.2 * driver.SLOW, 10 * idle))
+        self.assertLess(max(times), 5 * driver.SLOW)  # those who were shut out had to wait for 30 s
+        for c in clients:
             c.close()
-        self.assertEqual(alive, 0)
         self.assertEqual(server.stop(), 0)
 
 
@@ -186,7 +256,7 @@ class From:
         return answer
 
 
-class FairShares(unittest.TestCase):
+class FairShares(Timed):
     MAKE = ("POST", "/api/v1/comparisons", {"scene": "four-bar", "methods": [RK4]})
 
     def test_one_client_takes_its_share_of_comparisons_and_no_more(self):
@@ -204,8 +274,9 @@ class FairShares(unittest.TestCase):
         busy = server.ask(*self.MAKE)
         self.assertEqual(busy.status, 429)
         events.close()
-        time.sleep(int(busy.headers["retry-after"]) + 1)
-        self.assertEqual(server.ask(*self.MAKE).status, 201)
+        # after the time that it was told, and on a busy machine a little later; 60 s when nobody needs the place
+        time.sleep(int(busy.headers["retry-after"]))
+        self.assertTrue(driver.until(lambda: server.ask(*self.MAKE).status == 201, 10))
         self.assertEqual(server.ask("GET", "/api/v1/comparisons/" + first["id"]).status, 404)
         self.assertEqual(server.stop(), 0)
 
@@ -228,32 +299,40 @@ class FairShares(unittest.TestCase):
 
     def test_what_costs_nothing_has_a_queue_of_its_own(self):
         server = driver.Server("--run-cpu", "3")
-        run = {**RING, "method": "projection@rk4:h=1e-4", "time": 1000}
-        threads = [threading.Thread(target=server.ask, args=("POST", "/api/v1/runs", run)) for _ in range(12)]
+        paths = ("/api/v1/scenes/four-bar", "/api/v1/scenes", "/")
+        allowed = {path: max(2 * driver.SLOW, 10 * server.idle(path)) for path in paths}
+        run = {**RING, "method": "projection@rk4:h=1e-4"}
+        threads = [threading.Thread(target=server.ask, args=("POST", "/api/v1/runs", {**run, "time": 1000 + i})) for i in range(12)]
         for t in threads:
             t.start()
         time.sleep(0.5)
-        for path in ("/api/v1/scenes/four-bar", "/api/v1/scenes", "/"):
-            start = time.monotonic()
-            self.assertEqual(server.ask("GET", path).status, 200)
-            self.assertLess(time.monotonic() - start, 2 * driver.SLOW, path)
-        start = time.monotonic()
-        self.assertEqual(server.ask(*self.MAKE).status, 201)
-        self.assertLess(time.monotonic() - start, 2 * driver.SLOW)
-        start = time.monotonic()
+
+        def attempt(*request):
+            answer, took = server.timed(*request)
+            self.assertIn(answer.status, (200, 201), request)
+            return took, allowed.get(request[1], 2 * driver.SLOW)
+
+        for path in paths:
+            self.assert_within(lambda: attempt("GET", path))
+        self.assert_within(lambda: attempt(*self.MAKE))
         self.assertEqual(server.stop(), 0)
-        self.assertLess(time.monotonic() - start, 3 * driver.SLOW)
         for t in threads:
             t.join()
 
 
-class GoingDown(unittest.TestCase):
+class GoingDown(Timed):
     """SIGTERM ends it within 3 s, whatever runs."""
 
-    def end(self, server):
-        start = time.monotonic()
-        self.assertEqual(server.stop(), 0)
-        self.assertLess(time.monotonic() - start, 3 * driver.SLOW)
+    def end(self, begin):
+        """Begins something, again if the machine was busy, and stops the server."""
+
+        def attempt():
+            server = begin()
+            start = time.monotonic()
+            self.assertEqual(server.stop(), 0)
+            return time.monotonic() - start, 3 * driver.SLOW
+
+        self.assert_within(attempt)
 
     def beginning(self, *requests):
         server = driver.Server()
@@ -269,27 +348,31 @@ class GoingDown(unittest.TestCase):
         return server
 
     def test_while_steps_are_computed(self):
-        server = driver.Server()
-        c = server.compare(**RING, methods=["projection@rk4:h=1e-4", "nullspace@rk4:h=1e-4", "index1@rk4:h=1e-4"])
-        threading.Thread(target=lambda: server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"step": 600}), daemon=True).start()
-        time.sleep(0.5)
-        self.assertEqual(server.ask("DELETE", "/api/v1/comparisons/" + c["id"]).status, 204)
-        self.end(server)
+        def begin():
+            server = driver.Server()
+            c = server.compare(**RING, methods=["projection@rk4:h=1e-4", "nullspace@rk4:h=1e-4", "index1@rk4:h=1e-4"])
+            threading.Thread(target=lambda: server.ask("PATCH", "/api/v1/comparisons/" + c["id"], {"step": 600}), daemon=True).start()
+            time.sleep(0.5)
+            self.assertEqual(server.ask("DELETE", "/api/v1/comparisons/" + c["id"]).status, 204)
+            return server
+
+        self.end(begin)
 
     def test_while_long_requests_run_and_wait(self):
         run = {**RING, "method": "projection@rk4:h=1e-5", "time": 1000}
-        self.end(self.beginning(*[("POST", "/api/v1/runs", run)] * 30))
+        self.end(lambda: self.beginning(*[("POST", "/api/v1/runs", {**run, "time": 1000 + i}) for i in range(30)]))
 
     def test_while_bodies_are_checked(self):
-        self.end(self.beginning(*[("POST", "/api/v1/terms", many_members('"t":1'))] * 3))
+        self.end(lambda: self.beginning(*[("POST", "/api/v1/terms", many_members('"t":1'))] * 3))
 
     def test_while_samples_are_taken_at_one_time(self):
         run = {**RING, "method": "projection@rk4:h=1e-3", "time": 1, "at": [0.5] * 20000}
-        self.end(self.beginning(*[("POST", "/api/v1/runs", run)] * 3))
+        self.end(lambda: self.beginning(*[("POST", "/api/v1/runs", run)] * 3))
 
     def test_while_pictures_are_drawn_and_references_computed(self):
         picture = {**RING, "methods": ["projection@rk4:h=1e-5"], "time": 1000}
-        self.end(self.beginning(("POST", "/api/v1/snapshots", picture), ("GET", "/api/v1/scenes/ring/reference?compute=true&time=30", None)))
+        self.end(lambda: self.beginning(("POST", "/api/v1/snapshots", picture),
+                                        ("GET", "/api/v1/scenes/ring/reference?compute=true&time=30", None)))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { BACKLOG = 128, FIRST_OPEN_PORT = 1024, LAST_PORT = 65535 };
+/// A new connection beyond the backlog is dropped and tries again after a second: a class that opens
+/// the page at one instant must fit in.
+enum { BACKLOG = 1024, FIRST_OPEN_PORT = 1024, LAST_PORT = 65535 };
 
 static void set_port(struct sockaddr *address, int port) {
     if (address->sa_family == AF_INET6) {
