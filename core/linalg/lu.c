@@ -6,6 +6,11 @@
 
 #define PIVOT_MIN 1e-14 // of a row's largest entry
 
+hn_complex hn_complex_reciprocal(double re, double im) {
+    const double size = re * re + im * im;
+    return (hn_complex){re / size, -im / size};
+}
+
 static void swap_rows(int n, double *a, double *b) {
     for (int j = 0; j < n; j++) {
         const double keep = a[j];

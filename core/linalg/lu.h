@@ -13,6 +13,9 @@ typedef struct hn_complex {
     double re, im;
 } hn_complex;
 
+/// 1 / (re + i im)
+hn_complex hn_complex_reciprocal(double re, double im);
+
 /// A = P L U in place, A (n x n) row-major; pivot (n) receives the exchanges, scale (n) is scratch.
 /// Fails with HN_ERR_SINGULAR when a pivot is not above 1e-14 of its row, HN_ERR_DIVERGED when an
 /// entry is not finite; A is then spoiled.

@@ -8,6 +8,7 @@
 #include "dynamics/compile/loops.h"
 #include "dynamics/compile/relate.h"
 #include "dynamics/compile/system_build.h"
+#include "dynamics/compile/tree_build.h"
 #include "expr/construct.h"
 
 #include <ctype.h>

@@ -7,9 +7,8 @@
 // from its parent by one PRIMITIVE joint: revolute, prismatic, spherical (a ball) or fixed. A joint
 // of the scene with more degrees of freedom is a chain of primitives through virtual links, which
 // have no mass and stand in the joint's own axes; the end of the chain is the body. The tree has
-// the least
-// depth in bodies (breadth first from the ground, ties by the order of the joints); the joints left
-// over close loops.
+// the least depth in bodies (breadth first from the ground, ties by the order of the joints); the
+// joints left over close loops.
 //
 //     cylindrical  slide z, turn z        universal  turn z, turn x        spherical  ball
 //     planar       slide x, y, turn z     free       slide x, y, z, ball   fixed      as its parent
@@ -30,8 +29,6 @@
 //        ground --revolute--> crank --revolute--> coupler --prismatic--> slider --revolute--> flap
 //        base               first of group      same group         rigid with it       same group
 
-#include "base/arena.h"
-#include "base/diag.h"
 #include "scene/scene.h"
 
 #include <stdbool.h>
@@ -101,16 +98,6 @@ typedef struct hn_tree {
     int *link_of;      ///< per velocity: link
     int *position;     ///< per velocity: entry of q, -1 for the velocities of a ball
 } hn_tree;
-
-/// Builds the tree of a scene, with memory from `arena`. The tree is of least depth in bodies
-/// (breadth first from the ground, ties by the order of the joints).
-///
-/// align  in  1: angles count from where a body's arms lie along its axes, which makes expressions
-///            short; 0: an absolute angle is a plain sum of the scene's, for equations to be read
-/// Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, or a free joint would close
-///        a loop; HN_ERR_MEMORY
-HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena,
-                                      hn_tree *out, hn_diags *diags);
 
 /// Lowest common ancestor of two links.
 int hn_tree_common(const hn_tree *tree, int a, int b);

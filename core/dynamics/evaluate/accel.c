@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/evaluate/accel.h"
 
+#include "dynamics/evaluate/accel_tape.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "dynamics/evaluate/inputs.h"
-#include "dynamics/evaluate/ldl.h"
 #include "dynamics/evaluate/pivot_noise.h"
 #include "dynamics/evaluate/row_groups.h"
-#include "expr/construct.h"
 #include "linalg/dense.h"
 #include "linalg/kkt.h"
 
@@ -29,9 +28,8 @@ struct hn_accel {
     int nv, nc;
     const hn_system *sys;
     hn_accel_opts opts;
-    int available; ///< a static order exists
-    hn_inputs in;  ///< outputs: a, lambda if wanted, then pivot and reference of each guard
-    int n_out, n_guards, n_rows; ///< then the squared length of each row
+    hn_inputs in;
+    hn_accel_tape tape;
     hn_row_groups rows;
     // the dense solve
     hn_eval *terms;
@@ -51,84 +49,6 @@ struct hn_accel {
 };
 
 // ---- compiling ----
-
-/// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
-static void closure_rhs(const hn_system *sys, int baumgarte, hn_ex *rhs) {
-    hn_graph *g = sys->g;
-    if (!baumgarte) {
-        for (int i = 0; i < sys->nc; i++) {
-            rhs[i] = hn_neg(sys->gamma[i]);
-        }
-        return;
-    }
-    for (int i = 0; i < sys->nc; i++) {
-        rhs[i] = sys->phi_t[i]; // gathers J v + phi_t
-    }
-    for (int k = 0; k < sys->J.n; k++) {
-        const hn_entry *J = &sys->J.at[k];
-        rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
-    }
-
-    // with Baumgarte's terms
-    hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
-    for (int i = 0; i < sys->nc; i++) {
-        hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
-                          hn_mul(g, stiffness, sys->phi[i])};
-        rhs[i] = hn_neg(hn_sum(g, terms, 3));
-    }
-}
-
-/// Outputs of the tape: a, lambda, guards. Returns owned, or NULL.
-static hn_ex *list_outputs(hn_accel *s, const hn_system *sys, const hn_ldl *ldl, const hn_ex *x) {
-    hn_ex *outputs = malloc((4 * (size_t)ldl->n + 1) * sizeof *outputs);
-    if (!outputs) {
-        return NULL;
-    }
-    int n = 0;
-    for (int i = 0; i < sys->nv + (s->opts.want_lambda ? sys->nc : 0); i++) {
-        outputs[n++] = i < sys->nv ? x[i] : hn_neg(x[i]);
-    }
-    for (int k = 0; k < ldl->n_guards; k++) {
-        outputs[n++] = ldl->guard[k][0];
-        outputs[n++] = ldl->guard[k][1];
-    }
-    s->n_guards = ldl->n_guards;
-    s->n_rows = sys->nc;
-    memcpy(outputs + n, ldl->row_ref, (size_t)s->n_rows * sizeof *outputs);
-    s->n_out = n + s->n_rows;
-    return outputs;
-}
-
-static hn_status compile_tape(hn_accel *s, const hn_system *sys, hn_arena *arena) {
-    hn_arena *scratch = hn_arena_create(0);
-    if (!scratch) {
-        return HN_ERR_MEMORY;
-    }
-    const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
-
-    // the order of elimination; without one there is no tape
-    hn_ldl ldl;
-    hn_ex *x = NULL, *outputs = NULL;
-    hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
-    s->available = status == HN_OK && ldl.available;
-    if (s->available) {
-        x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
-        status = x ? HN_OK : HN_ERR_MEMORY;
-    }
-
-    // the solution for these right-hand sides
-    if (status == HN_OK && s->available) {
-        memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
-        closure_rhs(sys, s->opts.baumgarte, x + sys->nv);
-        status = hn_ldl_solve(sys->g, &ldl, x, x);
-        outputs = status == HN_OK ? list_outputs(s, sys, &ldl, x) : NULL;
-        status = outputs ? hn_inputs_compile(sys, outputs, s->n_out, arena, &s->in) : HN_ERR_MEMORY;
-    }
-
-    free(outputs);
-    hn_arena_free(scratch);
-    return status;
-}
 
 static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     const unsigned terms =
@@ -159,7 +79,7 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
     s->n_J = hn_eval_pattern(s->terms, HN_TERM_J, &s->J_row, &s->J_col);
 
     // what only the tape's answer needs: guards of rows, refinement
-    if (!s->available) {
+    if (!s->tape.available) {
         return HN_OK;
     }
     HN_TRY(hn_row_groups_init(sys, arena, &s->rows));
@@ -168,9 +88,10 @@ static hn_status prepare_dense(hn_accel *s, const hn_system *sys, hn_arena *aren
 
 static hn_status build(hn_accel *s, const hn_system *sys, hn_arena *arena) {
     if (s->opts.solver == HN_SOLVER_AUTO || s->opts.solver == HN_SOLVER_LDL) {
-        HN_TRY(compile_tape(s, sys, arena));
+        HN_TRY(hn_accel_tape_compile(sys, s->opts.want_lambda, s->opts.baumgarte, arena, &s->in,
+                                     &s->tape));
     }
-    if (!s->available) {
+    if (!s->tape.available) {
         HN_TRY(hn_inputs_create(sys, arena, &s->in));
     }
     return prepare_dense(s, sys, arena);
@@ -208,41 +129,6 @@ void hn_accel_free(hn_accel *s) {
 }
 
 // ---- running ----
-
-/// Smallest pivot relative to its reference; NaN counts as lost.
-static double worst_pivot(const hn_accel *s) {
-    const double *x = s->in.x;
-    const uint16_t *slots = s->in.slots + s->n_out - s->n_rows - 2 * s->n_guards;
-    double worst = 1;
-    for (int k = 0; k < s->n_guards; k++) {
-        double ratio = fabs(x[slots[2 * k]]) / fabs(x[slots[2 * k + 1]]);
-        if (!(ratio >= worst)) {
-            worst = ratio;
-        }
-    }
-    return worst >= 0 ? worst : 0;
-}
-
-/// Takes the tape's answer if all of it is finite.
-static bool take_answer(const hn_accel *s, double *a, double *lambda) {
-    const double *x = s->in.x;
-    const uint16_t *slots = s->in.slots;
-    int n = s->n_out - s->n_rows - 2 * s->n_guards;
-    double zero = 0;
-    for (int k = 0; k < n; k++) {
-        zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
-    }
-    if (!(zero == 0)) {
-        return false;
-    }
-    for (int i = 0; i < s->nv; i++) {
-        a[i] = x[slots[i]];
-    }
-    for (int i = 0; lambda && i < s->nc; i++) {
-        lambda[i] = x[slots[s->nv + i]];
-    }
-    return true;
-}
 
 static bool all_finite(const double *x, int n) {
     double zero = 0;
@@ -499,26 +385,27 @@ static hn_status solve_dense(hn_accel *s, hn_solver solver, double gap, double *
 
 /// As in hn_accel_info, after a run of the tape.
 static double find_row_ratio(hn_accel *s) {
-    return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->n_out - s->n_rows);
+    return hn_row_groups_ratio(&s->rows, s->in.x, s->in.slots + s->tape.n_out - s->nc);
 }
 
 /// Takes the tape's answer. HN_ERR_SINGULAR: a pivot is lost, or so small that the answer needs
 /// correction (*doubtful).
 static hn_status solve_by_tape(hn_accel *s, double *a, double *lambda, hn_accel_info *info,
                                int *doubtful) {
-    if (!s->available) {
+    if (!s->tape.available) {
         return HN_ERR_SINGULAR;
     }
     hn_tape_run(s->in.tape, s->in.x);
     s->ops += hn_tape_get_info(s->in.tape).ops;
-    info->pivot_ratio = worst_pivot(s);
+    info->pivot_ratio = hn_accel_tape_worst_pivot(&s->tape, &s->in);
     info->row_ratio = find_row_ratio(s);
     info->solver = HN_SOLVER_LDL;
     if (info->row_ratio < HN_ROW_LOST) {
         return HN_ERR_SINGULAR;
     }
     *doubtful = info->pivot_ratio >= HN_PIVOT_GUARD && info->pivot_ratio < HN_PIVOT_DOUBT;
-    const int good = info->pivot_ratio >= HN_PIVOT_DOUBT && take_answer(s, a, lambda);
+    const int good =
+        info->pivot_ratio >= HN_PIVOT_DOUBT && hn_accel_tape_take(&s->tape, &s->in, a, lambda);
     return good ? HN_OK : HN_ERR_SINGULAR;
 }
 
@@ -570,7 +457,7 @@ hn_status hn_accel_condition(hn_accel *s, double t, const double *q, const doubl
     if (!all_finite(s->in.x, s->in.n)) {
         return HN_ERR_DIVERGED;
     }
-    if (s->available) { // a row that the accelerations leave out is left out here
+    if (s->tape.available) { // a row that the accelerations leave out is left out here
         hn_tape_run(s->in.tape, s->in.x);
         row_ratio = find_row_ratio(s);
     }
@@ -588,7 +475,7 @@ const char *const hn_multiplier_marks[HN_N_MULTIPLIER_MARKS] = {"determined", "o
 
 hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const double *v,
                                  const hn_accel_info *info) {
-    const int sure = s->available && !info->fallback && info->pivot_ratio >= HN_PIVOT_DOUBT &&
+    const int sure = s->tape.available && !info->fallback && info->pivot_ratio >= HN_PIVOT_DOUBT &&
                      info->row_ratio >= HN_PIVOT_GUARD;
     double condition = 0;
     if (s->nc == 0 || sure) {
@@ -603,11 +490,11 @@ hn_multiplier_mark hn_accel_mark(hn_accel *s, double t, const double *q, const d
 }
 
 hn_tape_info hn_accel_tape_info(const hn_accel *s) {
-    return s->available ? hn_tape_get_info(s->in.tape) : hn_eval_info(s->terms);
+    return s->tape.available ? hn_tape_get_info(s->in.tape) : hn_eval_info(s->terms);
 }
 
 hn_status hn_accel_measure_native(const hn_accel *s, hn_native_costs *costs, hn_diag *diag) {
-    if (!s->available) {
+    if (!s->tape.available) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL,
                            "the solve is dense and has no tape");
     }

@@ -8,6 +8,7 @@
 #include "integrators/step/control.h"
 #include "integrators/step/dae_base.h"
 #include "integrators/implicit/implicit_linear.h"
+#include "integrators/implicit/implicit_linear_solve.h"
 #include "integrators/implicit/stages.h"
 #include "linalg/dense.h"
 

@@ -35,13 +35,16 @@
 #include "linalg/sparse_spd.h"
 #include "formulations/ground/formulation.h"
 
+#include <stdbool.h>
+
 typedef struct hn_implicit_linear {
     hn_dae_form form;
+    bool stabilised; ///< GGL: mu holds the velocities
     int nv, nc;
     hn_linear *terms; ///< M K C J V R at the start of the step
     const double *M, *K, *C, *J, *V;
-    int has_damping; ///< C is not identically zero
-    int sparse;
+    bool has_damping; ///< C is not identically zero
+    bool sparse;
     int n_kept, *kept;
     int *place;          ///< nc: which of the kept rows this is; -1: left out
     hn_row_check *check; ///< NULL: the pivoted QR always chooses
@@ -75,10 +78,10 @@ double hn_implicit_linear_choose(hn_implicit_linear *l, double t, const double *
 HN_MUST_CHECK hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q,
                                               const double *v, const double *a,
                                               const double *lambda);
-/// The slots of hn_stage_equations; vectors are (x, w, l, m) or rows (r1, r2, r3, r3').
+/// Factors matrix (2) or (3) for s = re + i im; `which`: 0 the real one, 1 the complex one
+/// (hn_stage_equations). Solving: implicit_linear_solve.h.
 HN_MUST_CHECK hn_status hn_implicit_linear_factor(hn_implicit_linear *l, int which, double re,
                                                   double im);
-void hn_implicit_linear_solve(hn_implicit_linear *l, hn_parts r);
 /// out (nv) = Y m, m (nc): what mu adds to the rate of the displacement (GGL only).
 void hn_implicit_linear_push(hn_implicit_linear *l, const double *m, double *out);
 /// Matrix (2) for a real s, row-major of size nv + n_kept, as it is factored when it is dense; for

@@ -7,6 +7,7 @@
 #include "session/extreme/extreme_verdict.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -75,68 +76,85 @@ static void read_word(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
     snprintf(e->text, sizeof e->text, e->says ? "%s: \"%s\"" : "%s", e->word, e->says);
 }
 
+/// Reads where a prediction comes from, and why it is expected.
+static void read_origin(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
+    const char *from = hn_xr_text(r, node, "from", 0);
+    e->from_spectrum = from != NULL;
+    if (from && strcmp(from, "spectrum") != 0) {
+        hn_xr_fault(r, "from", "take \"spectrum\"",
+                    "a prediction comes from the spectrum, or stands here");
+    }
+    e->reason = hn_xr_text(r, node, "reason", 1);
+    e->source = hn_xr_text(r, node, "source", 0);
+}
+
+/// Reads the one form of a prediction that is given: a band, a bound or a word.
+static void read_form(hn_xr *r, const cJSON *node, hn_extreme_expect *e) {
+    const double most = HN_XR_NUMBER;
+    if (hn_xr_get(node, "value")) {
+        read_band(r, node, e);
+    } else if (hn_xr_get(node, "between")) {
+        read_between(r, hn_xr_get(node, "between"), e);
+    } else if (hn_xr_get(node, "word")) {
+        read_word(r, node, e);
+    } else if (hn_xr_get(node, "at_most")) {
+        set_bounds(e, -HUGE_VAL, hn_xr_number(r, node, "at_most", -most, most, 0));
+        snprintf(e->text, sizeof e->text, "at most %.6g", e->high);
+    } else {
+        set_bounds(e, hn_xr_number(r, node, "at_least", -most, most, 0), HUGE_VAL);
+        snprintf(e->text, sizeof e->text, "at least %.6g", e->low);
+    }
+}
+
+/// Checks that the trial's measure can give what is predicted; `one` says that the prediction has
+/// one form.
+static void check_measure(hn_xr *r, const hn_extreme_trial *t, bool one) {
+    const hn_extreme_expect *e = &t->expect;
+    if (!t->measure) {
+        return;
+    }
+
+    // the spectrum predicts step limits only
+    const bool stable_step = t->measure->see == hn_extreme_see_stable_step;
+    if (e->from_spectrum && !stable_step) {
+        hn_xr_fault(r, "from", NULL, "only 'stable-step' is predicted from the spectrum");
+    }
+
+    // a stable step needs one place to search: the spectrum's limit or 'limit'
+    if (stable_step && (t->limit[0] > 0) == e->from_spectrum) {
+        hn_xr_fault(r, "from", NULL,
+                    "a step is searched about the spectrum's limit, or between the two of 'limit'");
+    }
+
+    // the prediction must be of the kind that the measure gives
+    if (t->measure->gives_word != (e->word != NULL) && one) {
+        hn_xr_fault(r, NULL, NULL, "'%s' gives %s", t->measure->name,
+                    t->measure->gives_word ? "a word" : "a number");
+    }
+}
+
 void hn_xr_expect(hn_xr *r, const cJSON *root, hn_extreme_trial *t) {
-    hn_extreme_expect *e = &t->expect;
+    static const char *const forms[] = {"value", "at_most", "at_least", "between", "word"};
     const cJSON *node = hn_xr_get(root, "predicted");
     const size_t mark = hn_xr_enter(r, "predicted", -1);
     if (hn_xr_object(r, node,
                      HN_XR_FIELDS("value", "within", "within_share", "at_most", "at_least",
                                   "between", "word", "says", "from", "reason", "source"))) {
-        // count the forms of prediction that are given
-        static const char *const forms[] = {"value", "at_most", "at_least", "between", "word"};
+        read_origin(r, node, &t->expect);
+
+        // exactly one form of prediction
         int given = 0;
         for (int i = 0; i < 5; i++) {
             given += hn_xr_get(node, forms[i]) != NULL;
         }
-
-        // where the prediction comes from, and why it is expected
-        const char *from = hn_xr_text(r, node, "from", 0);
-        e->from_spectrum = from != NULL;
-        if (from && strcmp(from, "spectrum") != 0) {
-            hn_xr_fault(r, "from", "take \"spectrum\"",
-                        "a prediction comes from the spectrum, or stands here");
-        }
-        e->reason = hn_xr_text(r, node, "reason", 1);
-        e->source = hn_xr_text(r, node, "source", 0);
-
-        // exactly one form, as a band or a word
-        if (given != 1) {
+        if (given == 1) {
+            read_form(r, node, &t->expect);
+        } else {
             hn_xr_fault(r, NULL, NULL,
                         "a prediction is one of value, at_most, at_least, between and word");
-        } else if (hn_xr_get(node, "value")) {
-            read_band(r, node, e);
-        } else if (hn_xr_get(node, "between")) {
-            read_between(r, hn_xr_get(node, "between"), e);
-        } else if (hn_xr_get(node, "word")) {
-            read_word(r, node, e);
-        } else if (hn_xr_get(node, "at_most")) {
-            set_bounds(e, -HUGE_VAL,
-                       hn_xr_number(r, node, "at_most", -HN_XR_NUMBER, HN_XR_NUMBER, 0));
-            snprintf(e->text, sizeof e->text, "at most %.6g", e->high);
-        } else {
-            set_bounds(e, hn_xr_number(r, node, "at_least", -HN_XR_NUMBER, HN_XR_NUMBER, 0),
-                       HUGE_VAL);
-            snprintf(e->text, sizeof e->text, "at least %.6g", e->low);
         }
 
-        // the spectrum predicts step limits only
-        if (e->from_spectrum && t->measure && t->measure->see != hn_extreme_see_stable_step) {
-            hn_xr_fault(r, "from", NULL, "only 'stable-step' is predicted from the spectrum");
-        }
-
-        // a stable step needs one place to search: the spectrum's limit or 'limit'
-        if (t->measure && t->measure->see == hn_extreme_see_stable_step &&
-            (t->limit[0] > 0) == e->from_spectrum) {
-            hn_xr_fault(
-                r, "from", NULL,
-                "a step is searched about the spectrum's limit, or between the two of 'limit'");
-        }
-
-        // the prediction must be of the kind that the measure gives
-        if (t->measure && t->measure->gives_word != (e->word != NULL) && given == 1) {
-            hn_xr_fault(r, NULL, NULL, "'%s' gives %s", t->measure->name,
-                        t->measure->gives_word ? "a word" : "a number");
-        }
+        check_measure(r, t, given == 1);
     }
     hn_xr_leave(r, mark);
 }

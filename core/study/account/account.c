@@ -151,49 +151,15 @@ static hn_status make_room(hn_books *b, hn_diag *diag) {
     return HN_OK;
 }
 
-/// Makes one step of the run and records it: the exact flows over the same time, the differences
-/// between them and the step, and the energies.
-static hn_status book_step(hn_books *b, hn_diag *diag) {
-    hn_stepping *steps = b->steps;
+/// Records a step of size h from t, at whose start y is: the three parts of (1) as displacements,
+/// and the energy that each part changes. `work` is the work of the loops on the exact flow.
+static void record_step(hn_books *b, double t, double h, const double *y, double work) {
     hn_account *out = b->out;
-    hn_status status = make_room(b, diag);
-    if (status != HN_OK) {
-        return status;
-    }
-
-    // state at the start of the step, and the step size where it is known beforehand
-    double *r = hn_books_record(b, b->kept), *y = r + 2, *part = y + b->ny, work = 0;
-    const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
-    hn_books_present(b, y);
-
-    // B comes before the step where the step size is known: the formulation still has the chart or
-    // basis that the step will use
-    int owned = is_ode(b) && planned > 0 &&
-                follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
-
-    // the step of the run itself
-    status = hn_run_step(b->run);
-    if (status != HN_OK) {
-        return status;
-    }
-    const double h = steps->now.t - t;
-
-    // the exact flows I and B over the same time
-    status = follow(b, t, h, y, &work);
-    if (status == HN_OK && is_ode(b) && (!owned || fabs(h - planned) > 1e-9 * h)) {
-        status = follow_aside(b, t, h, y);
-        owned = 1;
-    }
-    if (status != HN_OK) {
-        return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
-                           "the equations of motion could not be followed beside the step from t = "
-                           "%.4g to %.4g s: %s",
-                           t, steps->now.t, hn_status_text(status));
-    }
-
-    // record: the three parts of (1) as displacements
+    double *r = hn_books_record(b, b->kept), *part = r + 2 + b->ny;
     const double *after_own = is_ode(b) ? b->owned : b->flowed;
-    double *unmended = b->unmended.q; // q and v stand together
+    const double *unmended = b->unmended.q; // q and v stand together
+
+    // the three parts of (1)
     r[0] = t;
     r[1] = h;
     hn_books_present(b, b->y);
@@ -212,6 +178,42 @@ static hn_status book_step(hn_books *b, hn_diag *diag) {
     out->bill[HN_BILL_PROJECTION] += e4 - e3;
     out->loop_work_abs += fabs(work);
     b->kept++;
+}
+
+/// Makes one step of the run and records it: the exact flows over the same time, the differences
+/// between them and the step, and the energies.
+static hn_status book_step(hn_books *b, hn_diag *diag) {
+    hn_stepping *steps = b->steps;
+    HN_TRY(make_room(b, diag));
+
+    // state at the start of the step, and the step size where it is known beforehand
+    double *y = hn_books_record(b, b->kept) + 2, work = 0;
+    const double t = steps->now.t, planned = steps->adaptive ? 0 : steps->h_next;
+    hn_books_present(b, y);
+
+    // B comes before the step where the step size is known: the formulation still has the chart or
+    // basis that the step will use
+    int owned = is_ode(b) && planned > 0 &&
+                follow_own(b, &steps->engine, t, planned, steps->engine.y) == HN_OK;
+
+    // the step of the run itself
+    HN_TRY(hn_run_step(b->run));
+    const double h = steps->now.t - t;
+
+    // the exact flows I and B over the same time
+    hn_status status = follow(b, t, h, y, &work);
+    if (status == HN_OK && is_ode(b) && (!owned || fabs(h - planned) > 1e-9 * h)) {
+        status = follow_aside(b, t, h, y);
+        owned = 1;
+    }
+    if (status != HN_OK) {
+        return hn_diag_set(diag, HN_ERR_NO_CONVERGENCE, NULL, NULL,
+                           "the equations of motion could not be followed beside the step from t = "
+                           "%.4g to %.4g s: %s",
+                           t, steps->now.t, hn_status_text(status));
+    }
+
+    record_step(b, t, h, y, work);
     return HN_OK;
 }
 

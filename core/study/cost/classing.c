@@ -5,6 +5,7 @@
 #include "study/cost/convergence.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 enum { FITTED = 4 };                 // points: three halvings
@@ -228,42 +229,48 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
     }
 }
 
-void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
-    const ladder l = collect(wp, m);
-    const hn_wp_method *method = &wp->methods[m];
-    const double known = HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q];
-    hn_class c = {.kind = HN_CLASS_UNSETTLED,
-                  .theory = method->spec.stepper->order,
-                  .order = (double)NAN,
-                  .floor = (double)NAN,
-                  .first = -1,
-                  .last = -1,
-                  .rounding = -1};
-    *out = c;
-
-    // methods that have no order: too few points, a chaotic motion, another limit
-    if (l.n < 2) {
+/// Gives a method the class of those that have no order, and the reason: too few points, a chaotic
+/// motion, another limit. Returns 0 where the method has none of these.
+static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out) {
+    if (l->n < 2) {
         out->kind = HN_CLASS_FAILED;
-        describe_failure(wp, m, &l, out);
-        return;
+        describe_failure(wp, m, l, out);
+        return true;
     }
     if (hn_wp_is_beyond_horizon(wp)) {
         snprintf(out->text, sizeof out->text,
                  "not classed: neighbouring motions part, and from t = %.3g s on, before the end, "
                  "where a method goes says nothing of it",
                  wp->horizon);
-        return;
+        return true;
     }
-    if (goes_elsewhere(wp, &l, out)) {
+    if (goes_elsewhere(wp, l, out)) {
         snprintf(out->text, sizeof out->text,
                  "converges to something else: %.1e from the reference, while its finest sizes are "
                  "%.0e from each other",
                  out->offset, out->own);
+        return true;
+    }
+    return false;
+}
+
+void hn_wp_classify(const hn_wp *wp, int m, hn_class *out) {
+    const ladder l = collect(wp, m);
+    const hn_wp_method *method = &wp->methods[m];
+    const double known = HN_WP_ABOVE_REFERENCE * wp->ref->error[HN_ERROR_Q];
+    *out = (hn_class){.kind = HN_CLASS_UNSETTLED,
+                      .theory = method->spec.stepper->order,
+                      .order = (double)NAN,
+                      .floor = (double)NAN,
+                      .first = -1,
+                      .last = -1,
+                      .rounding = -1};
+    if (has_no_order(wp, m, &l, out)) {
         return;
     }
 
     // the floor: its size and the largest error there
-    const int floor = find_floor(&l, c.theory, known);
+    const int floor = find_floor(&l, out->theory, known);
     if (floor < l.n) {
         out->floor_size = method->point[l.level[floor]].size;
         out->floor = known;

@@ -2,6 +2,7 @@
 // The linear systems of Newton's method on differential-algebraic forms: they are solved, and their
 // condition does not depend on the step in the unknowns that are used.
 #include "integrators/implicit/implicit_linear.h"
+#include "integrators/implicit/implicit_linear_solve.h"
 
 #include "linalg/dense.h"
 #include "linalg/svd.h"

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/evaluate/accel_tape.h"
+
+#include "dynamics/evaluate/accel.h"
+#include "dynamics/evaluate/ldl.h"
+#include "expr/construct.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Right-hand side of the closure rows: -(gamma + 2 alpha (J v + phi_t) + beta^2 phi).
+static void closure_rhs(const hn_system *sys, bool baumgarte, hn_ex *rhs) {
+    hn_graph *g = sys->g;
+    if (!baumgarte) {
+        for (int i = 0; i < sys->nc; i++) {
+            rhs[i] = hn_neg(sys->gamma[i]);
+        }
+        return;
+    }
+    for (int i = 0; i < sys->nc; i++) {
+        rhs[i] = sys->phi_t[i]; // gathers J v + phi_t
+    }
+    for (int k = 0; k < sys->J.n; k++) {
+        const hn_entry *J = &sys->J.at[k];
+        rhs[J->row] = hn_add(g, rhs[J->row], hn_mul(g, J->e, sys->v[J->col]));
+    }
+
+    // with Baumgarte's terms
+    hn_ex damping = hn_scale(2, sys->alpha), stiffness = hn_mul(g, sys->beta, sys->beta);
+    for (int i = 0; i < sys->nc; i++) {
+        hn_ex terms[3] = {sys->gamma[i], hn_mul(g, damping, rhs[i]),
+                          hn_mul(g, stiffness, sys->phi[i])};
+        rhs[i] = hn_neg(hn_sum(g, terms, 3));
+    }
+}
+
+/// Outputs of the tape: a, lambda, guards, rows. Returns owned, or NULL.
+static hn_ex *list_outputs(hn_accel_tape *tape, const hn_system *sys, const hn_ldl *ldl,
+                           const hn_ex *x, bool want_lambda) {
+    hn_ex *outputs = malloc((4 * (size_t)ldl->n + 1) * sizeof *outputs);
+    if (!outputs) {
+        return NULL;
+    }
+    int n = 0;
+    for (int i = 0; i < sys->nv + (want_lambda ? sys->nc : 0); i++) {
+        outputs[n++] = i < sys->nv ? x[i] : hn_neg(x[i]);
+    }
+    for (int k = 0; k < ldl->n_guards; k++) {
+        outputs[n++] = ldl->guard[k][0];
+        outputs[n++] = ldl->guard[k][1];
+    }
+    memcpy(outputs + n, ldl->row_ref, (size_t)sys->nc * sizeof *outputs);
+    tape->n_answer = sys->nv + (want_lambda ? sys->nc : 0);
+    tape->n_guards = ldl->n_guards;
+    tape->n_out = n + sys->nc;
+    return outputs;
+}
+
+hn_status hn_accel_tape_compile(const hn_system *sys, bool want_lambda, bool baumgarte,
+                                hn_arena *arena, hn_inputs *inputs, hn_accel_tape *tape) {
+    hn_arena *scratch = hn_arena_create(0);
+    if (!scratch) {
+        return HN_ERR_MEMORY;
+    }
+    const hn_ldl_input in = {sys->nv, sys->nc, &sys->M, &sys->J, HN_ACCEL_PAIRS};
+
+    // the order of elimination; without one there is no tape
+    hn_ldl ldl;
+    hn_ex *x = NULL, *outputs = NULL;
+    hn_status status = hn_ldl_build(sys->g, &in, scratch, &ldl);
+    tape->available = status == HN_OK && ldl.available;
+    if (tape->available) {
+        x = hn_arena_get(scratch, ((size_t)ldl.n + 1) * sizeof *x);
+        status = x ? HN_OK : HN_ERR_MEMORY;
+    }
+
+    // the solution for these right-hand sides
+    if (status == HN_OK && tape->available) {
+        memcpy(x, sys->f, (size_t)sys->nv * sizeof *x);
+        closure_rhs(sys, baumgarte, x + sys->nv);
+        status = hn_ldl_solve(sys->g, &ldl, x, x);
+        outputs = status == HN_OK ? list_outputs(tape, sys, &ldl, x, want_lambda) : NULL;
+        status =
+            outputs ? hn_inputs_compile(sys, outputs, tape->n_out, arena, inputs) : HN_ERR_MEMORY;
+    }
+
+    free(outputs);
+    hn_arena_free(scratch);
+    return status;
+}
+
+double hn_accel_tape_worst_pivot(const hn_accel_tape *tape, const hn_inputs *in) {
+    const double *x = in->x;
+    const uint16_t *slots = in->slots + tape->n_answer;
+    double worst = 1;
+    for (int k = 0; k < tape->n_guards; k++) {
+        double ratio = fabs(x[slots[2 * k]]) / fabs(x[slots[2 * k + 1]]);
+        if (!(ratio >= worst)) {
+            worst = ratio;
+        }
+    }
+    return worst >= 0 ? worst : 0;
+}
+
+bool hn_accel_tape_take(const hn_accel_tape *tape, const hn_inputs *in, double *a, double *lambda) {
+    const double *x = in->x;
+    const uint16_t *slots = in->slots;
+    double zero = 0;
+    for (int k = 0; k < tape->n_answer; k++) {
+        zero += x[slots[k]] * 0; // a value that is not finite leaves NaN
+    }
+    if (!(zero == 0)) {
+        return false;
+    }
+    for (int i = 0; i < in->nv; i++) {
+        a[i] = x[slots[i]];
+    }
+    for (int i = 0; lambda && i < tape->n_answer - in->nv; i++) {
+        lambda[i] = x[slots[in->nv + i]];
+    }
+    return true;
+}
