@@ -9,8 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/// A new connection beyond the backlog is dropped and tries again after a second: a class that opens
-/// the page at one instant must fit in.
+/// A new connection beyond the backlog is dropped and tries again after a second: a class that
+/// opens the page at one instant must fit in.
 enum { BACKLOG = 1024, FIRST_OPEN_PORT = 1024, LAST_PORT = 65535 };
 
 static void set_port(struct sockaddr *address, int port) {
