@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include "build.h"
+#include "cli/command_table.h"
 #include "cli/completion.h"
 #include "cli/examples.h"
 #include "cli/manual.h"
@@ -11,93 +12,10 @@
 #include "cli/shell/print.h"
 #include "cli/shell/cache_folder.h"
 #include "expr/native.h"
-#include "session/job/job_request.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-
-#define MODEL_OPTIONS "--set"
-
-static hn_exit print_help(const hn_library *lib, const hn_args *args);
-static hn_exit print_version(const hn_library *lib, const hn_args *args);
-
-static const hn_command COMMANDS[] = {
-    {"serve", "", "the page, the API and the stream, on this machine alone",
-     "--host --port --allow-host --open --history --max-comparisons --max-streams "
-     "--max-connections --runs --token --guests --run-cpu "
-     "--idle-pause "
-     "--expiry --keep-alive",
-     0, 0, hn_command_serve},
-    {"tui", "[SCENE|LINK]", "the workbench in this terminal: mechanism, plots, verdicts, studies",
-     MODEL_OPTIONS " --methods --once --t --frames --size --ascii --blocks --theme", 0, 1,
-     hn_command_tui},
-    {"list", "scenes|methods|lessons|problems", "what there is", "", 1, 1, hn_command_list},
-    {"inspect", "SCENE", "sizes, tree, loops, rank, operations kept and left out", MODEL_OPTIONS, 1,
-     1, hn_command_inspect},
-    {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
-     MODEL_OPTIONS " --format", 1, 1, hn_command_equations},
-    {"export", "SCENE",
-     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave or "
-     "julia",
-     MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
-    {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
-     MODEL_OPTIONS " --t --q --v --reactions", 1, 1, hn_command_terms},
-    {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
-     MODEL_OPTIONS " --method --time --at --every --raw-lambda --reactions --format --plot", 1, 1,
-     hn_command_run},
-    {"compare", "SCENE", "several methods on one clock, and where they part",
-     MODEL_OPTIONS " --methods --time --frame --plot", 1, 1, hn_command_compare},
-    {"study", "SCENE work-precision|budget|stability",
-     "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
-     ".json or .csv (maps also .svg, .png)",
-     MODEL_OPTIONS " --methods --time --grid --csv --out -o", 1, 2, hn_command_study},
-    {"report", "[SCENE...]",
-     "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
-     "--methods --out -o --plots", 0, HN_JOB_SCENES, hn_command_report},
-    {"reference", "SCENE",
-     "the reference solution: by two means, the digits they share; --out writes it as it is "
-     "shipped",
-     MODEL_OPTIONS " --time --out -o", 1, 1, hn_command_reference},
-    {"merge", "PART...",
-     "the parts of a study (study --shard) put together, as if it had been one run",
-     "--csv --out -o", 1, HN_CLI_MAX_WORDS, hn_command_merge},
-    {"extreme", "[ID...]",
-     "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
-     "--csv --out -o", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
-    {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
-     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
-     hn_command_snapshot},
-    {"import", "FILE",
-     "a scene from a MuJoCo MJCF or URDF file; what is not in it is told, with lines",
-     "--out -o --loops --key", 1, 1, hn_command_import},
-    {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
-    {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",
-     "--format --out -o --seed", 2, HN_CLI_MAX_WORDS, hn_command_grade},
-    {"manual", "", "the manual page in roff, for 'man -l -'", "", 0, 0, hn_command_manual},
-    {"completion", "bash|zsh|fish", "what a shell needs to complete commands of this program", "",
-     1, 1, hn_command_completion},
-    {"help", "[COMMAND]", "this text, or a command's options", "", 0, 1, print_help},
-    {"version", "", "what this program is", "", 0, 0, print_version},
-};
-enum { N_COMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
-
-int hn_command_count(void) {
-    return N_COMMANDS;
-}
-
-const hn_command *hn_command_at(int i) {
-    return &COMMANDS[i];
-}
-
-static const hn_command *find_command(const char *name) {
-    for (int i = 0; i < N_COMMANDS; i++) {
-        if (strcmp(COMMANDS[i].name, name) == 0) {
-            return &COMMANDS[i];
-        }
-    }
-    return NULL;
-}
 
 enum { HELP_INDENT = 10, HELP_WIDTH = 80 };
 
@@ -122,10 +40,11 @@ static void add_folded(hn_strbuf *b, int column, const char *words) {
 
 static void describe_all(hn_strbuf *b) {
     hn_strbuf_add(b, "holonom: mechanisms with closed loops, many methods on one clock\n\n");
-    for (int i = 0; i < N_COMMANDS; i++) {
-        hn_strbuf_printf(b, "  holonom %s%s%s\n%*s", COMMANDS[i].name,
-                         COMMANDS[i].words[0] ? " " : "", COMMANDS[i].words, HELP_INDENT, "");
-        add_folded(b, HELP_INDENT, COMMANDS[i].about);
+    for (int i = 0; i < hn_command_count(); i++) {
+        const hn_command *c = hn_command_at(i);
+        hn_strbuf_printf(b, "  holonom %s%s%s\n%*s", c->name, c->words[0] ? " " : "", c->words,
+                         HELP_INDENT, "");
+        add_folded(b, HELP_INDENT, c->about);
     }
     hn_strbuf_add(b, "\nSCENE is a shipped scene's name, a file, or - for standard input.\n"
                      "METHOD is spelled FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...],\n"
@@ -156,11 +75,14 @@ static const char FIRST_STEPS[] =
     "'holonom help' lists all commands, 'holonom help COMMAND' explains one.\n";
 
 static hn_diag unknown_command(const char *name) {
-    const char *names[N_COMMANDS];
-    for (int i = 0; i < N_COMMANDS; i++) {
-        names[i] = COMMANDS[i].name;
+    enum { MOST = 64 };
+    const char *names[MOST];
+    const int n = hn_command_count();
+    HN_ASSERT(n <= MOST);
+    for (int i = 0; i < n; i++) {
+        names[i] = hn_command_at(i)->name;
     }
-    const char *near = hn_nearest_name(name, names, N_COMMANDS);
+    const char *near = hn_nearest_name(name, names, n);
     char hint[HN_DIAG_HINT];
     snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom help%s' lists the commands",
              near ? near : "");
@@ -177,7 +99,7 @@ static hn_exit print_help(const hn_library *lib, const hn_args *args) {
         describe_all(&b);
         return hn_cli_print(&b);
     }
-    const hn_command *command = find_command(args->words.word[0]);
+    const hn_command *command = hn_command_find(args->words.word[0]);
     if (!command) {
         hn_diag diag = unknown_command(args->words.word[0]);
         return hn_report_diag(args, &diag);
@@ -202,9 +124,27 @@ static hn_exit print_version(const hn_library *lib, const hn_args *args) {
     return hn_cli_print(&b);
 }
 
-/// Help and version speak without a library of scenes.
-static int needs_library(const hn_command *command) {
-    return command->run != print_help && command->run != print_version;
+/// The function behind a command.
+typedef struct behind {
+    const char *name;
+    hn_exit (*run)(const hn_library *lib, const hn_args *args);
+    bool needs_library; ///< of scenes
+} behind;
+
+static behind function_of(const hn_command *command) {
+    static const behind own[] = {
+        {"manual", hn_command_manual, true},
+        {"completion", hn_command_completion, true},
+        {"help", print_help, false},
+        {"version", print_version, false},
+    };
+    for (size_t i = 0; !command->run && i < sizeof own / sizeof *own; i++) {
+        if (strcmp(own[i].name, command->name) == 0) {
+            return own[i];
+        }
+    }
+    HN_ASSERT(command->run);
+    return (behind){command->name, command->run, true};
 }
 
 /// Native tapes for everything that follows, unless --no-native or HOLONOM_NATIVE=0 says otherwise.
@@ -219,6 +159,7 @@ static void start_native(const hn_args *args) {
 }
 
 static hn_exit run_command(const hn_command *command, const hn_args *args) {
+    const behind function = function_of(command);
     hn_library *lib = NULL;
     hn_diag diag = {0};
     if (args->help) {
@@ -227,7 +168,7 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
         describe_one(&b, command);
         return hn_cli_print(&b);
     }
-    if (needs_library(command) && hn_library_open(NULL, &lib, &diag) != HN_OK) {
+    if (function.needs_library && hn_library_open(NULL, &lib, &diag) != HN_OK) {
         hn_report_diag(args, &diag);
         return HN_EXIT_PROGRAM;
     }
@@ -237,7 +178,7 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
     const hn_status status = hn_cli_protect_inputs(args, &diags);
     start_native(args);
     const hn_exit result =
-        status == HN_OK ? command->run(lib, args) : hn_report_diags(args, status, &diags);
+        status == HN_OK ? function.run(lib, args) : hn_report_diags(args, status, &diags);
     hn_native_stop();
     hn_library_free(lib);
     return result;
@@ -293,7 +234,7 @@ int hn_cli_main(int argc, char **argv) {
     // a command, by its name or by one of the names of lists
     const bool list = is_list(argv[1]);
     const char *name = list ? "list" : command_word(argv[1]);
-    const hn_command *command = find_command(name);
+    const hn_command *command = hn_command_find(name);
     if (!command) {
         diag = unknown_command(name);
         return hn_report_diag(NULL, &diag);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/completion.h"
 
-#include "cli/cli.h"
+#include "cli/command_table.h"
 #include "cli/shell/diagnostics.h"
 #include "cli/shell/print.h"
 #include "integrators/method/catalogue.h"
 #include "session/model/model.h"
-#include "integrators/method/catalogue.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
@@ -25,15 +24,6 @@ static void offer(const completing *c, const char *candidate, const char *ending
         hn_strbuf_printf(c->b, "%.*s%s%s%s%s\n", c->n_head, c->head, candidate, ending,
                          about ? "\t" : "", about ? about : "");
     }
-}
-
-static const hn_command *command_of(const char *name) {
-    for (int i = 0; i < hn_command_count(); i++) {
-        if (strcmp(hn_command_at(i)->name, name) == 0) {
-            return hn_command_at(i);
-        }
-    }
-    return NULL;
 }
 
 // ---- methods ----
@@ -177,7 +167,7 @@ void hn_completion_candidates(hn_strbuf *b, const hn_library *lib, const char *c
         }
         return;
     }
-    const hn_command *command = command_of(words[0]);
+    const hn_command *command = hn_command_find(words[0]);
     if (!command) {
         return;
     }

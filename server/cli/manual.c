@@ -2,7 +2,7 @@
 #include "cli/manual.h"
 
 #include "build.h"
-#include "cli/cli.h"
+#include "cli/command_table.h"
 #include "cli/examples.h"
 #include "cli/shell/print.h"
 

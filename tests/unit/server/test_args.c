@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/cli.h"
+#include "cli/command_table.h"
 
 #include "support/near.h"
 #include "cli/shell/args.h"
@@ -9,13 +9,9 @@
 #include <string.h>
 
 static const hn_command *find(const char *name) {
-    for (int i = 0; i < hn_command_count(); i++) {
-        if (strcmp(hn_command_at(i)->name, name) == 0) {
-            return hn_command_at(i);
-        }
-    }
-    fail_msg("no command %s", name);
-    return NULL;
+    const hn_command *command = hn_command_find(name);
+    assert_non_null(command);
+    return command;
 }
 
 /// Parses words separated by spaces.

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/command_table.h"
+
+#include "cli/shell/commands.h"
+#include "session/job/job_request.h"
+
+#include <string.h>
+
+#define MODEL_OPTIONS "--set"
+
+static const hn_command COMMANDS[] = {
+    {"serve", "", "the page, the API and the stream, on this machine alone",
+     "--host --port --allow-host --open --history --max-comparisons --max-streams "
+     "--max-connections --runs --token --guests --run-cpu "
+     "--idle-pause "
+     "--expiry --keep-alive",
+     0, 0, hn_command_serve},
+    {"tui", "[SCENE|LINK]", "the workbench in this terminal: mechanism, plots, verdicts, studies",
+     MODEL_OPTIONS " --methods --once --t --frames --size --ascii --blocks --theme", 0, 1,
+     hn_command_tui},
+    {"list", "scenes|methods|lessons|problems", "what there is", "", 1, 1, hn_command_list},
+    {"inspect", "SCENE", "sizes, tree, loops, rank, operations kept and left out", MODEL_OPTIONS, 1,
+     1, hn_command_inspect},
+    {"equations", "SCENE", "the equations of motion (--format text, latex or json)",
+     MODEL_OPTIONS " --format", 1, 1, hn_command_equations},
+    {"export", "SCENE",
+     "the mechanism as a program that checks itself: --language python, c, cpp, java, octave or "
+     "julia",
+     MODEL_OPTIONS " --language --out -o", 1, 1, hn_command_export},
+    {"terms", "SCENE", "M, f, J, gamma, accelerations and multipliers at one state",
+     MODEL_OPTIONS " --t --q --v --reactions", 1, 1, hn_command_terms},
+    {"run", "SCENE", "one method; samples as --format csv, ndjson or json",
+     MODEL_OPTIONS " --method --time --at --every --raw-lambda --reactions --format --plot", 1, 1,
+     hn_command_run},
+    {"compare", "SCENE", "several methods on one clock, and where they part",
+     MODEL_OPTIONS " --methods --time --frame --plot", 1, 1, hn_command_compare},
+    {"study", "SCENE work-precision|budget|stability",
+     "error against cost, where an error comes from, where steps are stable; --out FILE.html, "
+     ".json or .csv (maps also .svg, .png)",
+     MODEL_OPTIONS " --methods --time --grid --csv --out -o", 1, 2, hn_command_study},
+    {"report", "[SCENE...]",
+     "studies of several scenes, error budgets and survival in one page; --out FILE.html or .json",
+     "--methods --out -o --plots", 0, HN_JOB_SCENES, hn_command_report},
+    {"reference", "SCENE",
+     "the reference solution: by two means, the digits they share; --out writes it as it is "
+     "shipped",
+     MODEL_OPTIONS " --time --out -o", 1, 1, hn_command_reference},
+    {"merge", "PART...",
+     "the parts of a study (study --shard) put together, as if it had been one run",
+     "--csv --out -o", 1, HN_CLI_MAX_WORDS, hn_command_merge},
+    {"extreme", "[ID...]",
+     "cases in which methods break, predicted and observed; --out FILE.html, .json or .csv",
+     "--csv --out -o", 0, HN_CLI_MAX_WORDS, hn_command_extreme},
+    {"snapshot", "SCENE", "a picture of where the methods have taken it; --json describes it",
+     MODEL_OPTIONS " --method --methods --time --out -o --width --height --theme --view", 1, 1,
+     hn_command_snapshot},
+    {"import", "FILE",
+     "a scene from a MuJoCo MJCF or URDF file; what is not in it is told, with lines",
+     "--out -o --loops --key", 1, 1, hn_command_import},
+    {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
+    {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",
+     "--format --out -o --seed", 2, HN_CLI_MAX_WORDS, hn_command_grade},
+    {"manual", "", "the manual page in roff, for 'man -l -'", "", 0, 0, NULL},
+    {"completion", "bash|zsh|fish", "what a shell needs to complete commands of this program", "",
+     1, 1, NULL},
+    {"help", "[COMMAND]", "this text, or a command's options", "", 0, 1, NULL},
+    {"version", "", "what this program is", "", 0, 0, NULL},
+};
+enum { N_COMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
+
+int hn_command_count(void) {
+    return N_COMMANDS;
+}
+
+const hn_command *hn_command_at(int i) {
+    return &COMMANDS[i];
+}
+
+const hn_command *hn_command_find(const char *name) {
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(COMMANDS[i].name, name) == 0) {
+            return &COMMANDS[i];
+        }
+    }
+    return NULL;
+}
