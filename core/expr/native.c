@@ -426,6 +426,8 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s",
                            service.reason[0] ? service.reason : "native tapes are switched off");
     }
+
+    // a tape of its own, compiled aside
     void *handle = NULL;
     hn_native_code code = NULL;
     hn_strbuf text;
@@ -438,9 +440,10 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     if (status == HN_OK) {
         status = compile_measured(copy, &text, costs, &handle, &code, diag);
     }
+
+    // times of both, and the run length from which compiling pays
     if (status == HN_OK) {
-        // at a state that is no multiple of anything, so that no function takes a short cut
-        prepare(copy, w);
+        prepare(copy, w); // a state of no round numbers, so that no function takes a short cut
         fill_inputs(w, copy->info.n_inputs, 2);
         costs->interpreter_ns = 1e9 * time_of(copy, NULL, w);
         costs->native_ns = 1e9 * time_of(copy, code, w);

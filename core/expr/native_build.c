@@ -140,6 +140,8 @@ _Noreturn static void become_compiler(const hn_native_builder *b, char *const ar
 static hn_status wait_for(const hn_native_builder *b, pid_t child, double start, hn_diag *diag) {
     const struct timespec nap = {.tv_nsec = 3000000};
     int state = 0;
+
+    // until it ends, is stopped or is too late
     for (;;) {
         const pid_t got = waitpid(child, &state, WNOHANG);
         if (got == child) {
@@ -156,6 +158,8 @@ static hn_status wait_for(const hn_native_builder *b, pid_t child, double start,
         }
         nanosleep(&nap, NULL);
     }
+
+    // how it ended
     if (!WIFEXITED(state) || WEXITSTATUS(state) != 0) {
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, NULL, "%s failed (%s %d)", b->compiler,
                            WIFEXITED(state) ? "exit status" : "signal",
@@ -168,12 +172,16 @@ static hn_status run_compiler(const hn_native_builder *b, const char *source, co
                               double *seconds, hn_diag *diag) {
     const char *argv[N_FLAGS + 7] = {b->compiler};
     int n = 1;
+
+    // the command line
     for (int i = 0; i < N_FLAGS; i++) {
         argv[n++] = FLAGS[i];
     }
     argv[n++] = "-o";
     argv[n++] = object;
     argv[n++] = source;
+
+    // a child of its own, waited for
     const double start = hn_clock_wall();
     const pid_t child = fork();
     if (child < 0) {

@@ -55,6 +55,8 @@ static void put_expression(const emitter *e, const hn_tape_instruction *i, const
 static void put_instruction(emitter *e, int32_t k) {
     const hn_tape_instruction *i = &e->tape->code[k];
     const int code = i->code;
+
+    // two results at once
     if (code == TAPE_SINCOS) {
         hn_strbuf_printf(e->b, "double v%d, c%d; sincos(", k, k);
         put_operand(e, i->v[1]);
@@ -64,6 +66,7 @@ static void put_instruction(emitter *e, int32_t k) {
         return;
     }
 
+    // one result
     hn_strbuf_printf(e->b, "const double v%d = ", k);
     if (code < TAPE_SINCOS) {
         put_expression(e, i, hn_tape_get_code_info(code).text);

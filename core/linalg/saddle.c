@@ -104,6 +104,8 @@ static double row_unit(const hn_saddle_ws *ws, int i) {
 static void scale_rows(hn_saddle_ws *ws) {
     int nv = ws->nv;
     double longest = 0;
+
+    // the rows of J D and their lengths
     for (int i = 0; i < ws->nc; i++) {
         const double *row = ws->J + (size_t)i * nv;
         double *col = ws->qr.a + (size_t)i * nv;
@@ -113,6 +115,8 @@ static void scale_rows(hn_saddle_ws *ws) {
         ws->r[i] = hn_norm2(nv, col);
         longest = fmax(longest, ws->r[i] / row_unit(ws, i));
     }
+
+    // each stretched to length 1, but no further than its floor allows
     ws->stretch = 1;
     for (int i = 0; i < ws->nc; i++) {
         double norm = fmax(ws->r[i], ws->opts.row_floor * longest * row_unit(ws, i));

@@ -274,6 +274,8 @@ static const char *settle_loop(hn_reader *r, const char *text) {
 
 bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope) {
     *out = (hn_quantity){.pointer = hn_rd_pointer(r)};
+
+    // a number, or a formula
     if (cJSON_IsNumber(node)) {
         out->value = node->valuedouble;
         return isfinite(out->value) ? 1 : hn_rd_fault(r, NULL, "expected a finite number");
@@ -282,6 +284,8 @@ bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_sco
         return hn_rd_fault(r, NULL, "expected a number or a formula in quotes, found %s",
                            hn_rd_kind(node));
     }
+
+    // all formulas of a scene have a limit together
     r->n_text += strlen(node->valuestring);
     if (r->n_text > HN_RD_MAX_TEXT) {
         hn_rd_limit(r, "the formulas of the scene have more than %d characters in all",
@@ -289,6 +293,8 @@ bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_sco
         r->n_faults = HN_RD_MAX_FAULTS;
         return false;
     }
+
+    // places of repeated parts filled in, then parsed
     const char *filled =
         strchr(node->valuestring, '{') ? hn_rd_fill(r, node->valuestring) : node->valuestring;
     const char *text = filled ? settle_loop(r, filled) : NULL;

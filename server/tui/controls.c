@@ -47,41 +47,52 @@ static void select_method(hn_workbench *w, int by) {
     w->selected = (w->selected + by + w->n_methods) % w->n_methods;
 }
 
-static void act(hn_workbench *w, hn_tui_action action) {
+/// Actions on the clock. Returns whether the action was one of them.
+static bool act_on_clock(hn_workbench *w, hn_tui_action action) {
+    static const struct {
+        hn_tui_action action;
+        int frames;
+    } moves[] = {
+        {HN_TUI_NEXT, 1}, {HN_TUI_BACK, -1}, {HN_TUI_NEXT_TEN, 10}, {HN_TUI_BACK_TEN, -10}};
+    for (size_t i = 0; i < sizeof moves / sizeof *moves; i++) {
+        if (moves[i].action == action) {
+            go(w, floor(w->clock) + moves[i].frames);
+            return true;
+        }
+    }
+
+    // the start, the speed
     switch (action) {
     case HN_TUI_PLAY:
         play(w);
-        break;
-    case HN_TUI_NEXT:
-        go(w, floor(w->clock) + 1);
-        break;
-    case HN_TUI_BACK:
-        go(w, floor(w->clock) - 1);
-        break;
-    case HN_TUI_NEXT_TEN:
-        go(w, floor(w->clock) + 10);
-        break;
-    case HN_TUI_BACK_TEN:
-        go(w, floor(w->clock) - 10);
-        break;
+        return true;
     case HN_TUI_START:
         go(w, 0);
-        break;
+        return true;
     case HN_TUI_SLOWER:
-        change_speed(w, -1);
-        break;
     case HN_TUI_FASTER:
-        change_speed(w, 1);
-        break;
+        change_speed(w, action == HN_TUI_FASTER ? 1 : -1);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static void act(hn_workbench *w, hn_tui_action action) {
+    if (act_on_clock(w, action)) {
+        return;
+    }
+    switch (action) {
+    // the selected method
     case HN_TUI_UP:
-        select_method(w, -1);
-        break;
     case HN_TUI_DOWN:
-        select_method(w, 1);
+        select_method(w, action == HN_TUI_DOWN ? 1 : -1);
         break;
     case HN_TUI_HIDE:
         w->hidden[w->selected] = !w->hidden[w->selected];
         break;
+
+    // what is shown
     case HN_TUI_PLOT:
         w->plot = (w->plot + 1) % HN_TUI_PLOTS;
         break;

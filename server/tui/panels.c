@@ -314,12 +314,15 @@ void hn_prompt_key(hn_workbench *w, int key) {
 static void choose(hn_workbench *w) {
     const hn_scene *scene = hn_model_scene(w->model);
     switch (w->list) {
+    // another scene: the name is copied, since the list goes with the old one
     case HN_LIST_SCENES: {
         char name[HN_TUI_LINE];
         snprintf(name, sizeof name, "%s", w->items[w->cursor].name);
         hn_workbench_reopen(w, name, NULL, 0, false);
         break;
     }
+
+    // a value to be typed, beginning with the present one
     case HN_LIST_METHODS:
         begin_prompt(w, HN_PROMPT_METHOD, w->cursor < w->n_methods ? w->methods[w->cursor] : "");
         break;
@@ -329,6 +332,8 @@ static void choose(hn_workbench *w) {
         begin_prompt(w, HN_PROMPT_PARAMETER, value);
         break;
     }
+
+    // a text to be read
     case HN_LIST_LESSONS:
         show_lesson(w, w->items[w->cursor].name);
         break;
@@ -406,6 +411,7 @@ void hn_panel_key(hn_workbench *w, int key) {
 
 void hn_panel_open(hn_workbench *w, hn_tui_action action) {
     switch (action) {
+    // lists and prompts
     case HN_TUI_STEP:
         begin_prompt(w, HN_PROMPT_STEP, "");
         break;
@@ -424,6 +430,8 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
     case HN_TUI_LESSONS:
         list_lessons(w);
         break;
+
+    // studies beside the workbench
     case HN_TUI_STUDY:
         run_study(w, "work-precision", "--time", "2");
         break;
@@ -433,6 +441,8 @@ void hn_panel_open(hn_workbench *w, hn_tui_action action) {
     case HN_TUI_BUDGET:
         run_study(w, "budget", NULL, NULL);
         break;
+
+    // files and help
     case HN_TUI_EXPORT:
         begin_prompt(w, HN_PROMPT_EXPORT, "recording.csv");
         break;

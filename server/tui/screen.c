@@ -133,6 +133,7 @@ void hn_screen_show(const hn_cells *c, bool ascii) {
 // ---- keys ----
 
 static int translate(int key) {
+    // keys of ncurses, and control characters that stand for keys
     static const struct {
         int from, to;
     } table[] = {{KEY_LEFT, HN_KEY_LEFT},
@@ -154,6 +155,7 @@ static int translate(int key) {
                  {KEY_SLEFT, HN_KEY_SHIFT_LEFT},
                  {KEY_SRIGHT, HN_KEY_SHIFT_RIGHT},
                  {KEY_RESIZE, HN_KEY_RESIZE}};
+
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].from == key) {
             return table[i].to;

@@ -269,6 +269,8 @@ static void put_quaternion_rates(hn_strbuf *b, const exporter *e, int indent, in
         hn_strbuf value;
         char index[16];
         hn_strbuf_init(&value);
+
+        // the right-hand side
         hn_strbuf_add(&value, "0.5*(");
         for (int k = 0; k < 3; k++) {
             char e_text[32], w_text[32];
@@ -277,6 +279,8 @@ static void put_quaternion_rates(hn_strbuf *b, const exporter *e, int indent, in
             hn_strbuf_printf(&value, "%s%s*%s", sign[row][k], e_text, w_text);
         }
         hn_strbuf_add(&value, ")");
+
+        // the assignment in the language
         snprintf(index, sizeof index, "%d", q + row + e->language->first);
         hn_strbuf_printf(b, "%*s", indent, "");
         hn_code_fill(b, e->language->vector,

@@ -232,11 +232,14 @@ static void describe_order(const hn_wp *wp, int m, hn_class *c) {
 /// Gives a method the class of those that have no order, and the reason: too few points, a chaotic
 /// motion, another limit. Returns 0 where the method has none of these.
 static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out) {
+    // too few points
     if (l->n < 2) {
         out->kind = HN_CLASS_FAILED;
         describe_failure(wp, m, l, out);
         return true;
     }
+
+    // a chaotic motion
     if (hn_wp_is_beyond_horizon(wp)) {
         snprintf(out->text, sizeof out->text,
                  "not classed: neighbouring motions part, and from t = %.3g s on, before the end, "
@@ -244,6 +247,8 @@ static bool has_no_order(const hn_wp *wp, int m, const ladder *l, hn_class *out)
                  wp->horizon);
         return true;
     }
+
+    // another limit
     if (goes_elsewhere(wp, l, out)) {
         snprintf(out->text, sizeof out->text,
                  "converges to something else: %.1e from the reference, while its finest sizes are "

@@ -86,16 +86,22 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     double steps = hn_document_number(m, "steps");
     char rate[8];
     snprintf(rate, sizeof rate, "%s%s", unit, unit[0] ? "/s" : "");
+
+    // how the run went
     hn_table_cell(t, "%s", hn_document_text(m, "method"));
     hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : "ok");
     hn_table_quantity(t, hn_document_number(m, "t_reached"), "s");
     hn_table_quantity(t, hn_document_number(m, "worst_gap"), unit);
     hn_table_quantity(t, hn_document_number(m, "worst_velocity_gap"), rate);
     hn_table_quantity(t, hn_document_number(m, "worst_energy_change"), "J");
+
+    // what it cost
     hn_table_cell(t, "%.0f", steps);
     hn_table_cell(t, "%.0f", hn_document_number(m, "evals"));
     hn_table_quantity(t, hn_document_number(m, "ops"), "op");
     hn_table_quantity(t, steps > 0 ? hn_document_number(m, "ops") / steps : (double)NAN, "op");
+
+    // the time of a step, with its quartiles where it was measured
     const cJSON *cost = hn_document_get(m, "step_cpu");
     char median[HN_SI_TEXT], low[HN_SI_TEXT], high[HN_SI_TEXT];
     if (!isfinite(hn_document_number(cost, "median"))) {

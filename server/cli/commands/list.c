@@ -85,6 +85,8 @@ static void put_option(hn_strbuf *b, const cJSON *option) {
     if (unit[0] && strcmp(unit, "-") != 0) {
         hn_strbuf_printf(b, " [%s]", unit);
     }
+
+    // what is allowed
     if (choices) {
         cJSON_ArrayForEach(choice, choices) {
             hn_strbuf_printf(b, "%s%s", choice == choices->child ? ", one of " : " ",
@@ -94,6 +96,8 @@ static void put_option(hn_strbuf *b, const cJSON *option) {
         hn_strbuf_printf(b, ", %g to %g", hn_document_number(option, "min"),
                          hn_document_number(option, "max"));
     }
+
+    // what it is if nothing is said
     if (cJSON_IsString(initial)) {
         hn_strbuf_printf(b, "; default %s\n", initial->valuestring);
     } else if (cJSON_IsNumber(initial)) {

@@ -5,23 +5,33 @@ hn_http_opts hn_http_opts_default(void) {
     return (hn_http_opts){.host = "127.0.0.1",
                           .port = 8080,
                           .next_ports = 20,
+
+                          // places of connections, sessions and studies
                           .max_connections = 1024,
                           .max_comparisons = 96,
                           .max_studies = 2,
                           .max_streams = 512,
                           .client_share = 0.5,
+
+                          // workers and their queues
                           .pool = 3,
                           .queue = 32,
                           .quick_pool = 2,
+
+                          // sizes of what is kept and sent
                           .max_events = 20000,
                           .max_body = 1 << 20,
                           .max_event_bytes = 32 << 20,
                           .max_unread = 256 << 20,
                           .max_samples = 100000,
                           .max_numbers = 4000000,
+
+                          // computing time
                           .max_duration = 3600,
                           .max_run_cpu = 20,
                           .frame_cpu = 2,
+
+                          // waiting [s]
                           .idle_pause = 60,
                           .expiry = 900,
                           .orphan_expiry = 60,

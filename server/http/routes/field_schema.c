@@ -38,6 +38,7 @@ static void put_choices(hn_strbuf *b, const hn_field *f) {
 
 static void put_field_type(hn_strbuf *b, const hn_field *f) {
     switch (f->type) {
+    // a name or a whole scene; numbers by name
     case HN_FIELD_SCENE:
         hn_json_key(b, "type");
         hn_json_raw(b, "[\"string\",\"object\"]");
@@ -47,6 +48,8 @@ static void put_field_type(hn_strbuf *b, const hn_field *f) {
         hn_json_key(b, "additionalProperties");
         hn_json_raw(b, "{\"type\":\"number\"}");
         break;
+
+    // values
     case HN_FIELD_NUMBER:
     case HN_FIELD_INTEGER:
         put_number_field(b, f);
@@ -57,6 +60,8 @@ static void put_field_type(hn_strbuf *b, const hn_field *f) {
     case HN_FIELD_TEXT:
         put_type(b, "string");
         break;
+
+    // lists and choices
     case HN_FIELD_TEXTS:
         put_items(b, f, "string");
         break;

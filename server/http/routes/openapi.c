@@ -264,6 +264,7 @@ static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) 
 /// 1 when a request to this route may be answered so.
 static int may_answer(const hn_route *route, hn_http_problem kind) {
     switch (kind) {
+    // the address and the body
     case HN_PROBLEM_NOT_FOUND:
         return strchr(route->path, '{') != NULL;
     case HN_PROBLEM_BAD_JSON:
@@ -274,6 +275,8 @@ static int may_answer(const hn_route *route, hn_http_problem kind) {
         return route->fields != NULL || route->query != NULL;
     case HN_PROBLEM_NOT_ACCEPTABLE:
         return route->schema != NULL;
+
+    // places that are taken, and who may ask
     case HN_PROBLEM_CONFLICT:
         return route->work == HN_WORK_OWN || strstr(route->path, "/samples") != NULL;
     case HN_PROBLEM_BUSY:

@@ -65,6 +65,8 @@ static void *work(void *arg) {
     hn_study_result result = {0};
     hn_strbuf_init(&result.document);
     hn_strbuf_init(&result.report);
+
+    // the computation
     hn_study_work_run(&s->work, all->opts->max_run_cpu, &result);
     if (result.document.failed || result.report.failed) {
         result.state = HN_STUDY_FAILED;
@@ -74,11 +76,15 @@ static void *work(void *arg) {
         hn_strbuf_reset(&result.document);
         hn_strbuf_reset(&result.report);
     }
+
+    // the result, with the lock held
     pthread_mutex_lock(&all->lock);
     s->result = result;
     s->done = 1;
     s->ended = s->touched = hn_clock_wall();
     pthread_mutex_unlock(&all->lock);
+
+    // one thread less
     release(s);
     pthread_mutex_lock(&all->lock);
     all->n_threads--;
@@ -120,6 +126,8 @@ static void put_study(hn_strbuf *b, const study *s) {
     const hn_job_request *r = &s->work.request;
     char self[64];
     snprintf(self, sizeof self, "/api/v1/studies/%s", s->id);
+
+    // how it stands
     hn_json_object(b);
     hn_json_put_string(b, "id", s->id);
     hn_json_put_string(b, "kind", s->work.kind->name);
@@ -128,11 +136,15 @@ static void put_study(hn_strbuf *b, const study *s) {
     hn_json_put_string(b, "hint", s->result.hint);
     put_progress(b, s);
     hn_json_put_number(b, "time_limit_s", r->limits.time_limit);
+
+    // what was asked
     hn_json_put_string(b, "scene", hn_model_scene(s->work.model)->id);
     hn_json_key(b, "parameters");
     hn_scene_request_settings_json(b, &s->work.scene);
     hn_json_key(b, "methods");
     hn_json_strings(b, r->methods, (size_t)r->n_methods);
+
+    // what came of it
     hn_json_key(b, "document");
     hn_json_raw(b, s->result.document.n ? hn_strbuf_text(&s->result.document) : "null");
     hn_json_key(b, "links");
@@ -298,6 +310,8 @@ static study *find_study(hn_request *r) {
     hn_studies *all = r->context->studies;
     study *found = NULL, *dead[HN_STUDIES_KEPT];
     int n_dead = 0;
+
+    // with the lock held: what is too old goes, the rest is listed
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
     for (int i = 0; i < all->n && !found; i++) {
@@ -334,6 +348,8 @@ void hn_handle_studies_list(hn_request *r) {
     hn_json_object(&b);
     hn_json_key(&b, "studies");
     hn_json_array(&b);
+
+    // with the lock held: what is too old goes, the rest is listed
     pthread_mutex_lock(&all->lock);
     expire(all, dead, &n_dead);
     for (int i = 0; i < all->n; i++) {
@@ -344,6 +360,7 @@ void hn_handle_studies_list(hn_request *r) {
         hn_json_end_object(&b);
     }
     pthread_mutex_unlock(&all->lock);
+
     free_all(dead, n_dead);
     hn_json_end_array(&b);
     hn_json_end_object(&b);
@@ -356,6 +373,8 @@ void hn_handle_studies_create(hn_request *r) {
     if (!reserve(all, r)) {
         return;
     }
+
+    // the request, read and checked
     study *s = calloc(1, sizeof *s);
     hn_status status = HN_ERR_MEMORY;
     if (s) {
@@ -367,6 +386,8 @@ void hn_handle_studies_create(hn_request *r) {
     if (status == HN_OK) {
         status = start(all, s);
     }
+
+    // what cannot be computed gives its place back
     if (status != HN_OK) {
         free_study(s);
         give_back(all);

@@ -41,12 +41,18 @@ static void keep_share(void *user, const char *part, double share) {
 static hn_status read_fields(hn_study_work *w, const cJSON *body, const hn_http_opts *opts,
                              hn_diags *diags) {
     w->kind = hn_job_kind_find(hn_fields_text(body, "kind"));
+
+    // the body without what is read elsewhere
     w->body = cJSON_Duplicate(body, 1);
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "scene");
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "parameters");
     cJSON_DeleteItemFromObjectCaseSensitive(w->body, "kind");
+
+    // the fields of the kind
     HN_TRY(hn_job_check(w->kind, w->body, true, diags));
     HN_TRY(hn_job_request_read(&w->request, w->body, w->kind->fields, diags));
+
+    // the bounds of this server
     double *limit = &w->request.limits.time_limit;
     *limit = isnan(*limit) ? opts->max_run_cpu : *limit;
     if (!(*limit > 0 && *limit <= opts->max_run_cpu)) {
