@@ -254,8 +254,8 @@ class CommandLine(unittest.TestCase):
         run = strict(self.assert_exit(call("run", "four-bar", "--method", "index1@euler:h=0.5", "--time", "500", "--json"), ENDED))
         self.assertTrue(run["reason"])
         # a sample between two steps finds the end before the next step does
-        run = strict(self.assert_exit(call("run", "parallelogram", "--method", "reduced@rk4:h=1e-2", "--time", "1", "--json"), ENDED))
-        self.assertIn("other assembly mode", run["reason"])
+        run = strict(self.assert_exit(call("run", "four-bar", "--set", "l2=1.55", "--method", "reduced@rk4:h=1e-2", "--time", "1", "--json"), ENDED))
+        self.assertIn("cannot be closed with this value", run["reason"])
         self.assertEqual(run["incidents"][-1]["code"], "chart-lost")
 
     def test_compare_prints_a_row_for_each_method(self):

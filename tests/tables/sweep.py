@@ -1,30 +1,43 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: sweep.py PROGRAM [SCENE...]
-# Every shipped scene over the ranges of its sliders, by every method that the scene suggests: which runs end early, and why.
-#
-# Settings of a scene: its own; each slider alone at its ends and in the middle (logarithmic where the range spans
-# two decades); and RANDOM settings with all sliders at once. A setting whose loops cannot be closed is counted apart.
-#
-# A run that ends early is explained when
-#   step           the same method ends later, or not at all, with a step SMALLER times as small
-#   chart          the method keeps one set of coordinates for the whole run, and says that these no longer determine the rest
-#   drift          an unstabilised method (index1) lets its loops open: at this speed rounding alone drives them apart
-#   configuration  every other method ends there too, with a step SMALLER times as small: the mechanism cannot go on
-# and unexplained otherwise. Prints a line for each scene, then one for each run that ended; exit status 1 if any is unexplained.
+"""Every shipped scene over the ranges of its sliders, by every method that it suggests: which runs end early, and why.
+
+usage: sweep.py PROGRAM [SCENE...]   (make sweep keeps the table in tests/tables/sweep.txt)
+
+Settings of a scene: its own; each slider alone at its ends and in the middle (logarithmic where the range spans two
+decades); corners, every slider at one of its ends; and random settings with all sliders at once. A setting whose loops
+cannot be closed is counted apart. A sweep that was broken off goes on where it was: build/sweep.jsonl holds what this
+very program has done.
+
+A run that ends early is explained when
+  step           the same method ends later, or not at all, with a step 16 or 256 times as small
+  chart          the method keeps one set of coordinates for the whole run, and says that these no longer determine the rest
+  drift          an unstabilised method (index1) lets its loops open: at this speed rounding alone drives them apart
+  configuration  every other method ends there too, with a step 16 times as small: the mechanism cannot go on
+  singular       the method needs independent coordinates, and says that the run ended at a singular configuration
+and unexplained otherwise. Prints a line for each scene, then one for each run that ended; exit status 1 if any is unexplained.
+"""
+
+import hashlib
 import json
+import os
 import random
 import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Lock
 
-LONGEST = 2.0  # [s] of motion
-TOO_LONG = 20  # [s] for one run
-RANDOM = 3
-SMALLER = 16
+LONGEST = 1.0  # [s] of motion
+LONGEST_OF_MANY = 0.1  # [s] where a slider counts loops
+TOO_LONG = 120  # [s] for one run
+CORNERS = 4
+RANDOM = 4
+SMALLER = (16, 256)
 OTHERS = ("projection@rk4", "ggl@radau5", "nullspace@rk4")
 REFUSED = 2  # exit status where the setting itself is at fault
+KINDS = ("step", "chart", "singular", "drift", "configuration", "UNEXPLAINED")
+DONE = Path("build/sweep.jsonl")
 
 
 def scenes(names):
@@ -55,12 +68,14 @@ def settings(name, scene):
     for slider, p in sliders(scene):
         for share in (0, 0.5, 1):
             yield {slider: between(p, share)}
+    for _ in range(CORNERS):
+        yield {slider: between(p, chance.randrange(2)) for slider, p in sliders(scene)}
     for _ in range(RANDOM):
         yield {slider: between(p, chance.random()) for slider, p in sliders(scene)}
 
 
 def run(program, scene, setting, method, duration):
-    words = [program, "run", scene, "--method", method, "--time", f"{duration:g}", "--every", f"{duration:g}", "--json"]
+    words = [program, "run", scene, "--no-native", "--method", method, "--time", f"{duration:g}", "--every", f"{duration:g}", "--json"]
     for name, value in setting.items():
         words += ["--set", f"{name}={value:g}"]
     try:
@@ -72,70 +87,95 @@ def run(program, scene, setting, method, duration):
     return json.loads(done.stdout)
 
 
-def finer(method, scene):
+def finer(method, times):
     if "rtol=" in method:
-        return re.sub(r"rtol=([0-9.e+-]+)", lambda m: f"rtol={float(m[1]) / 1e3:g}", method)
-    return re.sub(r"([:,])h=([0-9.e+-]+)", lambda m: f"{m[1]}h={float(m[2]) / SMALLER:g}", method)
+        return re.sub(r"rtol=([0-9.e+-]+)", lambda m: f"rtol={float(m[1]) / times:g}", method)
+    return re.sub(r"([:,])h=([0-9.e+-]+)", lambda m: f"{m[1]}h={float(m[2]) / times:g}", method)
 
 
 def explain(program, name, scene, setting, method, duration, told):
-    """step, chart, drift, configuration, or UNEXPLAINED"""
+    """one of KINDS"""
     if told["status"] == "chart-lost" and method.startswith("reduced"):
         return "chart"
     reached = told["t_reached"]
-    again = run(program, name, setting, finer(method, scene), duration)
-    if again and (again["status"] == "ok" or again["t_reached"] > 1.2 * reached + 1e-9):
-        return "step"
+    further = min(duration, 1.25 * reached + 0.02)  # a short way past the end is enough
+    for times in SMALLER:
+        again = run(program, name, setting, finer(method, times), further)
+        if again and (again["status"] == "ok" or again["t_reached"] > 1.2 * reached + 1e-9):
+            return "step"
+    if told["status"] == "chart-lost" and "singular" in told["reason"]:
+        return "singular"
     if method.startswith("index1") and told["status"] == "diverged":
         return "drift"
     step = scene["step"] if isinstance(scene.get("step"), float) else duration / 2000
-    step /= SMALLER
+    step /= SMALLER[0]
     for other in OTHERS:
         how = "rtol=1e-9" if other.endswith("radau5") else f"h={step:g}"
-        further = run(program, name, setting, f"{other}:{how}", duration)
-        if further and (further["status"] == "ok" or further["t_reached"] > 1.05 * reached + 0.02):
+        beyond = run(program, name, setting, f"{other}:{how}", further)
+        if beyond and (beyond["status"] == "ok" or beyond["t_reached"] > 1.05 * reached + 0.02):
             return "UNEXPLAINED"
     return "configuration"
 
 
-def sweep(program, name, scene):
-    duration = min(scene.get("duration", LONGEST), LONGEST)
-    counts = {"settings": 0, "open": 0, "runs": 0}
+def sweep(program, name, scene, setting):
+    """what came of one setting: "open" where its loops cannot be closed, else the runs that ended"""
+    many = any(p.get("integer") for _, p in sliders(scene))
+    duration = min(scene.get("duration", LONGEST), LONGEST_OF_MANY if many else LONGEST)
+    if run(program, name, setting, scene["methods"][0], 1e-9) is None:
+        return {"open": 1, "runs": 0, "ended": []}
     ended = []
-    for setting in settings(name, scene):
-        counts["settings"] += 1
-        if run(program, name, setting, scene["methods"][0], 1e-9) is None:
-            counts["open"] += 1
-            continue
-        for method in scene["methods"]:
-            counts["runs"] += 1
-            told = run(program, name, setting, method, duration)
-            if told["status"] != "ok":
-                why = explain(program, name, scene, setting, method, duration, told)
-                given = " ".join(f"{k}={v:g}" for k, v in setting.items()) or "as it is"
-                ended.append((why, f"  {why:13} {name} {given}: {method} {told['status']} {told['reason']}"))
-    return name, counts, ended
+    for method in scene["methods"]:
+        told = run(program, name, setting, method, duration)
+        if told["status"] != "ok":
+            why = explain(program, name, scene, setting, method, duration, told)
+            given = " ".join(f"{k}={v:g}" for k, v in setting.items()) or "as it is"
+            ended.append((why, f"{name} {given}: {method} {told['status']} {told['reason']}"))
+    return {"open": 0, "runs": len(scene["methods"]), "ended": ended}
+
+
+def sweep_all(program, tasks):
+    """the results by (scene, number of its setting); those of this very program that are kept already are read"""
+    with open(program, "rb") as binary:
+        version = hashlib.sha256(binary.read()).hexdigest()[:16]
+    kept = [json.loads(line) for line in DONE.read_text().splitlines()] if DONE.exists() else []
+    results = {tuple(one["key"]): one["result"] for one in kept if one["version"] == version and one["limits"] == [LONGEST, CORNERS, RANDOM]}
+    lock = Lock()
+
+    def work(key, scene, setting):
+        if key in results:
+            return
+        result = sweep(program, key[0], scene, setting)
+        with lock, DONE.open("a") as file:
+            results[key] = result
+            file.write(json.dumps({"version": version, "limits": [LONGEST, CORNERS, RANDOM], "key": key, "result": result}) + "\n")
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda task: work(*task), tasks))
+    return results
 
 
 def main():
+    os.nice(10)
     program = sys.argv[1]
-    tasks = list(scenes(sys.argv[2:]))
-    kinds = ("step", "chart", "drift", "configuration", "UNEXPLAINED")
-    print(f"Every shipped scene over its sliders, by the methods that it suggests, {LONGEST:g} s or the scene's time where shorter\n")
-    print("scene                   settings  cannot close  runs  ended:  step  chart  drift  configuration  unexplained")
-    ends = []
-    with ThreadPoolExecutor(2) as pool:
-        for name, counts, ended in pool.map(lambda task: sweep(program, *task), tasks):
-            n = [sum(1 for why, _ in ended if why == kind) for kind in kinds]
-            print(
-                f"{name:23} {counts['settings']:8} {counts['open']:13} {counts['runs']:5} {len(ended):6}"
-                f" {n[0]:6} {n[1]:6} {n[2]:6} {n[3]:14} {n[4]:12}",
-                flush=True,
-            )
-            ends += ended
+    all_scenes = list(scenes(sys.argv[2:]))
+    tasks = [((name, n), scene, setting) for name, scene in all_scenes for n, setting in enumerate(settings(name, scene))]
+    results = sweep_all(program, tasks)
+
+    print(f"# every shipped scene over its sliders, by the methods that it suggests, {LONGEST:g} s or the scene's time where shorter")
+    print("scene                   settings  cannot close  runs  ended:  step  chart  singular  drift  configuration  unexplained")
+    ends, total = [], [0] * 10
+    for name, _ in all_scenes + [("all", None)]:
+        mine = [result for key, result in results.items() if key[0] == name]
+        ended = [one for result in mine for one in result["ended"]]
+        row = [len(mine), sum(r["open"] for r in mine), sum(r["runs"] for r in mine), len(ended)]
+        row += [sum(1 for why, _ in ended if why == kind) for kind in KINDS]
+        row = total if name == "all" else row
+        print(f"{name:23} {row[0]:8} {row[1]:13} {row[2]:5} {row[3]:6} {row[4]:6} {row[5]:6} {row[6]:9} {row[7]:6} {row[8]:14} {row[9]:12}")
+        total = [a + b for a, b in zip(total, row)]
+        ends += sorted(ended, key=lambda end: end[1])
     print("\nruns that ended early")
-    for _, line in ends:
-        print(line)
+    for why, line in ends:
+        print(f"  {why:13} {line}")
     return 1 if any(why == "UNEXPLAINED" for why, _ in ends) else 0
 
 

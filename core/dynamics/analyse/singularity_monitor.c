@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/analyse/singularity_monitor.h"
 
-#include "dynamics/analyse/pilot.h"
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/factor.h"
 #include "linalg/dense.h"
@@ -357,6 +356,10 @@ double hn_singularity_probe(hn_singularity *r, double t, const double *q) {
 
 const double *hn_singularity_scale(const hn_singularity *r) {
     return r->d;
+}
+
+hn_pilot *hn_singularity_pilot(hn_singularity *r) {
+    return r->pilot;
 }
 
 // ---- what waits there ----

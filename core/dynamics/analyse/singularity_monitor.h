@@ -22,6 +22,7 @@
 // Source: Gosselin & Angeles 1990; Golub & Van Loan 2013, section 8.2.
 
 #include "base/arena.h"
+#include "dynamics/analyse/pilot.h"
 #include "dynamics/compile/system.h"
 
 typedef enum hn_branches {
@@ -66,6 +67,8 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
 double hn_singularity_probe(hn_singularity *r, double t, const double *q);
 /// D of the last look (nv): velocities divided by it compare [1 / sqrt(kg) or 1 / (m sqrt(kg))].
 const double *hn_singularity_scale(const hn_singularity *r);
+/// The pilot run that the monitor uses during its checks; free for others between them.
+hn_pilot *hn_singularity_pilot(hn_singularity *r);
 /// What is known of the pose that the last look or probe saw with this `sigma_min`, from all
 /// singular values (dense: for poses that are reported).
 void hn_singularity_pose_at(hn_singularity *r, double t, const double *q, double sigma_min,

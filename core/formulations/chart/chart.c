@@ -11,7 +11,8 @@
 #include <string.h>
 
 enum { MAX_NEWTON = 25 };
-static const double FLOOR = 1e-11; // ||phi|| / length: what rounding can leave open, generously
+static const double STRAIGHT = 0.5; // a basis that changes by less of its size has gone on smoothly
+static const double FLOOR = 1e-11;  // ||phi|| / length: what rounding can leave open, generously
 
 static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv;
@@ -142,8 +143,24 @@ int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *p, double t, con
     return p->valid && p->t == t && memcmp(p->q, q, (size_t)chart->nq * sizeof *q) == 0;
 }
 
+// A basis that goes on smoothly while det J_d changes its sign: by Cramer's rule the determinants
+// of all other choices changed theirs too. Then it was J that lost rank on the way, and the motion
+// went straight on; where J_d alone did, the basis passed through infinity.
+static bool went_straight_on(const hn_chart *chart) {
+    double change = 0, size = 0;
+    for (int i = 0; i < chart->nv; i++) {
+        for (int j = 0; j < chart->r; j++) {
+            const double old = chart->base.N[i * chart->r + j] / chart->scale[i];
+            change = hypot(change, chart->here.N[i * chart->r + j] / chart->scale[i] - old);
+            size = hypot(size, old);
+        }
+    }
+    return change < STRAIGHT * size;
+}
+
 hn_status hn_chart_check_mode(hn_chart *chart) {
-    if (chart->base.valid && chart->base.sign * chart->here.sign < 0) {
+    const bool turned = chart->base.valid && chart->base.sign * chart->here.sign < 0;
+    if (turned && !went_straight_on(chart)) {
         chart->here.valid = 0;
         return hn_chart_fail_end(
             chart, chart->here.t, chart->here.q,
@@ -157,6 +174,8 @@ hn_status hn_chart_settle(hn_chart *chart) {
     const size_t nv = (size_t)chart->nv, r = (size_t)chart->r;
     const hn_chart_point *from = &chart->here;
     hn_chart_point *to = &chart->base;
+    const double h = from->t - to->t;
+    const bool follows = to->valid && chart->is_measured && h != 0;
     HN_TRY(hn_chart_check_mode(chart));
     memcpy(to->q, from->q, (size_t)chart->nq * sizeof(double));
     memcpy(to->s, from->s, nv * sizeof(double));
@@ -170,6 +189,12 @@ hn_status hn_chart_settle(hn_chart *chart) {
         chart->volume_start = hn_chart_log_volume(chart, from);
         chart->is_measured = 1;
     }
+
+    // how fast the volume of J_d changes
+    const double volume = hn_chart_volume(chart);
+    chart->volume_rate = follows ? (volume - chart->volume) / h : 0;
+    chart->has_rate = follows;
+    chart->volume = volume;
     return HN_OK;
 }
 

@@ -20,6 +20,9 @@
     1e-3 // smallest pivot of J against its largest: below, the pose is to blame and not the choice
 #define DEAD_POINT 1e-6 // of the best volume: the coordinate asked for cannot serve
 #define GAIN 1.01       // a change of columns that gains less is not worth it
+#define BETTER 1.2      // a chart near its end is left for one better by this factor
+#define STEPS_AHEAD \
+    2 // |det J_d| is nearly linear in t there; twice the step leaves room for its bend
 #define INDEPENDENT_TOL \
     1e-3 // residual of a column, relative to its length, that still counts as a new direction
 
@@ -182,6 +185,7 @@ static void begin(hn_chart *chart) {
     hn_chart_set_columns(chart);
     chart->here.valid = chart->probe.valid = chart->base.valid = 0;
     chart->is_measured = 0;
+    chart->has_rate = false;
 }
 
 // the pair of columns whose exchange makes |det J_d| largest, and by how much
@@ -364,12 +368,17 @@ hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const ch
     return HN_ERR_CHART;
 }
 
-int hn_chart_is_poor(hn_chart *chart, double tau) {
+bool hn_chart_nears_end(const hn_chart *chart, double h) {
+    return chart->has_rate && chart->volume + STEPS_AHEAD * h * chart->volume_rate < 0;
+}
+
+int hn_chart_is_poor(hn_chart *chart, double h, double tau) {
     int k, j;
     if (chart->rank <= 0 || chart->r == 0) {
         return 0;
     }
     const double gain = best_exchange(chart, &chart->here, &k, &j);
     chart->cost.ops += 3.0 * chart->rank * chart->r;
-    return gain * tau > 1 && gain > 2;
+    return (gain * tau > 1 && gain > 2) ||
+           (tau > 0 && gain > BETTER && hn_chart_nears_end(chart, h));
 }

@@ -56,8 +56,11 @@ typedef struct hn_chart {
     double pivot_start;
     int is_measured;     ///< the next two belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
-    double length;       ///< characteristic length [m]
-    hn_dyads *dyads;     ///< borrowed: loops are closed by these formulas; NULL: by Newton's method
+    /// |det J_d| against that at the last accepted state, and its rate where has_rate is set
+    double volume, volume_rate;
+    bool has_rate;
+    double length;   ///< characteristic length [m]
+    hn_dyads *dyads; ///< borrowed: loops are closed by these formulas; NULL: by Newton's method
     hn_cost cost;
     char why[HN_CHART_TEXT];
 } hn_chart;

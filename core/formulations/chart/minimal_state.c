@@ -8,8 +8,6 @@
 
 // accepted steps over which HN_POSITION_AUTO counts what Newton's method costs
 enum { STEPS_MEASURED = 8 };
-#define STEPS_AHEAD \
-    2 // |det J_d| is nearly linear in t there; twice the step leaves room for its bend
 
 hn_status hn_minimal_init(hn_minimal_state *s, const hn_system *sys, hn_arena *arena,
                           hn_diag *diag) {
@@ -172,8 +170,6 @@ static hn_status settle_in(hn_minimal_state *s, double t, double *y) {
     }
     hn_status status = hn_chart_settle(chart);
     hn_chart_speeds(chart, &chart->here, y + chart->r, s->last_v);
-    s->volume = 1;
-    s->has_rate = 0;
     return status;
 }
 
@@ -221,7 +217,7 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
 static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
     const hn_chart *chart = &s->chart;
     double along = 0;
-    if (chart->r == 0 || !s->has_rate || s->volume + STEPS_AHEAD * h * s->volume_rate >= 0) {
+    if (chart->r == 0 || !hn_chart_nears_end(chart, h)) {
         return 0;
     }
     for (int i = 0; i < chart->nv; i++) {
@@ -268,13 +264,9 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
             "a dead point lies inside this step: the coordinate turns back there");
     }
 
-    // note how fast the volume of J_d changes, for the next step's check
+    // the velocities, for the next step's check
     hn_status status = hn_chart_settle(chart);
     if (status == HN_OK && h != 0) {
-        const double volume = hn_chart_volume(chart);
-        s->volume_rate = (volume - s->volume) / h;
-        s->volume = volume;
-        s->has_rate = 1;
         memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
     }
 

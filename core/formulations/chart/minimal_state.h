@@ -29,9 +29,7 @@ typedef struct hn_minimal_state {
     hn_arena *arena;
     double *q, *v; ///< nq, nv, scratch
     // at the last accepted state, for seeing a dead point that lies inside a step
-    double *last_v;             ///< nv
-    double volume, volume_rate; ///< |det J_d|, and its change per second
-    int has_rate;
+    double *last_v; ///< nv
 } hn_minimal_state;
 
 /// Closed forms add nodes to the system's graph when the state is set (dynamics/compile/system.h

@@ -184,12 +184,13 @@ hn_status hn_tangent_get_state(void *self, double t, const double *y, double *q,
 hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
     hn_tangent_state *s = self;
     hn_chart *chart = &s->chart;
+    const double h = t - chart->base.t;
     *changed = hn_system_normalise(chart->sys, y) || chart->nc > 0;
     hn_status status = close_here(s, t, y);
     if (status == HN_OK) {
         status = hn_chart_settle(chart);
     }
-    if (status != HN_OK || !hn_chart_is_poor(chart, HN_CHART_TAU)) {
+    if (status != HN_OK || !hn_chart_is_poor(chart, h, HN_CHART_TAU)) {
         return status;
     }
     chart->cost.chart_changes++;

@@ -30,8 +30,9 @@ static hn_status after_step(void *self, double t, double *y, int *changed) {
     hn_minimal_state *s = &p->state;
     hn_chart *chart = &s->chart;
     *changed = 0;
+    const double h = t - chart->base.t;
     const hn_status status = hn_minimal_settle(s, t, y);
-    if (status != HN_OK || !hn_chart_is_poor(chart, p->tau)) {
+    if (status != HN_OK || !hn_chart_is_poor(chart, h, p->tau)) {
         return status;
     }
     // the chosen coordinates near their dead point: others take over, with the state as it is

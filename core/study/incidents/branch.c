@@ -88,7 +88,10 @@ static void finish_passing(hn_watch *w, double angle) {
     if (angle == HUGE_VAL) {
         hn_incident_append(&w->log, i, "; the steps are too long to say which way the run went on");
     } else if (angle > HN_RUN_WARN_TURN) {
-        hn_incident_append(&w->log, i, "; the run turned off there by %.2g rad", angle);
+        hn_incident_append(&w->log, i,
+                           w->heading.explained ? "; the motion turns there by %.2g rad"
+                                                : "; the run turned off there by %.2g rad",
+                           angle);
     } else {
         hn_incident_append(&w->log, i, "; the run went straight on");
     }
@@ -101,7 +104,7 @@ static void check_direction(hn_watch *w) {
     if (angle < 0) {
         return;
     }
-    if (angle < HUGE_VAL && angle > HN_RUN_WARN_TURN) {
+    if (angle < HUGE_VAL && angle > HN_RUN_WARN_TURN && !w->heading.explained) {
         hn_incident_report(
             w, &hn_incident_branch_flip, "turn", angle, HN_RUN_WARN_TURN,
             passed ? "the run came out of a singular configuration on another branch: its "

@@ -18,7 +18,8 @@ static const double RANGE = 0.35; // and from here on they are compared
 static const double CHANGE = 0.5; // a continuation that changes the heading by more says nothing
 static const double INSIDE =
     0.02; // of the largest sigma_min: an isolated configuration is left at once
-static const double WANDER = 0.3; // of the length, in the loops' own displacement
+enum { PILOT_FINER = 8, PILOT_MOST = 400 }; // steps of the pilot run: in one of the run, in all
+static const double WANDER = 0.3;           // of the length, in the loops' own displacement
 
 hn_status hn_heading_create(hn_watch *w) {
     hn_heading_record *r = &w->heading;
@@ -28,6 +29,8 @@ hn_status hn_heading_create(hn_watch *w) {
         headings[i]->e = hn_arena_doubles(arena, (size_t)w->run->info.nv + 1);
     }
     r->entered = hn_arena_doubles(arena, (size_t)w->run->info.nq);
+    r->outside.q = hn_arena_doubles(arena, (size_t)w->run->info.nq);
+    r->outside.v = hn_arena_doubles(arena, (size_t)w->run->info.nv);
     r->smooth = hn_arena_doubles(arena, (size_t)w->run->info.nv + 1);
     return hn_arena_failed(arena) ? HN_ERR_MEMORY : HN_OK;
 }
@@ -100,6 +103,37 @@ static bool is_suspect(const hn_watch *w) {
            hn_motion_unexplained(w, way) > HN_RUN_WARN_JUMP;
 }
 
+/// Links that all but line up turn fast without leaving their branch. A pilot run with finer steps
+/// from where the last direction was taken tells that from a jump: it arrives at the present one.
+static bool is_explained(hn_watch *w) {
+    hn_heading_record *r = &w->heading;
+    hn_pilot *pilot = hn_singularity_pilot(w->singular.monitor);
+    const double *scale = hn_singularity_scale(w->singular.monitor);
+    const int n = w->run->info.nv;
+    const double span = w->run->now.t - r->outside.t;
+    const int steps = (int)fmin(PILOT_MOST, ceil(PILOT_FINER * span / w->run->h));
+    double *e = r->smooth;
+
+    hn_pilot_start(pilot, r->outside.t, r->outside.q, r->outside.v);
+    for (int k = 0; k < steps; k++) {
+        if (hn_pilot_step(pilot, span / steps) != HN_OK) {
+            return false;
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        e[i] = hn_pilot_v(pilot)[i] / scale[i];
+    }
+    align(n, r->now.e, e);
+    return angle_between(n, e, r->now.e) < HN_RUN_WARN_TURN;
+}
+
+static void keep_outside(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    w->heading.outside.t = s->now.t;
+    memcpy(w->heading.outside.q, s->now.q, (size_t)s->info.nq * sizeof(double));
+    memcpy(w->heading.outside.v, s->now.v, (size_t)s->info.nv * sizeof(double));
+}
+
 double hn_heading_check(hn_watch *w) {
     hn_heading_record *r = &w->heading;
     const int n = w->run->info.nv + 1;
@@ -119,6 +153,7 @@ double hn_heading_check(hn_watch *w) {
         }
         angle = change < CHANGE ? angle_between(n, r->smooth, r->now.e) : HUGE_VAL;
     }
+    r->explained = is_line && angle > HN_RUN_WARN_TURN && isfinite(angle) && is_explained(w);
 
     // the present one becomes the last
     const hn_heading spare = r->older;
@@ -126,6 +161,7 @@ double hn_heading_check(hn_watch *w) {
     r->last = r->now;
     r->now = spare;
     r->n += r->n < 2;
+    keep_outside(w);
     return angle;
 }
 

@@ -62,8 +62,11 @@ typedef struct hn_heading {
 typedef struct hn_heading_record {
     hn_heading older, last, now; ///< the first two away from singular configurations
     int n;
-    double fastest;  ///< largest scaled velocities so far
-    double *smooth;  ///< nv + 1: a heading continued
+    hn_state_at outside; ///< the state where `last` was taken
+    double fastest;      ///< largest scaled velocities so far
+    double *smooth;      ///< nv + 1: a heading continued
+    /// the accelerations lead from `outside`, where `last` was taken, to the present direction
+    bool explained;
     bool driven;     ///< the constraints move with time
     double *entered; ///< nq: where J all but lost rank, as long as it stays so
     int inside;      ///< it does: 1, 2 once that has been reported

@@ -64,9 +64,30 @@ static void a_prediction_that_did_not_come_true_is_withdrawn(void **state) {
     hn_model_close(&m);
 }
 
+// Links that all but line up turn by more than a radian within a few steps. That is the motion, as
+// the accelerations say, and no other branch.
+static void a_sharp_turn_is_no_other_branch(void **state) {
+    (void)state;
+    static const char *const methods[] = {"projection@rk4:h=0.005", "nullspace-tangent@rk4:h=0.005",
+                                          "projection@rk4:h=0.0025"};
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", "l2=0.859496 l3=0.625323");
+    for (int i = 0; i < 3; i++) {
+        hn_run *run = hn_motion_start(&m, methods[i]);
+        assert_int_equal(hn_run_advance(run, 5), HN_OK);
+        const hn_incident *flip = find(run, HN_INCIDENT_BRANCH_FLIP);
+        if (flip) {
+            fail_msg("%s: %s", methods[i], flip->message);
+        }
+        hn_run_free(run);
+    }
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounding_of_the_energy_is_no_drift),
+        cmocka_unit_test(a_sharp_turn_is_no_other_branch),
         cmocka_unit_test(a_prediction_that_did_not_come_true_is_withdrawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
