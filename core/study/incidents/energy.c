@@ -89,6 +89,7 @@ static void check_jump(hn_watch *w) {
 
 const hn_incident_kind hn_incident_energy_drift = {
     .code = HN_INCIDENT_ENERGY_DRIFT,
+    .each_step = true,
     .is_wrong = true,
     .spelling = "energy-drift",
     .name = "the energy drifted",
@@ -100,6 +101,7 @@ const hn_incident_kind hn_incident_energy_drift = {
 
 const hn_incident_kind hn_incident_energy_jump = {
     .code = HN_INCIDENT_ENERGY_JUMP,
+    .each_step = true,
     .is_wrong = true,
     .spelling = "energy-jump",
     .name = "the energy jumped",

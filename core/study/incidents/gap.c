@@ -20,6 +20,7 @@ static void check(hn_watch *w) {
 
 const hn_incident_kind hn_incident_gap_open = {
     .code = HN_INCIDENT_GAP_OPEN,
+    .each_step = true,
     .is_wrong = true,
     .spelling = "gap-open",
     .name = "the loop has opened",

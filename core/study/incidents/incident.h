@@ -73,6 +73,7 @@ typedef struct hn_incident_kind {
     /// Checks the state that the run has reached, and reports. NULL: reported at another moment (a
     /// chart that changes, the end of a run).
     void (*check)(hn_watch *w);
+    bool each_step;             ///< checked after every step, not only where a full check is due
     hn_remedy_rule remedies[4]; ///< what is offered, best first
     bool is_wrong;              ///< what the run shows from here on is wrong, or it ends
 } hn_incident_kind;

@@ -28,6 +28,7 @@ static void check(hn_watch *w) {
 
 const hn_incident_kind hn_incident_joint_limit = {
     .code = HN_INCIDENT_JOINT_LIMIT,
+    .each_step = true,
     .spelling = "joint-limit",
     .name = "a coordinate passed its limit",
     .rule = "A limit in a scene is watched, not enforced: no force holds the coordinate there.",

@@ -7,6 +7,7 @@
 #include "study/incidents/gap.h"
 #include "study/incidents/heading.h"
 #include "study/incidents/kinds.h"
+#include "study/incidents/motion.h"
 #include "study/incidents/stiffness.h"
 
 #include <math.h>
@@ -27,6 +28,7 @@ static hn_status create_memory(hn_watch *w) {
         *rows[i] = hn_arena_doubles(arena, nc);
     }
     w->singular.inside_q = hn_arena_doubles(arena, nq);
+    w->checked_q = hn_arena_doubles(arena, nq);
 
     const size_t limits = (size_t)hn_system_scene(w->run->sys)->n_coordinates + 1;
     w->beyond = hn_arena_get(arena, limits);
@@ -106,10 +108,6 @@ static void measure_present(hn_watch *w) {
         hn_energy_start(w);
     } else {
         hn_energy_record_state(w);
-        hn_crossing_check(w); // before the monitor sees the end of the step
-    }
-    if (s->info.nc > 0) {
-        measure_solution(w);
     }
     const double change = fabs(w->energy.last - w->energy.start);
     w->worst_gap = fmax(w->worst_gap, w->measure.gap);
@@ -117,17 +115,77 @@ static void measure_present(hn_watch *w) {
     w->worst_energy_change = fmax(w->worst_energy_change, change);
 }
 
-// ---- checking ----
+// ---- when the full check is due ----
 
-static void check_present(hn_watch *w) {
-    measure_present(w);
+/// The incidents whose end needs no full check, as bits of hn_incident_log.active.
+static unsigned find_own_pace(void) {
+    unsigned bits = 0;
     for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
         const hn_incident_kind *kind = hn_incident_kinds()[i];
-        if (kind->check) {
+        bits |= kind->each_step || !kind->check ? 1u << kind->code : 0;
+    }
+    return bits;
+}
+
+// Gap and energy are checked after every step. The rest costs as much as two steps of a small
+// mechanism: singular values, multipliers, branches, limits. Along a way of STRIDE they change by
+// less than what is reported, so in short steps they are checked once in that way. Near a singular
+// configuration, while something is reported, and after a step that the velocities do not explain,
+// they are checked after every step.
+static const double STRIDE = 0.01;      // of the length: sigma_min changes by 3 % of its largest
+static const double WELL = 0.4;         // sigma_min above this share of the largest so far is far
+static const double PIVOT_MARGIN = 1e2; // times the pivot ratio that is reported
+static const double UNEXPLAINED = 0.1;  // of a step's motion
+
+/// Whether the full check that has just been made is far from everything that is reported.
+static bool is_calm(const hn_watch *w) {
+    const hn_singular_record *s = &w->singular;
+    const double row = hn_motion_shortest_row(w);
+    return !s->passing && !s->announced && w->accel_status == HN_OK && !w->accel_info.fallback &&
+           w->accel_info.rank == w->start_rank && s->info.sigma_min > WELL * s->largest &&
+           row * row * w->accel_info.pivot_ratio > PIVOT_MARGIN * HN_RUN_WARN_PIVOT;
+}
+
+static bool is_full_check_due(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    const bool reported =
+        (w->log.active & ~w->own_pace) != 0 || w->singular.fallbacks != w->cost->fallbacks;
+    if (w->at_start || s->info.nc == 0 || !w->calm || reported) {
+        return true;
+    }
+    return hn_dot(s->info.nv, s->now.v, s->before.v) < 0 ||
+           hn_motion_way(w, w->checked_q, w->scratch) > STRIDE ||
+           hn_motion_unexplained(w, 0) > UNEXPLAINED;
+}
+
+// ---- checking ----
+
+static void check_kinds(hn_watch *w, bool full) {
+    for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
+        const hn_incident_kind *kind = hn_incident_kinds()[i];
+        if (kind->check && (full || kind->each_step)) {
             kind->check(w);
         }
     }
-    w->swiftest = fmax(w->swiftest, hn_norm_max(w->run->info.nv, w->run->now.v));
+}
+
+static void check_present(hn_watch *w) {
+    const hn_stepping *s = w->run;
+    measure_present(w);
+    const bool full = is_full_check_due(w);
+    if (full && s->info.nc > 0) {
+        if (!w->at_start) {
+            hn_crossing_check(w); // before the monitor sees the end of the step
+        }
+        measure_solution(w);
+        memcpy(w->checked_q, s->now.q, (size_t)s->info.nq * sizeof *w->checked_q);
+    }
+    check_kinds(w, full);
+    if (full) {
+        w->checks++;
+        w->calm = s->info.nc > 0 && !w->at_start && is_calm(w);
+    }
+    w->swiftest = fmax(w->swiftest, hn_norm_max(s->info.nv, s->now.v));
 }
 
 static void forget(hn_watch *w) {
@@ -135,6 +193,9 @@ static void forget(hn_watch *w) {
     hn_incident_log_clear(&w->log);
     hn_heading_start(w);
     hn_singularity_reset(s->monitor);
+    w->own_pace = find_own_pace();
+    w->calm = false;
+    w->checks = 0;
     s->info = (hn_singularity_info){.ratio = 1, .ahead = HUGE_VAL, .predicted = -HUGE_VAL};
     s->largest = s->multiplier = 0;
     s->fallbacks = 0;

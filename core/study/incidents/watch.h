@@ -100,8 +100,14 @@ struct hn_watch {
     int diagnosed; ///< reports whose cause and remedies have been looked into
     bool at_start; ///< the start is being checked, no step has been made
 
-    // of the state checked last
+    // of the state measured last
     hn_measure measure;
+
+    // of the state checked in full last
+    double *checked_q; ///< nq
+    unsigned own_pace; ///< incidents that end without one, as bits of hn_incident_log.active
+    long long checks;  ///< full checks so far
+    bool calm;         ///< it found nothing that the next step has to be compared with
     hn_status accel_status;
     hn_accel_info accel_info;
     double *a, *lambda; ///< nv, nc

@@ -39,6 +39,27 @@ static void the_flat_poses_of_a_parallelogram_are_told_twice_a_turn(void **state
     hn_model_close(&m);
 }
 
+static void short_steps_are_checked_in_full_now_and_then_and_nothing_is_missed(void **state) {
+    (void)state;
+    double t[HN_RUN_MAX_INCIDENTS];
+    hn_model m;
+    hn_model_open_closed(&m, "n-four-bar", "N=1");
+    hn_run *run = hn_motion_start(&m, "projection@rk4:h=2e-5");
+
+    // far from the flat pose: a way of 1 rad, a full check in each hundredth
+    (void)hn_motion_at(run, 0.2);
+    const long long checks = hn_run_watching(run)->checks;
+    assert_in_range(checks, 50, 400);
+    assert_true(15 * checks < hn_run_get_summary(run).steps);
+
+    // close to it: after every step
+    (void)hn_motion_at(run, 0.75);
+    assert_int_equal(told(run, HN_INCIDENT_NEAR_SINGULAR, t), 1);
+    assert_near(t[0], 0.70845, 0.0045);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 static void a_pose_in_the_middle_of_a_long_step_is_told_at_its_time(void **state) {
     (void)state;
     static const struct {
@@ -129,6 +150,7 @@ static void a_second_run_tells_the_same_as_the_first(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_flat_poses_of_a_parallelogram_are_told_twice_a_turn),
+        cmocka_unit_test(short_steps_are_checked_in_full_now_and_then_and_nothing_is_missed),
         cmocka_unit_test(a_pose_in_the_middle_of_a_long_step_is_told_at_its_time),
         cmocka_unit_test(with_several_loops_long_steps_tell_the_poses_that_short_ones_tell),
         cmocka_unit_test(mechanisms_that_keep_clear_are_told_nothing),
