@@ -239,6 +239,29 @@ class Stateless(driver.ServerCase):
         free = self.post("runs", {"scene": "pendulum", "method": METHODS[0], "time": 0.1}).json()
         self.assertNotIn("lambda_mark", free["samples"])
 
+    def test_a_mechanism_is_dragged_from_answer_to_answer(self):
+        body, state = {"scene": "four-bar", "coordinate": "th1"}, {}
+        for target in (1.5, 2.5, 3.5, 4.5):
+            dragged = self.post("drag", {**body, "target": [target], "state": state}).json()
+            state = dragged["state"]
+            self.assertEqual((dragged["end"], dragged["reason"]), ("reached", None))
+            self.assertAlmostEqual(state["th1"], target, 8)
+            self.assertLess(dragged["gap"], 1e-12)
+        # the state is one that the terms know, closed in position and velocity
+        terms = self.post("terms", {"scene": "four-bar", "state": state}).json()
+        self.assertLess(max(abs(x) for x in terms["phi"]), 1e-12)
+        # a point as far as the loops let it go, which is said
+        far = self.post("drag", {"scene": "four-bar", "point": 1, "target": [3, 4]}).json()
+        self.assertEqual((far["end"], far["reached"]), ("nearest", False))
+        self.assertAlmostEqual(far["distance"], 4.5, 6)
+        self.assertIn("no pose around here", far["reason"])
+        for wrong, place in ((body, "/target"), ({**body, "target": [1, 2]}, "/target"), ({**body, "point": 1, "target": [1]}, "/point"),
+                             ({"scene": "four-bar", "target": [1, 2]}, "/point"), ({"scene": "four-bar", "point": 99, "target": [1, 2]}, "/point"),
+                             ({"scene": "four-bar", "coordinate": "b3", "target": [1]}, "/coordinate"),
+                             ({**body, "target": [1], "state": {"th1": 1, "a2": 3, "th3": -2}}, "/state")):
+            document = self.assert_problem(self.post("drag", wrong, 422), 422)
+            self.assertEqual(document["errors"][0]["pointer"], place)
+
     def test_a_run_gives_raw_multipliers_when_asked_for(self):
         body = {"scene": "four-bar", "method": "index2@midpoint:h=0.01", "time": 0.1, "every": 0.05}
         self.assertNotIn("raw_lambda", self.post("runs", body).json()["samples"])

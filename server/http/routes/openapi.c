@@ -54,6 +54,18 @@ static const struct {
     {"Methods",
      "{\"type\":\"object\",\"required\":[\"formulations\",\"integrators\"],\"properties\":{"
      "\"formulations\":" OBJECTS ",\"integrators\":" OBJECTS "}}"},
+    {"Drag",
+     "{\"type\":\"object\",\"required\":[\"scene\",\"reached\",\"end\",\"reason\",\"distance\","
+     "\"gap\","
+     "\"state\",\"points\"],\"properties\":{\"scene\":" TEXT ",\"reached\":{\"type\":\"boolean\"},"
+     "\"end\":{\"enum\":[\"reached\",\"nearest\",\"time\",\"stuck\"]},"
+     "\"reason\":{\"type\":[\"string\",\"null\"]},\"distance_before\":{\"type\":\"number\"},"
+     "\"distance\":{\"type\":\"number\"},\"gap\":{\"type\":\"number\"},\"steps\":{\"type\":"
+     "\"integer\"},"
+     "\"cpu_seconds\":{\"type\":\"number\"},\"state\":{\"type\":\"object\",\"description\":\"every "
+     "free "
+     "coordinate and rate by name\",\"additionalProperties\":{\"type\":\"number\"}},"
+     "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "}}}"},
     {"Equations", "{\"type\":\"object\",\"properties\":{\"format\":" TEXT ",\"text\":" TEXT "}}"},
     {"Reference",
      "{\"type\":\"object\",\"required\":[\"scene\",\"scene_hash\",\"source\",\"time\",\"means\","

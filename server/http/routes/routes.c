@@ -47,6 +47,26 @@ static const hn_field TERMS[] = {
               "efforts along coordinates"},
     END_OF_FIELDS};
 
+static const hn_field DRAG[] = {
+    SCENE_FIELDS,
+    {.name = "state",
+     .type = HN_FIELD_BY_NAME,
+     .about = "coordinates and rates from which it is dragged, where they differ from the "
+              "assembled start: the state of the answer before"},
+    {.name = "point",
+     .type = HN_FIELD_INTEGER,
+     .min = 0,
+     .max = 1e6,
+     .about = "index among the points of the scene; or a coordinate"},
+    {.name = "coordinate", .type = HN_FIELD_TEXT, .about = "name of a coordinate; or a point"},
+    {.name = "target",
+     .type = HN_FIELD_NUMBERS,
+     .required = 1,
+     .min = 1,
+     .max = 3,
+     .about = "of a point [x, y] or [x, y, z] in the world [m], of a coordinate its value"},
+    END_OF_FIELDS};
+
 static const hn_field EQUATIONS[] = {SCENE_FIELDS,
                                      {.name = "format",
                                       .type = HN_FIELD_CHOICE,
@@ -273,6 +293,9 @@ static const hn_route ROUTES[] = {
     {"POST", "/api/v1/assemble", HN_WORK_HEAVY, hn_handle_assemble, SCENE_ONLY, JSON, "200",
      "Document", "Consistent starting values", NULL,
      "{\"scene\":\"four-bar\",\"parameters\":{\"l1\":0.6}}"},
+    {"POST", "/api/v1/drag", HN_WORK_QUICK, hn_handle_drag, DRAG, JSON, "200", "Drag",
+     "The closed pose that brings a point or a coordinate nearest to a target: 50 ms of computing",
+     NULL, "{\"scene\":\"four-bar\",\"coordinate\":\"th1\",\"target\":[1.2]}"},
     {"POST", "/api/v1/inspect", HN_WORK_HEAVY, hn_handle_inspect, SCENE_ONLY, JSON, "200",
      "Document", "Sizes, tree, loops, rank, operations kept and left out", NULL,
      "{\"scene\":\"four-bar\"}"},

@@ -10,12 +10,17 @@
 #include "session/compare/comparison.h"
 #include "session/compare/picture.h"
 #include "session/compare/run_doc.h"
+#include "session/export/export.h"
+#include "session/model/drag_json.h"
 #include "session/model/equations.h"
 #include "session/model/inspect_json.h"
 #include "session/model/model_json.h"
 #include "session/model/terms_json.h"
 
 #include <string.h>
+
+/// Computing time of one drag: a page asks many times a second.
+static const double DRAG_SECONDS = 0.05;
 
 /// Loads the scene that the body names; NULL with a problem as reply.
 static hn_model *load_model(hn_request *r, int allow_open) {
@@ -46,6 +51,19 @@ static void conclude(hn_request *r, hn_model *model, hn_status status, hn_strbuf
     }
 }
 
+/// Reads the coordinates and rates that differ from the start; NULL when memory is out.
+static hn_state_entry *read_state(const hn_request *r, int *n) {
+    const cJSON *state = cJSON_GetObjectItemCaseSensitive(r->json, "state"), *item;
+    hn_state_entry *entries = calloc((size_t)cJSON_GetArraySize(state) + 1, sizeof *entries);
+    *n = 0;
+    if (entries) {
+        cJSON_ArrayForEach(item, state) {
+            entries[(*n)++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
+        }
+    }
+    return entries;
+}
+
 void hn_handle_terms(hn_request *r) {
     hn_model *model = load_model(r, 0);
     if (!model) {
@@ -54,16 +72,10 @@ void hn_handle_terms(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_diags diags = {0};
-
-    // coordinates and rates that differ from the start
-    const cJSON *state = cJSON_GetObjectItemCaseSensitive(r->json, "state"), *item;
-    int n = 0;
-    hn_state_entry *entries = calloc((size_t)cJSON_GetArraySize(state) + 1, sizeof *entries);
+    int n;
+    hn_state_entry *entries = read_state(r, &n);
     hn_status status = entries ? HN_OK : HN_ERR_MEMORY;
     if (entries) {
-        cJSON_ArrayForEach(item, state) {
-            entries[n++] = (hn_state_entry){.name = item->string, .value = item->valuedouble};
-        }
         const double t = hn_fields_number(r->json, "t", 0);
         status = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(r->json, "reactions"))
                      ? hn_model_terms_json_with_reactions(&b, model, t, entries, n, &diags)
@@ -81,6 +93,48 @@ void hn_handle_assemble(hn_request *r) {
         hn_model_assembly_json(&b, model);
         conclude(r, model, HN_OK, &b, NULL);
     }
+}
+
+/// 1 when the body names one thing to drag; else the reply is a problem.
+static int names_one(hn_request *r) {
+    const int n =
+        cJSON_HasObjectItem(r->json, "point") + cJSON_HasObjectItem(r->json, "coordinate");
+    if (n != 1) {
+        hn_diags diags = {0};
+        const hn_status status =
+            hn_diags_add(&diags, HN_ERR_INPUT, "/point", "\"point\": 3, or \"coordinate\": \"th1\"",
+                         n ? "both a point and a coordinate were named: name one"
+                           : "what is dragged is not named: name a point or a coordinate");
+        hn_reply_diags(r, status, &diags);
+    }
+    return n == 1;
+}
+
+void hn_handle_drag(hn_request *r) {
+    hn_model *model = names_one(r) ? load_model(r, 0) : NULL;
+    if (!model) {
+        return;
+    }
+    double target[3];
+    const cJSON *item;
+    hn_drag_request request = {.coordinate = hn_fields_text(r->json, "coordinate"),
+                               .point = (int)hn_fields_number(r->json, "point", -1),
+                               .target = target,
+                               .seconds = DRAG_SECONDS};
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(r->json, "target")) {
+        target[request.n_target++] = item->valuedouble;
+    }
+
+    // from the state that the body gives
+    hn_state_entry *entries = read_state(r, &request.n_from);
+    request.from = entries;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_diags diags = {0};
+    const hn_status status =
+        entries ? hn_model_drag_json(&b, model, &request, &diags) : HN_ERR_MEMORY;
+    free(entries);
+    conclude(r, model, status, &b, &diags);
 }
 
 void hn_handle_inspect(hn_request *r) {

@@ -7,6 +7,7 @@ struct hn_request;
 
 void hn_handle_terms(struct hn_request *r);
 void hn_handle_assemble(struct hn_request *r);
+void hn_handle_drag(struct hn_request *r);
 void hn_handle_inspect(struct hn_request *r);
 void hn_handle_equations(struct hn_request *r);
 void hn_handle_snapshot(struct hn_request *r);
