@@ -50,12 +50,12 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
                       report:store,model,job,compare,references,precision,accounts,stability,extreme \
                       kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
-ROOMS_server       := grade: \
+ROOMS_server       := terminal: lesson:terminal grade:lesson \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
-                      http/routes:grade,http/ground,http/request,http/live,http/studies,http/runs \
-                      terminal: cli/shell:terminal tui:terminal,cli/shell \
-                      cli/commands:grade,cli/shell,http/ground,http/request,http/routes,terminal,tui \
+                      http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \
+                      cli/shell:terminal tui:terminal,cli/shell \
+                      cli/commands:grade,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:cli/shell cli:cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
@@ -78,7 +78,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-
 CFLAGS   := -std=c17 $(WARNINGS) -ffp-contract=off $(FLAGS_$(VARIANT)) -pthread
 CPPFLAGS := -D_DEFAULT_SOURCE -isystem /usr/include/libxml2 -isystem /usr/include/suitesparse -MMD -MP
 LDFLAGS  := $(FLAGS_$(VARIANT)) -pthread -Wl,--as-needed
-LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lpng -lz -lxml2 -lncursesw -ldl -lm
+LDLIBS   := -lmicrohttpd -lcjson -lgsl -lgslcblas -lsundials_ida -lsundials_sunlinsolklu -lklu -lbtf -lpng -lz -lxml2 -lmd4c -lncursesw -ldl -lm
 WRAP     := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free -Wl,-u,__wrap_calloc
 
 OUT     := build/$(VARIANT)
@@ -171,7 +171,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 
 # ---- what a bare Debian machine lacks -------------------------------------------------------------------------
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
-                 libxml2-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
+                 libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
                  slurmctld slurmd slurm-client munge parallel
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format

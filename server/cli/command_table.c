@@ -57,6 +57,8 @@ static const hn_command COMMANDS[] = {
     {"import", "FILE",
      "a scene from a MuJoCo MJCF or URDF file; what is not in it is told, with lines",
      "--out -o --loops --key", 1, 1, hn_command_import},
+    {"lesson", "N|ID", "a lesson to read: text, formulas, what to try, exercises", "", 1, 1,
+     hn_command_lesson},
     {"problem", "ID", "a problem's text", "", 1, 1, hn_command_problem},
     {"grade", "ID SUBMISSION...", "verdicts as --format text, json or gradescope; into --out DIR",
      "--format --out -o --seed", 2, HN_CLI_MAX_WORDS, hn_command_grade},

@@ -47,6 +47,7 @@ static const struct {
     {"import",
      {"import mechanism.xml -o scene.json", "import robot.urdf --loops loops.json -o scene.json",
       "import mechanism.xml --json"}},
+    {"lesson", {"lesson 1", "lesson 9 --json", "list lessons"}},
     {"problem", {"problem p3", "problem p3 --json", "list problems"}},
     {"grade",
      {"grade p3 answer.json", "grade p3 answer.json --format json",

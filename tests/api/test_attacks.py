@@ -112,7 +112,7 @@ class NobodyWaitsForAnother(Timed):
         self.assertLess(self.server.cpu() - before, 2 * driver.SLOW)
 
     def test_a_scene_has_a_budget_of_characters(self):
-        with open("lessons/02-mechanisms/scenes/ring.json") as f:
+        with open("lessons/11-cabinet/scenes/ring.json") as f:
             scene = json.load(f)
         long = "+".join(["sin(th_0)*cos(th_0)"] * 1000)
         scene["draw"] = {"points": {f"p{k} {{i}}": {"for": {"i": [1, 4999]}, "body": "link 1", "at": [long, long]} for k in range(2)}}

@@ -79,6 +79,9 @@ class Catalogue(driver.ServerCase):
         self.assertTrue(self.get("/api/v1/look"))
         lessons = self.get("/api/v1/lessons")["lessons"]
         self.assertTrue(any("four-bar" in lesson["scenes"] for lesson in lessons))
+        lesson = self.get("/api/v1/lessons/1")
+        self.assertEqual((lesson["number"], lesson["blocks"][0]["kind"]), (1, "heading"))
+        self.assertEqual(self.get("/api/v1/lessons/" + lesson["id"]), lesson)
         problems = self.get("/api/v1/problems")["problems"]
         self.assertIn("p3", [p["id"] for p in problems])
         self.assertEqual(self.get("/api/v1/problems/p3")["id"], "p3")

@@ -35,8 +35,8 @@ SCENES = [
     # name, file, end of the run [s], what it is
     ("fb0", "lessons/01-closed-loops/scenes/fb0.json", 2.0, "four-bar in angles, mass turns with the links"),
     ("pendulum", "tests/orders/cartesian-pendulum.json", 2.0, "Cartesian coordinates, constant mass"),
-    ("spatial", "lessons/03-space-and-drives/scenes/spatial-slider-crank.json", 0.25, "spatial slider-crank with ball joints"),
-    ("bennett", "lessons/02-mechanisms/scenes/bennett.json", 0.25, "spatial loop with dependent rows"),
+    ("spatial", "lessons/09-space-and-drives/scenes/spatial-slider-crank.json", 0.25, "spatial slider-crank with ball joints"),
+    ("bennett", "lessons/11-cabinet/scenes/bennett.json", 0.25, "spatial loop with dependent rows"),
 ]
 QUANTITIES = ("q", "v", "lambda", "raw")
 # springs that the steps can follow: with the stiff ones of the defaults the leading term shows only below the reference's error

@@ -56,8 +56,8 @@ static void compile_and_assemble(hn_model *m) {
 
 void hn_model_begin(hn_model *m, const char *name, const char *settings) {
     static const char *const folders[] = {"lessons/01-closed-loops/scenes", "tests/scenes",
-                                          "tests/reference", "lessons/02-mechanisms/scenes",
-                                          "lessons/03-space-and-drives/scenes"};
+                                          "tests/reference", "lessons/11-cabinet/scenes",
+                                          "lessons/09-space-and-drives/scenes"};
     char path[256], names[256];
     hn_setting set[MAX_SETTINGS];
     memset(m, 0, sizeof *m);

@@ -18,7 +18,7 @@ import tempfile
 SCALES = [1e-9, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6]
 LESSONS = os.path.join(os.path.dirname(__file__), "..", "..", "lessons")
 SCENES = {"four-bar": ("01-closed-loops", 0.5), "slider-crank": ("01-closed-loops", 0.5),
-          "stewart-6-3": ("03-space-and-drives", 0.1)}
+          "stewart-6-3": ("09-space-and-drives", 0.1)}
 # how a parameter grows with s, by its unit
 POWER = {"m": 1, "kg": 3, "rad/s": -0.5, "N/m": 2, "N*s/m": 2.5, "m/s^2": 0, "rad": 0, "": 0, "kg*m^2": 5, "N*m": 4, "m/s": 0.5,
          "N*m*s/rad": 4.5, "N": 3}

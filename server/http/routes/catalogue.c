@@ -10,6 +10,7 @@
 #include "http/request/scene_request.h"
 #include "http/studies/studies.h"
 #include "integrators/method/method_spec.h"
+#include "lesson/lesson.h"
 #include "render/look.h"
 #include "session/compare/comparison.h"
 #include "session/kinds/job.h"
@@ -323,6 +324,25 @@ static void reply_list(hn_request *r, void (*write)(hn_strbuf *b, const hn_libra
 
 void hn_handle_lessons(hn_request *r) {
     reply_list(r, hn_lessons_json);
+}
+
+void hn_handle_lesson(hn_request *r) {
+    cJSON *lesson = NULL;
+    hn_diags diags = {0};
+    const hn_status status = hn_lesson_load(r->context->lib, r->parts[0], &lesson, &diags);
+    if (status == HN_ERR_INPUT && strcmp(diags.item[0].pointer, "/lesson") == 0) {
+        hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, diags.item[0].hint, "%s", diags.item[0].message);
+        return;
+    }
+    if (status != HN_OK) {
+        hn_reply_diags(r, status, &diags);
+        return;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    hn_lesson_json(&b, lesson);
+    cJSON_Delete(lesson);
+    hn_reply_json(r, MHD_HTTP_OK, &b);
 }
 
 void hn_handle_problems(hn_request *r) {

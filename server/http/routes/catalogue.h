@@ -14,6 +14,8 @@ void hn_handle_reference(struct hn_request *r);
 void hn_handle_methods(struct hn_request *r);
 void hn_handle_look(struct hn_request *r);
 void hn_handle_lessons(struct hn_request *r);
+/// One lesson as a tree of blocks (lesson/lesson.h).
+void hn_handle_lesson(struct hn_request *r);
 void hn_handle_problems(struct hn_request *r);
 void hn_handle_errors(struct hn_request *r);
 void hn_handle_error(struct hn_request *r);

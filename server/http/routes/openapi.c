@@ -42,6 +42,9 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"scenes\"],\"properties\":{\"scenes\":" OBJECTS "}}"},
     {"Lessons",
      "{\"type\":\"object\",\"required\":[\"lessons\"],\"properties\":{\"lessons\":" OBJECTS "}}"},
+    {"Lesson", "{\"type\":\"object\",\"required\":[\"id\",\"number\",\"title\",\"blocks\"],"
+               "\"properties\":{\"id\":" TEXT ",\"number\":{\"type\":\"number\"},\"title\":" TEXT
+               ",\"scenes\":" TEXTS ",\"problems\":" TEXTS ",\"blocks\":" OBJECTS "}}"},
     {"Problems",
      "{\"type\":\"object\",\"required\":[\"problems\"],\"properties\":{\"problems\":" OBJECTS "}}"},
     {"Scene",

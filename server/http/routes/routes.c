@@ -281,6 +281,8 @@ static const hn_route ROUTES[] = {
      "Colours, dashes and markers of the method slots", NULL, NULL},
     {"GET", "/api/v1/lessons", HN_WORK_LIGHT, hn_handle_lessons, NULL, JSON, "200", "Lessons",
      "Lessons with their scenes and problems", NULL, NULL},
+    {"GET", "/api/v1/lessons/{id}", HN_WORK_LIGHT, hn_handle_lesson, NULL, JSON, "200", "Lesson",
+     "A lesson by number or id, as a tree of blocks", NULL, NULL},
     {"GET", "/api/v1/problems", HN_WORK_LIGHT, hn_handle_problems, NULL, JSON, "200", "Problems",
      "Problems that can be graded", NULL, NULL},
     {"GET", "/api/v1/errors", HN_WORK_LIGHT, hn_handle_errors, NULL, JSON, "200", "Document",

@@ -280,7 +280,7 @@ static void mass_on_a_slide_may_be_a_formula_of_the_cut_joint(void **state) {
 static void begin_shipped(carried *c, const char *scene, const char *lagrangian) {
     enum { ROOM = 1 << 15 };
     char path[200], *text = calloc(1, ROOM);
-    snprintf(path, sizeof path, "lessons/03-space-and-drives/scenes/%s.json", scene);
+    snprintf(path, sizeof path, "lessons/09-space-and-drives/scenes/%s.json", scene);
     FILE *f = fopen(path, "rb");
     assert_non_null(f);
     size_t n = fread(text, 1, ROOM - 1, f);

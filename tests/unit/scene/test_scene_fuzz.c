@@ -16,9 +16,9 @@ static const char *const FILES[] = {
     "lessons/01-closed-loops/scenes/fb0-lagrangian.json",
     "lessons/01-closed-loops/scenes/five-bar.json",
     "lessons/01-closed-loops/scenes/n-four-bar.json",
-    "lessons/03-space-and-drives/scenes/delta-robot.json",
-    "lessons/03-space-and-drives/scenes/planetary-gear.json",
-    "lessons/03-space-and-drives/scenes/rolling-wheel.json",
+    "lessons/09-space-and-drives/scenes/delta-robot.json",
+    "lessons/09-space-and-drives/scenes/planetary-gear.json",
+    "lessons/09-space-and-drives/scenes/rolling-wheel.json",
 };
 enum { N_FILES = sizeof FILES / sizeof FILES[0] };
 

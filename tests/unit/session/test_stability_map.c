@@ -15,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char PATH[] = "lessons/03-space-and-drives/scenes/stiff-four-bar.json";
+static const char PATH[] = "lessons/09-space-and-drives/scenes/stiff-four-bar.json";
 
 static hn_status load(void *user, const hn_setting *settings, int n, hn_model **out,
                       hn_diags *diags) {

@@ -17,10 +17,10 @@ static const struct {
     {LESSONS "01-closed-loops/scenes/four-bar.json", 1},
     {LESSONS "01-closed-loops/scenes/slider-crank.json", 1},
     {LESSONS "01-closed-loops/scenes/five-bar.json", 1},
-    {LESSONS "02-mechanisms/scenes/watt-six-bar.json", 1},
-    {LESSONS "02-mechanisms/scenes/quick-return.json", 1},
-    {LESSONS "02-mechanisms/scenes/3-rrr.json", 1},
-    {LESSONS "02-mechanisms/scenes/scott-russell.json", 1},
+    {LESSONS "11-cabinet/scenes/watt-six-bar.json", 1},
+    {LESSONS "11-cabinet/scenes/quick-return.json", 1},
+    {LESSONS "11-cabinet/scenes/3-rrr.json", 1},
+    {LESSONS "11-cabinet/scenes/scott-russell.json", 1},
 };
 enum { N_SCENES = sizeof SCENES / sizeof *SCENES };
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SCENE(name) "lessons/02-mechanisms/scenes/" name ".json"
+#define SCENE(name) "lessons/11-cabinet/scenes/" name ".json"
 
 static void open_scene(hn_trial *trial, const char *name, const hn_setting *settings, int n) {
     char path[128];

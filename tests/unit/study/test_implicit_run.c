@@ -168,7 +168,7 @@ static const order_row orders_of_turns[] = {
 static void orders_on_a_spinning_block_are_those_of_the_method(void **unused) {
     (void)unused;
     hn_trial trial;
-    hn_trial_open(&trial, "lessons/03-space-and-drives/scenes/heavy-top.json");
+    hn_trial_open(&trial, "lessons/09-space-and-drives/scenes/heavy-top.json");
     check_orders(&trial, orders_of_turns, sizeof orders_of_turns / sizeof orders_of_turns[0], 0.1);
     hn_trial_close(&trial);
 }

@@ -93,7 +93,7 @@ static void a_driven_particle_on_a_circle_follows_its_closed_form(void **state) 
 static void a_spinning_block_keeps_its_energy_to_the_last_digit(void **state) {
     (void)state;
     hn_trial trial;
-    hn_trial_open(&trial, "lessons/03-space-and-drives/scenes/spinning-block.json");
+    hn_trial_open(&trial, "lessons/09-space-and-drives/scenes/spinning-block.json");
     seen r[2];
     for (int m = 0; m < 2; m++) {
         follow(&trial, kinds[m], 5, &r[m]);
@@ -109,7 +109,7 @@ static void a_spinning_block_keeps_its_energy_to_the_last_digit(void **state) {
 static void both_computations_agree_over_the_corners_of_a_table(void **state) {
     (void)state;
     hn_trial trial;
-    hn_trial_open(&trial, "lessons/03-space-and-drives/scenes/planetary-gear.json");
+    hn_trial_open(&trial, "lessons/09-space-and-drives/scenes/planetary-gear.json");
     seen r[2];
     for (int m = 0; m < 2; m++) {
         follow(&trial, kinds[m], 4, &r[m]);
@@ -123,7 +123,7 @@ static void both_computations_agree_over_the_corners_of_a_table(void **state) {
 static void dependent_rows_are_left_out(void **state) {
     (void)state;
     hn_trial trial;
-    hn_trial_open(&trial, "lessons/02-mechanisms/scenes/bennett.json");
+    hn_trial_open(&trial, "lessons/11-cabinet/scenes/bennett.json");
     seen r[2];
     for (int m = 0; m < 2; m++) {
         follow(&trial, kinds[m], 1, &r[m]);
@@ -136,7 +136,7 @@ static void dependent_rows_are_left_out(void **state) {
 static void a_parallelogram_passes_its_flat_pose_on_its_branch(void **state) {
     (void)state;
     hn_trial trial;
-    hn_trial_open(&trial, "lessons/02-mechanisms/scenes/parallelogram.json");
+    hn_trial_open(&trial, "lessons/11-cabinet/scenes/parallelogram.json");
     for (int m = 0; m < 2; m++) {
         seen r;
         follow(&trial, kinds[m], 5, &r);

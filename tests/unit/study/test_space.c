@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SCENE(name) "lessons/03-space-and-drives/scenes/" name ".json"
+#define SCENE(name) "lessons/09-space-and-drives/scenes/" name ".json"
 static const double PI = 3.14159265358979323846;
 
 static void open_scene(hn_trial *trial, const char *name, const hn_setting *settings, int n) {

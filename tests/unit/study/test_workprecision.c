@@ -63,7 +63,7 @@ static void a_method_that_cannot_serve_the_scene_stays_with_its_reason(void **st
     hn_trial trial;
     static const char *const spellings[2] = {"partitioning@rk4", "projection@rk4"};
     const hn_wp_opts opts = {.n_samples = -1, .n_levels = 2};
-    hn_trial_open(&trial, "lessons/03-space-and-drives/scenes/heavy-top.json");
+    hn_trial_open(&trial, "lessons/09-space-and-drives/scenes/heavy-top.json");
     hn_ref *ref = reference_of(&trial, 0.05);
     hn_wp *wp = study_of(&trial, ref, spellings, 2, &opts);
     assert_true(hn_wp_run(wp, NULL));

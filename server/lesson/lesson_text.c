@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lesson/lesson_text.h"
+
+#include "lesson/tex_text.h"
+#include "terminal/cells.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_COLUMNS = 12, INDENT = 4 };
+
+static const char *text_of(const cJSON *node, const char *key) {
+    const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(node, key));
+    return text ? text : "";
+}
+
+static bool is_kind(const cJSON *node, const char *kind) {
+    return strcmp(text_of(node, "kind"), kind) == 0;
+}
+
+static const cJSON *children_of(const cJSON *node) {
+    return cJSON_GetObjectItemCaseSensitive(node, "children");
+}
+
+// ---- nodes of a line ----
+
+static void put_line(hn_strbuf *b, const cJSON *nodes);
+
+static void put_math(hn_strbuf *b, const cJSON *node) {
+    const bool display = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(node, "display"));
+    hn_strbuf tex;
+    hn_strbuf_init(&tex);
+    hn_tex_text(&tex, text_of(node, "tex"));
+    hn_strbuf_add(b, display ? "\n\n" : "");
+
+    // a display on lines of its own, indented; \x01 keeps its blanks from being folded
+    for (const char *p = hn_strbuf_text(&tex); *p && display;) {
+        const size_t n = strcspn(p, "\n"), blanks = strspn(p, " ");
+        hn_strbuf_printf(b, "\x01    %.*s\n", (int)(n - (blanks < n ? blanks : n)), p + blanks);
+        p += n + (p[n] == '\n');
+    }
+    hn_strbuf_add(b, display ? "\n" : hn_strbuf_text(&tex));
+    hn_strbuf_reset(&tex);
+}
+
+static void put_node(hn_strbuf *b, const cJSON *node) {
+    if (is_kind(node, "text")) {
+        hn_strbuf_add(b, text_of(node, "text"));
+    } else if (is_kind(node, "mono")) {
+        hn_strbuf_printf(b, "`%s`", text_of(node, "text"));
+    } else if (is_kind(node, "math")) {
+        put_math(b, node);
+    } else if (is_kind(node, "break")) {
+        hn_strbuf_add(b, "\n");
+    } else if (is_kind(node, "strong")) {
+        hn_strbuf_add(b, "*");
+        put_line(b, children_of(node));
+        hn_strbuf_add(b, "*");
+    } else {
+        put_line(b, children_of(node));
+    }
+    if (is_kind(node, "link") && strstr(text_of(node, "href"), "://")) {
+        hn_strbuf_printf(b, " <%s>", text_of(node, "href"));
+    }
+}
+
+static void put_line(hn_strbuf *b, const cJSON *nodes) {
+    const cJSON *node;
+    cJSON_ArrayForEach(node, nodes) {
+        put_node(b, node);
+    }
+}
+
+static size_t word_columns(const char *word, size_t n) {
+    char copy[256];
+    snprintf(copy, sizeof copy, "%.*s", (int)(n < 255 ? n : 255), word);
+    return (size_t)hn_text_columns(copy);
+}
+
+/// Writes text in lines of `width` columns behind `indent` blanks; the first line begins with
+/// `head`.
+static void put_folded(hn_strbuf *b, const char *text, int indent, int width, const char *head) {
+    int column = hn_text_columns(head), started = 0;
+    hn_strbuf_add(b, head);
+    while (*text) {
+        if (*text == '\x01') { // a line of a display
+            const size_t n = strcspn(text + 1, "\n");
+            hn_strbuf_printf(b, "%*s%.*s\n", indent, "", (int)n, text + 1);
+            text += 1 + n + (text[1 + n] == '\n');
+            column = started = 0;
+            continue;
+        }
+        const size_t n = strcspn(text, " \n\x01");
+        const int columns = (int)word_columns(text, n);
+        if (n > 0 && started && column + 1 + columns > width) {
+            hn_strbuf_add(b, "\n");
+            column = started = 0;
+        }
+        if (n > 0) {
+            hn_strbuf_printf(b, "%*s", started ? 1 : column >= indent ? 0 : indent - column, "");
+            column = started ? column + 1 : column >= indent ? column : indent;
+            hn_strbuf_add_n(b, text, n);
+            column += columns;
+            started = 1;
+        }
+        text += n;
+        if (*text == '\n') {
+            hn_strbuf_add(b, "\n");
+            column = started = 0;
+        }
+        text += *text == ' ' || *text == '\n';
+    }
+    hn_strbuf_add(b, column > 0 ? "\n" : "");
+}
+
+// ---- blocks ----
+
+static void put_blocks(hn_strbuf *b, const cJSON *nodes, int indent, int width);
+
+static void put_inline(hn_strbuf *b, const cJSON *nodes, int indent, int width, const char *head) {
+    hn_strbuf line;
+    hn_strbuf_init(&line);
+    put_line(&line, nodes);
+    put_folded(b, hn_strbuf_text(&line), indent, width, head);
+    b->failed |= line.failed;
+    hn_strbuf_reset(&line);
+}
+
+static void put_heading(hn_strbuf *b, const cJSON *node, int width) {
+    const double level = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "level"));
+    hn_strbuf line;
+    hn_strbuf_init(&line);
+    put_line(&line, children_of(node));
+    const int n = hn_text_columns(hn_strbuf_text(&line));
+    put_folded(b, hn_strbuf_text(&line), 0, width, "");
+    for (int i = 0; i < n && i < width && level < 3; i++) {
+        hn_strbuf_add(b, level < 2 ? "=" : "-");
+    }
+    hn_strbuf_add(b, level < 3 ? "\n" : "");
+    hn_strbuf_reset(&line);
+}
+
+/// 1 when an item holds nodes of a line rather than blocks.
+static bool holds_line(const cJSON *item) {
+    const cJSON *first = children_of(item) ? children_of(item)->child : NULL;
+    static const char *const kinds[] = {"text", "mono", "math", "strong", "em", "link", "break"};
+    for (int i = 0; i < 7 && first; i++) {
+        if (is_kind(first, kinds[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void put_list(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    const bool ordered = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(node, "ordered"));
+    int number = (int)cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "start"));
+    const cJSON *item;
+    cJSON_ArrayForEach(item, children_of(node)) {
+        char head[40];
+        snprintf(head, sizeof head, ordered ? "%*s%d. " : "%*s* ", indent, "", number++);
+        const int inner = indent + (ordered ? 3 : 2);
+        if (holds_line(item)) {
+            put_inline(b, children_of(item), inner, width, head);
+        } else {
+            const cJSON *first = children_of(item) ? children_of(item)->child : NULL;
+            put_inline(b, children_of(first), inner, width, head);
+            for (const cJSON *m = first ? first->next : NULL; m; m = m->next) {
+                cJSON *one = cJSON_CreateArray();
+                cJSON_AddItemToArray(one, cJSON_Duplicate(m, 1));
+                put_blocks(b, one, inner, width);
+                cJSON_Delete(one);
+            }
+        }
+    }
+}
+
+/// The cells of a row as text; `widths` grows to the longest of each column.
+static void measure_row(const cJSON *row, int widths[MAX_COLUMNS]) {
+    int k = 0;
+    const cJSON *cell;
+    cJSON_ArrayForEach(cell, children_of(row)) {
+        hn_strbuf line;
+        hn_strbuf_init(&line);
+        put_line(&line, children_of(cell));
+        const int n = hn_text_columns(hn_strbuf_text(&line));
+        if (k < MAX_COLUMNS) {
+            widths[k] = n > widths[k] ? n : widths[k];
+            k++;
+        }
+        hn_strbuf_reset(&line);
+    }
+}
+
+static void put_row(hn_strbuf *b, const cJSON *row, const int widths[MAX_COLUMNS], int indent) {
+    int k = 0;
+    const cJSON *cell;
+    hn_strbuf_printf(b, "%*s", indent, "");
+    cJSON_ArrayForEach(cell, children_of(row)) {
+        hn_strbuf line;
+        hn_strbuf_init(&line);
+        put_line(&line, children_of(cell));
+        const int n = hn_text_columns(hn_strbuf_text(&line));
+        const int blank = k < MAX_COLUMNS && widths[k] > n ? widths[k] - n : 0;
+        const bool right = strcmp(text_of(cell, "align"), "right") == 0;
+        const char *after = cell->next ? "  " : "";
+        hn_strbuf_printf(b, "%*s%s%*s%s", right ? blank : 0, "", hn_strbuf_text(&line),
+                         right || !cell->next ? 0 : blank, "", after);
+        hn_strbuf_reset(&line);
+        k++;
+    }
+    hn_strbuf_add(b, "\n");
+}
+
+static void put_table(hn_strbuf *b, const cJSON *node, int indent) {
+    int widths[MAX_COLUMNS] = {0};
+    const cJSON *row;
+    cJSON_ArrayForEach(row, children_of(node)) {
+        measure_row(row, widths);
+    }
+    cJSON_ArrayForEach(row, children_of(node)) {
+        put_row(b, row, widths, indent);
+        if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(row, "head"))) {
+            for (int k = 0, column = 0; k < MAX_COLUMNS && widths[k]; k++) {
+                hn_strbuf_printf(b, "%*s", k == 0 ? indent : 2, "");
+                for (column = 0; column < widths[k]; column++) {
+                    hn_strbuf_add(b, "-");
+                }
+            }
+            hn_strbuf_add(b, "\n");
+        }
+    }
+}
+
+static void put_code(hn_strbuf *b, const char *text, int indent) {
+    while (*text) {
+        const size_t n = strcspn(text, "\n");
+        hn_strbuf_printf(b, n ? "%*s%.*s\n" : "\n", n ? indent : 0, "", (int)n, text);
+        text += n + (text[n] == '\n');
+    }
+}
+
+static void put_exhibit(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    hn_strbuf_printf(b, "%*sTry it:\n%*sholonom %s\n", indent, "", indent + INDENT, "",
+                     text_of(node, "command"));
+    put_blocks(b, children_of(node), indent, width);
+}
+
+static void put_choices(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    const cJSON *choice;
+    char letter = 'a';
+    cJSON_ArrayForEach(choice, cJSON_GetObjectItemCaseSensitive(node, "choices")) {
+        char head[24];
+        snprintf(head, sizeof head, "%*s(%c) ", indent, "", letter++);
+        const cJSON *first = children_of(choice) ? children_of(choice)->child : NULL;
+        put_inline(b, children_of(first), indent + INDENT, width, head);
+    }
+}
+
+static void put_block(hn_strbuf *b, const cJSON *node, int indent, int width) {
+    if (is_kind(node, "heading")) {
+        put_heading(b, node, width);
+    } else if (is_kind(node, "list")) {
+        put_list(b, node, indent, width);
+    } else if (is_kind(node, "table")) {
+        put_table(b, node, indent);
+    } else if (is_kind(node, "code")) {
+        put_code(b, text_of(node, "text"), indent + INDENT);
+    } else if (is_kind(node, "quote")) {
+        put_blocks(b, children_of(node), indent + INDENT, width);
+    } else if (is_kind(node, "exhibit")) {
+        put_exhibit(b, node, indent, width);
+    } else if (is_kind(node, "predict")) {
+        hn_strbuf_printf(b, "%*sPredict first:\n", indent, "");
+        put_blocks(b, children_of(node), indent, width);
+        put_choices(b, node, indent, width);
+    } else if (is_kind(node, "slip")) {
+        hn_strbuf_printf(b, "%*sPrinted in a lesson (slip %.0f):\n", indent, "",
+                         cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "number")));
+        put_blocks(b, children_of(node), indent + INDENT, width);
+    } else if (is_kind(node, "exercise")) {
+        hn_strbuf_printf(b, "%*sExercise %s:  holonom problem %s\n", indent, "",
+                         text_of(node, "id"), text_of(node, "id"));
+        put_blocks(b, children_of(node), indent + INDENT, width);
+    } else if (is_kind(node, "figure")) {
+        put_inline(b, children_of(node), indent, width, "[picture] ");
+    } else {
+        put_inline(b, children_of(node), indent, width, "");
+    }
+}
+
+static void put_blocks(hn_strbuf *b, const cJSON *nodes, int indent, int width) {
+    const cJSON *node;
+    cJSON_ArrayForEach(node, nodes) {
+        put_block(b, node, indent, width);
+        hn_strbuf_add(b, node->next ? "\n" : "");
+    }
+}
+
+/// What was seen in each prediction, below the lesson.
+static void put_answers(hn_strbuf *b, const cJSON *blocks, int width) {
+    const cJSON *node;
+    int n = 0;
+    cJSON_ArrayForEach(node, blocks) {
+        if (is_kind(node, "predict")) {
+            char head[32];
+            hn_strbuf_add(b, n == 0 ? "\nAnswers to the predictions\n--------------------------\n"
+                                    : "");
+            const double right =
+                cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(node, "right"));
+            snprintf(head, sizeof head, "%d. (%c) ", ++n, 'a' + (int)right);
+            const cJSON *after = cJSON_GetObjectItemCaseSensitive(node, "after");
+            put_inline(b, children_of(after ? after->child : NULL), INDENT, width, head);
+        }
+    }
+}
+
+/// Copies the text without blanks at line ends and with at most one empty line in a row.
+static void put_tidy(hn_strbuf *b, const hn_strbuf *text) {
+    int ends = 2; // no empty lines at the start
+    for (const char *p = hn_strbuf_text(text); *p;) {
+        const size_t n = strcspn(p, "\n");
+        size_t kept = n;
+        while (kept > 0 && p[kept - 1] == ' ') {
+            kept--;
+        }
+        ends = kept > 0 ? 1 : ends + 1;
+        if (ends <= 2) {
+            hn_strbuf_printf(b, "%.*s\n", (int)kept, p);
+        }
+        p += n + (p[n] == '\n');
+    }
+    b->failed |= text->failed;
+}
+
+void hn_lesson_nodes_text(hn_strbuf *b, const cJSON *nodes, int columns) {
+    hn_strbuf all;
+    hn_strbuf_init(&all);
+    put_blocks(&all, nodes, 0, columns);
+    put_tidy(b, &all);
+    hn_strbuf_reset(&all);
+}
+
+void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns) {
+    const cJSON *blocks = cJSON_GetObjectItemCaseSensitive(lesson, "blocks");
+    hn_strbuf all;
+    hn_strbuf_init(&all);
+    put_blocks(&all, blocks, 0, columns);
+    put_answers(&all, blocks, columns);
+    put_tidy(b, &all);
+    hn_strbuf_reset(&all);
+}

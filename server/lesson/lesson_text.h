@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_LESSON_LESSON_TEXT_H
+#define HN_LESSON_LESSON_TEXT_H
+// A lesson for a terminal.
+
+#include "base/strbuf.h"
+
+#include <cjson/cJSON.h>
+
+/// Appends the lesson in lines of at most `columns` characters (tables and code keep their own).
+///
+/// Predictions show question and choices; the answers follow at the end of the lesson. Pictures
+/// are named by caption and file.
+void hn_lesson_text(hn_strbuf *b, const cJSON *lesson, int columns);
+/// Appends nodes of a line, or blocks, without a lesson around them.
+void hn_lesson_nodes_text(hn_strbuf *b, const cJSON *nodes, int columns);
+#endif
