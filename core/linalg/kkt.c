@@ -123,10 +123,7 @@ static hn_status factor_symmetric(hn_kkt *k, double shift) {
     for (size_t i = (size_t)k->nv; i < n; i++) {
         k->F[i * n + i] -= shift;
     }
-    const hn_status status = hn_bunch_kaufman(k->n, k->F, k->pivot, PIVOT_TOL, &negative);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_bunch_kaufman(k->n, k->F, k->pivot, PIVOT_TOL, &negative));
     return negative == k->nc ? HN_OK
                              : HN_ERR_NOT_SPD; // one for each row, or M is not definite on ker J
 }
@@ -314,13 +311,11 @@ static void give_back(const hn_kkt *k, const double *J, const double *gamma, dou
 }
 
 static hn_status solve_once(hn_kkt *k, int max_refine, hn_kkt_info *info) {
-    const hn_status status = factor(k);
-    if (status == HN_OK) {
-        memcpy(k->x, k->b, (size_t)k->n * sizeof *k->x);
-        solve(k, k->x);
-        info->refinements += refine(k, max_refine);
-    }
-    return status;
+    HN_TRY(factor(k));
+    memcpy(k->x, k->b, (size_t)k->n * sizeof *k->x);
+    solve(k, k->x);
+    info->refinements += refine(k, max_refine);
+    return HN_OK;
 }
 
 static hn_status solve_proximal(hn_kkt *k, hn_kkt_info *info) {
@@ -349,11 +344,8 @@ static hn_status solve_equilibrated(hn_kkt *k, const double *M, const double *J,
     for (int i = 0; i < k->n; i++) {
         k->b[i] = k->scale[i] * (i < k->nv ? f[i] : -gamma[i - k->nv]);
     }
-    const hn_status status = k->way == HN_KKT_PROXIMAL ? solve_proximal(k, info)
-                                                       : solve_once(k, k->opts.max_refine, info);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(k->way == HN_KKT_PROXIMAL ? solve_proximal(k, info)
+                                     : solve_once(k, k->opts.max_refine, info));
     if (k->opts.want_cond) {
         info->cond = estimate_condition(k);
     }

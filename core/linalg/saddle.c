@@ -201,10 +201,7 @@ hn_status hn_saddle_factor(int nv, int nc, const double *M, const double *J, hn_
     memcpy(ws->J, J, (size_t)nc * nv * sizeof *J);
     hn_mirror_lower(nv, ws->M);
 
-    hn_status status = scale_coordinates(ws);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(scale_coordinates(ws));
 
     // rank from J, then the mass on its kernel
     scale_rows(ws);
@@ -214,10 +211,7 @@ hn_status hn_saddle_factor(int nv, int nc, const double *M, const double *J, hn_
                                  .pivot_ratio = hn_qr_pivot_ratio(&ws->qr),
                                  .dropped = ws->qr.dropped};
     }
-    status = factor_kernel_mass(ws);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(factor_kernel_mass(ws));
     factor_kernels(ws);
     if (info && ws->opts.want_cond) {
         info->cond = estimate_condition(ws);
@@ -449,10 +443,7 @@ hn_status hn_saddle_solve(int nv, int nc, const double *M, const double *J, cons
     if (!hn_all_finite(nv, f) || !hn_all_finite(nc, gamma)) {
         return HN_ERR_DIVERGED;
     }
-    hn_status status = hn_saddle_factor(nv, nc, M, J, info, opts, ws);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_saddle_factor(nv, nc, M, J, info, opts, ws));
     return hn_saddle_apply(f, gamma, a, lambda, info, ws);
 }
 

@@ -22,13 +22,8 @@ static hn_status check_size(int size, const char *pointer, hn_diag *diag) {
 
 hn_status hn_canvas_create(int width, int height, hn_theme theme, hn_canvas **out, hn_diag *diag) {
     HN_ASSERT(out != NULL && (int)theme >= 0 && theme < HN_THEME_COUNT);
-    hn_status status = check_size(width, "/width", diag);
-    if (status == HN_OK) {
-        status = check_size(height, "/height", diag);
-    }
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(check_size(width, "/width", diag));
+    HN_TRY(check_size(height, "/height", diag));
     hn_canvas *c = calloc(1, sizeof *c);
     if (c == NULL) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory for a canvas");

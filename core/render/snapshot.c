@@ -204,11 +204,8 @@ hn_status hn_snapshot_draw(hn_canvas *c, const hn_drawing *drawing, const hn_sna
                            int n_poses, const hn_snapshot_opts *opts, hn_diag *diag) {
     HN_ASSERT(c != NULL && drawing != NULL && (poses != NULL || n_poses == 0) && opts != NULL);
     hn_sheet sheet;
-    const hn_status status = hn_sheet_make(&sheet, hn_canvas_width(c), hn_canvas_height(c), drawing,
-                                           poses, n_poses, opts, diag);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_sheet_make(&sheet, hn_canvas_width(c), hn_canvas_height(c), drawing, poses, n_poses,
+                         opts, diag));
 
     // scratch for the order of painting
     const hn_snapshot_pose *selected = &poses[sheet.selected];

@@ -169,7 +169,7 @@ class Study(unittest.TestCase):
         words = ["study", "fb0", "--methods", *METHODS, "--time", "4", "--samples", "10", "--time-limit", "0"]
         status, seen = studies.watch_terminal(words, self.folder, interrupt=True)
         self.assertEqual(status, ENDED)
-        self.assertRegex(seen, r"work-precision \[[#.]+\] +\d+ %, \d+ s left")
+        self.assertRegex(seen, r"work-precision \[[#.]+\] +\d+ %, \d+ (s|min) left")
         status, seen = studies.watch_terminal(words, self.folder)
         self.assertEqual(status, DONE)
         left = [(int(a), int(b)) for a, b in re.findall(r"(\d+) %, (\d+) s left", seen)]

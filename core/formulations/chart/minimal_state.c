@@ -265,15 +265,13 @@ hn_status hn_minimal_settle(hn_minimal_state *s, double t, const double *y) {
     }
 
     // the velocities, for the next step's check
-    hn_status status = hn_chart_settle(chart);
-    if (status == HN_OK && h != 0) {
+    HN_TRY(hn_chart_settle(chart));
+    if (h != 0) {
         memcpy(s->last_v, s->v, (size_t)chart->nv * sizeof(double));
     }
 
-    if (status == HN_OK) {
-        compare_costs(s, t);
-    }
-    return status;
+    compare_costs(s, t);
+    return HN_OK;
 }
 
 void hn_minimal_add_cost(const void *self, hn_cost *cost) {

@@ -43,8 +43,8 @@ static hn_status kinematics(void *self, double t, const double *y, double *pos_d
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     hn_orthonormal_state *s = self;
     s->space.cost.evals++;
-    const hn_status status = kinematics(self, t, y, ydot);
-    return status == HN_OK ? hn_tspace_accel(&s->space, s->v, ydot + s->space.nq) : status;
+    HN_TRY(kinematics(self, t, y, ydot));
+    return hn_tspace_accel(&s->space, s->v, ydot + s->space.nq);
 }
 
 void hn_orthonormal_ode(void *self, hn_ode *out) {
@@ -71,17 +71,13 @@ hn_status hn_orthonormal_set_state(void *self, double t, const double *q, const 
     memmove(y, q, (size_t)ts->nq * sizeof *q);
     (void)hn_system_normalise(ts->sys, y);
     ts->has_base = ts->valid = 0;
-    hn_status status = hn_tspace_set_base(ts, t, y, HN_TSPACE_FRESH);
-    if (status == HN_OK) {
-        status = close_here(s, t, y);
+    HN_TRY(hn_tspace_set_base(ts, t, y, HN_TSPACE_FRESH));
+    HN_TRY(close_here(s, t, y));
+    if (!hn_tspace_base_is_at(ts, t, y)) {
+        HN_TRY(hn_tspace_set_base(ts, t, y, HN_TSPACE_FRESH));
     }
-    if (status == HN_OK && !hn_tspace_base_is_at(ts, t, y)) {
-        status = hn_tspace_set_base(ts, t, y, HN_TSPACE_FRESH);
-    }
-    if (status == HN_OK) {
-        hn_tspace_coordinates(ts, s->v, y + ts->nq);
-    }
-    return status;
+    hn_tspace_coordinates(ts, s->v, y + ts->nq);
+    return HN_OK;
 }
 
 hn_status hn_orthonormal_get_state(void *self, double t, const double *y, double *q, double *v) {

@@ -55,20 +55,20 @@ static hn_status locate(hn_tangent_state *s, hn_chart_point *p, double t, const 
     if (hn_chart_is_at(&s->chart, p, t, q)) {
         return HN_OK;
     }
-    const hn_status status = hn_chart_locate(&s->chart, p, t, q);
-    if (status == HN_OK && s->orthonormal) {
+    HN_TRY(hn_chart_locate(&s->chart, p, t, q));
+    if (s->orthonormal) {
         orthonormalise(s, p->N);
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status close_here(hn_tangent_state *s, double t, double *q) {
     hn_chart_point *p = &s->chart.here;
-    const hn_status status = hn_chart_close(&s->chart, p, t, q, HN_CHART_TOL_FINE);
-    if (status == HN_OK && s->orthonormal) {
+    HN_TRY(hn_chart_close(&s->chart, p, t, q, HN_CHART_TOL_FINE));
+    if (s->orthonormal) {
         orthonormalise(s, p->N);
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_status rhs(void *self, double t, const double *y, double *ydot) {

@@ -35,14 +35,12 @@ static unsigned terms_of(const hn_accel_jacobian *j) {
 
 static hn_status create_tapes(hn_accel_jacobian *j, hn_arena *arena) {
     const hn_accel_opts opts = {.baumgarte = j->stabilised, .want_lambda = 1};
-    hn_status status = hn_linear_create(j->sys, terms_of(j), arena, &j->terms);
-    if (status == HN_OK) {
-        status = hn_linear_create(j->sys, HN_LINEAR_V, arena, &j->twist);
+    HN_TRY(hn_linear_create(j->sys, terms_of(j), arena, &j->terms));
+    HN_TRY(hn_linear_create(j->sys, HN_LINEAR_V, arena, &j->twist));
+    if (!j->gives) {
+        HN_TRY(hn_accel_create(j->sys, &opts, arena, &j->accel));
     }
-    if (status == HN_OK && !j->gives) {
-        status = hn_accel_create(j->sys, &opts, arena, &j->accel);
-    }
-    return status;
+    return HN_OK;
 }
 
 // entries of q that are not a ball's stand in the order of their speeds

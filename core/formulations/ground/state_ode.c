@@ -61,8 +61,8 @@ static hn_status take_slopes(void *self, double t, const double *y) {
 
 static hn_status jacobian(void *self, double t, const double *y, double *jac) {
     hn_state_ode *ode = self;
-    const hn_status status = take_slopes(self, t, y);
-    return status == HN_OK ? hn_accel_jacobian_fill(ode->slopes, jac) : status;
+    HN_TRY(take_slopes(self, t, y));
+    return hn_accel_jacobian_fill(ode->slopes, jac);
 }
 
 static hn_status factor(void *self, int which, double re, double im) {

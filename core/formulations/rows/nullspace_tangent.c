@@ -134,17 +134,13 @@ static hn_status set_state(void *self, double t, const double *q, const double *
     (void)hn_system_normalise(ts->sys, s->q);
     memset(s->delta, 0, (size_t)ts->nv * sizeof *s->delta);
     ts->has_base = ts->valid = 0;
-    hn_status status = hn_tspace_set_base(ts, t, s->q, HN_TSPACE_FRESH);
-    if (status == HN_OK) {
-        status = hn_tspace_close(ts, t, ts->q0, s->delta, s->q, HN_TSPACE_TOL_FINE);
+    HN_TRY(hn_tspace_set_base(ts, t, s->q, HN_TSPACE_FRESH));
+    HN_TRY(hn_tspace_close(ts, t, ts->q0, s->delta, s->q, HN_TSPACE_TOL_FINE));
+    if (!hn_tspace_base_is_at(ts, t, s->q)) {
+        HN_TRY(hn_tspace_set_base(ts, t, s->q, HN_TSPACE_FRESH));
     }
-    if (status == HN_OK && !hn_tspace_base_is_at(ts, t, s->q)) {
-        status = hn_tspace_set_base(ts, t, s->q, HN_TSPACE_FRESH);
-    }
-    if (status == HN_OK) {
-        centre(s, s->v, y);
-    }
-    return status;
+    centre(s, s->v, y);
+    return HN_OK;
 }
 
 static int is_centred(const hn_tspace *ts, double t, const double *y) {

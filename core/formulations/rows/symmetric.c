@@ -241,8 +241,8 @@ static hn_status turn(symmetric *s, const hn_step_call *base, double t, double h
     memcpy(y_new, y, (size_t)(s->ode.base.nq + s->ode.base.nv) * sizeof *y);
     memcpy(s->start, y, (size_t)(s->ode.base.nq + s->ode.base.nv) * sizeof *y);
     move(s, s->start, s->N0_mu, s->N0_nu);
-    const hn_status status = hn_step_call_make(base, t, h, s->start, y_new, err);
-    return status == HN_OK ? land(s, t + h, y_new, q1, worst) : status;
+    HN_TRY(hn_step_call_make(base, t, h, s->start, y_new, err));
+    return land(s, t + h, y_new, q1, worst);
 }
 
 // N0, S0 and no push to begin with

@@ -88,11 +88,11 @@ hn_status hn_ida_jacobian_init(hn_ida_jacobian *j, const hn_ida_problem *problem
 
     // linearised terms, and for index 1 those that turn J
     j->offset = hn_system_get_info(p->sys).has_time;
-    hn_status status = hn_linear_create(p->sys, terms_of(p->form), arena, &j->terms);
-    if (status == HN_OK && is_index1(p)) {
-        status = hn_linear_create(p->sys, HN_LINEAR_V, arena, &j->turn);
+    HN_TRY(hn_linear_create(p->sys, terms_of(p->form), arena, &j->terms));
+    if (is_index1(p)) {
+        HN_TRY(hn_linear_create(p->sys, HN_LINEAR_V, arena, &j->turn));
     }
-    return status == HN_OK ? create_sparse(j, arena) : status;
+    return create_sparse(j, arena);
 }
 
 void hn_ida_jacobian_free(hn_ida_jacobian *j) {

@@ -289,11 +289,11 @@ hn_status hn_implicit_linear_at(hn_implicit_linear *l, double t, const double *q
     if (l->sparse) {
         return factor_mass(l);
     }
-    const hn_status status = prepare_stabiliser(l);
-    if (status == HN_OK && l->has_damping) {
+    HN_TRY(prepare_stabiliser(l));
+    if (l->has_damping) {
         find_damped(l);
     }
-    return status;
+    return HN_OK;
 }
 
 static hn_complex product(hn_complex a, hn_complex b) {

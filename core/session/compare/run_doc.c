@@ -80,10 +80,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
 static hn_status table_want_reactions(table *tab, const hn_model *model,
                                       const hn_run_request *request, hn_diags *diags) {
     const hn_system_info info = hn_system_get_info(hn_model_system(model));
-    hn_status status = hn_reaction_writer_create(model, tab->arena, &tab->reactions, diags);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_reaction_writer_create(model, tab->arena, &tab->reactions, diags));
     const int carriers = hn_reaction_writer_count(tab->reactions),
               efforts = hn_reaction_writer_efforts(tab->reactions);
     if ((double)tab->cap * (6.0 * carriers + efforts) > most_numbers(request)) {

@@ -85,10 +85,8 @@ static int take_line(void *user, const cJSON *o) {
 
 hn_status hn_extreme_resume(hn_extreme *x, const char *folder, hn_diags *diags) {
     uint64_t key = 0;
-    const hn_status status = find_key(x, &key, diags);
-    return status == HN_OK
-               ? hn_journal_open(&x->journal, folder, "extreme", key, take_line, x, diags)
-               : status;
+    HN_TRY(find_key(x, &key, diags));
+    return hn_journal_open(&x->journal, folder, "extreme", key, take_line, x, diags);
 }
 
 void hn_extreme_keep(hn_extreme *x, int i, int k) {

@@ -60,12 +60,9 @@ static hn_status create(terms *w, const hn_model *model, hn_diags *diags) {
     // evaluators of the terms and of the accelerations
     unsigned all = HN_TERM_M | HN_TERM_F | HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_GAMMA |
                    HN_TERM_ENERGY;
-    hn_status status = hn_eval_create(hn_model_system(model), all, w->arena, &w->eval);
-    if (status == HN_OK) {
-        status = hn_accel_create(hn_model_system(model), &(hn_accel_opts){.want_lambda = 1},
-                                 w->arena, &w->accel);
-    }
-    return status;
+    HN_TRY(hn_eval_create(hn_model_system(model), all, w->arena, &w->eval));
+    return hn_accel_create(hn_model_system(model), &(hn_accel_opts){.want_lambda = 1}, w->arena,
+                           &w->accel);
 }
 
 static void destroy(terms *w) {

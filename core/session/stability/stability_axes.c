@@ -167,12 +167,10 @@ static hn_status rate_with(hn_map *map, const char *name, double value, double *
                            hn_diags *diags) {
     const hn_setting setting = {name, value};
     hn_model *model = NULL;
-    const hn_status status = map->request.load(map->request.load_user, &setting, 1, &model, diags);
-    if (status == HN_OK) {
-        *rate = fastest_rate(model);
-        hn_model_free(model);
-    }
-    return status;
+    HN_TRY(map->request.load(map->request.load_user, &setting, 1, &model, diags));
+    *rate = fastest_rate(model);
+    hn_model_free(model);
+    return HN_OK;
 }
 
 static int has_unit(const hn_param *p, const char *const *units, int n) {
@@ -223,16 +221,10 @@ static hn_status over_param(hn_map *map, const char *what, const char *const *un
 
     // the fastest rates at both ends bound the step sizes
     double first, last;
-    hn_status status = make_axis(map, &map->x, found->name, low, high, map->n_columns, 'l', diags);
-    if (status == HN_OK) {
-        status = rate_with(map, found->name, low, &first, diags);
-    }
-    if (status == HN_OK) {
-        status = rate_with(map, found->name, high, &last, diags);
-    }
-    return status == HN_OK
-               ? steps_for(map, fmin(first, last), fmax(first, last), map->n_rows, diags)
-               : status;
+    HN_TRY(make_axis(map, &map->x, found->name, low, high, map->n_columns, 'l', diags));
+    HN_TRY(rate_with(map, found->name, low, &first, diags));
+    HN_TRY(rate_with(map, found->name, high, &last, diags));
+    return steps_for(map, fmin(first, last), fmax(first, last), map->n_rows, diags);
 }
 
 static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
@@ -258,13 +250,11 @@ static hn_status mass_axes(hn_map *map, hn_diags *diags) {
 // One column whose steps double from row to row.
 static hn_status limit_axes(hn_map *map, hn_diags *diags) {
     const double rate = fastest_rate(map->model);
-    const hn_status status = steps_for(map, rate / 40, rate, 2, diags);
-    if (status == HN_OK) {
-        const double low = map->y.value[0], times = floor(log2(map->y.value[1] / low));
-        map->x = (hn_map_axis){.n = 1};
-        fill_axis(&map->y, low, low * pow(2, times), 1 + (int)times);
-    }
-    return status;
+    HN_TRY(steps_for(map, rate / 40, rate, 2, diags));
+    const double low = map->y.value[0], times = floor(log2(map->y.value[1] / low));
+    map->x = (hn_map_axis){.n = 1};
+    fill_axis(&map->y, low, low * pow(2, times), 1 + (int)times);
+    return HN_OK;
 }
 
 static const struct {

@@ -122,8 +122,8 @@ static hn_status follow_own(hn_books *b, hn_engine *e, double t, double h, const
 /// step started.
 static hn_status follow_aside(hn_books *b, double t, double h, const double *y) {
     hn_engine *side = hn_run_side_engine(b->run);
-    const hn_status status = hn_engine_start(side, t, y, y + b->info.nq);
-    return status == HN_OK ? follow_own(b, side, t, h, side->y) : status;
+    HN_TRY(hn_engine_start(side, t, y, y + b->info.nq));
+    return follow_own(b, side, t, h, side->y);
 }
 
 /// The displacement from one state to another, in q along the velocities and in v: out (nd).

@@ -72,14 +72,10 @@ static hn_status settle(hn_books *b, size_t k, const double *y_end) {
 
 static hn_status slopes_back(void *self, double t, const double *y, const double *w, double *out) {
     const hn_books *b = self;
-    hn_status status = hn_accel_jacobian_at(b->slopes, t, y, y + b->info.nq, &(hn_accel_law){0});
-    if (status == HN_OK) {
-        status = hn_accel_jacobian_prepare(b->slopes);
-    }
-    if (status == HN_OK) {
-        hn_accel_jacobian_back(b->slopes, w, out);
-    }
-    return status;
+    HN_TRY(hn_accel_jacobian_at(b->slopes, t, y, y + b->info.nq, &(hn_accel_law){0}));
+    HN_TRY(hn_accel_jacobian_prepare(b->slopes));
+    hn_accel_jacobian_back(b->slopes, w, out);
+    return HN_OK;
 }
 
 /// w <- A' w with A the derivative of the flow I over step k by its start.
@@ -225,15 +221,9 @@ static hn_status find_exact(const hn_books *b, double T, double *out, hn_diag *d
 
 hn_status hn_books_look_back(hn_books *b, double T, hn_diag *diag) {
     double *exact = b->y_own;
-    hn_status status = find_exact(b, T, exact, diag);
-    if (status == HN_OK) {
-        status = choose_coordinate(b, exact, diag);
-    }
-    if (status == HN_OK) {
-        status = settle_all(b, diag);
-    }
-    if (status == HN_OK) {
-        separate_rounding(b, T);
-    }
-    return status;
+    HN_TRY(find_exact(b, T, exact, diag));
+    HN_TRY(choose_coordinate(b, exact, diag));
+    HN_TRY(settle_all(b, diag));
+    separate_rounding(b, T);
+    return HN_OK;
 }

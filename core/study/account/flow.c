@@ -139,11 +139,9 @@ static hn_status go(hn_flow *f, const hn_ode *ode, double tol, double t, double 
 
 hn_status hn_flow_run(hn_flow *f, const hn_ode *ode, double tol, double t, double h,
                       const double *y, double *y_end) {
-    const hn_status status = go(f, ode, tol, t, h, y, NULL);
-    if (status == HN_OK) {
-        memcpy(y_end, f->y, (size_t)f->n * sizeof *y);
-    }
-    return status;
+    HN_TRY(go(f, ode, tol, t, h, y, NULL));
+    memcpy(y_end, f->y, (size_t)f->n * sizeof *y);
+    return HN_OK;
 }
 
 // ---- derivatives, carried back ----

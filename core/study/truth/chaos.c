@@ -88,18 +88,14 @@ static hn_status bring_near(twins *w, double t, const double *q, const double *v
     hn_system_rates_from_user(w->sys, w->user, w->sys_v);
 
     // onto the closed loops
-    hn_status status = hn_project_position(w->projector, t, w->from, 1e-14, NULL);
-    if (status == HN_OK) {
-        status = hn_project_velocity(w->projector, t, w->from, w->sys_v, NULL);
-    }
+    HN_TRY(hn_project_position(w->projector, t, w->from, 1e-14, NULL));
+    HN_TRY(hn_project_velocity(w->projector, t, w->from, w->sys_v, NULL));
 
     // distance after the projection
-    if (status == HN_OK) {
-        hn_system_to_user(w->sys, w->from, w->twin_q);
-        hn_system_rates_to_user(w->sys, w->sys_v, w->twin_v);
-        *apart = distance(w, q, v, w->twin_q, w->twin_v);
-    }
-    return status;
+    hn_system_to_user(w->sys, w->from, w->twin_q);
+    hn_system_rates_to_user(w->sys, w->sys_v, w->twin_v);
+    *apart = distance(w, q, v, w->twin_q, w->twin_v);
+    return HN_OK;
 }
 
 /// Sets the twin apart from the start, in a direction that belongs to no symmetry of a mechanism.
@@ -189,11 +185,9 @@ static hn_status create(twins *w, const double *q, const double *v, int windows)
     hn_system_rates_to_user(w->sys, v, w->v);
     // states are compared in user units; hn_errors scales lengths itself
     w->scales.length = 1;
-    hn_status status = hn_errors_create(w->sys, w->arena, &w->errors);
-    if (status == HN_OK) {
-        status = hn_projector_create(w->sys, HN_WEIGHT_MASS, w->arena, &w->projector);
-    }
-    return status == HN_OK ? hn_method_parse(METHOD, &w->spec, &diag) : status;
+    HN_TRY(hn_errors_create(w->sys, w->arena, &w->errors));
+    HN_TRY(hn_projector_create(w->sys, HN_WEIGHT_MASS, w->arena, &w->projector));
+    return hn_method_parse(METHOD, &w->spec, &diag);
 }
 
 /// Returns 1 where the motion can be chaotic: with two degrees of freedom or more, or with one and

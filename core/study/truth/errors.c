@@ -68,11 +68,9 @@ hn_status hn_errors_create(const hn_system *sys, hn_arena *arena, hn_errors **ou
     }
 
     // constraint forces need J
-    const hn_status status = hn_eval_create(sys, HN_TERM_J, arena, &e->jacobian);
-    if (status == HN_OK) {
-        *out = e;
-    }
-    return status;
+    HN_TRY(hn_eval_create(sys, HN_TERM_J, arena, &e->jacobian));
+    *out = e;
+    return HN_OK;
 }
 
 void hn_errors_free(hn_errors *e) {

@@ -59,10 +59,7 @@ static hn_status rate_of(void *user, hn_real t, const hn_real *y, hn_real *dy) {
 // ---- creation ----
 
 static hn_status create(precise *p, hn_precise_kind kind, const hn_system *sys, hn_arena *arena) {
-    hn_status status = hn_precise_model_create(sys, arena, &p->model);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(hn_precise_model_create(sys, arena, &p->model));
 
     const size_t nq = (size_t)p->model->nq, nv = (size_t)p->model->nv, nc = (size_t)p->model->nc;
 
@@ -84,8 +81,8 @@ static hn_status create(precise *p, hn_precise_kind kind, const hn_system *sys, 
 
     // the solver of accelerations, and the stepper above it
     p->ode = (hn_precise_ode){p->model->nq + p->model->nv, rate_of, p, p->scale, TOLERANCES[0]};
-    status = p->solver->create(p->model, arena, &p->solving);
-    return status == HN_OK ? p->stepper->create(&p->ode, arena, &p->stepping) : status;
+    HN_TRY(p->solver->create(p->model, arena, &p->solving));
+    return p->stepper->create(&p->ode, arena, &p->stepping);
 }
 
 /// Starts at (q, v), projected onto closed loops, and sets the rate that velocities are scaled by.

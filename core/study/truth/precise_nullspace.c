@@ -283,10 +283,7 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
     // motion along the loops: N' M N z = N' (f - M c)
     make_basis(s);
     reduce(s, r);
-    const hn_status status = solve_reduced(s, r);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(solve_reduced(s, r));
 
     // a = c + N z
     memcpy(a, s->c, (size_t)nv * sizeof *a);

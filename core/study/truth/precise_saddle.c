@@ -230,10 +230,7 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
         s->x[nv + k] = -s->m->gamma[s->row[k]];
     }
 
-    const hn_status status = factor(s);
-    if (status != HN_OK) {
-        return status;
-    }
+    HN_TRY(factor(s));
 
     substitute(s);
     memcpy(a, s->x, (size_t)nv * sizeof *a);
@@ -259,12 +256,10 @@ static hn_status solve_gap(saddle *s, const hn_real *value, const hn_real *v) {
         s->x[nv + k] = -value[i] - (v ? dot(nv, s->m->J + (size_t)i * nv, v) : 0);
     }
     fill(s);
-    const hn_status status = factor(s);
-    if (status == HN_OK) {
-        substitute(s);
-        memcpy(s->step, s->x, (size_t)nv * sizeof *s->step);
-    }
-    return status;
+    HN_TRY(factor(s));
+    substitute(s);
+    memcpy(s->step, s->x, (size_t)nv * sizeof *s->step);
+    return HN_OK;
 }
 
 static hn_real size_of_step(const saddle *s) {
