@@ -6,13 +6,13 @@
 // configuration.
 
 #include "base/arena.h"
+#include "import/libxml.h"
 #include "base/strbuf.h"
 #include "import/frame.h"
 #include "import/import.h"
 #include "scene/scene.h"
 
 #include <stdbool.h>
-#include <libxml/tree.h>
 
 /// One of a model's files; a pointer to it stands in _private of the elements of those that are
 /// included.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/xml.h"
 
-#include <libxml/parser.h>
-#include <libxml/parserInternals.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -104,6 +102,12 @@ xmlDoc *hn_im_parse(hn_build *b, hn_im_file *file, const char *text, size_t n,
         b->status = HN_ERR_LIMIT;
         (void)hn_diags_add(b->diags, HN_ERR_LIMIT, NULL, NULL,
                            "the file has %zu bytes, at most %d are read", n, HN_IMPORT_MAX_BYTES);
+        return NULL;
+    }
+    hn_diag missing = {0};
+    if (hn_libxml_load(&missing) != HN_OK) {
+        b->status =
+            hn_diags_add(b->diags, missing.status, NULL, missing.hint, "%s", missing.message);
         return NULL;
     }
     xmlParserCtxt *parser = xmlNewParserCtxt();

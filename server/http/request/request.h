@@ -4,6 +4,7 @@
 // One HTTP request from its first header to its last byte. The server makes it, a handler fills in
 // the reply, the completed callback alone frees it. A handler sees only this.
 
+#include "http/ground/microhttpd.h"
 #include "base/diag.h"
 #include "base/strbuf.h"
 #include "http/ground/problem_document.h"
@@ -11,7 +12,6 @@
 #include "http/request/route.h"
 
 #include <cjson/cJSON.h>
-#include <microhttpd.h>
 
 enum { HN_MAX_REPLY_HEADERS = 10 };
 

@@ -4,11 +4,10 @@
 // The life of a request: head, body, work, reply. The callbacks of the HTTP library; `cls` is the
 // hn_dispatch of the server.
 
+#include "http/ground/microhttpd.h"
 #include "http/ground/connections.h"
 #include "http/ground/jobs.h"
 #include "http/request/context.h"
-
-#include <microhttpd.h>
 
 /// Borrowed from the server.
 typedef struct hn_dispatch {

@@ -89,6 +89,7 @@ static hn_status start(hn_server *s, hn_diag *diag) {
     const hn_http_opts *o = &s->context.opts;
     int fd = -1;
     char host[256];
+    HN_TRY(hn_microhttpd_load(diag));
     HN_TRY(create_parts(s, diag));
     HN_TRY(hn_listen(o->host, o->port, o->next_ports, &fd, &s->port, host, diag));
     snprintf(s->address, sizeof s->address, "http://%s:%d", host, s->port);
