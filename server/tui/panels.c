@@ -110,7 +110,8 @@ static void show_help(hn_workbench *w) {
                   "1 to 8       select a method\n\n"
                   "gap     how far the loop stands open: the size of the constraint violation [m]\n"
                   "error   largest distance of a drawn point from the reference solution [m]\n"
-                  "energy  change of the energy since the start [J]\n\n"
+                  "energy  change of the energy since the start, less the work\n"
+                  "        of drives, dampers and loads [J]\n\n"
                   "The mouse selects a method in the table and a time in the plot.\n");
 }
 

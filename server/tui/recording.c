@@ -31,8 +31,7 @@ struct hn_recording {
     double frame_dt;
     hn_track tracks[HN_COMPARISON_MAX_METHODS];
     track_store stores[HN_COMPARISON_MAX_METHODS];
-    double *reference;        ///< 3 n_points a frame, NaN where there is none
-    double *reference_energy; ///< change since the start [J] a frame, likewise
+    double *reference; ///< 3 n_points a frame, NaN where there is none
     hn_recording_truth truth;
     atomic_int frames, wanted, reference_frames;
     atomic_bool stop;
@@ -51,9 +50,6 @@ struct hn_recording {
 /// Copies the points of the reference motion to its frames; between its samples nothing is shown.
 static void take_motion(hn_recording *r, const cJSON *document, int stride) {
     const cJSON *motion = cJSON_GetObjectItem(document, "motion"), *row, *number;
-    const cJSON *energy = cJSON_GetObjectItem(motion, "energy");
-    const cJSON *value = energy ? energy->child : NULL;
-    const double start = value ? value->valuedouble : 0;
 
     // a row of points for every stride-th frame
     int frame = 0;
@@ -67,10 +63,6 @@ static void take_motion(hn_recording *r, const cJSON *document, int stride) {
                 r->reference[(size_t)frame * 3 * (size_t)r->n_points + (size_t)k++] =
                     number->valuedouble;
             }
-        }
-        if (value) {
-            r->reference_energy[frame] = value->valuedouble - start;
-            value = value->next;
         }
         frame += stride;
     }
@@ -134,9 +126,8 @@ static void keep_sample(hn_recording *r, int m, int frame, const hn_sample *samp
     to->velocity_gap[frame] = sample->velocity_gap;
     to->energy[frame] = sample->energy_change;
     to->error[frame] = error_of(r, points, frame);
-    to->energy_error[frame] = hn_recording_reference(r, frame)
-                                  ? sample->energy_change - r->reference_energy[frame]
-                                  : (double)NAN;
+    to->energy_error[frame] =
+        hn_recording_reference(r, frame) ? sample->energy_change : (double)NAN;
 }
 
 /// A method that ended keeps its last configuration on the screen, but has no numbers any more.
@@ -250,8 +241,7 @@ static bool allocate(hn_recording *r) {
     for (size_t k = 0; r->reference && k < numbers; k++) {
         r->reference[k] = (double)NAN;
     }
-    r->reference_energy = calloc((size_t)r->last + 1, sizeof(double));
-    bool good = r->incidents && r->reference && r->reference_energy;
+    bool good = r->incidents && r->reference;
     for (int m = 0; m < r->n_tracks; m++) {
         describe_track(r, m);
         good = allocate_track(r, m) && good;
@@ -332,7 +322,6 @@ void hn_recording_free(hn_recording *r) {
     // nobody reads any more
     hn_comparison_free(r->comparison);
     free(r->reference);
-    free(r->reference_energy);
     free(r->incidents);
     pthread_cond_destroy(&r->more);
     pthread_mutex_destroy(&r->lock);

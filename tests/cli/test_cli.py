@@ -216,7 +216,7 @@ class CommandLine(unittest.TestCase):
         words = ("run", "four-bar", "--method", RK4, "--time", "1", "--every", "0.1")
         rows = list(csv.reader(io.StringIO(self.assert_exit(call(*words), DONE))))
         self.assertEqual(rows[0][0], "t")
-        self.assertEqual(rows[0][-3:], ["gap", "velocity_gap", "energy"])
+        self.assertEqual(rows[0][-5:], ["gap", "velocity_gap", "energy", "work", "energy_change"])
         self.assertEqual(len(rows), 12)
         self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
         lines = [strict(line) for line in self.assert_exit(call(*words, "--format", "ndjson"), DONE).splitlines()]

@@ -33,8 +33,8 @@ function worse(before, value) {
 }
 
 /**
- * Energy gained or lost by the method but not by the reference [J]: the work of loads and dampers
- * is in both.
+ * Energy gained or lost by the method [J]: the change since the start less the work of drives,
+ * dampers and loads, which is zero for the true motion.
  * @param {import("./history.js").History} history
  * @param {any} reference
  * @param {number} m
@@ -43,9 +43,7 @@ function worse(before, value) {
 function energyError(history, reference, m, i) {
   const k = history.frameAt(i) / (reference?.stride ?? 1);
   const known = reference?.state === "ready" && Number.isInteger(k) && k < reference.energy.length;
-  return known
-    ? history.columns[m].energy_change[i] - (reference.energy[k] - reference.energy[0])
-    : NaN;
+  return known ? history.columns[m].energy_change[i] : NaN;
 }
 
 /**

@@ -22,7 +22,7 @@ export const GLOSSARY = {
   energy: {
     word: "energy change",
     means:
-      "Change of the total energy since the start. Without loads, drives and dampers the true change is zero.",
+      "Change of the total energy since the start, less the work of drives, dampers and loads. The true change is zero.",
   },
   velocity: {
     word: "velocity violation",

@@ -8,7 +8,7 @@ import { errorsOf } from "./errors.js";
  * drawn in decades at first; `grey`: the reference has a curve of its own here.
  * @typedef {{
  *   name: string, title: string, short: string, unit: string, log: boolean, loop: boolean,
- *   reference: boolean, grey: "" | "energy" | "own", about: string,
+ *   reference: boolean, grey: "" | "own", about: string,
  *   columnOf: (data: import("./store.js").Data, m: number) => Float64Array,
  * }} Quantity
  */
@@ -63,7 +63,7 @@ export const QUANTITIES = [
     loop: false,
     reference: true,
     grey: "",
-    about: "energy change of the method less that of the reference: the work of loads is in both",
+    about: "change since the start less the work of drives, dampers and loads",
     columnOf: (data, m) => errorsOf(data)[m].energy,
   },
   {
@@ -74,8 +74,8 @@ export const QUANTITIES = [
     log: true,
     loop: false,
     reference: false,
-    grey: "energy",
-    about: "since the start; loads, drives and dampers change the energy as well",
+    grey: "",
+    about: "since the start, less the work of drives, dampers and loads; the true value is zero",
     columnOf: received("energy_change"),
   },
   {

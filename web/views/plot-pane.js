@@ -136,7 +136,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
     width: m === data.view.selected ? 2.5 : 1.5,
   });
 
-  /** The reference among the methods' curves: its energy, or its own error. */
+  /** The reference among the methods' curves: its own error. */
   const hasGrey = () => data.reference?.state === "ready" && kind.grey !== "";
 
   /** Is there anything to draw for a method? @param {number} m */
@@ -153,8 +153,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
       column.forEach((_, i) => {
         const k = history.frameAt(i) / reference.stride;
         const known = Number.isInteger(k) && k < reference.points.length;
-        const energy = reference.energy[k] - reference.energy[0];
-        column[i] = !known ? NaN : kind.grey === "own" ? reference.own : energy;
+        column[i] = known ? reference.own : NaN;
       });
     }
     return column;
@@ -176,7 +175,7 @@ export function createPlotPane(data, actions, { id, first, onHover, onZoom }) {
       present: true,
     }));
     if (hasGrey()) {
-      const label = kind.grey === "own" ? "its own error" : "reference";
+      const label = "its own error";
       const { dash, [data.theme]: colour } = data.look.reference;
       series.push({ label, colour, dash, width: 1.5, ended: NaN, present: false });
     }

@@ -419,6 +419,7 @@ static void put_sample(hn_strbuf *b, const hn_comparison *c, const hn_sample *sa
     hn_json_put_number(b, "gap", sample->gap);
     hn_json_put_number(b, "velocity_gap", sample->velocity_gap);
     hn_json_put_number(b, "energy", sample->energy);
+    hn_json_put_number(b, "work", sample->work);
     hn_json_put_number(b, "energy_change", sample->energy_change);
     hn_json_put_number(b, "pivot_ratio", sample->pivot_ratio);
     hn_json_put_int(b, "rank", sample->rank);

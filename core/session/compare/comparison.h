@@ -65,8 +65,8 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
 int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
 /// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
-/// "velocity_gap","energy_change","steps","evals","ops","cpu","step_cpu":{"median","low","high",
-/// "frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
+/// "velocity_gap","energy","work","energy_change","steps","evals","ops","cpu","step_cpu":{"median",
+/// "low","high","frames"},"worst_gap",...}]}; step_cpu as hn_step_cost
 void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
 /// Writes the properties of the methods (spelling, short name, colour slot, rule, order), frame_dt
 /// and duration.

@@ -22,7 +22,7 @@ typedef struct table {
     int n_user, nc;
     long long n, cap;
     hn_pace pace; ///< of the checks of limits between samples
-    double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy;
+    double *t, *q, *v, *lambda, *gap, *velocity_gap, *energy, *work, *energy_change;
     double *mark;                  ///< hn_multiplier_mark of a sample
     hn_drawing drawing;            ///< its labelled points are columns too
     int n_points;                  ///< number of labelled points
@@ -50,7 +50,7 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
     }
 
     // numbers per sample decide whether the table may be built
-    double width = 5 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc + 3.0 * tab->n_points;
+    double width = 7 + 2.0 * info.n_user + (raw_lambda ? 2.0 : 1.0) * info.nc + 3.0 * tab->n_points;
     if (width * (double)cap > most_numbers(request)) {
         return hn_diags_add(
             diags, HN_ERR_LIMIT, "/every", "ask for fewer output times",
@@ -74,6 +74,8 @@ static hn_status table_create(table *tab, const hn_system *sys, long long cap,
     tab->gap = hn_arena_doubles(tab->arena, n);
     tab->velocity_gap = hn_arena_doubles(tab->arena, n);
     tab->energy = hn_arena_doubles(tab->arena, n);
+    tab->work = hn_arena_doubles(tab->arena, n);
+    tab->energy_change = hn_arena_doubles(tab->arena, n);
     return hn_arena_failed(tab->arena) ? HN_ERR_MEMORY : HN_OK;
 }
 
@@ -146,6 +148,8 @@ static void table_add(table *tab, const hn_sample *s, hn_run *run) {
     tab->gap[k] = s->gap;
     tab->velocity_gap[k] = s->velocity_gap;
     tab->energy[k] = s->energy;
+    tab->work[k] = s->work;
+    tab->energy_change[k] = s->energy_change;
 }
 
 /// Output times, one after the other.
@@ -308,6 +312,8 @@ static void put_samples(hn_strbuf *b, const table *tab) {
     hn_json_put_numbers(b, "gap", tab->gap, (size_t)tab->n);
     hn_json_put_numbers(b, "velocity_gap", tab->velocity_gap, (size_t)tab->n);
     hn_json_put_numbers(b, "energy", tab->energy, (size_t)tab->n);
+    hn_json_put_numbers(b, "work", tab->work, (size_t)tab->n);
+    hn_json_put_numbers(b, "energy_change", tab->energy_change, (size_t)tab->n);
     hn_json_end_object(b);
 }
 

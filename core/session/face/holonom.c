@@ -381,7 +381,8 @@ static void put_sample(const hn_sample *s, holonom_sample *out) {
                             .points = s->points,
                             .gap = s->gap,
                             .velocity_gap = s->velocity_gap,
-                            .energy_change = s->energy_change};
+                            .energy_change = s->energy_change,
+                            .work = s->work};
 }
 
 holonom_status holonom_run_to(holonom_run *run, double t, holonom_sample *out,

@@ -96,7 +96,9 @@ typedef struct holonom_sample {
     const double *points;    ///< x, y, z of each point [m]
     double gap;              ///< constraint violation of the positions
     double velocity_gap;     ///< constraint violation of the velocities
-    double energy_change;    ///< of kinetic plus potential energy since the start [J]
+    /// change of kinetic plus potential energy since the start, less the work of drives, dampers
+    /// and loads, and that work [J]
+    double energy_change, work;
 } holonom_sample;
 
 /// What a run has cost and how well it has kept the constraints, so far.
@@ -106,7 +108,7 @@ typedef struct holonom_result {
     double t;              ///< reached [s]
     double gap;            ///< largest, over all steps
     double velocity_gap;   ///< largest, over all steps
-    double energy_change;  ///< largest, over all steps [J]
+    double energy_change;  ///< largest, over all steps, less the work done [J]
     long long steps, evaluations;
     double operations; ///< arithmetic operations, exact
     double seconds;    ///< CPU time of stepping

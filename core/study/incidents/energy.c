@@ -46,7 +46,7 @@ void hn_energy_start(hn_watch *w) {
 
 void hn_energy_record_state(hn_watch *w) {
     hn_energy_record *e = &w->energy;
-    const double energy = w->measure.kinetic + w->measure.potential;
+    const double energy = w->measure.kinetic + w->measure.potential - w->work.done;
     e->v_min = fmin(e->v_min, w->measure.potential);
     e->v_max = fmax(e->v_max, w->measure.potential);
     e->t_max = fmax(e->t_max, w->measure.kinetic);

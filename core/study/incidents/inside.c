@@ -27,14 +27,16 @@ static void check_gap(hn_watch *w, const hn_state_at *at, double gap) {
     }
 }
 
-static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m) {
+/// `since_start`: change of energy since the start, less the work done.
+static void check_energy(hn_watch *w, const hn_state_at *at, const hn_measure *m,
+                         double since_start) {
     const hn_energy_record *e = &w->energy;
-    const double energy = m->kinetic + m->potential, change = energy - e->last;
+    const double change = e->start + since_start - e->last;
     const double range = fmax(e->v_max, m->potential) - fmin(e->v_min, m->potential);
     // against the energies of the steps: a state that is wrong may hold any amount itself
     const double limit = HN_RUN_WARN_ENERGY * (e->t_max + range);
     if (e->conservative && limit > 0 && fabs(change) > fmax(limit, e->noise) &&
-        fabs(energy - e->start) > limit) {
+        fabs(since_start) > limit) {
         set_time(hn_incident_report(w, &hn_incident_energy_jump, "energy change", change, limit,
                                     "the energy changes by %.3g J up to t = %.6g s, inside a step; "
                                     "the limit is %.3g J",
@@ -62,12 +64,12 @@ static void check_branch(hn_watch *w, const hn_state_at *at) {
     }
 }
 
-void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m) {
-    const double change = fabs(m->kinetic + m->potential - w->energy.start);
+void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m,
+                     double energy_change) {
     w->worst_gap = fmax(w->worst_gap, m->gap);
     w->worst_velocity_gap = fmax(w->worst_velocity_gap, m->velocity_gap);
-    w->worst_energy_change = fmax(w->worst_energy_change, change);
+    w->worst_energy_change = fmax(w->worst_energy_change, fabs(energy_change));
     check_gap(w, at, m->gap);
-    check_energy(w, at, m);
+    check_energy(w, at, m, energy_change);
     check_branch(w, at);
 }

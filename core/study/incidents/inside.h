@@ -6,7 +6,7 @@
 #include "study/incidents/watch.h"
 
 /// Checks a sample that lies inside a step or ahead of the last one: gap, energy and assembly mode.
-/// Its gap and energy count in the worst of the run.
-void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m);
+/// Its gap and energy count in the worst of the run. `energy_change` as hn_watch_energy_change().
+void hn_inside_check(hn_watch *w, const hn_state_at *at, const hn_measure *m, double energy_change);
 
 #endif

@@ -56,7 +56,8 @@ hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost, double wa
     w->length = hn_system_length(run->sys);
     w->energy.conservative = hn_energy_is_conservative(run->sys);
     HN_TRY(create_memory(w));
-    return create_evaluators(w);
+    HN_TRY(create_evaluators(w));
+    return hn_work_create(run, !w->energy.conservative, &w->work);
 }
 
 void hn_watch_free(hn_watch *w) {
@@ -64,6 +65,7 @@ void hn_watch_free(hn_watch *w) {
     hn_mode_watch_free(w->mode);
     hn_limits_free(w->limits);
     hn_singularity_free(w->singular.monitor);
+    hn_work_free(&w->work);
 }
 
 // ---- measuring ----
@@ -105,6 +107,7 @@ static void measure_present(hn_watch *w) {
     const hn_stepping *s = w->run;
     w->measure = hn_watch_measure(w, s->now.t, s->now.q, s->now.v);
     if (w->at_start) {
+        hn_work_start(&w->work);
         hn_energy_start(w);
     } else {
         hn_energy_record_state(w);
@@ -222,6 +225,20 @@ void hn_watch_start(hn_watch *w) {
 
 void hn_watch_step(hn_watch *w) {
     hn_stiffness_check_step(w);
+}
+
+bool hn_watch_measures_steps(const hn_watch *w) {
+    return w->every > 0 && w->work.on;
+}
+
+void hn_watch_measure_step(hn_watch *w) {
+    hn_work_step(&w->work);
+}
+
+double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measure *m,
+                              double *work) {
+    *work = w->every > 0 || !w->work.on ? hn_work_at(&w->work, at) : nan("");
+    return m->kinetic + m->potential - *work - w->energy.start;
 }
 
 hn_status hn_watch_check(hn_watch *w, char why[256]) {

@@ -9,6 +9,7 @@
 #include "dynamics/evaluate/eval.h"
 #include "dynamics/evaluate/limits.h"
 #include "study/incidents/log.h"
+#include "study/incidents/work.h"
 #include "study/stepping/stepping.h"
 
 #define HN_RUN_WARN_GAP 1e-3 ///< gap / characteristic length that is reported
@@ -43,8 +44,10 @@ typedef struct hn_measure {
 
 /// Energy so far.
 typedef struct hn_energy_record {
-    double start, last,
-        change; ///< total energy at the start and now, and its change in the last step
+    double start; ///< total energy at the start [J]
+    /// total energy now less the work of drives, dampers and loads since the start, and its change
+    /// in the last step
+    double last, change;
     double v_min, v_max, t_max; ///< range of the potential, largest kinetic energy
     double noise;               ///< changes up to this are rounding [J]
     bool conservative;          ///< no load does work that the energy does not contain
@@ -119,6 +122,7 @@ struct hn_watch {
     double swiftest;  ///< largest velocity so far
     double *row_size; ///< nc: largest length of each row of J so far
     hn_energy_record energy;
+    hn_work_record work; ///< of drives, dampers and loads
     hn_heading_record heading;
     hn_singular_record singular;
     double *modes, *last_modes; ///< per loop: assembly modes now and at the last check
@@ -142,6 +146,14 @@ void hn_watch_free(hn_watch *w);
 void hn_watch_start(hn_watch *w);
 /// Counts an accepted step: what is known without measuring its end.
 void hn_watch_step(hn_watch *w);
+/// Whether every accepted step is measured: hn_watch_measure_step().
+bool hn_watch_measures_steps(const hn_watch *w);
+/// Measures what must not leave out a step: the work done in it.
+void hn_watch_measure_step(hn_watch *w);
+/// The change of energy since the start less the work done since, of a state within the last step
+/// or less than a step ahead, and that work [J]. NaN where the work is not known.
+double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measure *m,
+                              double *work);
 /// Checks the state that the run has reached. Fails with HN_ERR_DIVERGED and the reason in `why`
 /// when that is no state of the mechanism any more (HN_RUN_LOST_GAP).
 HN_MUST_CHECK hn_status hn_watch_check(hn_watch *w, char why[256]);

@@ -95,12 +95,19 @@ static hn_status step_and_check(hn_run *run, bool *ticking) {
     const hn_status pace = hn_headway_step(&run->stepping);
     hn_watch_step(&run->watch);
     HN_TRY(pace);
+    if (hn_watch_measures_steps(&run->watch)) {
+        stop_clock(run);
+        *ticking = false;
+        hn_watch_measure_step(&run->watch);
+    }
     if (run->watch.every == 0 || ++run->since < run->watch.every) {
         return HN_OK;
     }
     run->since = 0;
-    stop_clock(run);
-    *ticking = false;
+    if (*ticking) {
+        stop_clock(run);
+        *ticking = false;
+    }
     return hn_watch_check(&run->watch, run->reason);
 }
 

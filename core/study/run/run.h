@@ -34,9 +34,10 @@ typedef struct hn_run_summary {
     hn_cost cost;
     double cpu_seconds; ///< thread CPU time spent stepping (sampling and output excluded)
     /// over all accepted steps that were checked, and all samples between steps
-    double worst_gap, worst_velocity_gap, worst_energy_change;
-    int watched_every;        ///< 1: every step
-    long long samples_inside; ///< samples between steps that were checked
+    double worst_gap, worst_velocity_gap;
+    double worst_energy_change; ///< less the work of drives, dampers and loads [J]
+    int watched_every;          ///< 1: every step
+    long long samples_inside;   ///< samples between steps that were checked
 } hn_run_summary;
 
 typedef struct hn_run hn_run;

@@ -137,11 +137,12 @@ static void fill_measures(hn_sampling *s, double t, hn_sample *out) {
     out->kinetic = m.kinetic;
     out->potential = m.potential;
     out->energy = m.kinetic + m.potential;
-    out->energy_change = out->energy - s->watch->energy.start;
+    const hn_state_at at = {t, s->q, s->v};
+    out->energy_change = hn_watch_energy_change(s->watch, &at, &m, &out->work);
     out->pivot_ratio *= row * row;
     if (s->watch->every > 0 && !is_present(s->run, t)) {
         s->inside++;
-        hn_inside_check(s->watch, &(hn_state_at){t, s->q, s->v}, &m);
+        hn_inside_check(s->watch, &at, &m, out->energy_change);
     }
 }
 

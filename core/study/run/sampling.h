@@ -17,9 +17,13 @@ typedef struct hn_sample {
     /// nc: the multipliers that the scheme itself found at the end of its step, which converge with
     /// a lower order or not at all; NULL: none, or not asked for
     const double *raw_lambda;
-    const double *points;                             ///< 3 n_points
-    double gap, velocity_gap;                         ///< ||phi||, ||J v + phi_t||
-    double kinetic, potential, energy, energy_change; ///< change: since the start
+    const double *points;              ///< 3 n_points
+    double gap, velocity_gap;          ///< ||phi||, ||J v + phi_t||
+    double kinetic, potential, energy; ///< [J]
+    /// work of drives, dampers and loads since the start, and the change of energy since the start
+    /// less that work [J]: the method's error. NaN where the work is not known, or steps are not
+    /// checked.
+    double work, energy_change;
     /// see hn_accel_info, times the square of the shortest row of J against the largest it has been
     double pivot_ratio;
     int rank;

@@ -84,10 +84,10 @@ static int add_measure(column *columns, int n, const cJSON *samples, const char 
     return n;
 }
 
-/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, points, and the
-/// three measures.
+/// t, coordinates, rates, multipliers by row and their mark, reactions, efforts, points, gaps and
+/// energies.
 static int find_columns(column *columns, const cJSON *run) {
-    static const char *const last[] = {"gap", "velocity_gap", "energy"};
+    static const char *const last[] = {"gap", "velocity_gap", "energy", "work", "energy_change"};
     const cJSON *samples = hn_document_get(run, "samples");
     columns[0] = (column){.name = "t", .list = hn_document_get(samples, "t"), .part = -1};
     int n = add_parts(columns, 1, samples, "q", "", hn_document_get(run, "coordinates"));
@@ -102,7 +102,7 @@ static int find_columns(column *columns, const cJSON *run) {
     n = add_vectors(columns, n, run, "reaction_moment", "carriers", "moment");
     n = add_efforts(columns, n, run);
     n = add_vectors(columns, n, run, "points", "points", "point");
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
         n = add_measure(columns, n, samples, last[i]);
     }
     return n;
@@ -292,7 +292,7 @@ static void put_plot(hn_strbuf *b, const cJSON *run) {
     const cJSON *t = hn_document_get(samples, "t"),
                 *last = t ? cJSON_GetArrayItem(t, cJSON_GetArraySize(t) - 1) : NULL;
     const cJSON *gap = hn_document_get(samples, "gap"),
-                *energy = hn_document_get(samples, "energy");
+                *energy = hn_document_get(samples, "energy_change");
     hn_motion_plot plot = {.gap_unit = "m", .n_tracks = 1};
     plot.tracks[0] = (hn_motion_track){.name = hn_document_text(run, "method")};
     plot.dt =
@@ -300,10 +300,11 @@ static void put_plot(hn_strbuf *b, const cJSON *run) {
 
     // one point a sample; a gap that is null is left out
     const cJSON *g = gap ? gap->child : NULL;
-    const double first = energy && energy->child ? energy->child->valuedouble : 0;
     for (const cJSON *e = energy ? energy->child : NULL; e && hn_motion_plot_next(&plot);
          e = e->next) {
-        plot.tracks[0].energy[plot.n - 1] = e->valuedouble - first;
+        if (cJSON_IsNumber(e)) {
+            plot.tracks[0].energy[plot.n - 1] = e->valuedouble;
+        }
         if (cJSON_IsNumber(g)) {
             plot.tracks[0].gap[plot.n - 1] = g->valuedouble;
         }

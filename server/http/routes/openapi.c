@@ -106,7 +106,8 @@ static const struct {
      "\"q\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},\"v\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},"
      "\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "},\"gap\":" MAYBE_NUMBER
-     ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy_change\":" MAYBE_NUMBER
+     ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy\":" MAYBE_NUMBER ",\"work\":" MAYBE_NUMBER
+     ",\"energy_change\":" MAYBE_NUMBER
      ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
      "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
     {"Incident",
