@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The examples of server/README.md, as they stand there."""
 
+import json
+import math
 import os
 import re
 import shutil
@@ -12,9 +14,9 @@ import unittest
 import driver
 
 
-def block(language):
+def block(language, which=0):
     with open("server/README.md") as f:
-        return re.search(rf"```{language}\n(.*?)```", f.read(), re.S).group(1)
+        return re.findall(rf"```{language}\n(.*?)```", f.read(), re.S)[which]
 
 
 class Examples(driver.ServerCase):
@@ -35,6 +37,15 @@ class Examples(driver.ServerCase):
         self.assertIn('"state":"finished"', files["summary.json"])
         lines = files["samples.csv"].splitlines()
         self.assertEqual((lines[0], len(lines)), ('t,"th1","a2","th3",gap', 1 + 21))
+
+    @unittest.skipUnless(shutil.which("curl"), "no curl here")
+    def test_the_shell_drags_and_exports(self):
+        _, files = self.run_example(["sh", "-e"], block("sh", 1))
+        dragged = json.loads(files["drag.json"])
+        self.assertEqual(dragged["end"], "nearest")
+        self.assertAlmostEqual(dragged["state"]["th1"], math.atan2(0.9, -0.3), 2)
+        _, files = self.run_example(["sh", "-e"], block("sh", 2))
+        self.assertIn("int main(void)", files["motion.c"])
 
     def test_python(self):
         out, _ = self.run_example([sys.executable, "-"], block("python"))

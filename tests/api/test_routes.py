@@ -3,7 +3,10 @@
 
 import gzip
 import json
+import os
 import re
+import subprocess
+import tempfile
 import unittest
 
 import jsonschema
@@ -264,6 +267,29 @@ class Stateless(driver.ServerCase):
                              ({**body, "target": [1], "state": {"th1": 1, "a2": 3, "th3": -2}}, "/state")):
             document = self.assert_problem(self.post("drag", wrong, 422), 422)
             self.assertEqual(document["errors"][0]["pointer"], place)
+
+    def test_a_scene_is_exported_as_a_program_that_checks_itself(self):
+        answer = self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&set=l1:0.6&method=projection@rk4:h=1e-2")
+        self.assertEqual((answer.status, answer.type), (200, "text/plain"))
+        self.assertEqual(answer.headers["content-disposition"], 'attachment; filename="four-bar.c"')
+        program = answer.body.decode()
+        self.assertIn("projection@rk4:h=0.01", program.splitlines()[-1])
+        by_body = self.post("export", {"scene": "four-bar", "parameters": {"l1": 0.6}, "language": "c", "method": "projection@rk4:h=1e-2"})
+        self.assertEqual(by_body.body, answer.body)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "motion")
+            subprocess.run(["gcc", "-std=c99", "-O1", "-x", "c", "-", "-o", path, "-lm"], input=answer.body, check=True)
+            done = subprocess.run([path], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        # every language that is listed, and what is not
+        for language in self.server.ask("GET", "/api/v1/languages").json()["languages"]:
+            one = self.server.ask("GET", "/api/v1/scenes/pendulum/export?language=" + language["name"])
+            self.assertEqual(one.status, 200)
+            self.assertTrue(one.headers["content-disposition"].endswith(language["suffix"] + '"'))
+        wrong = self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=pyton"), 422)
+        self.assertEqual((wrong["errors"][0]["pointer"], wrong["hint"]), ("/language", "python"))
+        self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-bar/export?method=x@rk4"), 422)
+        self.assert_problem(self.server.ask("GET", "/api/v1/scenes/four-ba/export"), 404)
 
     def test_a_run_gives_raw_multipliers_when_asked_for(self):
         body = {"scene": "four-bar", "method": "index2@midpoint:h=0.01", "time": 0.1, "every": 0.05}

@@ -100,6 +100,30 @@ class Streams(driver.ServerCase):
         answer = self.server.ask("HEAD", f"/api/v1/comparisons/{c['id']}/events")
         self.assertEqual((answer.status, answer.type, answer.body), (200, "text/event-stream", b""))
 
+    def test_a_frame_says_more_to_those_who_ask(self):
+        c = self.server.compare(methods=METHODS[:2])
+        self.patch(c["id"], step=3)
+        plain = Events(self.server, c["id"])
+        frames_without = plain.frames_up_to(3)
+        plain.close()
+        for query, names in (("?fields=lambda", {"lambda"}), ("?fields=sigma_min", {"sigma_min"}), ("?fields=sigma_min,lambda", {"sigma_min", "lambda"})):
+            reader = Events(self.server, c["id"], query=query)
+            for without, frame in zip(frames_without, reader.frames_up_to(3)):
+                extras = {name: frame.pop(name) for name in names}
+                self.assertEqual(frame, without)
+                for values in extras.values():
+                    self.assertEqual(len(values), 2)
+            reader.close()
+        # the multipliers are those of the terms at this state, and the rows are far from dependent
+        state = dict(zip(("th1", "a2", "th3"), frame["methods"][1]["q"])) | dict(zip(("w1", "wa2", "w3"), frame["methods"][1]["v"]))
+        terms = self.server.ask("POST", "/api/v1/terms", {"scene": "four-bar", "t": frame["t"], "state": state}).json()
+        for a, b in zip(extras["lambda"][1], terms["lambda"]):
+            self.assertAlmostEqual(a, b, 9)
+        self.assertTrue(all(0.1 < s < 10 for s in extras["sigma_min"]), extras["sigma_min"])
+        answer = self.server.ask("GET", f"/api/v1/comparisons/{c['id']}/events?fields=sigma")
+        self.assert_problem(answer, 400, "bad-request")
+        self.assertIn("sigma_min", answer.json()["hint"])
+
     def test_a_quiet_stream_has_comment_lines(self):
         c = self.server.compare()
         reader = Events(self.server, c["id"])

@@ -493,6 +493,33 @@ void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_end_object(b);
 }
 
+const char *hn_frame_extra_name(hn_frame_extra extra) {
+    static const char *const names[HN_FRAME_EXTRAS] = {
+        [HN_FRAME_SIGMA_MIN] = "sigma_min", [HN_FRAME_LAMBDA] = "lambda"};
+    return names[extra];
+}
+
+void hn_comparison_extra_json(hn_strbuf *b, const hn_comparison *c, hn_frame_extra extra) {
+    const hn_system_info info = hn_system_get_info(hn_model_system(c->model));
+    hn_json_array(b);
+    for (int i = 0; i < c->n; i++) {
+        if (extra == HN_FRAME_SIGMA_MIN) {
+            hn_json_number(b, hn_run_sigma_min(c->entries[i].run));
+            continue;
+        }
+
+        // none where the last good state could not be sampled
+        hn_sample sample = {0};
+        hn_comparison_sample(c, i, &sample);
+        hn_json_array(b);
+        for (int k = 0; sample.lambda && k < info.nc; k++) {
+            hn_json_number(b, sample.lambda[k]);
+        }
+        hn_json_end_array(b);
+    }
+    hn_json_end_array(b);
+}
+
 void hn_comparison_json(hn_strbuf *b, const hn_comparison *c) {
     hn_json_object(b);
     hn_json_put_number(b, "frame_dt", c->frame_dt);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/export/export.h"
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
@@ -34,6 +35,8 @@ typedef struct exporter {
     hn_system_info info;
     hn_system_exprs x;
     const hn_language *language;
+    hn_walk_limits limits;
+    double started; ///< hn_clock_thread()
     state start, later;
     double energy;
 } exporter;
@@ -54,6 +57,24 @@ static void set_state(const exporter *e, const double *user_q, const double *use
     hn_system_rates_from_user(e->sys, user_v, s->v);
 }
 
+/// Steps to the later state within the limits.
+static hn_status advance(const exporter *e, hn_run *run) {
+    hn_walk_limits left = e->limits;
+    if (left.seconds > 0) {
+        left.seconds = fmax(left.seconds - (hn_clock_thread() - e->started), 1e-9);
+    }
+    switch (hn_walk(run, e->later.t, 1, &left, NULL, NULL)) {
+    case HN_WALK_DONE:
+        return HN_OK;
+    case HN_WALK_FAILED:
+        return hn_run_get_summary(run).status;
+    case HN_WALK_OVER:
+    case HN_WALK_STOPPED:
+        return HN_ERR_BUDGET;
+    }
+    return HN_ERR_INTERNAL;
+}
+
 /// Runs to the later state by one method; HN_OK with the state, or why not.
 static hn_status run_to(exporter *e, const char *method, hn_diag *why) {
     hn_method_spec spec;
@@ -66,7 +87,7 @@ static hn_status run_to(exporter *e, const char *method, hn_diag *why) {
     HN_TRY(hn_method_parse(method, &spec, why));
     HN_TRY(hn_run_create(hn_model_system(e->model), &spec, hn_model_q(e->model),
                          hn_model_v(e->model), &opts, &run, why));
-    hn_status status = hn_run_advance(run, e->later.t);
+    hn_status status = advance(e, run);
     if (status == HN_OK) {
         status = hn_run_sample(run, e->later.t, &sample);
     }
@@ -81,8 +102,9 @@ static hn_status run_to(exporter *e, const char *method, hn_diag *why) {
         set_state(e, sample.q, sample.v, &e->later);
         hn_system_rates_from_user(e->sys, sample.a, e->later.a);
     } else if (status != HN_ERR_SINGULAR) {
+        const char *reason = hn_run_get_summary(run).reason;
         (void)hn_diag_set(why, status, "/method", NULL, "%s: %s", method,
-                          hn_run_get_summary(run).reason);
+                          *reason ? reason : hn_status_text(status));
     }
     hn_run_free(run);
     return status;
@@ -96,6 +118,11 @@ static hn_status find_later(exporter *e, hn_diags *diags) {
         for (size_t i = 0; i < sizeof PRECISE / sizeof *PRECISE; i++) {
             if (run_to(e, PRECISE[i], &why) == HN_OK) {
                 return HN_OK;
+            }
+            if (hn_walk_ask(&e->limits, e->started) != HN_WALK_DONE) {
+                return hn_diags_add(diags, HN_ERR_BUDGET, NULL, NULL,
+                                    "the later state for the self-check took more computing time "
+                                    "than is allowed");
             }
         }
     }
@@ -478,17 +505,21 @@ static hn_status export_to(hn_strbuf *b, exporter *e, const hn_library *lib, hn_
 }
 
 hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
-                          const char *language, const char **suffix, hn_diags *diags) {
-    exporter e = {.model = model, .arena = hn_arena_create(0)};
+                          hn_export_request *request, hn_diags *diags) {
+    exporter e = {.model = model,
+                  .arena = hn_arena_create(0),
+                  .limits = request->limits,
+                  .started = hn_clock_thread()};
     if (!e.arena) {
         return HN_ERR_MEMORY;
     }
-    hn_status status = choose_language(&e, language, diags);
+    hn_status status = choose_language(&e, request->language, diags);
     if (status == HN_OK) {
         status = export_to(b, &e, lib, diags);
     }
-    if (status == HN_OK && suffix) {
-        *suffix = e.language->suffix;
+    if (status == HN_OK) {
+        request->suffix = e.language->suffix;
+        request->comment = e.language->comment;
     }
     hn_system_free(e.sys);
     hn_arena_free(e.arena);

@@ -21,14 +21,22 @@
 
 #include "session/model/library.h"
 #include "session/model/model.h"
+#include "study/run/walk.h"
 
-/// Writes the program for `model` in `language` to `b`. The languages are those of
-/// export/language.h; `suffix` (may be NULL) gets the ending of a file's name.
+/// What is asked for. `suffix` and `comment` are answers: the ending of a file's name, and what
+/// begins a comment.
+typedef struct hn_export_request {
+    const char *language;  ///< a row of export/language.h
+    hn_walk_limits limits; ///< of the run to the later state; zero: none
+    const char *suffix, *comment;
+} hn_export_request;
+
+/// Writes the program for `model` to `b`.
 /// Fails: HN_ERR_INPUT (unknown language, with the nearest), HN_ERR_IO (the text of the language is
-/// not installed), HN_ERR_LIMIT (the code is too long), or as a run does when the later state
-/// cannot be reached.
+/// not installed), HN_ERR_LIMIT (the code is too long), HN_ERR_BUDGET (the limits), or as a run
+/// does when the later state cannot be reached.
 HN_MUST_CHECK hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library *lib,
-                                        const char *language, const char **suffix, hn_diags *diags);
+                                        hn_export_request *request, hn_diags *diags);
 /// {"languages":[{"name","suffix","about"}]}
 void hn_export_languages_json(hn_strbuf *b);
 

@@ -280,6 +280,10 @@ int hn_run_incidents(const hn_run *run, const hn_incident **out) {
     return run->watch.log.n;
 }
 
+double hn_run_sigma_min(const hn_run *run) {
+    return run->stepping.info.nc > 0 ? run->watch.singular.info.sigma_min : (double)NAN;
+}
+
 int hn_run_passed_singular(const hn_run *run, double *t) {
     const hn_incident *list = run->watch.log.list;
     for (int i = 0; i < run->watch.log.n; i++) {

@@ -78,6 +78,9 @@ const char *hn_run_sample_why(const hn_run *run, hn_status status);
 int hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);
 int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; borrowed
+/// The smallest singular value of the constraint rows at the last step that was checked
+/// (dynamics/analyse/singularity_monitor.h); NaN without rows.
+double hn_run_sigma_min(const hn_run *run);
 /// 1 where the run has passed a singular configuration, or near one: *t the first time [s].
 int hn_run_passed_singular(const hn_run *run, double *t);
 /// Sets the run back to the start; counters and incidents are forgotten.

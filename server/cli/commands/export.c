@@ -21,8 +21,8 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
 
     // the program, into the file or onto standard output
     if (status == HN_OK) {
-        const char *language = args->language ? args->language : "python";
-        status = hn_model_export(&b, model, lib, language, NULL, &diags);
+        hn_export_request request = {.language = args->language ? args->language : "python"};
+        status = hn_model_export(&b, model, lib, &request, &diags);
     }
     hn_model_free(model);
     if (status != HN_OK) {

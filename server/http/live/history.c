@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/live/history.h"
 
+#include <string.h>
+
 static const char *const NAMES[HN_EVENT_COUNT] = {
 #define HN_EVENT_NAME(kind, name) name,
     HN_EVENT_LIST(HN_EVENT_NAME)
@@ -35,6 +37,11 @@ void hn_history_reset(hn_history *h) {
 }
 
 void hn_history_add(hn_history *h, hn_event_kind kind, hn_strbuf *data) {
+    hn_history_add_parts(h, kind, data, (const size_t[HN_EVENT_MAX_EXTRAS + 1]){0});
+}
+
+void hn_history_add_parts(hn_history *h, hn_event_kind kind, hn_strbuf *data,
+                          const size_t extra[HN_EVENT_MAX_EXTRAS + 1]) {
     size_t n = data->n;
     char *text = hn_strbuf_take(data);
     n = text ? n : 0;
@@ -42,7 +49,9 @@ void hn_history_add(hn_history *h, hn_event_kind kind, hn_strbuf *data) {
         drop_oldest(h);
     }
     uint64_t id = ++h->last_id;
-    h->ring[(h->head + h->n) % h->cap] = (hn_event){.id = id, .kind = kind, .data = text, .n = n};
+    hn_event *e = &h->ring[(h->head + h->n) % h->cap];
+    *e = (hn_event){.id = id, .kind = kind, .data = text, .n = n};
+    memcpy(e->extra, extra, sizeof e->extra);
     h->n++;
     h->bytes += n;
     if (kind == HN_EVENT_FRAME) {

@@ -9,6 +9,8 @@
 
 #include <stdint.h>
 
+enum { HN_EVENT_MAX_EXTRAS = 2 };
+
 #define HN_EVENT_LIST(X)             \
     X(HN_EVENT_FRAME, "frame")       \
     X(HN_EVENT_INCIDENT, "incident") \
@@ -29,6 +31,9 @@ typedef struct hn_event {
     hn_event_kind kind;
     char *data; ///< one line of JSON; NULL when memory ran out (readers are told of a gap)
     size_t n;
+    /// Of an object with members that only some readers want: where the others end, then where each
+    /// of these ends (",\"name\":value"); its last byte closes the object. All 0: no such members.
+    size_t extra[HN_EVENT_MAX_EXTRAS + 1];
 } hn_event;
 
 typedef struct hn_history {
@@ -42,6 +47,9 @@ HN_MUST_CHECK hn_status hn_history_init(hn_history *h, int max_events, size_t ma
 void hn_history_reset(hn_history *h); ///< frees; a zeroed one is legal
 /// Takes the buffer's text. The newest event is always kept, however large.
 void hn_history_add(hn_history *h, hn_event_kind kind, hn_strbuf *data);
+/// The same; `extra` as in hn_event.
+void hn_history_add_parts(hn_history *h, hn_event_kind kind, hn_strbuf *data,
+                          const size_t extra[HN_EVENT_MAX_EXTRAS + 1]);
 /// The oldest id that is still there (last_id + 1 when nothing is).
 uint64_t hn_history_first_id(const hn_history *h);
 /// NULL when it is gone or has not come yet.

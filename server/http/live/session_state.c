@@ -203,14 +203,35 @@ static void publish_end(hn_session *session) {
     pthread_mutex_unlock(&session->lock);
 }
 
+/// Writes a frame, an object, with what only some readers want.
+static void add_extras(hn_strbuf *event, const hn_strbuf *plain, const hn_comparison *c,
+                       size_t extra[HN_EVENT_MAX_EXTRAS + 1]) {
+    _Static_assert((int)HN_FRAME_EXTRAS <= (int)HN_EVENT_MAX_EXTRAS, "every extra has its place");
+    event->failed = plain->failed || plain->n == 0;
+    hn_strbuf_add_n(event, hn_strbuf_text(plain), plain->n - (plain->n > 0)); // without its brace
+    extra[0] = event->n;
+    for (int i = 0; i < HN_FRAME_EXTRAS; i++) {
+        hn_strbuf value;
+        hn_strbuf_init(&value);
+        hn_comparison_extra_json(&value, c, (hn_frame_extra)i);
+        hn_strbuf_printf(event, ",\"%s\":", hn_frame_extra_name((hn_frame_extra)i));
+        hn_strbuf_add_n(event, hn_strbuf_text(&value), value.n);
+        event->failed |= value.failed;
+        hn_strbuf_reset(&value);
+        extra[i + 1] = event->n;
+    }
+    hn_strbuf_add(event, "}");
+}
+
 void hn_session_publish_frame(hn_session *session) {
+    size_t extra[HN_EVENT_MAX_EXTRAS + 1] = {0};
     hn_strbuf frame, event, latest;
     hn_strbuf_init(&frame);
     hn_strbuf_init(&event);
     hn_strbuf_init(&latest);
     hn_comparison_frame_json(&frame, session->bench.comparison);
-    put_with_generation(&event, session, &frame);
-    hn_strbuf_add_n(&latest, hn_strbuf_text(&event), event.n);
+    put_with_generation(&latest, session, &frame);
+    add_extras(&event, &latest, session->bench.comparison, extra);
 
     // the frame is there for all at once
     pthread_mutex_lock(&session->lock);
@@ -218,7 +239,7 @@ void hn_session_publish_frame(hn_session *session) {
     if (!latest.failed) {
         swap_text(&session->latest, &latest);
     }
-    hn_history_add(&session->history, HN_EVENT_FRAME, &event);
+    hn_history_add_parts(&session->history, HN_EVENT_FRAME, &event, extra);
     hn_session_wake_streams(session);
     pthread_mutex_unlock(&session->lock);
 

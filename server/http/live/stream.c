@@ -22,6 +22,7 @@ struct hn_stream {
     hn_client client;
     uint64_t cursor; ///< id of the event that comes next
     int skips;       ///< mode=live: frames may be left out
+    unsigned fields; ///< bit i: hn_frame_extra i is wanted
     int said_hello, said_end;
     double last_sent;
     hn_strbuf text; ///< what is being sent, from `at` on; only the connection's thread touches it
@@ -74,7 +75,16 @@ static void put_event(hn_stream *s, const hn_event *e) {
     }
     hn_strbuf_printf(&s->text, "id: %llu\nevent: %s\ndata: ", (unsigned long long)e->id,
                      hn_event_name(e->kind));
-    hn_strbuf_add_n(&s->text, e->data, e->n);
+    if (e->extra[0] == 0) {
+        hn_strbuf_add_n(&s->text, e->data, e->n);
+    } else {
+        hn_strbuf_add_n(&s->text, e->data, e->extra[0]);
+        for (int i = 0; i < HN_FRAME_EXTRAS; i++) {
+            const size_t wanted = s->fields >> i & 1 ? e->extra[i + 1] - e->extra[i] : 0;
+            hn_strbuf_add_n(&s->text, e->data + e->extra[i], wanted);
+        }
+        hn_strbuf_add(&s->text, "}");
+    }
     hn_strbuf_add(&s->text, "\n\n");
 }
 
@@ -207,6 +217,29 @@ static int choose_cursor(hn_stream *s, hn_request *r, long long last) {
     return 1;
 }
 
+/// The extras of a frame that the query names; 0 with a problem as reply.
+static int read_fields(hn_request *r, unsigned *fields) {
+    const char *at = hn_request_query(r, "fields");
+    *fields = 0;
+    while (at && *at) {
+        const size_t n = strcspn(at, ",");
+        int i = 0;
+        while (i < HN_FRAME_EXTRAS &&
+               (strlen(hn_frame_extra_name((hn_frame_extra)i)) != n ||
+                memcmp(hn_frame_extra_name((hn_frame_extra)i), at, n) != 0)) {
+            i++;
+        }
+        if (i == HN_FRAME_EXTRAS) {
+            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "fields=sigma_min,lambda",
+                             "a frame has no field '%.*s' to add", (int)(n < 40 ? n : 40), at);
+            return 0;
+        }
+        *fields |= 1U << i;
+        at += n + (at[n] == ',');
+    }
+    return 1;
+}
+
 static void reply_stream(hn_stream *s, hn_request *r) {
     struct MHD_Response *response =
         MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, CHUNK, read_stream, s, close_stream);
@@ -273,6 +306,10 @@ void hn_stream_open(hn_session *session, hn_request *r) {
                          "the mode '%.40s' is unknown", mode);
         return;
     }
+    unsigned fields;
+    if (!read_fields(r, &fields)) {
+        return;
+    }
     if (r->is_head) {
         hn_reply_empty(r, MHD_HTTP_OK);
         hn_reply_header_add(r, "Content-Type", "text/event-stream");
@@ -280,6 +317,9 @@ void hn_stream_open(hn_session *session, hn_request *r) {
     }
 
     hn_stream *s = create_stream(session, r, mode && strcmp(mode, "live") == 0);
+    if (s) {
+        s->fields = fields;
+    }
     if (s && attach(s, r)) {
         reply_stream(s, r);
     } else if (s) {

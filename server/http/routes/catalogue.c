@@ -167,8 +167,7 @@ static hn_status see_setting(void *user, const char *value) {
     return hn_scene_request_add(q->order, value, n, x, q->diags);
 }
 
-/// The scene in the path with the settings of the query; NULL with a problem as reply.
-static hn_model *load_scene(hn_request *r, int allow_open) {
+hn_model *hn_catalogue_load_scene(hn_request *r, int allow_open) {
     hn_diags diags = {0};
     hn_scene_request order = {.name = strdup(r->parts[0])};
     hn_model *model = NULL;
@@ -199,7 +198,7 @@ static hn_model *load_scene(hn_request *r, int allow_open) {
 }
 
 void hn_handle_scene(hn_request *r) {
-    hn_model *model = load_scene(r, 1);
+    hn_model *model = hn_catalogue_load_scene(r, 1);
     if (model) {
         hn_strbuf b;
         hn_strbuf_init(&b);
@@ -271,7 +270,7 @@ static hn_status write_reference(hn_strbuf *b, const hn_model *model, const refe
 }
 
 void hn_handle_reference(hn_request *r) {
-    hn_model *model = load_scene(r, 0);
+    hn_model *model = hn_catalogue_load_scene(r, 0);
     reference_order order;
     hn_diags diags = {0};
     hn_strbuf b;

@@ -4,7 +4,12 @@
 // What there is: the index with the bounds, scenes, methods, looks, lessons, problems, kinds of
 // errors, health.
 
+#include "session/model/model.h"
+
 struct hn_request;
+
+/// Loads the scene in the path, with the settings of the query; NULL with a problem as reply.
+hn_model *hn_catalogue_load_scene(struct hn_request *r, int allow_open);
 
 void hn_handle_index(struct hn_request *r);
 void hn_handle_health(struct hn_request *r);

@@ -162,11 +162,19 @@ static void push(hn_request *r, hn_jobs *jobs) {
     }
 }
 
-/// A GET computes nothing, unless it says so.
+/// 1 when the route computes only when it is told to.
+static int may_compute(const hn_route *route) {
+    const hn_route_query *q = route->query;
+    while (q && q->name && strcmp(q->name, "compute") != 0) {
+        q++;
+    }
+    return q && q->name;
+}
+
 static int is_quick(const hn_request *r) {
     const char *compute = hn_request_query(r, "compute");
     return r->route->work == HN_WORK_QUICK || r->route->work == HN_WORK_QUICK_OWN ||
-           (strcmp(r->route->method, "GET") == 0 && (!compute || strcmp(compute, "true") != 0));
+           (may_compute(r->route) && (!compute || strcmp(compute, "true") != 0));
 }
 
 /// Arranges the reply. Returns 1 when it is there, 0 when another thread owns the request.

@@ -109,7 +109,12 @@ static const struct {
      ",\"velocity_gap\":" MAYBE_NUMBER ",\"energy\":" MAYBE_NUMBER ",\"work\":" MAYBE_NUMBER
      ",\"energy_change\":" MAYBE_NUMBER
      ",\"steps\":{\"type\":\"integer\"},\"evals\":{\"type\":\"integer\"},"
-     "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}}}}"},
+     "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}},"
+     "\"sigma_min\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     ",\"description\":\"of each method, when fields asks for it: the smallest singular value of "
+     "the constraint rows, scaled by the masses, at the last step that was checked\"},"
+     "\"lambda\":{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
+     "},\"description\":\"of each method, when fields asks for it: multipliers\"}}}"},
     {"Incident",
      "{\"type\":\"object\",\"description\":\"data of the event incident; told again with the same "
      "method, code and t when the run has shown what became of "
@@ -181,6 +186,9 @@ static const struct {
     {"errors", "The kinds of problem documents."},
     {"terms", "M, f, J, gamma at one state."},
     {"assemble", "Consistent starting values."},
+    {"drag", "Closed poses near a target."},
+    {"languages", "Languages of export."},
+    {"export", "Mechanisms as programs."},
     {"inspect", "Sizes, tree, loops, rank."},
     {"equations", "The equations of motion."},
     {"runs", "Runs: the same question has the same id."},

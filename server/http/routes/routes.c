@@ -4,6 +4,7 @@
 #include "http/live/comparisons.h"
 #include "http/request/request.h"
 #include "http/routes/catalogue.h"
+#include "http/routes/exports.h"
 #include "http/routes/openapi.h"
 #include "http/routes/stateless.h"
 #include "http/runs/runs.h"
@@ -73,6 +74,14 @@ static const hn_field EQUATIONS[] = {SCENE_FIELDS,
                                       .choices = EQUATION_FORMATS,
                                       .about = "text when left out"},
                                      END_OF_FIELDS};
+
+static const hn_field EXPORT[] = {
+    SCENE_FIELDS,
+    {.name = "language", .type = HN_FIELD_TEXT, .about = "python when left out; see /languages"},
+    {.name = "method",
+     .type = HN_FIELD_TEXT,
+     .about = "named in the last line; the program has a solver of its own"},
+    END_OF_FIELDS};
 
 static const hn_field RUN[] = {SCENE_FIELDS,
                                {.name = "method",
@@ -239,6 +248,11 @@ static const hn_route_query REFERENCE_QUERY[] = {
     {"compute", "boolean",
      "true: computed where none is stored, within run_cpu_s; else that is 404 with the reason"},
     {NULL, NULL, NULL}};
+static const hn_route_query EXPORT_QUERY[] = {
+    {"set", "string", "parameter:value, may be repeated"},
+    {"language", "string", "python when left out; see /languages"},
+    {"method", "string", "named in the last line; the program has a solver of its own"},
+    {NULL, NULL, NULL}};
 static const hn_route_query RUN_QUERY[] = {
     {"wait", "number", "seconds to wait for the end, at most 60; POST: 25 when left out, GET: 0"},
     {NULL, NULL, NULL}};
@@ -255,6 +269,9 @@ static const hn_route_query EVENTS_QUERY[] = {
     {"mode", "string",
      "complete (every frame) or live (a slow reader skips frames, never incidents)"},
     {"last_event_id", "string", "the same as the Last-Event-ID header"},
+    {"fields", "string",
+     "what each frame says beside, with an entry for each method: sigma_min, lambda or both, "
+     "separated by commas"},
     {NULL, NULL, NULL}};
 
 #define JSON "application/json"
@@ -275,6 +292,14 @@ static const hn_route ROUTES[] = {
     {"GET", "/api/v1/scenes/{id}/reference", HN_WORK_HEAVY, hn_handle_reference, NULL, JSON, "200",
      "Reference", "The reference solution of a scene: by two means, with the digits they share",
      REFERENCE_QUERY, NULL},
+    {"GET", "/api/v1/scenes/{id}/export", HN_WORK_HEAVY, hn_handle_scene_export, NULL, "text/plain",
+     "200", "Text", "A scene as a program that solves its equations and checks itself",
+     EXPORT_QUERY, NULL},
+    {"GET", "/api/v1/languages", HN_WORK_LIGHT, hn_handle_languages, NULL, JSON, "200", "Document",
+     "Languages of export, with what a program in each needs", NULL, NULL},
+    {"POST", "/api/v1/export", HN_WORK_HEAVY, hn_handle_export, EXPORT, "text/plain", "200", "Text",
+     "Any scene as a program that solves its equations and checks itself", NULL,
+     "{\"scene\":\"four-bar\",\"parameters\":{\"l1\":0.6},\"language\":\"octave\"}"},
     {"GET", "/api/v1/methods", HN_WORK_LIGHT, hn_handle_methods, NULL, JSON, "200", "Methods",
      "The catalogue of formulations and integrators", NULL, NULL},
     {"GET", "/api/v1/look", HN_WORK_LIGHT, hn_handle_look, NULL, JSON, "200", "Document",
