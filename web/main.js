@@ -9,23 +9,21 @@ import { findKey } from "./state/keys.js";
 import { createControls } from "./views/controls.js";
 import { createDrawing } from "./views/drawing/drawing.js";
 import { createEquations } from "./views/equations.js";
-import { createExportDialog } from "./views/export-dialog.js";
 import { createGuide } from "./views/guide.js";
 import { createHappening } from "./views/happening.js";
 import { createHeader } from "./views/header.js";
-import { createKeysDialog } from "./views/keys-dialog.js";
 import { createLook } from "./views/look.js";
-import { createMethodDialog } from "./views/method-dialog.js";
 import { createMethods } from "./views/methods.js";
+import { createNotes } from "./views/notes.js";
 import { createParameters } from "./views/parameters.js";
 import { createPlots } from "./views/plots.js";
 import { createReactions } from "./views/reactions.js";
 import { createStatus } from "./views/status.js";
-import { createStudies } from "./views/studies.js";
 import { createTear } from "./views/tear.js";
 import { createTransport } from "./views/transport.js";
 import { createVerdictBar } from "./views/verdict-bar.js";
 import { createWhyCard } from "./views/why-card.js";
+import { saveFile } from "./widgets/save.js";
 import { createTheme } from "./widgets/theme.js";
 import { createTips } from "./widgets/tips.js";
 
@@ -38,26 +36,65 @@ store.data.view.stepped = matchMedia("(prefers-reduced-motion: reduce)").matches
 /** @param {string} id */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
-const dialog = createMethodDialog(document.body, store, session);
-const keys = createKeysDialog(document.body, store, session);
-const studies = createStudies(document.body, store, session);
+/**
+ * A view that is made when it is first opened; its modules are loaded then, not before.
+ * @template {any[]} A
+ * @param {() => Promise<{open: (...how: A) => void}>} make
+ * @returns {(...how: A) => void} opens it
+ */
+function onDemand(make) {
+  /** @type {Promise<{open: (...how: A) => void}> | null} */
+  let made = null;
+  return (...how) => {
+    made ??= make();
+    made
+      .then((view) => view.open(...how))
+      .catch((error) => {
+        made = null;
+        session.notice(sentenceOf(error));
+      });
+  };
+}
+
+const openMethod = onDemand(async () => {
+  const { createMethodDialog } = await import("./views/method-dialog.js");
+  return createMethodDialog(document.body, store, session);
+});
+const openKeys = onDemand(async () => {
+  const { createKeysDialog } = await import("./views/keys-dialog.js");
+  return createKeysDialog(document.body, store, session);
+});
+const openExport = onDemand(async () => {
+  const { createExportDialog } = await import("./views/export-dialog.js");
+  return createExportDialog(document.body, store, session);
+});
+const openStudy = onDemand(async () => {
+  const { createStudies } = await import("./views/studies.js");
+  return createStudies(document.body, store, session);
+});
+store.on("view", () => {
+  const { study } = store.data.view; // a link names one; once made, the dialog follows by itself
+  if (study && !document.querySelector("dialog.study")) {
+    openStudy(study);
+  }
+});
+
 /** Keys that open something; all others are actions of the session. */
-const OPENERS = { help: keys.open, study: studies.open };
-const exports = createExportDialog(document.body, store, session);
-const guide = createGuide(store, session, { openStudy: studies.open });
+const OPENERS = { help: openKeys, study: openStudy };
+const guide = createGuide(store, session, { openStudy });
 const views = [
   createHeader(at("top"), store, session, {
     toggleTheme: theme.toggle,
-    openKeys: keys.open,
-    openStudy: studies.open,
-    openExport: exports.open,
+    openKeys,
+    openStudy,
+    openExport,
     openGuide: guide.open,
   }),
   createDrawing(at("mechanism"), store, session),
   createTear(/** @type {HTMLElement} */ (document.querySelector(".stage")), store),
   createLook(at("mechanism"), store, session),
   createTransport(at("transport"), store, session),
-  createMethods(at("method-list"), store, session, dialog.open),
+  createMethods(at("method-list"), store, session, openMethod),
   createWhyCard(at("methods"), store, session),
   createControls(at("controls"), store, session),
   createParameters(
@@ -68,11 +105,14 @@ const views = [
   ),
   createVerdictBar(at("verdict"), store),
   createHappening(at("happening"), store, session),
+  createNotes(at("notes"), store, session),
   createPlots(at("plots"), store, session),
   createReactions(at("reactions"), store, session),
   createEquations(at("equations"), store, session),
-  createStatus(at("status"), document.body, store),
+  createStatus(at("status"), document.body, store, session),
 ];
+
+store.on("file", ({ name, type, text }) => saveFile(new Blob([text], { type }), name));
 
 let drawing = 0;
 store.on("frame", () => {

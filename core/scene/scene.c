@@ -48,3 +48,9 @@ void hn_scene_free(hn_scene *scene) {
         hn_arena_free(scene->arena); // the scene itself lives in it
     }
 }
+
+const char *hn_scene_start_name(const char *setting) {
+    static const char prefix[] = "start.";
+    const size_t n = sizeof prefix - 1;
+    return setting && strncmp(setting, prefix, n) == 0 ? setting + n : NULL;
+}

@@ -233,7 +233,8 @@ typedef struct hn_scene {
     uint64_t hash; ///< of what moves and the present parameter values: not of words or drawing
 } hn_scene;
 
-/// One changed parameter, as from --set l1=1.2.
+/// One changed parameter, as from --set l1=1.2; or, named start.NAME, the value at which a
+/// coordinate or rate starts: assembly begins there, whatever the scene says.
 typedef struct hn_setting {
     const char *name;
     double value;
@@ -258,6 +259,9 @@ void hn_scene_free(hn_scene *scene); ///< NULL is legal
 
 int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
 int hn_scene_find_param(const hn_scene *scene, const char *name);
+/// Returns the coordinate or rate that a setting moves the start of ("th1" of "start.th1"); NULL
+/// when the setting is a parameter's, or NULL.
+const char *hn_scene_start_name(const char *setting);
 int hn_scene_find_body(const hn_scene *scene,
                        const char *name); ///< "ground" gives HN_GROUND; unknown: -2
 

@@ -253,6 +253,28 @@ static hn_status parse_text(const char *text, size_t n, cJSON **root, hn_diags *
     return *root ? HN_OK : HN_ERR_MEMORY;
 }
 
+/// The object of this name in a parent, made if it is not there; NULL when something else is.
+static cJSON *object_in(cJSON *parent, const char *name) {
+    cJSON *there = cJSON_GetObjectItemCaseSensitive(parent, name);
+    if (!there) {
+        there = cJSON_AddObjectToObject(parent, name);
+    }
+    return cJSON_IsObject(there) ? there : NULL;
+}
+
+/// Puts the settings of the start into the scene, where its hash and its text contain them.
+static void move_start(cJSON *root, const hn_setting *settings, int n) {
+    for (int i = 0; i < n && cJSON_IsObject(root); i++) {
+        const char *name = hn_scene_start_name(settings[i].name);
+        cJSON *start = name ? object_in(root, "start") : NULL;
+        cJSON *moved = start ? object_in(start, "moved") : NULL;
+        if (moved) {
+            cJSON_DeleteItemFromObjectCaseSensitive(moved, name);
+            cJSON_AddNumberToObject(moved, name, settings[i].value);
+        }
+    }
+}
+
 hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const hn_setting *settings,
                              int n_settings, hn_scene **out, hn_diags *diags) {
     HN_ASSERT(out && (text || n == 0) && (settings || n_settings == 0));
@@ -268,6 +290,7 @@ hn_status hn_scene_load_json(const char *text, size_t n, const char *id, const h
         status = HN_ERR_MEMORY;
     }
     if (status == HN_OK) {
+        move_start(root, settings, n_settings);
         scene->arena = arena;
         r->scene = scene;
         r->arena = arena;

@@ -226,7 +226,7 @@ static void check_settings(hn_reader *r) {
     }
     for (int i = 0; i < r->n_settings; i++) {
         const char *name = r->settings[i].name ? r->settings[i].name : "";
-        if (hn_scene_find_param(r->scene, name) < 0) {
+        if (!hn_scene_start_name(name) && hn_scene_find_param(r->scene, name) < 0) {
             char hint[HN_DIAG_HINT];
             hn_rd_suggest(hint, sizeof hint, name, names, r->scene->n_params);
             hn_rd_fault(r, hint, "this scene has no parameter '%.60s'", name);

@@ -67,6 +67,27 @@ static void read_rate(hn_reader *r, const cJSON *node, const char *key) {
     c->v0_pointer = hn_rd_pointer(r);
 }
 
+/// A state to start from instead, such as one that a person dragged the mechanism to: every value
+/// replaces that of its coordinate or rate, and assembly begins there.
+static void read_moved(hn_reader *r, const cJSON *node, const char *key) {
+    hn_quantity q;
+    hn_coordinate *c = start_coordinate(r, key);
+    if (!c || !hn_rd_quantity(r, node, &q, HN_RD_CONST)) {
+        return;
+    }
+    if (strcmp(key, c->name) == 0) {
+        c->q0 = q.value;
+        c->q0_given = true;
+        c->q0_pinned = false;
+        c->q0_pointer = hn_rd_pointer(r);
+    } else {
+        c->v0 = q.value;
+        c->v0_given = true;
+        c->v0_pinned = false;
+        c->v0_pointer = hn_rd_pointer(r);
+    }
+}
+
 /// "open", "crossed", or a sign for each loop.
 static void read_mode(hn_reader *r, const cJSON *node) {
     static const char *const words[] = {"open", "crossed", "+", "-"};
@@ -88,15 +109,16 @@ static void read_mode(hn_reader *r, const cJSON *node) {
 }
 
 void hn_rd_start(hn_reader *r, const cJSON *root) {
-    static const char *const fields[] = {"positions", "rates", "mode"};
+    static const char *const fields[] = {"positions", "rates", "moved", "mode"};
     const cJSON *node = hn_rd_get(root, "start");
     if (!node) {
         return;
     }
     size_t mark = hn_rd_enter(r, "start");
-    if (hn_rd_object(r, node, "a start", fields, 3)) {
+    if (hn_rd_object(r, node, "a start", fields, 4)) {
         hn_rd_list(r, node, "positions", 1, read_position);
         hn_rd_list(r, node, "rates", 1, read_rate);
+        hn_rd_list(r, node, "moved", 1, read_moved);
         read_mode(r, node);
     }
     hn_rd_leave(r, mark);

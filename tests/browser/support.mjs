@@ -152,22 +152,33 @@ export function createBench() {
      * Opens the page and waits until it can be used. The test fails if the page does what it must
      * not.
      * @param {import("node:test").TestContext} t
-     * @param {{url?: string, hash?: string, wait?: boolean, init?: () => void, fresh?: boolean}}
-     *   [options] and those of a browser's context
+     * @param {{url?: string, hash?: string, wait?: boolean, init?: () => void, fresh?: boolean,
+     *   keep?: boolean}} [options] and those of a browser's context; keep: what other pages stored
      */
     async open(t, options = {}) {
-      const { url = server.url, hash = "", wait = true, init, fresh = false, ...context } = options;
+      const {
+        url = server.url,
+        hash = "",
+        wait = true,
+        init,
+        fresh = false,
+        keep = false,
+        ...context
+      } = options;
       const home = await homeOf(fresh, context);
       const page = await home.newPage();
       const faults = watch(page, new URL(url).host);
       faultsOf.set(page, faults);
       t.after(async () => {
         if (context.javaScriptEnabled !== false) {
-          await page.evaluate(() => localStorage.clear());
+          await page.evaluate(() => location.protocol === "about:" || localStorage.clear());
         }
         await (fresh ? home : page).close();
         assert.deepEqual(faults, []);
       });
+      if (!keep) {
+        await page.addInitScript(forgetOthers);
+      }
       if (init) {
         await page.addInitScript(init);
       }
@@ -196,6 +207,14 @@ export function createBench() {
       return own;
     },
   };
+}
+
+/** In the page, when it is first loaded: other pages have stored nothing. */
+function forgetOthers() {
+  if (location.protocol !== "about:" && !sessionStorage.getItem("loaded")) {
+    localStorage.clear();
+    sessionStorage.setItem("loaded", "yes");
+  }
 }
 
 /** A look at the page's data, by a function that gets it. */

@@ -4,7 +4,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createBench, playTo, read, screenshot, until } from "./support.mjs";
 
-const { open } = createBench();
+const MOST_BYTES = 500e3; // on the line
+
+const bench = createBench();
+const { open } = bench;
+const url = () => bench.url;
 
 /** Boxes of elements, by a name each. */
 function boxesOf(page, selectors) {
@@ -193,4 +197,28 @@ test("a special word explains itself on hover and on focus, and Escape closes th
   assert.equal(await term.getAttribute("aria-describedby"), "tip");
   await page.keyboard.press("Escape");
   assert.ok(await page.locator("#tip").isHidden());
+});
+
+test("before the first interaction the page takes 500 kB at most, and no view that is opened later", async (t) => {
+  const page = await open(t, { fresh: true, wait: false, hash: "#pendulum" });
+  await page.goto("about:blank");
+  const line = await page.context().newCDPSession(page);
+  const sizes = new Map();
+  await line.send("Network.enable");
+  await line.send("Network.setCacheDisabled", { cacheDisabled: true });
+  line.on("Network.loadingFinished", ({ requestId, encodedDataLength }) =>
+    sizes.set(requestId, encodedDataLength),
+  );
+  await page.goto(url());
+  await page.waitForFunction(() => globalThis.holonom?.data.reference?.state === "ready");
+  const sum = [...sizes.values()].reduce((a, b) => a + b, 0);
+  assert.ok(sizes.size > 40 && sum > 1e5, `${sizes.size} files, ${sum} bytes`);
+  assert.ok(sum <= MOST_BYTES, `${sum} bytes`);
+  const late = await page.evaluate(() =>
+    performance
+      .getEntriesByType("resource")
+      .map(({ name }) => name)
+      .filter((name) => /katex\.mjs|study-|three|-dialog/.test(name)),
+  );
+  assert.deepEqual(late, [], "loaded when they are opened");
 });

@@ -222,7 +222,7 @@ test("digits select, signs change the speed, and single characters can be switch
   await page.keyboard.press("-");
   await until(page, (data) => data.speed === 1);
   await page.keyboard.press("F1");
-  assert.ok(await page.locator("table.keys").isVisible());
+  await page.locator("table.keys").waitFor();
   await page.uncheck("#letters");
   await page.locator("dialog[open]").getByRole("button", { name: "Close" }).click();
   await page.focus("#play");
@@ -294,7 +294,7 @@ test("a server that is lost is told in sight of the mechanism", async (t) => {
   assert.equal(await page.evaluate(() => scrollY), 0);
   line.cut();
   const told = page.locator(".lost");
-  await told.getByText("reconnecting").waitFor();
+  await told.getByText("goes on by itself when the server is back").waitFor();
   const { y, height } = await told.boundingBox();
   assert.ok(y > 0 && y + height <= 720, `at ${y} px of 720`);
 });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The main journey on the real server: play, pause, step, change the step size, read the gap.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { createBench, fastest, playTo, read, screenshot, stood, until } from "./support.mjs";
 
@@ -463,4 +464,42 @@ test("one bad entry of a link is left out and named; the others stay", async (t)
   assert.match(notice, /l1 is 50; 0\.1 to 3 is allowed/);
   assert.match(notice, /no parameter 'zz'/);
   assert.match(notice, /projektion/);
+});
+
+test("notes travel with the link; one too long to be sent becomes a file that opens it", async (t) => {
+  const page = await open(t);
+  await page.fill("#note", "Predict first: which one stays closed?");
+  await page.focus("#play");
+  await page.keyboard.press("l");
+  await until(page, (data) => /link copied|address line/.test(data.notice));
+  const other = await open(t, { hash: new URL(page.url()).hash });
+  assert.equal(await other.inputValue("#note"), "Predict first: which one stays closed?");
+  assert.match(await other.textContent(".notice"), /notes of this link: Predict first/);
+  await page.fill("#note", "why? ".repeat(1000));
+  await page.focus("#play");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("l")]);
+  assert.equal(download.suggestedFilename(), "four-bar-comparison.html");
+  const text = readFileSync(await download.path(), "utf8");
+  const [, fragment] = /href="[^"#]*(#[^"]*)"/.exec(text) ?? [];
+  const third = await open(t, { hash: fragment.replaceAll("&amp;", "&") });
+  assert.equal((await third.inputValue("#note")).length, 5000);
+});
+
+test("the last session of this browser can be continued, and an untouched page leaves none", async (t) => {
+  const context = { viewport: { width: 1279, height: 800 } }; // a browser of this test's own
+  const untouched = await open(t, context);
+  await untouched.goto("about:blank");
+  await untouched.goto(bench.url);
+  await untouched.waitForFunction(() => globalThis.holonom?.data.history?.count > 0);
+  assert.ok(await untouched.isHidden(".offer"));
+  const page = await open(t, context);
+  await type(page, "#set-h", "0.013");
+  await page.focus("#play");
+  await playTo(page, 0.4);
+  await page.waitForFunction(() => /h=0.013/.test(localStorage.getItem("holonom.last") ?? ""));
+  const before = await read(page, (data) => data.latest.methods.map(({ q }) => q));
+  const again = await open(t, { ...context, keep: true });
+  await again.getByRole("button", { name: "continue it" }).click();
+  await until(again, (data) => data.latest?.t > 0.3 && data.offer === "");
+  assert.deepEqual(await read(again, (data) => data.latest.methods.map(({ q }) => q)), before);
 });

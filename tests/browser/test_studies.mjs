@@ -5,7 +5,15 @@ import { test } from "node:test";
 import { createBench, read, screenshot, until } from "./support.mjs";
 import { barsOf, boundaryOf, dotsOf, floorOf, frameOf } from "../../web/state/study-documents.js";
 import { readIndex } from "../../web/state/catalogue.js";
-import { heatRange, heatSentences, HEATS } from "../../web/state/heat.js";
+import {
+  baumgarteLimit,
+  contourOf,
+  heatRange,
+  heatSentences,
+  HEATS,
+  placeOnAxis,
+  valueOnAxis,
+} from "../../web/state/heat.js";
 import { orderOf, presetsOf, signatureOf } from "../../web/state/studies.js";
 import { decodeLink, encodeLink } from "../../web/state/link.js";
 
@@ -167,6 +175,36 @@ test("the heat of a map is that of the cells that ran, and its least is found in
   assert.equal(said[0], "smallest worst loop gap: 20 µm at 1, 4");
 });
 
+test("a place on an axis and its value agree; contours lie between the values they part", () => {
+  const axis = { scale: "log", values: [1, 10, 100] };
+  assert.ok(Math.abs(placeOnAxis(axis, 10) - 1.5) < 1e-12);
+  assert.equal(valueOnAxis(axis, placeOnAxis(axis, 31.6)), 31.6);
+  assert.equal(valueOnAxis(axis, -4), valueOnAxis(axis, 0), "never beyond the axis");
+  const rows = [
+    [0, 2],
+    [0, 2],
+  ];
+  assert.deepEqual(contourOf(rows, 1), [
+    [
+      [1, 0.5],
+      [1, 1.5],
+    ],
+  ]);
+  assert.deepEqual(
+    contourOf(
+      [
+        [0, NaN],
+        [0, 2],
+      ],
+      1,
+    ),
+    [],
+  );
+  const map = { x: { name: "alpha", values: [40] }, y: { name: "beta", values: [24] } };
+  const method = { rows: [[{ margin: (0.02 * 72) / 2.785 }]] };
+  assert.ok(Math.abs(baumgarteLimit(map, method, 0.02) - 2.785) < 1e-12);
+});
+
 test("a map over alpha and beta is asked for the methods that have them alone", () => {
   const data = {
     scene: { id: "four-bar" },
@@ -271,6 +309,8 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   const page = await open(t, { hash: STABILISED });
   await page.keyboard.press("b");
   await until(page, hasEnded("stability"), LONG);
+  assert.ok((await page.locator(".maps .contour").count()) > 0, "at first as heat");
+  await page.getByRole("button", { name: "outcome" }).click();
   const letters = await page.locator(".maps .cell .letter").allTextContents();
   assert.ok(letters.includes("s") && letters.includes("g"), "stable and grown cells");
   assert.ok((await page.locator(".maps .boundary").count()) > 0);
@@ -286,6 +326,30 @@ test("B maps alpha and beta with letters and the predicted boundary; a cell sets
   await page.locator(".maps .here").waitFor();
   await page.keyboard.press("ArrowUp");
   assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("data-spot")), "3 3");
+  assert.match(await page.textContent(".legend"), /predicted boundary: h β = 2\.7\d on α = β/);
+
+  // the ring is dragged to the middle of another cell, and beyond the axes it stays at their end
+  const middle = async (selector) => {
+    const { x, y, width, height } = await page.locator(selector).boundingBox();
+    return [x + width / 2, y + height / 2];
+  };
+  const dragTo = async (x, y) => {
+    const [fromX, fromY] = await middle(".maps .here-handle");
+    await page.mouse.move(fromX, fromY);
+    await page.mouse.down();
+    await page.mouse.move(x, y, { steps: 4 });
+    await page.mouse.up();
+  };
+  const wanted = await read(page, (data) => {
+    const { x, y } = data.studies.stability.document;
+    return [x.values[1], y.values[4]];
+  });
+  await dragTo(...(await middle('.maps [data-spot="1 4"] rect')));
+  const near = (a, b) => `Math.abs(${a} / ${b} - 1) < 0.1`;
+  const set = "data.methods[1].spelling.match(/alpha=(.*),beta=(.*)@/)";
+  await until(page, `(data) => ${near(`${set}[1]`, wanted[0])} && ${near(`${set}[2]`, wanted[1])}`);
+  await dragTo(1, (await middle(".maps .here-handle"))[1]);
+  await until(page, `(data) => ${set}[1] < ${wanted[0]} && ${set}[1] > 0`);
   await page.getByLabel("over").selectOption("limits");
   await until(page, (data) => data.studies.stability.document?.x === null, LONG);
   assert.equal(await page.locator(".maps .map").count(), 1, "methods side by side");

@@ -5,8 +5,9 @@
 import { Problem, api, sentenceOf } from "../api/client.js";
 import { limits, readIndex } from "../state/catalogue.js";
 import { plain } from "../state/format.js";
-import { decodeLink, encodeLink, fits } from "../state/link.js";
+import { LONGEST_NOTE, decodeLink, encodeLink, fits } from "../state/link.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
+import { createKeeper } from "./keeper.js";
 import { SHORT, firstSpeed } from "./speeds.js";
 
 const PANELS = /** @type {const} */ (["labels", "traces", "reference", "arrows", "reactions"]);
@@ -144,10 +145,25 @@ export function createSceneActions(store, exchange, notice) {
       hidden: [...view.hidden],
       show: PANELS.filter((name) => view[name]),
       study: view.study,
+      note: data.note,
       build: data.build,
     });
   }
 
+  /** A link too long to be sent becomes a file that opens it. @param {string} fragment */
+  function saveAsFile(fragment) {
+    const address = `${location.origin}${location.pathname}#${fragment}`;
+    const page = document.implementation.createHTMLDocument(`holonom: ${data.scene.title}`);
+    const link = page.createElement("a");
+    link.href = address;
+    link.textContent = `Open this comparison: ${data.scene.title}`;
+    page.body.append(link);
+    const text = `<!doctype html>\n${page.documentElement.outerHTML}\n`;
+    store.emit("file", { name: `${data.scene.id}-comparison.html`, type: "text/html", text });
+    notice("the link is too long to be sent: it was saved as a file that opens this comparison");
+  }
+
+  const keeper = createKeeper(store, fragmentOf);
   const actions = {
     /**
      * Loads everything that the page needs before it can draw.
@@ -169,6 +185,7 @@ export function createSceneActions(store, exchange, notice) {
       data.lessons = lessons.lessons;
       store.emit("ready");
       await actions.openLink(fragment);
+      keeper.begin(fragment === "");
     },
     /**
      * Opens a link. What it says wrongly is named in the status line and stays as the scene has it.
@@ -186,6 +203,10 @@ export function createSceneActions(store, exchange, notice) {
           `it was made by build ${link.build}, this is ${data.build}: last digits may differ`,
         );
       }
+      if (link.scene) {
+        data.note = link.note;
+        store.emit("note");
+      }
       const shown = PANELS.map((name) => [name, link.show.includes(name)]);
       Object.assign(data.view, Object.fromEntries(shown));
       await loadLinked(id, id === link.scene ? link : null, faults);
@@ -194,14 +215,28 @@ export function createSceneActions(store, exchange, notice) {
       }
       if (faults.length) {
         notice(`the link: ${faults.join("; ")}`);
+      } else if (data.note) {
+        notice(`notes of this link: ${data.note}`);
       }
       store.emit("view");
     },
+    /** @param {string} text written beside the comparison */
+    setNote(text) {
+      data.note = text.slice(0, LONGEST_NOTE);
+      keeper.keepSoon();
+    },
+    /** Shows what the page showed when it was open last. */
+    continueLast() {
+      const last = data.offer;
+      keeper.endOffer();
+      return actions.openLink(last).catch((error) => notice(sentenceOf(error)));
+    },
+    endOffer: keeper.endOffer,
     /** Copies the link to what is shown, and puts it into the address line. */
     async share() {
       const fragment = fragmentOf();
       if (!fits(fragment)) {
-        notice("this comparison is too long for a link: take fewer methods or parameters");
+        saveAsFile(fragment);
         return;
       }
       window.history.replaceState(null, "", `#${fragment}`);
@@ -227,6 +262,7 @@ export function createSceneActions(store, exchange, notice) {
       const speed = firstSpeed(duration, data.scene?.duration ?? SHORT, data.speed);
       await exchange.create({ scene: id, methods, speed, parameters: link?.settings ?? {} });
     },
+    endSession: keeper.dispose,
     equations: () => api.equations(data.scene?.id ?? "", data.settings),
     /** Every term of the equations at one state. @param {{t: number, state: object}} at */
     terms: (at) => api.terms({ scene: data.scene?.id ?? "", parameters: data.settings, ...at }),

@@ -24,8 +24,10 @@ export function createSession(store) {
   const reference = createReferenceFeed(store);
   const studies = createStudyFeed(store);
 
+  const scenes = createSceneActions(store, exchange, notice);
+
   return {
-    ...createSceneActions(store, exchange, notice),
+    ...scenes,
     ...createPlayback(store, exchange),
     ...createMethodActions(store, exchange, notice),
     studies,
@@ -33,6 +35,7 @@ export function createSession(store) {
     computeReference: () => reference.compute(),
     notice,
     dispose() {
+      scenes.endSession();
       endReactions();
       reference.dispose();
       studies.dispose();

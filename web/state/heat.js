@@ -81,27 +81,112 @@ export function heatSentences(map, method, length, valueOf) {
   });
 }
 
+/** A value as it is spaced along its axis. @param {any} axis @param {number} value */
+const spaced = (axis, value) => (axis.scale === "log" ? Math.log(value) : value);
+
+/**
+ * Where a value stands on an axis, in cells from its lower end; beyond it where the axis ends.
+ * @param {any} axis @param {number} value
+ */
+export function placeOnAxis(axis, value) {
+  const { values } = axis;
+  const [low, high] = [spaced(axis, values[0]), spaced(axis, values[values.length - 1])];
+  return 0.5 + ((spaced(axis, value) - low) / (high - low)) * (values.length - 1);
+}
+
+/** The value at a place on an axis, to three digits. @param {any} axis @param {number} at */
+export function valueOnAxis(axis, at) {
+  const { values } = axis;
+  const share = Math.min(values.length, Math.max(0, at)) - 0.5;
+  const [low, high] = [spaced(axis, values[0]), spaced(axis, values[values.length - 1])];
+  const value = low + (share / (values.length - 1)) * (high - low);
+  return Number((axis.scale === "log" ? Math.exp(value) : value).toPrecision(3));
+}
+
+/** Is it a map over the two constants of Baumgarte's method? */
+const isOfBaumgarte = ({ x, y }) => x?.name === "alpha" && y?.name === "beta";
+
 /**
  * Where a map over α and β has critical damping (α = β), in cells from the lower left corner.
  * @param {any} map document
  * @returns {[number, number][] | null} two ends, or null
  */
 export function criticalLine({ x, y }) {
-  if (x?.name !== "alpha" || y?.name !== "beta") {
+  if (!isOfBaumgarte({ x, y })) {
     return null;
   }
   const low = Math.max(x.values[0], y.values[0]);
   const high = Math.min(x.values[x.values.length - 1], y.values[y.values.length - 1]);
-  const at = (axis, value) => {
-    const f = (v) => (axis.scale === "log" ? Math.log(v) : v);
-    const n = axis.values.length;
-    const share = (f(value) - f(axis.values[0])) / (f(axis.values[n - 1]) - f(axis.values[0]));
-    return 0.5 + share * (n - 1);
-  };
   return low < high
     ? [
-        [at(x, low), at(y, low)],
-        [at(x, high), at(y, high)],
+        [placeOnAxis(x, low), placeOnAxis(y, low)],
+        [placeOnAxis(x, high), placeOnAxis(y, high)],
       ]
     : null;
+}
+
+/**
+ * The limit of h β on α = β that the predicted margins mean. The violation of an overdamped cell
+ * decays fastest with α + sqrt(α² - β²); its margin is h times that over the limit.
+ * @param {any} map document
+ * @param {any} method of it
+ * @param {number} h [s]
+ * @returns {number} NaN where no cell tells
+ */
+export function baumgarteLimit({ x, y }, method, h) {
+  let [best, limit] = [0, NaN];
+  if (!isOfBaumgarte({ x, y }) || !(h > 0)) {
+    return limit;
+  }
+  method.rows.forEach((row, j) =>
+    row.forEach(({ margin }, i) => {
+      const [alpha, beta] = [x.values[i], y.values[j]];
+      if (alpha > beta && margin > best) {
+        // the cell with the largest margin is the surest to be decided by α and β alone
+        best = margin;
+        limit = (h * (alpha + Math.sqrt(alpha * alpha - beta * beta))) / margin;
+      }
+    }),
+  );
+  return limit;
+}
+
+/** Where a level lies between two values; 0 to 1. */
+const crossing = (a, b, level) => (level - a) / (b - a);
+
+/**
+ * Contour of a quantity at a level, as pieces between the centres of cells.
+ * @param {number[][]} values rows from below; NaN where there is none
+ * @param {number} level
+ * @returns {[number, number][][]} pieces, in cells from the lower left corner
+ */
+export function contourOf(values, level) {
+  const pieces = /** @type {[number, number][][]} */ ([]);
+  for (let j = 0; j + 1 < values.length; j++) {
+    for (let i = 0; i + 1 < values[j].length; i++) {
+      const corners = /** @type {[number, number, number][]} */ (
+        [
+          [i, j],
+          [i + 1, j],
+          [i + 1, j + 1],
+          [i, j + 1],
+        ].map(([a, b]) => [a, b, values[b][a]])
+      );
+      if (corners.some(([, , value]) => Number.isNaN(value))) {
+        continue;
+      }
+      const ends = corners.flatMap(([a, b, value], k) => {
+        const [c, d, next] = corners[(k + 1) % 4];
+        if (value >= level === next >= level) {
+          return [];
+        }
+        const f = crossing(value, next, level);
+        return [/** @type {[number, number]} */ ([a + f * (c - a) + 0.5, b + f * (d - b) + 0.5])];
+      });
+      for (let k = 0; k + 1 < ends.length; k += 2) {
+        pieces.push([ends[k], ends[k + 1]]);
+      }
+    }
+  }
+  return pieces;
 }

@@ -7,12 +7,15 @@ import { KINDS } from "./catalogue.js";
 
 const SHOWN = ["labels", "traces", "reference", "arrows", "reactions"];
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i;
+const PARAMETER = /^[A-Za-z][\w.-]*$/;
 const LONGEST = 4000; // [characters] that every mail program and browser takes
+export const LONGEST_NOTE = 20000; // [characters]
 
 /**
  * @typedef {{scene: string, settings: Record<string, number>, methods: string[], frame: number,
  *   selected: number, hidden: number[],
- *   show: string[], study: string, build: string}} Linked study: the one that is open, or ""
+ *   show: string[], study: string, note: string, build: string}} Linked study: the one that is
+ *   open, or ""; note: what its author wrote
  */
 
 /** @param {string} text only what a fragment may not hold is escaped, so that a link can be read */
@@ -28,6 +31,7 @@ export function encodeLink({
   hidden,
   show,
   study,
+  note,
   build,
 }) {
   const pairs = [
@@ -39,6 +43,7 @@ export function encodeLink({
     ...hidden.map((m) => ["hidden", String(m)]),
     ["show", show.join(",")],
     ...(study ? [["study", study]] : []),
+    ...(note ? [["note", note]] : []),
     ["build", build],
   ];
   return pairs.map(([key, value]) => `${escape(key)}=${escape(value)}`).join("&");
@@ -56,6 +61,7 @@ const EMPTY = () => ({
   hidden: /** @type {number[]} */ ([]),
   show: ["labels", "reference"],
   study: "",
+  note: "",
   build: "",
 });
 
@@ -73,8 +79,8 @@ const FIELDS = {
     return value.includes("@") ? "" : "has no @ between formulation and integrator";
   },
   frame: (out, value) => putNumber(value, (number) => (out.frame = Math.round(number)), 0, 1e6),
-  selected: (out, value) => putNumber(value, (number) => (out.selected = number), 0, 7),
-  hidden: (out, value) => putNumber(value, (number) => out.hidden.push(number), 0, 7),
+  selected: (out, value) => putNumber(value, (number) => (out.selected = Math.round(number)), 0, 7),
+  hidden: (out, value) => putNumber(value, (number) => out.hidden.push(Math.round(number)), 0, 7),
   show: (out, value) => {
     const words = value.split(",").filter(Boolean);
     out.show = words.filter((word) => SHOWN.includes(word));
@@ -84,6 +90,12 @@ const FIELDS = {
   study: (out, value) => {
     out.study = KINDS.some((kind) => kind === value) ? value : "";
     return out.study ? "" : `is '${value.slice(0, 40)}'; there are ${KINDS.join(", ")}`;
+  },
+  note: (out, value) => {
+    out.note = value.slice(0, LONGEST_NOTE);
+    return value.length > LONGEST_NOTE
+      ? `has ${value.length} characters; ${LONGEST_NOTE} are kept`
+      : "";
   },
   build: (out, value) => {
     out.build = value;
@@ -99,6 +111,12 @@ function putNumber(text, put, least, most) {
   put(value);
   return "";
 }
+
+/** @param {Linked} link @param {string} name @param {string} value */
+const putParameter = (link, name, value) =>
+  PARAMETER.test(name)
+    ? putNumber(value, (number) => (link.settings[name] = number), -1e12, 1e12)
+    : "is no name of a parameter";
 
 /**
  * @param {string} fragment without its #
@@ -117,12 +135,7 @@ export function decodeLink(fragment) {
     if (key === null || value === null) {
       faults.push(`'${item.slice(0, 40)}' is cut off`);
     } else if (key.startsWith("set.")) {
-      const fault = putNumber(
-        value,
-        (number) => (link.settings[key.slice(4)] = number),
-        -1e12,
-        1e12,
-      );
+      const fault = putParameter(link, key.slice(4), value);
       faults.push(...(fault ? [`${key.slice(4)} ${fault}`] : []));
     } else if (!Object.hasOwn(FIELDS, key)) {
       faults.push(`no field is called '${key.slice(0, 40)}'`);

@@ -32,6 +32,9 @@ export const EVENTS = [
   "reference", // the reference solution of the scene, or why there is none
   "study", // a study goes on or has ended; the detail is its kind
   "notice", // a sentence for the status line
+  "file", // something is to be saved: {name, type, text}
+  "offer", // the last session can be continued, or no longer
+  "note", // the notes were replaced: by a link, or by another session
   "theme",
 ];
 
@@ -92,6 +95,8 @@ function initialData() {
     studies: Object.fromEntries(KINDS.map((kind) => [kind, noStudy()])),
     stream: { state: "connecting", id: "" },
     notice: "",
+    /** what was written beside the comparison; it travels with the link */ note: "",
+    /** the link to what was shown last in this browser, while it is offered */ offer: "",
     /** @type {"light" | "dark"} */ theme: "light",
     view: initialView(),
   };

@@ -5,13 +5,7 @@ import { toCsv, toNdjson } from "../state/export.js";
 import { sentenceOf } from "../api/client.js";
 import { h, say } from "../widgets/dom.js";
 import { standAlone, toPng } from "../widgets/picture.js";
-
-/** Hands a file to the browser. @param {Blob} blob @param {string} name */
-function save(blob, name) {
-  const url = URL.createObjectURL(blob);
-  h("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 1000);
-}
+import { saveFile } from "../widgets/save.js";
 
 /**
  * @param {HTMLElement} el
@@ -56,7 +50,7 @@ export function createExportDialog(el, store, actions) {
   async function write({ ending, make }) {
     const name = `${data.scene.id}.${ending}`;
     try {
-      save(await make(), name);
+      saveFile(await make(), name);
       say(done, `${name} was saved`);
     } catch (error) {
       say(done, `${name} was not saved: ${sentenceOf(error)}`);

@@ -296,6 +296,7 @@ export function createMethodDialog(el, store, actions) {
   }
 
   const stop = listen(store, { ready: fillLists });
+  fillLists();
   return {
     /** @param {number} m method to change, or -1 to add one */
     open(m) {

@@ -18,8 +18,13 @@ const LOST =
 const LOST_AFTER = 700; // [ms] that a short drop is not worth a word
 const SHOWN_FOR = 9000; // [ms]
 
-/** @param {HTMLElement} el @param {HTMLElement} body @param {import("../state/store.js").Store} store */
-export function createStatus(el, body, store) {
+/**
+ * @param {HTMLElement} el
+ * @param {HTMLElement} body
+ * @param {import("../state/store.js").Store} store
+ * @param {import("../session/session.js").Session} actions
+ */
+export function createStatus(el, body, store, actions) {
   const data = store.data;
   const run = h("span", { class: "run" });
   const scene = h("span", {});
@@ -36,7 +41,18 @@ export function createStatus(el, body, store) {
   );
   const note = h("div", { class: "note", hidden: true }, notice, close);
   const lost = h("div", { class: "lost", hidden: true }, LOST);
-  body.append(h("div", { class: "notes" }, lost, note));
+  const offer = h(
+    "div",
+    { class: "note offer", hidden: true },
+    h("span", {}, "The last session in this browser was kept."),
+    h("button", { type: "button", class: "plain", onclick: actions.continueLast }, "continue it"),
+    h(
+      "button",
+      { type: "button", class: "tool small", "aria-label": "Dismiss", onclick: actions.endOffer },
+      "×",
+    ),
+  );
+  body.append(h("div", { class: "notes" }, lost, offer, note));
   let timer = 0;
   let lostTimer = 0;
 
@@ -89,6 +105,7 @@ export function createStatus(el, body, store) {
     scene: showScene,
     stream: showStream,
     notice: showNotice,
+    offer: () => (offer.hidden = data.offer === ""),
   });
   return {
     update() {},

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // @ts-check
 // Parts of a stability map: cells coloured by a quantity, and the legend.
-import { HEATS, criticalLine, heatOf, heatRange } from "../state/heat.js";
-import { CLASSES } from "../state/study-documents.js";
+import {
+  HEATS,
+  baumgarteLimit,
+  contourOf,
+  criticalLine,
+  heatOf,
+  heatRange,
+} from "../state/heat.js";
+import { plain } from "../state/format.js";
+import { CLASSES, boundaryOf } from "../state/study-documents.js";
 import { h, s } from "../widgets/dom.js";
 
 const DEEP = 56; // [%] of the colour: beyond it letters are in the colour of the paper
@@ -40,6 +48,54 @@ export function shadeCells(picture, name, rows, length, columnOf) {
   }
 }
 
+/**
+ * @param {{px: (i: number) => number, py: (j: number) => number}} scale
+ * @param {[number, number][]} line in cells
+ */
+const pathOf = ({ px, py }, line) =>
+  line.map(([i, j], n) => `${n ? "L" : "M"}${px(i).toFixed(1)} ${py(j).toFixed(1)}`).join("");
+
+/**
+ * Critical damping and the predicted boundary of one method.
+ * @param {SVGElement} picture
+ * @param {any} map document
+ * @param {any} method of it
+ * @param {{px: (i: number) => number, py: (j: number) => number}} scale
+ */
+export function drawLines(picture, map, method, scale) {
+  const critical = criticalLine(map);
+  if (critical) {
+    picture.append(s("path", { d: pathOf(scale, critical), class: "critical" }));
+  }
+  for (const line of boundaryOf(map, method)) {
+    const d = pathOf(scale, line);
+    picture.append(s("path", { d, class: "boundary under" }), s("path", { d, class: "boundary" }));
+  }
+}
+
+/**
+ * Contours of a quantity, one for each power of ten.
+ * @param {SVGElement} picture
+ * @param {string} name of the quantity
+ * @param {any[][]} rows cells of the method
+ * @param {number} length [m] of the scene
+ * @param {{px: (i: number) => number, py: (j: number) => number}} scale
+ */
+export function drawContours(picture, name, rows, length, scale) {
+  const kind = HEATS.find((one) => one.name === name);
+  if (!kind) {
+    return;
+  }
+  const { low, high } = heatRange(kind, rows, length);
+  const powers = rows.map((row) => row.map((cell) => Math.log10(heatOf(kind, cell, length))));
+  for (let level = Math.ceil(low); level <= high; level++) {
+    const d = contourOf(powers, level)
+      .map((piece) => pathOf(scale, piece))
+      .join("");
+    picture.append(s("path", { d, class: "contour", "data-level": level }));
+  }
+}
+
 /** A small picture and its words. */
 function entry(className, content, words) {
   const key = s("svg", { class: "map key", viewBox: "0 0 18 18", "aria-hidden": "true" }, content);
@@ -51,9 +107,10 @@ const lineEntry = (name, words) => entry("", s("path", { d: "M0 9H18", class: na
 /**
  * @param {HTMLElement} legend
  * @param {any} map document
- * @param {{heat: string, here: boolean}} shown here: the present values are on the map
+ * @param {{heat: string, here: "" | "inside" | "outside", step: number}} shown here: where the
+ *   present values are; step: of the map's first method [s]
  */
-export function fillLegend(legend, map, { heat, here }) {
+export function fillLegend(legend, map, { heat, here, step }) {
   const used = new Set(map.methods.flatMap(({ rows }) => rows.flat().map((cell) => cell.class)));
   const kind = HEATS.find(({ name }) => name === heat);
   const ran = ["stable", "inaccurate"];
@@ -71,16 +128,27 @@ export function fillLegend(legend, map, { heat, here }) {
         word,
       ),
     );
+  const limit = baumgarteLimit(map, map.methods[0], step);
+  const limitWords = limit > 0 ? `: h β = ${plain(Number(limit.toPrecision(3)))} on α = β` : "";
   const unit = kind?.unit ? ` ${kind.unit}` : "";
   legend.replaceChildren(
     ...(kind
       ? [h("li", {}, `numbers: ${kind.word} as a power of ten${unit}; framed: the least`)]
       : []),
     ...outcomes,
-    lineEntry("boundary", "predicted boundary"),
-    ...(criticalLine(map) ? [lineEntry("critical", "critical damping, α = β")] : []),
+    lineEntry("boundary", `predicted boundary${limitWords}`),
+    ...(kind ? [lineEntry("contour", "contours, one for each power of ten")] : []),
+    ...(criticalLine(map) ? [lineEntry("critical", "critical damping, ζ = α/β = 1")] : []),
     ...(here
-      ? [entry("", s("circle", { cx: 9, cy: 9, r: 6, class: "here" }), "present values")]
+      ? [
+          entry(
+            "",
+            s("circle", { cx: 9, cy: 9, r: 6, class: "here" }),
+            here === "inside"
+              ? "present values: drag the ring"
+              : "present values lie beyond the axes: run the map again, or drag the ring",
+          ),
+        ]
       : []),
   );
 }

@@ -3,13 +3,14 @@
 // Maps of stability: a cell a trial, its outcome as a letter and a colour, and the boundary that
 // was predicted. A cell can be pointed at, and clicked to set what its axes stand for.
 import { plain, prettyUnit, quantity } from "../state/format.js";
-import { HEATS, criticalLine, heatOf, heatSentences, heatWords } from "../state/heat.js";
+import { HEATS, heatOf, heatSentences, heatWords } from "../state/heat.js";
 import { presetsOf } from "../state/studies.js";
-import { CLASSES, boundaryOf } from "../state/study-documents.js";
+import { CLASSES } from "../state/study-documents.js";
 import { parseSpelling, settingOf, withSetting } from "../state/spelling.js";
 import { h, s, say } from "../widgets/dom.js";
 import { rove } from "../widgets/roving.js";
-import { fillLegend, shadeCells } from "./study-map-parts.js";
+import { drawContours, drawLines, fillLegend, shadeCells } from "./study-map-parts.js";
+import { addPresentPoint } from "./study-map-point.js";
 
 const GREEK = { alpha: "α", beta: "β" };
 const ROOM = { left: 62, right: 12, top: 8, bottom: 44 };
@@ -39,6 +40,7 @@ export function createStudyMap(store, actions) {
     ),
   );
   let heat = ""; // the quantity that colours the cells; "": their outcome
+  let chosen = false; // the colour was chosen by hand
   const best = h("ul", { class: "answers" });
   const legend = h("ul", { class: "legend" });
   const told = h("p", { class: "told" });
@@ -60,8 +62,8 @@ export function createStudyMap(store, actions) {
   );
 
   /**
-   * @type {{method: any, picture: SVGElement, px: (i: number) => number, py: (j: number) =>
-   *   number}[]}
+   * @type {{method: any, picture: SVGSVGElement,
+   *   scale: import("./study-map-point.js").Scale}[]}
    */
   let drawn = [];
   const map = () => data.studies.stability.document;
@@ -95,34 +97,39 @@ export function createStudyMap(store, actions) {
     return `${labelOf(method)}, ${where}: ${outcome}${figures}${margin}`;
   }
 
-  /** What a click on a cell sets. */
-  function changeOf(method, i, j) {
+  /** What values on the axes set. @param {any} method @param {number} atX @param {number} atY */
+  function changeTo(method, atX, atY) {
     const m = placeOf(method.method);
     const { x, y } = map();
     const axes = [
-      [x, i],
-      [y, j],
-    ].filter(([axis]) => axis);
+      { axis: x, value: atX },
+      { axis: y, value: atY },
+    ].filter(({ axis }) => axis);
     let spelling = data.methods[m]?.spelling ?? "";
     /** @type {Record<string, number>} */
     const parameters = {};
-    for (const [axis, at] of axes) {
-      const value = Number(axis.values[at].toPrecision(4));
+    for (const { axis, value } of axes) {
       if (axis.kind === "parameter") {
         parameters[axis.name] = value;
       } else {
         spelling = withSetting(data.catalogue, spelling, axis.name, String(value));
       }
     }
-    const words = axes
-      .map(([axis, at]) => valueOf(axis, Number(axis.values[at].toPrecision(4))))
-      .join(", ");
+    const words = axes.map(({ axis, value }) => valueOf(axis, value)).join(", ");
     return { m, spelling, parameters, words: `${labelOf(method)}: ${words}` };
+  }
+
+  /** What a click on a cell sets. */
+  function changeOf(method, i, j) {
+    const { x, y } = map();
+    const rounded = (axis, at) => Number(axis?.values[at].toPrecision(4));
+    return changeTo(method, rounded(x, i), rounded(y, j));
   }
 
   /** @param {string} name of a quantity, or "" */
   function shade(name) {
     heat = name;
+    chosen = true;
     paint();
   }
 
@@ -154,26 +161,14 @@ export function createStudyMap(store, actions) {
   const short = (axis, value) =>
     axis.unit === "s" ? quantity(value, "s", 2) : quantity(value, "", 2).trim();
 
-  /** Where the method stands now, in cells; null: off the map. */
-  function presentPlace(method) {
+  /** The present value of what an axis stands for. */
+  function presentValue(method, axis) {
     const m = placeOf(method.method);
-    const at = (axis) => {
-      if (!axis) {
-        return 0.5;
-      }
-      const value =
-        axis.kind === "parameter"
-          ? data.scene.parameters.find(({ name }) => name === axis.name)?.value
-          : settingOf(data.catalogue, data.methods[m]?.spelling ?? "", axis.name)?.value;
-      const f = (v) => (axis.scale === "log" ? Math.log(v) : v);
-      const n = axis.values.length;
-      const share =
-        (f(Number(value)) - f(axis.values[0])) / (f(axis.values[n - 1]) - f(axis.values[0]));
-      const place = 0.5 + share * (n - 1);
-      return value !== undefined && place >= 0 && place <= n ? place : NaN;
-    };
-    const place = [at(map().x), at(map().y)];
-    return m >= 0 && place.every(Number.isFinite) ? place : null;
+    const value =
+      axis?.kind === "parameter"
+        ? data.scene.parameters.find(({ name }) => name === axis.name)?.value
+        : settingOf(data.catalogue, data.methods[m]?.spelling ?? "", axis?.name)?.value;
+    return m < 0 ? NaN : Number(value);
   }
 
   /** One method; or all of them side by side, where nothing but the step is varied. */
@@ -217,23 +212,16 @@ export function createStudyMap(store, actions) {
       }
     }
     methods.forEach((method, k) => {
-      const critical = criticalLine(map());
-      if (critical) {
-        const [[i0, j0], [i1, j1]] = critical;
-        const d = `M${px(i0)} ${py(j0)}L${px(i1)} ${py(j1)}`;
-        picture.append(s("path", { d, class: "critical" }));
-      }
-      for (const line of boundaryOf(map(), method)) {
-        const d = line
-          .map(([i, j], n) => `${n ? "L" : "M"}${px(k + i).toFixed(1)} ${py(j).toFixed(1)}`)
-          .join("");
-        picture.append(
-          s("path", { d, class: "boundary under" }),
-          s("path", { d, class: "boundary" }),
-        );
-      }
-      drawn.push({ method, picture, px: (i) => px(k + i), py });
+      drawLines(picture, map(), method, { px: (i) => px(k + i), py });
+      const scale = {
+        px: (i) => px(k + i),
+        py,
+        iOf: (at) => (at - ROOM.left) / w - k,
+        jOf: (at) => (HEIGHT - ROOM.bottom - at) / hgt,
+      };
+      drawn.push({ method, picture, scale });
       shadeCells(picture, heat, method.rows, data.scene.length, (i) => (x ? i : i === k ? 0 : -1));
+      drawContours(picture, x ? heat : "", method.rows, data.scene.length, scale);
     });
     const ticks = tickList(y).map(({ value, i }) =>
       s("text", { x: ROOM.left - 6, y: py(i + 0.5) + 4, class: "tick end" }, short(y, value)),
@@ -310,9 +298,17 @@ export function createStudyMap(store, actions) {
   }
 
   const IDLE =
-    "Point at a cell or reach it with the arrow keys. A click runs the method with these values.";
+    "Point at a cell or reach it with the arrow keys; a click runs the method with its values. " +
+    "The ring stands for the present values and can be dragged.";
+
+  /** Step of the method a map was made for [s]. */
+  const stepOf = (method) =>
+    Number(settingOf(data.catalogue, method?.method ?? "", "h")?.value ?? NaN);
 
   function paint() {
+    if (!chosen) {
+      heat = map()?.x?.name === "alpha" ? HEATS[0].name : "";
+    }
     const presets = presetsOf(data);
     menu.replaceChildren(...presets.map(({ name, about }) => h("option", { value: name }, about)));
     menu.value = actions.preset();
@@ -330,15 +326,22 @@ export function createStudyMap(store, actions) {
 
   /** Rings where the methods stand now; the cells stay, and with them the one in focus. */
   function mark() {
-    fields.querySelectorAll(".here").forEach((ring) => ring.remove());
-    for (const { method, picture, px, py } of drawn) {
-      const here = presentPlace(method);
-      if (here) {
-        picture.append(s("circle", { cx: px(here[0]), cy: py(here[1]), r: 7, class: "here" }));
+    fields.querySelectorAll(".here-group").forEach((ring) => ring.remove());
+    let outside = false;
+    for (const { method, picture, scale } of drawn) {
+      const { x, y } = map();
+      const now = { x: presentValue(method, x), y: presentValue(method, y) };
+      if (Number.isFinite(now.y) && (!x || Number.isFinite(now.x))) {
+        const ring = addPresentPoint(picture, { x, y }, scale, now, {
+          onMove: (atX, atY) => say(told, `${changeTo(method, atX, atY).words}. Let go to run it.`),
+          onDrop: (atX, atY) => actions.onPick(changeTo(method, atX, atY)),
+        });
+        outside ||= ring.outside;
       }
     }
     if (map()) {
-      fillLegend(legend, map(), { heat, here: Boolean(fields.querySelector(".here")) });
+      const here = fields.querySelector(".here-group") ? (outside ? "outside" : "inside") : "";
+      fillLegend(legend, map(), { heat, here, step: stepOf(map().methods[0]) });
     }
   }
 

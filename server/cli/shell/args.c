@@ -33,7 +33,8 @@ static const option OPTIONS[] = {
     {"--no-native", NULL, OPTION_FLAG, AT(no_native),
      "interpret everything, compile nothing in the background; so does HOLONOM_NATIVE=0"},
     {"--set", "NAME=VALUE", OPTION_WORD, AT(set),
-     "a parameter that differs from the scene's; may be repeated"},
+     "a parameter that differs from the scene's, or start.NAME: where a coordinate or rate "
+     "starts; may be repeated"},
     {"--method", "METHOD", OPTION_TEXT, AT(method),
      "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
     {"--methods", "METHOD...", OPTION_WORDS, AT(methods),

@@ -18,14 +18,15 @@
 
 #define END_OF_FIELDS \
     { .name = NULL }
-#define SCENE_FIELDS                                       \
-    {.name = "scene",                                      \
-     .type = HN_FIELD_SCENE,                               \
-     .required = 1,                                        \
-     .about = "a shipped scene's id or a scene object"},   \
-    {                                                      \
-        .name = "parameters", .type = HN_FIELD_BY_NAME,    \
-        .about = "parameters that differ from the scene's" \
+#define SCENE_FIELDS                                                                             \
+    {.name = "scene",                                                                            \
+     .type = HN_FIELD_SCENE,                                                                     \
+     .required = 1,                                                                              \
+     .about = "a shipped scene's id or a scene object"},                                         \
+    {                                                                                            \
+        .name = "parameters", .type = HN_FIELD_BY_NAME,                                          \
+        .about = "parameters that differ from the scene's; start.NAME is where a coordinate or " \
+                 "rate starts"                                                                   \
     }
 
 enum { MAX_TIMES = 100000 };

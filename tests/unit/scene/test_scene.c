@@ -442,8 +442,48 @@ static void a_lagrangian_keeps_its_formulas_forces_and_tears(void **state) {
     hn_scene_free(s);
 }
 
+static void a_setting_of_the_start_replaces_what_the_scene_says(void **state) {
+    (void)state;
+    // a value, a guess and a rate; th0 of the ladder stands for the repeated entry "th{i}"
+    hn_setting set[] = {{"start.th1", 1.3}, {"start.a2", -0.7}, {"start.w1", 2}};
+    hn_scene *plain = load_set(LESSON "four-bar.json", NULL, 0),
+             *moved = load_set(LESSON "four-bar.json", set, 3);
+    assert_near(moved->coordinates[0].q0, 1.3, 0);
+    assert_near(moved->coordinates[1].q0, -0.7, 0);
+    assert_near(moved->coordinates[0].v0, 2, 0);
+    assert_false(moved->coordinates[0].q0_pinned);
+    assert_near(moved->coordinates[2].q0, plain->coordinates[2].q0, 0);
+    assert_true(moved->hash != plain->hash);
+
+    // its text alone is the same scene
+    hn_scene *again = load_text(moved->text);
+    assert_true(again->hash == moved->hash);
+    assert_near(again->coordinates[0].q0, 1.3, 0);
+
+    hn_setting one = {"start.th2", 0.25};
+    hn_scene *ladder = load_set(LESSON "n-four-bar.json", &one, 1);
+    assert_near(ladder->coordinates[hn_scene_find_coordinate(ladder, "th2")].q0, 0.25, 0);
+    hn_scene *all[] = {plain, moved, again, ladder};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        hn_scene_free(all[i]);
+    }
+}
+
+static void a_setting_of_an_unknown_start_is_named(void **state) {
+    (void)state;
+    hn_setting set = {"start.th9", 1};
+    hn_scene *scene = NULL;
+    hn_diags diags = {0};
+    assert_int_equal(hn_scene_load_file(LESSON "four-bar.json", &set, 1, &scene, &diags),
+                     HN_ERR_INPUT);
+    assert_string_equal(diags.item[0].pointer, "/start/moved/th9");
+    assert_null(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_setting_of_the_start_replaces_what_the_scene_says),
+        cmocka_unit_test(a_setting_of_an_unknown_start_is_named),
         cmocka_unit_test(every_shipped_scene_loads_with_its_sizes),
         cmocka_unit_test(fb0_has_the_numbers_of_the_reference),
         cmocka_unit_test(the_ladder_grows_with_its_parameter),
