@@ -42,6 +42,14 @@ typedef enum hn_status {
             return hn_try_status;               \
     } while (0)
 
+/// Makes a call unless one before it has failed, and keeps its status: where something has to be
+/// released, or reported, after the last of them. Elsewhere HN_TRY.
+#define HN_THEN(status, ...)          \
+    do {                              \
+        if ((status) == HN_OK)        \
+            (status) = (__VA_ARGS__); \
+    } while (0)
+
 #define HN_MUST_CHECK __attribute__((warn_unused_result))
 #define HN_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 

@@ -206,9 +206,7 @@ static hn_status obtain(const hn_tape *tape, bool build, void **handle, hn_nativ
     }
     if (status != HN_OK && build && text.n > 0) {
         status = hn_native_build(&service.builder, text.text, text.n, &seconds, diag);
-        if (status == HN_OK) {
-            status = load_checked(tape, &text, handle, code, diag);
-        }
+        HN_THEN(status, load_checked(tape, &text, handle, code, diag));
     }
     hn_strbuf_reset(&text);
     return status;
@@ -437,9 +435,7 @@ hn_status hn_native_measure(const hn_tape *tape, hn_native_costs *costs, hn_diag
     double start = hn_clock_wall();
     hn_status status = copy && w ? emit(copy, &text, diag) : HN_ERR_MEMORY;
     costs->emit_seconds = hn_clock_wall() - start;
-    if (status == HN_OK) {
-        status = compile_measured(copy, &text, costs, &handle, &code, diag);
-    }
+    HN_THEN(status, compile_measured(copy, &text, costs, &handle, &code, diag));
 
     // times of both, and the run length from which compiling pays
     if (status == HN_OK) {

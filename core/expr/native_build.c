@@ -307,12 +307,8 @@ hn_status hn_native_build(const hn_native_builder *b, const char *text, size_t n
     path_of(b, key, ".so", path);
 
     hn_status status = hn_file_write(source, text, n, diag);
-    if (status == HN_OK) {
-        status = run_compiler(b, source, object, seconds, diag);
-    }
-    if (status == HN_OK) {
-        status = publish(object, path, key, diag);
-    }
+    HN_THEN(status, run_compiler(b, source, object, seconds, diag));
+    HN_THEN(status, publish(object, path, key, diag));
     unlink(source);
     unlink(object);
     return status;

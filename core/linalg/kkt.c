@@ -287,9 +287,7 @@ static hn_status solve_by_saddle(hn_kkt *k, const double *M, const double *J, co
     if (status == HN_OK && k->way == HN_KKT_NULL_SPACE && saddle.rank < k->nc) {
         status = HN_ERR_SINGULAR;
     }
-    if (status == HN_OK) {
-        status = hn_saddle_apply(f, gamma, a, lambda, &saddle, k->saddle);
-    }
+    HN_THEN(status, hn_saddle_apply(f, gamma, a, lambda, &saddle, k->saddle));
     info->residual = saddle.residual;
     info->refinements = saddle.refinements;
     info->cond = saddle.cond;

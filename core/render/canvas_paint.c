@@ -255,9 +255,7 @@ hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
                            "no memory for a picture of %d by %d pixels", c->width, c->height);
     }
     hn_status status = hn_canvas_paint(c, rgb, diag);
-    if (status == HN_OK) {
-        status = encode_png(c, rgb, png, diag);
-    }
+    HN_THEN(status, encode_png(c, rgb, png, diag));
     free(rgb);
     return status;
 }
@@ -267,9 +265,7 @@ hn_status hn_canvas_save_png(const hn_canvas *c, const char *path, hn_diag *diag
     hn_strbuf png;
     hn_strbuf_init(&png);
     hn_status status = hn_canvas_png(c, &png, diag);
-    if (status == HN_OK) {
-        status = hn_file_write(path, png.text, png.n, diag);
-    }
+    HN_THEN(status, hn_file_write(path, png.text, png.n, diag));
     hn_strbuf_reset(&png);
     return status;
 }

@@ -331,10 +331,8 @@ hn_status hn_scene_load_file(const char *path, const hn_setting *settings, int n
     }
     snprintf(id, sizeof id, "%.*s", (int)(length < HN_RD_MAX_NAME ? length : HN_RD_MAX_NAME), base);
 
-    if (status == HN_OK) {
-        status =
-            hn_scene_load_json(hn_strbuf_text(&text), text.n, id, settings, n_settings, out, diags);
-    }
+    HN_THEN(status, hn_scene_load_json(hn_strbuf_text(&text), text.n, id, settings, n_settings, out,
+                                       diags));
     hn_strbuf_reset(&text);
     return status;
 }

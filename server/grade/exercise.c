@@ -234,9 +234,7 @@ hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *d
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_status status = hn_file_load(path, HN_GRADE_MAX_BYTES, &text, diags);
-    if (status == HN_OK) {
-        status = hn_exercise_load_json(hn_strbuf_text(&text), text.n, out, diags);
-    }
+    HN_THEN(status, hn_exercise_load_json(hn_strbuf_text(&text), text.n, out, diags));
     hn_strbuf_reset(&text);
     return status;
 }

@@ -237,9 +237,7 @@ static hn_status read_text(const hn_library *lib, const char *id, cJSON *lesson,
     cJSON *blocks = NULL;
     hn_status status =
         path.failed ? HN_ERR_MEMORY : hn_file_load(hn_strbuf_text(&path), MAX_TEXT, &text, diags);
-    if (status == HN_OK) {
-        status = hn_lesson_parse(hn_strbuf_text(&text), text.n, &blocks, diags);
-    }
+    HN_THEN(status, hn_lesson_parse(hn_strbuf_text(&text), text.n, &blocks, diags));
     if (status == HN_OK && !cJSON_AddItemToObject(lesson, "blocks", blocks)) {
         cJSON_Delete(blocks);
         status = HN_ERR_MEMORY;

@@ -78,12 +78,8 @@ hn_status hn_singularity_create(const hn_system *sys, hn_arena *arena, hn_singul
         r->n_J = hn_eval_pattern(r->rows, HN_TERM_J, &r->J_row, &r->J_col);
         status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &r->gamma);
     }
-    if (status == HN_OK) {
-        status = hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor);
-    }
-    if (status == HN_OK) {
-        status = hn_pilot_create(sys, arena, &r->pilot);
-    }
+    HN_THEN(status, hn_factor_create(sys, HN_FACTOR_DIAGONAL, arena, &r->factor));
+    HN_THEN(status, hn_pilot_create(sys, arena, &r->pilot));
 
     if (status != HN_OK) {
         hn_singularity_free(r);

@@ -496,9 +496,7 @@ static hn_status run_stages(hn_assembler *s, double *q, double *v, double *a, do
     // pose, velocities, accelerations
     hn_status status = find_pose(s, report);
     memcpy(q, s->q, (size_t)s->nq * sizeof *q);
-    if (status == HN_OK) {
-        status = find_rates(s, v, report);
-    }
+    HN_THEN(status, find_rates(s, v, report));
     if (status == HN_OK && (a || lambda)) {
         status = find_accelerations(s, v, a, lambda);
     }

@@ -135,9 +135,7 @@ static hn_status build(hn_eval *e, const hn_system *sys, unsigned terms, hn_aren
             status = add_term(&b, sys, k, arena);
         }
     }
-    if (status == HN_OK) {
-        status = hn_inputs_compile(sys, b.outputs, e->n_out, arena, &e->in);
-    }
+    HN_THEN(status, hn_inputs_compile(sys, b.outputs, e->n_out, arena, &e->in));
     free(b.outputs);
     for (int k = 0; status == HN_OK && k < e->n_scatter; k++) {
         e->source[k] = e->in.slots[e->source[k]];

@@ -114,9 +114,7 @@ static hn_status build(hn_factor *f, const hn_system *sys, hn_factor_weight weig
     status = hn_inputs_compile(sys, outputs, f->n_out + ldl->nc, arena, &f->in);
     free(outputs);
 
-    if (status == HN_OK) {
-        status = hn_row_groups_init(sys, arena, &f->rows);
-    }
+    HN_THEN(status, hn_row_groups_init(sys, arena, &f->rows));
     if (status == HN_OK) {
         f->info.update_ops = hn_tape_get_info(f->in.tape).ops;
     }

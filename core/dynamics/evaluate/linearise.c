@@ -348,15 +348,9 @@ hn_status hn_linear_create(const hn_system *sys, unsigned terms, hn_arena *arena
     // the derivatives, and their tape
     builder b = {.l = l, .sys = sys, .g = sys->g, .arena = arena};
     hn_status status = make_symbols(&b);
-    if (status == HN_OK) {
-        status = make_sums(&b);
-    }
-    if (status == HN_OK) {
-        status = make_terms(&b, terms);
-    }
-    if (status == HN_OK) {
-        status = compile(&b, terms);
-    }
+    HN_THEN(status, make_sums(&b));
+    HN_THEN(status, make_terms(&b, terms));
+    HN_THEN(status, compile(&b, terms));
 
     // scratch
     free(b.a);

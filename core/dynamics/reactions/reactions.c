@@ -208,9 +208,7 @@ hn_status hn_reactions_create(const hn_system *sys, hn_arena *arena, hn_reaction
             list_order(r);
             status = compile(r, arena);
         }
-        if (status == HN_OK) {
-            status = hn_reaction_list_efforts(r, arena);
-        }
+        HN_THEN(status, hn_reaction_list_efforts(r, arena));
     }
 
     if (status != HN_OK) {

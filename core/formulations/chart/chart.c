@@ -79,10 +79,8 @@ hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate, hn
     // evaluators
     hn_status status =
         hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &chart->loop);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F | (with_rate ? HN_TERM_GAMMA : 0), arena,
-                                &chart->full);
-    }
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_M | HN_TERM_F | (with_rate ? HN_TERM_GAMMA : 0),
+                                   arena, &chart->full));
 
     // patterns and memory
     if (status == HN_OK) {

@@ -27,12 +27,8 @@ hn_status hn_chart_jacobian_at(hn_chart_jacobian *c, hn_chart *chart, hn_arena *
     const hn_accel_law law = {0};
     const hn_chart_point *p = &chart->here;
     hn_status status = hn_chart_jacobian_prepare(c, chart, arena);
-    if (status == HN_OK) {
-        status = hn_accel_jacobian_at(c->slopes, p->t, p->q, v, &law);
-    }
-    if (status == HN_OK) {
-        status = hn_accel_jacobian_prepare(c->slopes);
-    }
+    HN_THEN(status, hn_accel_jacobian_at(c->slopes, p->t, p->q, v, &law));
+    HN_THEN(status, hn_accel_jacobian_prepare(c->slopes));
     if (status != HN_OK) {
         snprintf(chart->why, sizeof chart->why,
                  "derivatives of the accelerations at t = %.6g s: %s", p->t,

@@ -95,9 +95,7 @@ hn_status hn_orthonormal_after_step(void *self, double t, double *y, int *change
     *changed = 1;
     (void)hn_system_normalise(ts->sys, y);
     hn_status status = s->tracked ? HN_OK : locate(s, t, y);
-    if (status == HN_OK) {
-        status = close_here(s, t, y);
-    }
+    HN_THEN(status, close_here(s, t, y));
     if (status != HN_OK || !s->tracked) {
         return status;
     }

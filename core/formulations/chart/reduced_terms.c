@@ -76,9 +76,7 @@ hn_status hn_reduced_terms_init(hn_reduced_terms *w, const hn_system *sys, hn_ar
     w->chart.plain_only = 1;
     w->is_moved = closures_move(sys);
     hn_status status = hn_force_parts_create(sys, arena, &w->parts);
-    if (status == HN_OK) {
-        status = allocate(w, arena);
-    }
+    HN_THEN(status, allocate(w, arena));
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
 }
@@ -402,9 +400,7 @@ static hn_status place(hn_reduced_terms *w, double t, const double *q, int freed
                  chart->r, freedoms);
         return HN_ERR_CHART;
     }
-    if (status == HN_OK) {
-        status = hn_chart_locate(chart, &chart->here, t, q);
-    }
+    HN_THEN(status, hn_chart_locate(chart, &chart->here, t, q));
     if (status != HN_OK) {
         return status;
     }

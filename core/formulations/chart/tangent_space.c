@@ -58,12 +58,8 @@ hn_status hn_tspace_init(hn_tspace *ts, const hn_system *sys, hn_arena *arena, h
     // evaluators
     hn_status status =
         hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &ts->loop);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F | HN_TERM_GAMMA, arena, &ts->full);
-    }
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M, arena, &ts->mass);
-    }
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_M | HN_TERM_F | HN_TERM_GAMMA, arena, &ts->full));
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_M, arena, &ts->mass));
 
     // patterns and memory
     if (status == HN_OK) {

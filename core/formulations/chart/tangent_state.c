@@ -187,9 +187,7 @@ hn_status hn_tangent_after_step(void *self, double t, double *y, int *changed) {
     const double h = t - chart->base.t;
     *changed = hn_system_normalise(chart->sys, y) || chart->nc > 0;
     hn_status status = close_here(s, t, y);
-    if (status == HN_OK) {
-        status = hn_chart_settle(chart);
-    }
+    HN_THEN(status, hn_chart_settle(chart));
     if (status != HN_OK || !hn_chart_is_poor(chart, h, HN_CHART_TAU)) {
         return status;
     }

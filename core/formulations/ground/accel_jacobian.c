@@ -131,9 +131,7 @@ hn_status hn_accel_jacobian_create(const hn_system *sys, const hn_accel_law *law
 
     // tapes, memory, matrices
     hn_status status = create_tapes(j, arena);
-    if (status == HN_OK) {
-        status = allocate(j, arena);
-    }
+    HN_THEN(status, allocate(j, arena));
     if (status == HN_OK) {
         list_balls(j);
         j->q = j->state;

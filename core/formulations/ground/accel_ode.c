@@ -16,9 +16,7 @@ hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgar
     const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 0, .solver = solver};
     ode->base.law = baumgarte ? law : NULL;
     hn_status status = hn_state_ode_init(&ode->base, sys, arena);
-    if (status == HN_OK) {
-        status = hn_accel_create(sys, &opts, arena, &ode->accel);
-    }
+    HN_THEN(status, hn_accel_create(sys, &opts, arena, &ode->accel));
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "accelerations cannot be compiled: %s",
                            hn_status_text(status));

@@ -12,10 +12,8 @@ hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_ga
                             hn_diag *diag) {
     const unsigned gap = with_gap ? HN_TERM_PHI | HN_TERM_PHI_T : 0;
     hn_status status = hn_state_ode_init(&ode->base, sys, arena);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | gap, arena,
-                                &ode->eval);
-    }
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_M | HN_TERM_F | HN_TERM_J | HN_TERM_GAMMA | gap,
+                                   arena, &ode->eval));
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "the equations cannot be compiled: %s",
                            hn_status_text(status));

@@ -49,9 +49,7 @@ static hn_status take_slopes(void *self, double t, const double *y) {
     hn_state_ode *ode = self;
     const hn_accel_law law = law_of(ode);
     hn_status status = prepare(self);
-    if (status == HN_OK) {
-        status = hn_accel_jacobian_at(ode->slopes, t, y, y + ode->nq, &law);
-    }
+    HN_THEN(status, hn_accel_jacobian_at(ode->slopes, t, y, y + ode->nq, &law));
     if (status != HN_OK) {
         snprintf(ode->why, sizeof ode->why, "derivatives of the accelerations at t = %.6g s: %s", t,
                  hn_status_text(status));

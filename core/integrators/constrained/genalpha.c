@@ -98,9 +98,7 @@ static hn_status begin(genalpha *s, double t, double h, const double *y) {
     }
     const double d = SHIFT_STEP * h;
     hn_status status = look_ahead(s, t, -d, y, s->before);
-    if (status == HN_OK) {
-        status = look_ahead(s, t, d, y, s->after);
-    }
+    HN_THEN(status, look_ahead(s, t, d, y, s->after));
     for (int i = 0; i < b->nv && status == HN_OK; i++) {
         s->now.a[i] += (s->alpha_m - s->alpha_f) * h * (s->after[i] - s->before[i]) / (2 * d);
     }

@@ -227,12 +227,8 @@ static hn_status advance_doubled(half_explicit *s, double t, double h, const dou
                                  double *y_new, double *err) {
     const int n = s->base.nq + s->base.nv;
     hn_status status = advance(s, t, h, y, s->whole);
-    if (status == HN_OK) {
-        status = advance(s, t, h / 2, y, s->middle);
-    }
-    if (status == HN_OK) {
-        status = advance(s, t + h / 2, h / 2, s->middle, y_new);
-    }
+    HN_THEN(status, advance(s, t, h / 2, y, s->middle));
+    HN_THEN(status, advance(s, t + h / 2, h / 2, s->middle, y_new));
     const double gain = ldexp(1, s->scheme->order) - 1;
     for (int i = 0; status == HN_OK && i < n; i++) {
         err[i] = (y_new[i] - s->whole[i]) / gain;
@@ -242,9 +238,7 @@ static hn_status advance_doubled(half_explicit *s, double t, double h, const dou
 
 static hn_status close_end(half_explicit *s, double t, double *y) {
     hn_status status = hn_project_position(s->projector, t, y, CLOSED, NULL);
-    if (status == HN_OK) {
-        status = hn_project_velocity(s->projector, t, y, y + s->base.nq, NULL);
-    }
+    HN_THEN(status, hn_project_velocity(s->projector, t, y, y + s->base.nq, NULL));
     return status == HN_OK ? HN_OK
                            : hn_dae_fail(&s->base, status, t, "closing the end of the step");
 }

@@ -61,12 +61,8 @@ hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised, h
     HN_TRY(hn_dae_base_init(&s->base, sys, arena, diag));
     s->stabilised = stabilised;
     hn_status status = hn_linear_create(sys, rest, arena, &s->rest);
-    if (status == HN_OK) {
-        status = hn_linear_create(sys, matrices, arena, &s->matrices);
-    }
-    if (status == HN_OK) {
-        status = allocate(s, arena);
-    }
+    HN_THEN(status, hn_linear_create(sys, matrices, arena, &s->matrices));
+    HN_THEN(status, allocate(s, arena));
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, status, NULL, NULL,
                                          "the linearised equations cannot be set up: %s",

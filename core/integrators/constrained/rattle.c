@@ -92,12 +92,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
 
     // the terms of the Lagrangian and the geometry of the balls
     hn_status status = hn_lagrange_create(sys, arena, &s->terms);
-    if (status == HN_OK) {
-        status = hn_ball_step_init(&s->balls, sys, arena);
-    }
-    if (status == HN_OK) {
-        status = allocate(s, arena);
-    }
+    HN_THEN(status, hn_ball_step_init(&s->balls, sys, arena));
+    HN_THEN(status, allocate(s, arena));
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, NULL, "rattle cannot be set up: %s",
                            hn_status_text(status));

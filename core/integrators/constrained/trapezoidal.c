@@ -119,12 +119,8 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
     s->project = augmented && (int)form_options[HN_AUGMENTED_PROJECTIONS] == HN_PROJECTIONS_ON;
 
     hn_status status = hn_linear_create(sys, terms, arena, &s->matrices);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_GAMMA, arena, &s->rate);
-    }
-    if (status == HN_OK) {
-        status = allocate(s, arena);
-    }
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_GAMMA, arena, &s->rate));
+    HN_THEN(status, allocate(s, arena));
     return status == HN_OK ? HN_OK
                            : hn_diag_set(diag, status, NULL, NULL,
                                          "the linearised equations cannot be set up: %s",

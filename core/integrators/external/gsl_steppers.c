@@ -85,16 +85,12 @@ static int give_jacobian(double t, const double *y, double *jac, double *time_sl
     gsl_stepper *s = user;
     const double later = t + probe(t);
     hn_status status = s->ode->rhs(s->ode->self, t, y, s->f0);
-    if (status == HN_OK) {
-        status = s->ode->rhs(s->ode->self, later, y, s->f1);
-    }
+    HN_THEN(status, s->ode->rhs(s->ode->self, later, y, s->f1));
     for (int i = 0; status == HN_OK && i < s->n; i++) {
         time_slope[i] = (s->f1[i] - s->f0[i]) / (later - t);
     }
-    if (status == HN_OK) {
-        status = s->ode->jacobian ? s->ode->jacobian(s->ode->self, t, y, jac)
-                                  : difference_jacobian(s, t, y, jac);
-    }
+    HN_THEN(status, s->ode->jacobian ? s->ode->jacobian(s->ode->self, t, y, jac)
+                                     : difference_jacobian(s, t, y, jac));
     return told(s, status);
 }
 

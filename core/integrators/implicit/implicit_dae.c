@@ -237,9 +237,7 @@ hn_status hn_implicit_dae_create(const hn_system *sys, hn_dae_form form, const h
                                        .solve = solve};
         *self = s;
         status = allocate(s, col, arena);
-        if (status == HN_OK) {
-            status = hn_stages_init(&s->st, col, &eq, arena);
-        }
+        HN_THEN(status, hn_stages_init(&s->st, col, &eq, arena));
         if (status == HN_OK) {
             s->weight = opts->rtol > 0 ? hn_collocation_estimate_weight(opts->rtol) : 1;
             s->st.tol = opts->rtol > 0 ? hn_collocation_newton_share(opts->rtol) : 0;

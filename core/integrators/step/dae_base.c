@@ -36,21 +36,15 @@ hn_status hn_dae_base_init(hn_dae_base *b, const hn_system *sys, hn_arena *arena
 
     // evaluators
     hn_status status = hn_accel_create(sys, &opts, arena, &b->accel);
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_M | HN_TERM_F, arena, &b->dyn);
-    }
-    if (status == HN_OK) {
-        status = hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &b->loop);
-    }
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_M | HN_TERM_F, arena, &b->dyn));
+    HN_THEN(status, hn_eval_create(sys, HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J, arena, &b->loop));
 
     // scratch and patterns
     b->rows = hn_arena_ints(arena, (size_t)b->nc);
     b->place = hn_arena_ints(arena, (size_t)b->nc);
     b->arm = hn_arena_doubles(arena, (size_t)b->nv);
     b->gap = hn_arena_doubles(arena, (size_t)b->nc);
-    if (status == HN_OK) {
-        status = find_patterns(b, arena);
-    }
+    HN_THEN(status, find_patterns(b, arena));
     if (status == HN_OK && (!hn_qr_init(&b->qr, arena, b->nv, b->nc) || hn_arena_failed(arena))) {
         status = HN_ERR_MEMORY;
     }

@@ -215,15 +215,9 @@ static hn_status build(hn_lagrange *l, source *s, hn_arena *arena) {
 
     // tapes of forces, matrices and the rest
     hn_status status = hn_graph_failed(s->g) ? HN_ERR_MEMORY : HN_OK;
-    if (status == HN_OK) {
-        status = compile_forces(s, arena, &l->forces);
-    }
-    if (status == HN_OK) {
-        status = compile_matrices(l, s, arena);
-    }
-    if (status == HN_OK) {
-        status = compile_rest(s, arena, &l->rest);
-    }
+    HN_THEN(status, compile_forces(s, arena, &l->forces));
+    HN_THEN(status, compile_matrices(l, s, arena));
+    HN_THEN(status, compile_rest(s, arena, &l->rest));
 
     // a mass matrix of numbers alone is constant
     l->constant = 1;

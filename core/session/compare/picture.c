@@ -149,9 +149,7 @@ static hn_status gather_given_pose(scene_picture *p, hn_diags *diags) {
     }
     hn_status status =
         hn_model_state(p->model, p->request->entries, p->request->n_entries, q, v, diags);
-    if (status == HN_OK) {
-        status = hn_model_points(p->model, q, p->points);
-    }
+    HN_THEN(status, hn_model_points(p->model, q, p->points));
     p->poses[0] = (hn_snapshot_pose){.points = p->points, .name = "this pose", .selected = 1};
     p->n_poses = 1;
     return status;
@@ -198,12 +196,8 @@ static hn_status paint(const scene_picture *p, hn_strbuf *png, hn_diags *diags) 
     const int height = p->request->height ? p->request->height : DEFAULT_HEIGHT;
     const hn_drawing drawing = hn_system_drawing(hn_model_system(p->model));
     hn_status status = hn_canvas_create(width, height, p->request->theme, &canvas, &diag);
-    if (status == HN_OK) {
-        status = hn_snapshot_draw(canvas, &drawing, p->poses, p->n_poses, &p->opts, &diag);
-    }
-    if (status == HN_OK) {
-        status = hn_canvas_png(canvas, png, &diag);
-    }
+    HN_THEN(status, hn_snapshot_draw(canvas, &drawing, p->poses, p->n_poses, &p->opts, &diag));
+    HN_THEN(status, hn_canvas_png(canvas, png, &diag));
     hn_canvas_free(canvas);
     return add_diag(diags, status, &diag);
 }
@@ -252,12 +246,8 @@ hn_status hn_model_picture(hn_strbuf *png, hn_strbuf *describe, const hn_model *
     } else if (status == HN_OK) {
         status = gather_given_pose(&p, diags);
     }
-    if (status == HN_OK) {
-        status = choose_view(&p, diags);
-    }
-    if (status == HN_OK) {
-        status = paint(&p, png, diags);
-    }
+    HN_THEN(status, choose_view(&p, diags));
+    HN_THEN(status, paint(&p, png, diags));
     if (status == HN_OK && describe) {
         status = describe_picture(describe, &p, diags);
     }

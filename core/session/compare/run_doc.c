@@ -232,9 +232,7 @@ static hn_status sample_at(hn_run *run, double t, hn_sample *sample) {
     hn_status status = hn_run_sample(run, t, sample);
     if (status != HN_OK && hn_run_time(run) < t) {
         status = hn_run_step_towards(run, t);
-        if (status == HN_OK) {
-            status = hn_run_sample(run, t, sample);
-        }
+        HN_THEN(status, hn_run_sample(run, t, sample));
     }
     return status;
 }
@@ -250,9 +248,7 @@ static hn_status take_sample(hn_run *run, double h, double t, hn_pace *pace,
     }
     hn_status status = step_to(run, h > 0 ? floor(t / h + 1e-9) * h : t, pace, r);
     hn_sample sample;
-    if (status == HN_OK) {
-        status = sample_at(run, t, &sample);
-    }
+    HN_THEN(status, sample_at(run, t, &sample));
     if (status == HN_OK) {
         table_add(tab, &sample, run);
     }

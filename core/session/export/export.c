@@ -88,9 +88,7 @@ static hn_status run_to(exporter *e, const char *method, hn_diag *why) {
     HN_TRY(hn_run_create(hn_model_system(e->model), &spec, hn_model_q(e->model),
                          hn_model_v(e->model), &opts, &run, why));
     hn_status status = advance(e, run);
-    if (status == HN_OK) {
-        status = hn_run_sample(run, e->later.t, &sample);
-    }
+    HN_THEN(status, hn_run_sample(run, e->later.t, &sample));
 
     // behind a singular configuration solvers may part
     double singular;
@@ -497,9 +495,7 @@ static hn_status export_to(hn_strbuf *b, exporter *e, const hn_library *lib, hn_
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_status status = read_text(lib, e->language, &text, diags);
-    if (status == HN_OK) {
-        status = fill_text(b, e, hn_strbuf_text(&text));
-    }
+    HN_THEN(status, fill_text(b, e, hn_strbuf_text(&text)));
     hn_strbuf_reset(&text);
     return status;
 }
@@ -514,9 +510,7 @@ hn_status hn_model_export(hn_strbuf *b, const hn_model *model, const hn_library 
         return HN_ERR_MEMORY;
     }
     hn_status status = choose_language(&e, request->language, diags);
-    if (status == HN_OK) {
-        status = export_to(b, &e, lib, diags);
-    }
+    HN_THEN(status, export_to(b, &e, lib, diags));
     if (status == HN_OK) {
         request->suffix = e.language->suffix;
         request->comment = e.language->comment;

@@ -90,9 +90,7 @@ static hn_status read_file(hn_extreme *x, const char *folder, const char *name, 
     hn_strbuf text;
     hn_strbuf_init(&text);
     hn_status status = hn_file_load(path, MOST_BYTES, &text, diags);
-    if (status == HN_OK) {
-        status = add_case(x, name, hn_strbuf_text(&text), text.n, diags);
-    }
+    HN_THEN(status, add_case(x, name, hn_strbuf_text(&text), text.n, diags));
     hn_strbuf_reset(&text);
     return status;
 }

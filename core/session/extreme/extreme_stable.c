@@ -135,12 +135,8 @@ static double predict(hn_extreme_bench *bench, const hn_extreme_point *point,
 
     // the eigenvalues at its start
     hn_status status = look.status;
-    if (status == HN_OK) {
-        status = hn_spectrum_create(hn_model_system(look.model), look.arena, &spectrum);
-    }
-    if (status == HN_OK) {
-        status = hn_spectrum_calc(spectrum, 0, look.q, look.v, &s, &n);
-    }
+    HN_THEN(status, hn_spectrum_create(hn_model_system(look.model), look.arena, &spectrum));
+    HN_THEN(status, hn_spectrum_calc(spectrum, 0, look.q, look.v, &s, &n));
 
     // the step limit of the method for these eigenvalues
     if (status == HN_OK) {

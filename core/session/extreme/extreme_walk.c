@@ -37,10 +37,8 @@ static hn_status make_run(hn_extreme_look *look, const char *method, unsigned ne
     opts.max_steps = (long long)t->max_steps;
     opts.raw_lambda = (needs & HN_EXTREME_RAW) != 0;
     hn_status status = hn_method_parse(method, &spec, &diag);
-    if (status == HN_OK) {
-        status =
-            hn_run_create(hn_model_system(look->model), &spec, look->q, look->v, &opts, out, &diag);
-    }
+    HN_THEN(status, hn_run_create(hn_model_system(look->model), &spec, look->q, look->v, &opts, out,
+                                  &diag));
     if (status != HN_OK) {
         fail_look(look, status, diag.message[0] ? diag.message : hn_status_text(status));
     }
@@ -197,12 +195,8 @@ void hn_extreme_look_begin(hn_extreme_bench *bench, const hn_extreme_point *poin
     hn_status status =
         look->arena ? hn_extreme_value(&t->time, t->sweep, point->value, &look->time, &bench->diags)
                     : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_extreme_spell(point, method, &bench->diags);
-    }
-    if (status == HN_OK) {
-        status = hn_extreme_start(bench, look->model, t, look->arena, &q, &v);
-    }
+    HN_THEN(status, hn_extreme_spell(point, method, &bench->diags));
+    HN_THEN(status, hn_extreme_start(bench, look->model, t, look->arena, &q, &v));
     if (status != HN_OK) {
         refuse(look, status);
         return;

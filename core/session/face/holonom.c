@@ -174,12 +174,8 @@ holonom_status holonom_load(const char *scene, holonom_mechanism **out, holonom_
     hn_scene *read = NULL;
     holonom_mechanism *m = create_empty();
     hn_status status = m ? find_scene(m, scene, &path, &diags) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_scene_load_file(path, NULL, 0, &read, &diags);
-    }
-    if (status == HN_OK) {
-        status = adopt_scene(m, read, &diags);
-    }
+    HN_THEN(status, hn_scene_load_file(path, NULL, 0, &read, &diags));
+    HN_THEN(status, adopt_scene(m, read, &diags));
     return finish(m, status, &diags, out, fault);
 }
 
@@ -191,9 +187,7 @@ holonom_status holonom_load_text(const char *json, size_t n, holonom_mechanism *
     holonom_mechanism *m = create_empty();
     hn_status status =
         m ? hn_scene_load_json(json, n, NULL, NULL, 0, &read, &diags) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = adopt_scene(m, read, &diags);
-    }
+    HN_THEN(status, adopt_scene(m, read, &diags));
     return finish(m, status, &diags, out, fault);
 }
 

@@ -71,9 +71,7 @@ static hn_status close_rates(const hn_model *model, const double *q, double *v) 
     hn_status status = arena
                            ? hn_projector_create(hn_model_system(model), HN_WEIGHT_MASS, arena, &p)
                            : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_project_velocity(p, 0, q, v, NULL);
-    }
+    HN_THEN(status, hn_project_velocity(p, 0, q, v, NULL));
     hn_projector_free(p);
     hn_arena_free(arena);
     return status;
@@ -128,9 +126,7 @@ static hn_status drag(hn_strbuf *b, const hn_model *model, const hn_drag_request
     HN_TRY(hn_model_state(model, r->from, r->n_from, q, v, diags));
     const double start = hn_clock_thread();
     hn_status status = hn_drag(hn_model_system(model), 0, &goal, r->seconds, q, &info);
-    if (status == HN_OK) {
-        status = close_rates(model, q, v);
-    }
+    HN_THEN(status, close_rates(model, q, v));
     if (status != HN_OK) {
         return hn_diags_add(diags, status, "/state", "drag from a state with closed loops",
                             "the loops cannot be closed near this state: %s",

@@ -187,9 +187,7 @@ hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
         }
         status = hn_model_points(model, hn_model_q(model), here);
     }
-    if (status == HN_OK) {
-        status = eval_points(model, 0.7312, q, there);
-    }
+    HN_THEN(status, eval_points(model, 0.7312, q, there));
 
     // a point of the ground is the same in both, to the last bit
     for (int i = 0; i < info.n_points && status == HN_OK; i++) {

@@ -41,12 +41,8 @@ hn_status hn_model_inspect_json(hn_strbuf *b, const hn_model *model, hn_diags *d
     // redundant constraints, actuation, operation counts, position form
     hn_status status = hn_system_redundancy_put(b, hn_model_system(model), 0, hn_model_q(model));
     hn_system_actuation_put(b, hn_model_system(model), hn_model_assembly(model)->freedoms);
-    if (status == HN_OK) {
-        status = hn_system_inspect_put(b, hn_model_system(model));
-    }
-    if (status == HN_OK) {
-        status = hn_position_put(b, model);
-    }
+    HN_THEN(status, hn_system_inspect_put(b, hn_model_system(model)));
+    HN_THEN(status, hn_position_put(b, model));
     hn_json_end_object(b);
     return status == HN_OK
                ? HN_OK

@@ -96,12 +96,8 @@ hn_status hn_model_load(const hn_library *lib, const hn_model_source *source, hn
     // scene, equations, consistent start
     model->arena = arena;
     hn_status status = load_scene(lib, source, &model->scene, diags);
-    if (status == HN_OK) {
-        status = hn_system_compile(model->scene, NULL, &model->system, diags);
-    }
-    if (status == HN_OK) {
-        status = assemble(model, source->allow_open, diags);
-    }
+    HN_THEN(status, hn_system_compile(model->scene, NULL, &model->system, diags));
+    HN_THEN(status, assemble(model, source->allow_open, diags));
 
     // the compiler's limit has no message of its own
     if (status == HN_ERR_LIMIT && diags && diags->n == 0) {

@@ -94,10 +94,8 @@ int hn_reaction_writer_efforts(const hn_reaction_writer *w) {
 hn_status hn_reaction_writer_eval(hn_reaction_writer *w, double t, const double *q,
                                   const double *v) {
     hn_status status = hn_accel_eval(w->accel, t, q, v, 0, 0, w->a, w->lambda, NULL);
-    if (status == HN_OK) {
-        status = hn_reactions_eval(w->reactions, t, q, v, w->a, w->lambda, w->wrenches,
-                                   w->wrenches + w->scene->n_joints);
-    }
+    HN_THEN(status, hn_reactions_eval(w->reactions, t, q, v, w->a, w->lambda, w->wrenches,
+                                      w->wrenches + w->scene->n_joints));
     w->known = status == HN_OK;
     return status;
 }

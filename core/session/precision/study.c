@@ -125,9 +125,7 @@ hn_status hn_study_open(const hn_job_request *request, hn_study **out, hn_diags 
     }
 
     // reference, ladders, journal
-    if (status == HN_OK) {
-        status = set_up(s, diags);
-    }
+    HN_THEN(status, set_up(s, diags));
     if (status != HN_OK) {
         hn_study_free(s);
         return status;

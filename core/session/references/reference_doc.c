@@ -162,9 +162,7 @@ static hn_status follow(motion *m) {
         // go to the earlier of the two times
         hn_sample s;
         hn_status status = step_to(m, t);
-        if (status == HN_OK) {
-            status = hn_run_sample(m->run, t, &s);
-        }
+        HN_THEN(status, hn_run_sample(m->run, t, &s));
         if (status != HN_OK) {
             return status;
         }
@@ -199,10 +197,8 @@ static hn_status start(motion *m, const hn_model *model, const char *method, hn_
     m->method = method;
     m->between = 0;
     hn_status status = hn_method_parse(method, &spec, &diag);
-    if (status == HN_OK) {
-        status = hn_run_create(hn_model_system(model), &spec, hn_model_q(model), hn_model_v(model),
-                               NULL, &m->run, &diag);
-    }
+    HN_THEN(status, hn_run_create(hn_model_system(model), &spec, hn_model_q(model),
+                                  hn_model_v(model), NULL, &m->run, &diag));
     if (status != HN_OK) {
         return hn_diags_add(diags, status, diag.pointer, diag.hint, "%s",
                             diag.message[0] ? diag.message : hn_status_text(status));
@@ -266,9 +262,7 @@ hn_status hn_reference_motion_json(hn_strbuf *b, const hn_model *model, const hn
             hn_diags_add(diags, status, NULL, NULL, "%s", hn_status_text(status));
         }
     }
-    if (status == HN_OK) {
-        status = move(&m, model, diags);
-    }
+    HN_THEN(status, move(&m, model, diags));
     if (status == HN_OK) {
         put_stored(b, model, ref, source);
         put_motion(b, &m);

@@ -231,9 +231,7 @@ static hn_status baumgarte_axes(hn_map *map, hn_diags *diags) {
     const double h = hn_method_option(&map->specs[0], "h", 1e-3);
     hn_status status =
         make_axis(map, &map->x, "alpha", 0.05 / h, 5 / h, map->n_columns, 'l', diags);
-    if (status == HN_OK) {
-        status = make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->n_rows, 'l', diags);
-    }
+    HN_THEN(status, make_axis(map, &map->y, "beta", 0.05 / h, 5 / h, map->n_rows, 'l', diags));
     return status;
 }
 

@@ -273,26 +273,14 @@ static hn_status create_parts(hn_books *b) {
     hn_status status = create_memory(b);
 
     // evaluators of the mechanism
-    if (status == HN_OK) {
-        status = hn_accel_create(b->sys, &with, b->arena, &b->accel);
-    }
-    if (status == HN_OK) {
-        status =
-            hn_eval_create(b->sys, HN_TERM_ENERGY | HN_TERM_J | HN_TERM_PHI_T, b->arena, &b->eval);
-    }
-    if (status == HN_OK) {
-        status =
-            hn_linear_create(b->sys, HN_LINEAR_M | HN_LINEAR_J | HN_LINEAR_V, b->arena, &b->linear);
-    }
-    if (status == HN_OK) {
-        status = hn_flow_create(b->info.nq, b->info.nv, b->arena, &b->flow);
-    }
-    if (status == HN_OK) {
-        status = hn_accel_jacobian_create(b->sys, &(hn_accel_law){0}, b->arena, &b->slopes);
-    }
-    if (status == HN_OK) {
-        status = hn_flow_carrier_create(b->info.nq, b->info.nv, b->nd, b->arena, &b->carrier);
-    }
+    HN_THEN(status, hn_accel_create(b->sys, &with, b->arena, &b->accel));
+    HN_THEN(status,
+            hn_eval_create(b->sys, HN_TERM_ENERGY | HN_TERM_J | HN_TERM_PHI_T, b->arena, &b->eval));
+    HN_THEN(status, hn_linear_create(b->sys, HN_LINEAR_M | HN_LINEAR_J | HN_LINEAR_V, b->arena,
+                                     &b->linear));
+    HN_THEN(status, hn_flow_create(b->info.nq, b->info.nv, b->arena, &b->flow));
+    HN_THEN(status, hn_accel_jacobian_create(b->sys, &(hn_accel_law){0}, b->arena, &b->slopes));
+    HN_THEN(status, hn_flow_carrier_create(b->info.nq, b->info.nv, b->nd, b->arena, &b->carrier));
 
     // the splitting of displacements, and the equations that the flows solve
     b->saddle = status == HN_OK ? hn_saddle_ws_create(b->arena, b->info.nv, b->info.nc) : NULL;
@@ -338,9 +326,7 @@ static hn_status keep_books(hn_books *b, double T, hn_diag *diag) {
     }
 
     // the error at the end and its causes
-    if (status == HN_OK) {
-        status = hn_books_look_back(b, out->t, diag);
-    }
+    HN_THEN(status, hn_books_look_back(b, out->t, diag));
     if (status == HN_ERR_NO_CONVERGENCE) {
         explain(b, diag);
     }

@@ -37,9 +37,7 @@ static hn_status split_off(hn_books *b, double *d) {
     for (int i = 0; i < nc; i++) {
         b->gap[i] = -hn_dot(nv, J + i * nv, d + nv) - hn_dot(nv, V + i * nv, d);
     }
-    if (status == HN_OK) {
-        status = hn_saddle_apply(b->zero, b->gap, off + nv, b->lambda, &info, b->saddle);
-    }
+    HN_THEN(status, hn_saddle_apply(b->zero, b->gap, off + nv, b->lambda, &info, b->saddle));
     hn_axpy(nv, -1, off + nv, d + nv);
     return status;
 }

@@ -231,9 +231,7 @@ hn_status hn_flow_carry_back(hn_flow_carrier *c, const hn_ode *ode, const hn_flo
     for (size_t k = c->path.n; status == HN_OK && k-- > 0;) {
         const double *step = c->path.steps + k * c->path.width;
         status = find_stages(c, ode, t + step[0], step[1], step + 2);
-        if (status == HN_OK) {
-            status = carry_step(c, slopes, t + step[0], step[1], w);
-        }
+        HN_THEN(status, carry_step(c, slopes, t + step[0], step[1], w));
     }
     return status == HN_OK && !hn_all_finite(c->n_carried, w) ? HN_ERR_DIVERGED : status;
 }

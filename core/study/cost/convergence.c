@@ -44,9 +44,7 @@ static hn_status run_one(const hn_system *sys, const hn_method_spec *spec, const
         return made;
     }
     hn_status status = hn_run_advance(run, T);
-    if (status == HN_OK) {
-        status = hn_run_sample(run, T, &sample);
-    }
+    HN_THEN(status, hn_run_sample(run, T, &sample));
     const hn_run_summary summary = hn_run_get_summary(run);
     const int n_user = hn_system_get_info(sys).n_user;
     out->status[i] = status;

@@ -190,9 +190,7 @@ static hn_status create_parts(hn_run *run, const hn_system *sys, const hn_method
     // a formulation that cannot start at this state gives a run in the failed state
     clear(run);
     status = hn_stepping_start_engine(s, &s->engine);
-    if (status == HN_OK) {
-        status = hn_stepping_start_engine(s, &run->sampling.side);
-    }
+    HN_THEN(status, hn_stepping_start_engine(s, &run->sampling.side));
     if (status == HN_ERR_MEMORY) {
         return hn_diag_set(diag, status, NULL, NULL, "out of memory");
     }
@@ -385,9 +383,7 @@ hn_status hn_run_set(hn_run *run, const char *key, double value, hn_diag *diag) 
     // an integrator that takes the system as it is has had the options since it was made
     hn_status status = f->set && s->engine.formulation ? f->set(s->engine.formulation, i, value)
                                                        : HN_ERR_UNSUPPORTED;
-    if (status == HN_OK) {
-        status = f->set(run->sampling.side.formulation, i, value);
-    }
+    HN_THEN(status, f->set(run->sampling.side.formulation, i, value));
     if (status != HN_OK) {
         return hn_diag_set(diag, status, NULL, "make the run anew with it",
                            "%s of %s cannot change during a run", key, f->name);

@@ -61,13 +61,9 @@ hn_status hn_spectrum_create(const hn_system *sys, hn_arena *arena, hn_spectrum 
 
     // evaluators of accelerations and of the linearised equations
     hn_status status = ok && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_accel_create(sys, &opts, arena, &s->accel);
-    }
-    if (status == HN_OK) {
-        status = hn_linear_create(sys, HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J, arena,
-                                  &s->linear);
-    }
+    HN_THEN(status, hn_accel_create(sys, &opts, arena, &s->accel));
+    HN_THEN(status, hn_linear_create(sys, HN_LINEAR_M | HN_LINEAR_K | HN_LINEAR_C | HN_LINEAR_J,
+                                     arena, &s->linear));
 
     if (status != HN_OK) {
         hn_spectrum_free(s);

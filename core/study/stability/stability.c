@@ -93,12 +93,8 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
 
     // the run by this method
     hn_status status = hn_method_parse(means, &spec, diag);
-    if (status == HN_OK) {
-        status = hn_run_create(p->sys, &spec, p->q0, p->v0, NULL, &run, diag);
-    }
-    if (status == HN_OK) {
-        status = hn_run_sample(run, 0, &start);
-    }
+    HN_THEN(status, hn_run_create(p->sys, &spec, p->q0, p->v0, NULL, &run, diag));
+    HN_THEN(status, hn_run_sample(run, 0, &start));
     if (status != HN_OK) {
         hn_run_free(run);
         return status;
@@ -183,9 +179,7 @@ hn_status hn_stability_path_create(const hn_system *sys, const double *q, const 
                              .T = T,
                              .length = hn_system_length(sys)};
     hn_status status = make_memory(p);
-    if (status == HN_OK) {
-        status = hn_spectrum_create(sys, arena, &m.spectrum);
-    }
+    HN_THEN(status, hn_spectrum_create(sys, arena, &m.spectrum));
     if (status != HN_OK) {
         hn_diag_set(diag, status, NULL, NULL, "%s", hn_status_text(status));
     } else {

@@ -265,9 +265,7 @@ static hn_status step_of_its_own(hn_stepping *s) {
         status = hn_engine_start(e, s->now.t, s->now.q, s->now.v);
         s->restart = false;
     }
-    if (status == HN_OK) {
-        status = hn_engine_advance(e, s->now.t, stop, &t_new);
-    }
+    HN_THEN(status, hn_engine_advance(e, s->now.t, stop, &t_new));
     s->rejected +=
         hn_engine_cost(e).rejected - rejected; // counted whether or not the step came off
 

@@ -248,12 +248,8 @@ hn_status hn_chaos_estimate(const hn_system *sys, const double *q, const double 
                .started = hn_clock_thread()};
     w.arena = hn_arena_create(1 << 14);
     status = w.arena ? create(&w, q, v, out->windows) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = follow_one(&w, out, diag);
-    }
-    if (status == HN_OK) {
-        status = follow_twin(&w, out, diag);
-    }
+    HN_THEN(status, follow_one(&w, out, diag));
+    HN_THEN(status, follow_twin(&w, out, diag));
     if (status == HN_OK) {
         judge(out);
     }

@@ -99,9 +99,7 @@ static hn_status start(precise *p, const double *q, const double *v, double T) {
     hn_precise_model_normalise(p->model, p->y);
     p->solver->choose_rows(p->solving, 0, p->y);
     hn_status status = p->solver->close(p->solving, 0, p->y, p->y + nq);
-    if (status == HN_OK) {
-        status = p->solver->accelerate(p->solving, 0, p->y, p->y + nq, p->a, NULL);
-    }
+    HN_THEN(status, p->solver->accelerate(p->solving, 0, p->y, p->y + nq, p->a, NULL));
 
     // the fastest rate of the motion, from its accelerations
     p->rate = 1 / (hn_real)T;

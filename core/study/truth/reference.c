@@ -123,9 +123,7 @@ static hn_status compute_double(const hn_system *sys, const char *spelling, cons
     hn_sample start;
     *end = HN_WALK_FAILED;
     hn_status status = hn_method_parse(spelling, &spec, diag);
-    if (status == HN_OK) {
-        status = hn_run_create(sys, &spec, q, v, NULL, &run, diag);
-    }
+    HN_THEN(status, hn_run_create(sys, &spec, q, v, NULL, &run, diag));
     if (status != HN_OK) {
         return status;
     }
@@ -263,10 +261,8 @@ hn_status hn_ref_create(const hn_system *sys, const double *q, const double *v, 
     hn_arena *arena = hn_arena_create(0);
     hn_errors *errors = NULL;
     hn_status status = arena ? hn_errors_create(sys, arena, &errors) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status =
-            find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o, kept, seen, refused, diag);
-    }
+    HN_THEN(status,
+            find_two(sys, q, v, T, o.n > 0 ? o.n : HN_REF_TIMES, &o, kept, seen, refused, diag));
     if (status == HN_OK) {
         // their difference is the error of the first
         set_scales(kept[0], errors, sys, &seen[0]);

@@ -199,9 +199,7 @@ hn_exit hn_command_compare(const hn_library *lib, const hn_args *args) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
-    if (status == HN_OK) {
-        status = create(args, model, &c, &diags);
-    }
+    HN_THEN(status, create(args, model, &c, &diags));
     if (status != HN_OK) {
         hn_model_free(model);
         return hn_report_diags(args, status, &diags);

@@ -12,12 +12,8 @@ hn_exit hn_command_export(const hn_library *lib, const hn_args *args) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = hn_cli_check_folder(args->out, &diags);
-    if (status == HN_OK) {
-        status = hn_cli_protect_inputs(args, &diags);
-    }
-    if (status == HN_OK) {
-        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
-    }
+    HN_THEN(status, hn_cli_protect_inputs(args, &diags));
+    HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
 
     // the program, into the file or onto standard output
     if (status == HN_OK) {

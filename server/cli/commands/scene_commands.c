@@ -35,9 +35,7 @@ hn_exit hn_command_inspect(const hn_library *lib, const hn_args *args) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags);
-    if (status == HN_OK) {
-        status = hn_model_inspect_json(&b, model, &diags);
-    }
+    HN_THEN(status, hn_model_inspect_json(&b, model, &diags));
     if (status == HN_OK) {
         add_native(&b, model);
     }
@@ -86,12 +84,8 @@ hn_exit hn_command_equations(const hn_library *lib, const hn_args *args) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = choose_form(args, &form, &diags);
-    if (status == HN_OK) {
-        status = hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags);
-    }
-    if (status == HN_OK) {
-        status = hn_model_equations(&b, model, form, &diags);
-    }
+    HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 1, &model, &diags));
+    HN_THEN(status, hn_model_equations(&b, model, form, &diags));
     hn_model_free(model);
     if (status != HN_OK) {
         hn_strbuf_reset(&b);
@@ -292,12 +286,8 @@ hn_exit hn_command_terms(const hn_library *lib, const hn_args *args) {
     state *s = calloc(1, sizeof *s);
     hn_status status =
         s ? hn_assignments_read(&args->state_q, "--q", see_entry, s, &diags) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_assignments_read(&args->state_v, "--v", see_entry, s, &diags);
-    }
-    if (status == HN_OK) {
-        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
-    }
+    HN_THEN(status, hn_assignments_read(&args->state_v, "--v", see_entry, s, &diags));
+    HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
 
     // the terms at that state
     if (status == HN_OK) {

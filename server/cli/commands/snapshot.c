@@ -62,9 +62,7 @@ hn_exit hn_command_snapshot(const hn_library *lib, const hn_args *args) {
     hn_strbuf_init(&png);
     hn_strbuf_init(&description);
     hn_status status = read_opts(args, &request, &diags);
-    if (status == HN_OK) {
-        status = hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags);
-    }
+    HN_THEN(status, hn_args_load_model(lib, args, args->words.word[0], 0, &model, &diags));
     if (status == HN_OK) {
         choose_methods(args, hn_model_scene(model), &request);
         status = hn_model_picture(&png, &description, model, &request, &ended, &diags);

@@ -111,10 +111,8 @@ hn_exit hn_command_tui(const hn_library *lib, const hn_args *args) {
     // everything is read before anything is opened
     hn_status status = read_size(args->size, &opts, &diags);
     status = status == HN_OK ? read_opening(args, &o, &diags) : status;
-    if (status == HN_OK) {
-        status = hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,
-                                   o.n_methods, &diags);
-    }
+    HN_THEN(status, hn_workbench_open(&w, lib, o.scene, o.settings, o.n_settings, o.methods,
+                                      o.n_methods, &diags));
     if (status != HN_OK) {
         return hn_report_diags(args, status, &diags);
     }

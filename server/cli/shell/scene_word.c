@@ -73,9 +73,7 @@ hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const c
         } else {
             source.name = word;
         }
-        if (status == HN_OK) {
-            status = hn_model_load(lib, &source, out, diags);
-        }
+        HN_THEN(status, hn_model_load(lib, &source, out, diags));
     }
     hn_strbuf_reset(&text);
     free(s);

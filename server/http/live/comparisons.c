@@ -264,9 +264,8 @@ static hn_status create(hn_comparisons *all, const hn_request *r, hn_session **s
         .running = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(body, "paused")),
     };
     hn_status status = hn_scene_request_read(&scene, body, diags);
-    if (status == HN_OK) {
-        status = hn_session_create(all->opts, all->lib, &order, thread_gone, all, session, diags);
-    }
+    HN_THEN(status,
+            hn_session_create(all->opts, all->lib, &order, thread_gone, all, session, diags));
     hn_scene_request_reset(&scene);
     return status;
 }

@@ -82,12 +82,8 @@ static hn_status build(hn_session *session, const change *c, hn_subject *fresh, 
 
     hn_scene_request scene = {0};
     hn_status status = hn_scene_request_copy(&scene, &session->bench.scene);
-    if (status == HN_OK) {
-        status = hn_scene_request_read_settings(&scene, c->settings, diags);
-    }
-    if (status == HN_OK) {
-        status = hn_subject_create(session, &scene, methods, n, fresh, diags);
-    }
+    HN_THEN(status, hn_scene_request_read_settings(&scene, c->settings, diags));
+    HN_THEN(status, hn_subject_create(session, &scene, methods, n, fresh, diags));
     hn_scene_request_reset(&scene);
     return status;
 }
@@ -227,9 +223,7 @@ void hn_session_apply(hn_session *session, hn_request *r) {
     if (status == HN_OK && c.set) {
         status = set_running(fresh.comparison ? &fresh : &session->bench, c.set, &diags);
     }
-    if (status == HN_OK) {
-        status = carry_out(session, &c, &fresh);
-    }
+    HN_THEN(status, carry_out(session, &c, &fresh));
     hn_subject_reset(&fresh);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);

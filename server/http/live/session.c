@@ -179,18 +179,14 @@ hn_status hn_session_create(const hn_http_opts *opts, const hn_library *lib,
     session->user = user;
     hn_status status =
         hn_history_init(&session->history, opts->max_events, (size_t)opts->max_event_bytes);
-    if (status == HN_OK) {
-        status = hn_subject_create(session, order->scene, order->methods, order->n_methods,
-                                   &session->bench, diags);
-    }
+    HN_THEN(status, hn_subject_create(session, order->scene, order->methods, order->n_methods,
+                                      &session->bench, diags));
     if (status == HN_OK && hn_comparison_duration(session->bench.comparison) > opts->max_duration) {
         status = hn_diags_add(
             diags, HN_ERR_LIMIT, "/duration", NULL, "the duration is %g s; at most %g s are run",
             hn_comparison_duration(session->bench.comparison), opts->max_duration);
     }
-    if (status == HN_OK) {
-        status = hn_session_publish_setup(session);
-    }
+    HN_THEN(status, hn_session_publish_setup(session));
     if (status == HN_OK) {
         hn_session_publish_frame(session);
         status = start_thread(session);

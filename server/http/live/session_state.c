@@ -32,13 +32,9 @@ hn_status hn_subject_create(const hn_session *session, const hn_scene_request *s
                             hn_diags *diags) {
     *bench = (hn_subject){0};
     hn_status status = hn_scene_request_copy(&bench->scene, scene);
-    if (status == HN_OK) {
-        status = hn_scene_request_load(scene, session->lib, 0, &bench->model, diags);
-    }
-    if (status == HN_OK) {
-        status = hn_subject_compare(session, bench->model, methods, n_methods, &bench->comparison,
-                                    diags);
-    }
+    HN_THEN(status, hn_scene_request_load(scene, session->lib, 0, &bench->model, diags));
+    HN_THEN(status, hn_subject_compare(session, bench->model, methods, n_methods,
+                                       &bench->comparison, diags));
     if (status != HN_OK) {
         hn_subject_reset(bench);
     }

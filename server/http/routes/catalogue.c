@@ -186,9 +186,7 @@ hn_model *hn_catalogue_load_scene(hn_request *r, int allow_open) {
     // with the parameters of the query
     hn_status status =
         order.name ? hn_request_each_query(r, "set", see_setting, &settings) : HN_ERR_MEMORY;
-    if (status == HN_OK) {
-        status = hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags);
-    }
+    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags));
     hn_scene_request_reset(&order);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
@@ -279,9 +277,7 @@ void hn_handle_reference(hn_request *r) {
     }
     hn_strbuf_init(&b);
     hn_status status = read_reference_order(r, &order, &diags);
-    if (status == HN_OK) {
-        status = write_reference(&b, model, &order, &diags);
-    }
+    HN_THEN(status, write_reference(&b, model, &order, &diags));
     hn_model_free(model);
     if (status == HN_OK) {
         hn_reply_json(r, MHD_HTTP_OK, &b);

@@ -28,9 +28,7 @@ static hn_model *load_model(hn_request *r, int allow_open) {
     hn_diags diags = {0};
     hn_model *model = NULL;
     hn_status status = hn_scene_request_read(&order, r->json, &diags);
-    if (status == HN_OK) {
-        status = hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags);
-    }
+    HN_THEN(status, hn_scene_request_load(&order, r->context->lib, allow_open, &model, &diags));
     hn_scene_request_reset(&order);
     if (status != HN_OK) {
         hn_reply_diags(r, status, &diags);
@@ -255,10 +253,8 @@ void hn_handle_grade(hn_request *r) {
                                        : HN_ERR_MEMORY;
 
     // the verdict, or the exercise's fault
-    if (status == HN_OK) {
-        status = hn_grade_json(problem, submission, strlen(submission),
-                               (uint64_t)hn_fields_number(r->json, "seed", 0), v);
-    }
+    HN_THEN(status, hn_grade_json(problem, submission, strlen(submission),
+                                  (uint64_t)hn_fields_number(r->json, "seed", 0), v));
     if (status == HN_OK) {
         hn_verdict_json(&b, v);
         hn_reply_json(r, MHD_HTTP_OK, &b);

@@ -383,9 +383,7 @@ void hn_handle_studies_create(hn_request *r) {
         name_study(s);
         status = hn_study_work_read(&s->work, r->json, all->opts, &diags);
     }
-    if (status == HN_OK) {
-        status = start(all, s);
-    }
+    HN_THEN(status, start(all, s));
 
     // what cannot be computed gives its place back
     if (status != HN_OK) {

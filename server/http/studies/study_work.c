@@ -19,9 +19,7 @@ static hn_status load_with(void *user, const hn_setting *parameters, int n, hn_m
         status = hn_scene_request_add(&scene, parameters[i].name, strlen(parameters[i].name),
                                       parameters[i].value, diags);
     }
-    if (status == HN_OK) {
-        status = hn_scene_request_load(&scene, w->lib, 0, out, diags);
-    }
+    HN_THEN(status, hn_scene_request_load(&scene, w->lib, 0, out, diags));
     hn_scene_request_reset(&scene);
     return status;
 }
@@ -162,9 +160,7 @@ void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *ou
     if (!w->job) {
         status = hn_job_open(w->kind, &w->request, &w->job, &diags);
     }
-    if (status == HN_OK) {
-        status = hn_job_run(w->job, &end, &diags);
-    }
+    HN_THEN(status, hn_job_run(w->job, &end, &diags));
     if (status != HN_OK) {
         report_failure(w, status, &diags, out);
         return;
