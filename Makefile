@@ -56,7 +56,7 @@ ROOMS_server       := terminal: lesson:terminal grade:lesson \
                       http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,cli/shell \
                       cli/commands:grade,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
-                      cli/study:cli/shell cli:cli/shell :cli
+                      cli/study:terminal,cli/shell cli:terminal,cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
 VARIANT ?= release
@@ -173,7 +173,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
                  libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
-                 slurmctld slurmd slurm-client munge parallel
+                 slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux
 CHECK_PACKAGES := $(TEST_PACKAGES) clang:clang clang-format:clang-format
 
 build/.packages-run: Makefile

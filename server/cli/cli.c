@@ -8,10 +8,12 @@
 #include "cli/manual.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/diagnostics.h"
+#include "cli/shell/fold.h"
 #include "cli/shell/output_file.h"
 #include "cli/shell/print.h"
 #include "cli/shell/cache_folder.h"
 #include "expr/native.h"
+#include "terminal/width.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -19,23 +21,15 @@
 
 enum { HELP_INDENT = 10, HELP_WIDTH = 80 };
 
-/// Words in lines of HELP_WIDTH columns, each but the first after HELP_INDENT blanks; `column`:
-/// where the first begins.
-static void add_folded(hn_strbuf *b, int column, const char *words) {
-    while (*words) {
-        const int n = (int)strcspn(words, " ");
-        if (column > HELP_INDENT && column + 1 + n > HELP_WIDTH) {
-            hn_strbuf_printf(b, "\n%*s", HELP_INDENT, "");
-            column = HELP_INDENT;
-        } else if (column > HELP_INDENT) {
-            hn_strbuf_add(b, " ");
-            column++;
-        }
-        hn_strbuf_add_n(b, words, (size_t)n);
-        column += n;
-        words += n + (words[n] == ' ');
+/// Words in lines of HELP_WIDTH columns; the cursor is at column `indent`, and so is the beginning
+/// of every further line.
+static void add_folded(hn_strbuf *b, int indent, const char *words) {
+    for (bool first = true; *words; first = false) {
+        const size_t n = hn_fold_line(words, HELP_WIDTH - indent);
+        hn_strbuf_printf(b, "%*s%.*s\n", first ? 0 : indent, "", (int)n, words);
+        words += n;
+        words += strspn(words, " ");
     }
-    hn_strbuf_add(b, "\n");
 }
 
 static void describe_all(hn_strbuf *b) {
@@ -55,7 +49,9 @@ static void describe_all(hn_strbuf *b) {
 
 static void describe_one(hn_strbuf *b, const hn_command *command) {
     const char *const *examples = hn_examples_of(command->name);
-    hn_strbuf_printf(b, "holonom %s %s\n  %s\n\n", command->name, command->words, command->about);
+    hn_strbuf_printf(b, "holonom %s %s\n%*s", command->name, command->words, 2, "");
+    add_folded(b, 2, command->about);
+    hn_strbuf_add(b, "\n");
     hn_args_describe(b, command);
     hn_strbuf_add(b, examples ? "\nexamples\n" : "");
     for (int i = 0; examples && i < HN_CLI_EXAMPLES; i++) {
@@ -171,6 +167,10 @@ static hn_exit run_command(const hn_command *command, const hn_args *args) {
     if (function.needs_library && hn_library_open(NULL, &lib, &diag) != HN_OK) {
         hn_report_diag(args, &diag);
         return HN_EXIT_PROGRAM;
+    }
+
+    if (args->wide) {
+        hn_terminal_be_wide();
     }
 
     // no command writes over what it reads

@@ -8,6 +8,18 @@
 
 enum { LEAST = 40, MOST = 300, USUAL = 80 };
 
+static bool wide; // standard output belongs to the process, and so does how wide it is
+
+void hn_terminal_be_wide(void) {
+    wide = true;
+}
+
+int hn_terminal_limit(void) {
+    const char *said = getenv("COLUMNS");
+    const bool known = isatty(STDOUT_FILENO) || (said && atoi(said) > 0);
+    return known && !wide ? hn_terminal_columns() : 0;
+}
+
 int hn_terminal_columns(void) {
     struct winsize size = {0};
     const char *said = getenv("COLUMNS");

@@ -10,4 +10,9 @@
 int hn_terminal_columns(void);
 /// Standard output is a terminal that shows colours, and NO_COLOR is not set.
 bool hn_terminal_colours(void);
+/// Columns that text for people may take: those of the terminal behind standard output, else of
+/// the variable COLUMNS; 0: no limit, as in a pipe or after hn_terminal_be_wide().
+int hn_terminal_limit(void);
+/// From here on text for people is as wide as it is (--wide). For the whole process.
+void hn_terminal_be_wide(void);
 #endif

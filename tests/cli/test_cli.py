@@ -260,9 +260,9 @@ class CommandLine(unittest.TestCase):
 
     def test_compare_prints_a_row_for_each_method(self):
         text = self.assert_exit(call("compare", "four-bar", "--methods", RK4, "projection@rk4:h=1e-3", "--time", "1"), DONE)
-        self.assertRegex(text, r"worst gap +velocity gap +energy change +steps +evals +ops +ops/step +CPU/step")
-        self.assertRegex(text, r"(?m)^index1@rk4\S* +ok +1.00 s")
-        self.assertRegex(text, r"(?m)^projection@rk4\S* +ok +1.00 s")
+        self.assertRegex(text, r"worst gap \[m\] +velocity gap \[m/s\] +energy change \[\wJ\] +steps +evals +ops +ops/step +CPU/step \[.?s\] +quartiles")
+        self.assertRegex(text, r"(?m)^index1@rk4\S* +ok +1.00 ")
+        self.assertRegex(text, r"(?m)^projection@rk4\S* +ok +1.00 ")
         summary = strict(self.assert_exit(call("compare", "four-bar", "--methods", RK4, "--time", "0.5", "--json"), DONE))
         self.assertEqual([m["state"] for m in summary["methods"]], ["finished"])
 

@@ -57,6 +57,21 @@ class Completion(unittest.TestCase):
                               env={**os.environ, "PROGRAM": PROGRAM})
         self.assertEqual(done.stdout.strip(), "four-bar")
 
+    def test_zsh_completes_with_what_the_program_says(self):
+        # compadd outside of a completion refuses; what it is given is what counts
+        script = ('compdef() { :; }; source <("$PROGRAM" completion zsh); holonom() { "$PROGRAM" "$@"; }; compadd() { print -r -- "$@"; }; '
+                  '_describe() { shift; local -a list; list=("${(@P)1}"); print -rl -- $list; }; words=(holonom run four-b); CURRENT=3; _holonom')
+        done = subprocess.run(["zsh", "-f", "-c", script], capture_output=True, text=True, timeout=60, env={**os.environ, "PROGRAM": PROGRAM})
+        self.assertIn("four-bar", done.stdout, done.stderr)
+
+    def test_fish_completes_with_what_the_program_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.symlink(PROGRAM, os.path.join(folder, "holonom"))
+            env = {**os.environ, "PATH": folder + ":" + os.environ["PATH"], "HOME": folder, "HOLONOM_CACHE": folder}
+            script = 'holonom completion fish | source; complete -C "holonom run four-b"'
+            done = subprocess.run(["fish", "-c", script], capture_output=True, text=True, timeout=60, env=env)
+        self.assertIn("four-bar", done.stdout, done.stderr)
+
     def test_an_unknown_shell_is_refused(self):
         done = call("completion", "tcsh")
         self.assertEqual(done.returncode, 2)
@@ -68,6 +83,11 @@ LEFT_OUT = ("serve", "report", "merge", "import")
 
 
 class Help(unittest.TestCase):
+    def test_every_line_of_help_fits_eighty_columns(self):
+        for words in [[], *([c] for c in re.findall(r"^  holonom (\w+)", call("help").stdout, re.M))]:
+            wide = [line for line in call("help", *words).stdout.splitlines() if len(line) > 80]
+            self.assertEqual(wide, [], words)
+
     def test_holonom_alone_says_what_to_do_first(self):
         done = call()
         self.assertEqual((done.returncode, done.stdout), (2, ""))
@@ -102,6 +122,72 @@ class Help(unittest.TestCase):
         os.close(master)
 
 
+class Width(unittest.TestCase):
+    COMMANDS = (["list", "scenes"], ["list", "methods"], ["list", "lessons"], ["list", "problems"], ["inspect", "four-bar"],
+                ["equations", "four-bar"], ["terms", "four-bar", "--reactions"], ["compare", "four-bar", "--time", "0.5"],
+                ["compare", "four-bar", "--time", "0.5", "--plot"], ["run", "four-bar", "--time", "0.5", "--plot"], ["extreme", "x1", "x2"],
+                ["study", "pendulum", "work-precision", "--time", "0.5", "--levels", "3", "--samples", "1"], ["study", "fb0", "budget", "--time", "0.5"],
+                ["study", "slider-crank", "stability", "--over", "h=1e-4..1e-1,c=1..1000", "--grid", "6x6"], ["reference", "fb0"],
+                ["problem", "p3"])
+
+    @staticmethod
+    def lines(words, columns):
+        with tempfile.TemporaryDirectory() as cache:
+            env = {**os.environ, "LC_ALL": "C.UTF-8", "COLUMNS": str(columns), "HOLONOM_CACHE": cache}
+            done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300, env=env)
+        return done.stdout.splitlines()
+
+    def test_no_line_of_any_command_is_wider_than_eighty_columns(self):
+        for words in self.COMMANDS:
+            lines = self.lines(words, 80)
+            self.assertGreaterEqual(len(lines), 2, words)
+            # one word that is longer than a line stays whole
+            wide = [line for line in lines if len(line) > 80 and " " in line.strip()]
+            self.assertEqual(wide, [], words)
+
+    def test_columns_that_do_not_fit_are_named_and_wide_shows_them(self):
+        narrow, wide = (self.lines(["compare", "four-bar", "--time", "0.5", *more], 80) for more in ([], ["--wide"]))
+        self.assertRegex(" ".join(narrow), r"left out at 80 columns: t, .*evals, ops.* \(--wide shows them\)")
+        self.assertIn("evals", wide[1])
+        self.assertNotIn("left out", " ".join(wide))
+
+    def test_a_pipe_gets_every_column(self):
+        env = {k: v for k, v in os.environ.items() if k != "COLUMNS"}
+        done = subprocess.run([PROGRAM, "compare", "four-bar", "--time", "0.5"], capture_output=True, text=True, timeout=60, env=env)
+        self.assertIn("evals", done.stdout)
+        self.assertNotIn("\033", done.stdout)
+
+    def test_a_terminal_gets_colours_unless_it_says_no(self):
+        for more, coloured in (({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)):
+            master, slave = pty.openpty()
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 60, 80, 0, 0))
+            env = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", **more}
+            if "NO_COLOR" not in more:
+                env.pop("NO_COLOR", None)
+            with subprocess.Popen([PROGRAM, "list", "problems"], stdin=subprocess.DEVNULL, stdout=slave, env=env) as process:
+                process.wait(timeout=60)
+            os.close(slave)
+            self.assertEqual(b"\033[1m" in os.read(master, 4096), coloured, more)
+            os.close(master)
+
+
+class NearMisses(unittest.TestCase):
+    def test_what_is_typed_wrong_is_answered_with_what_was_meant(self):
+        for words, meant in ((["compar", "four-bar"], "compare"), (["compare", "fuor-bar"], "four-bar"), (["study", "four-bar", "stabilty"], "stability"),
+                             (["study", "four-bar", "work-precison"], "work-precision"), (["list", "scnes"], "scenes"), (["help", "rum"], "run"),
+                             (["run", "four-bar", "--mehtod", "x"], "--method"), (["run", "four-bar", "--method", "baumgrate@rk4"], "baumgarte"),
+                             (["run", "four-bar", "--method", "index1@rk5"], "rk4"), (["run", "four-bar", "--set", "l11=1"], "l1"),
+                             (["run", "four-bar", "--method", "baumgarte:alpa=3@rk4"], "alpha"), (["problem", "p4"], "p3"),
+                             (["grade", "p33", "x.json"], "p3"), (["export", "four-bar", "--language", "pyton"], "python"),
+                             (["run", "four-bar", "--format", "cvs"], "csv"), (["equations", "four-bar", "--format", "latx"], "latex"),
+                             (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--view", "fornt"], "front"),
+                             (["snapshot", "four-bar", "-o", "/nowhere/a.png", "--theme", "drak"], "dark"), (["completion", "bsh"], "bash"),
+                             (["terms", "four-bar", "--q", "ht1=1"], "th1"), (["extreme", "xx1"], "x1")):
+            done = call(*words)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn(meant, done.stderr + done.stdout, words)
+
+
 class Plots(unittest.TestCase):
     def test_compare_draws_every_method_within_the_width(self):
         env = {**os.environ, "COLUMNS": "70", "LC_ALL": "C.UTF-8"}
@@ -133,6 +219,11 @@ class Manual(unittest.TestCase):
             self.assertIn(f'.SS "holonom {command}', text)
             for option in re.findall(r"^  (--?[\w-]+)", call("help", command).stdout, re.M):
                 self.assertIn(f".B {option}", text)
+
+    def test_groff_sets_it_without_a_warning(self):
+        done = subprocess.run(["groff", "-ww", "-man", "-Tascii", "-P-cbou"], input=call("manual").stdout, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.stderr, "")
+        self.assertIn("SYNOPSIS", done.stdout)
 
     def test_no_line_is_a_request_that_roff_does_not_know(self):
         requests = set(re.findall(r"^\.(\w+)", call("manual").stdout, re.M))

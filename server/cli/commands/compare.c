@@ -90,6 +90,9 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
     // how the run went
     hn_table_cell(t, "%s", hn_document_text(m, "method"));
     hn_table_cell(t, "%s", has_failed(m) ? "ENDED EARLY" : "ok");
+    if (has_failed(m)) {
+        hn_table_bad(t);
+    }
     hn_table_quantity(t, hn_document_number(m, "t_reached"), "s");
     hn_table_quantity(t, hn_document_number(m, "worst_gap"), unit);
     hn_table_quantity(t, hn_document_number(m, "worst_velocity_gap"), rate);
@@ -103,15 +106,15 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 
     // the time of a step, with its quartiles where it was measured
     const cJSON *cost = hn_document_get(m, "step_cpu");
-    char median[HN_SI_TEXT], low[HN_SI_TEXT], high[HN_SI_TEXT];
+    hn_table_quantity(t, hn_document_number(cost, "median"), "s");
     if (!isfinite(hn_document_number(cost, "median"))) {
         hn_table_cell(t, "-");
         return;
     }
-    hn_si_format(hn_document_number(cost, "median"), "s", 2, median);
+    char low[HN_SI_TEXT], high[HN_SI_TEXT];
     hn_si_format(hn_document_number(cost, "low"), "s", 2, low);
     hn_si_format(hn_document_number(cost, "high"), "s", 2, high);
-    hn_table_cell(t, "%s (%s to %s)", median, low, high);
+    hn_table_cell(t, "%s to %s", low, high);
 }
 
 /// What a spelling deserves to be told, and the first few incidents of each method; all of them are
@@ -143,14 +146,20 @@ static void put_incidents(hn_strbuf *b, const cJSON *summary) {
 }
 
 static void put_table(hn_strbuf *b, const hn_model *model, const cJSON *summary) {
-    static const char *const heads[] = {
-        "method", "status", "t",   "worst gap", "velocity gap",        "energy change",
-        "steps",  "evals",  "ops", "ops/step",  "CPU/step (quartiles)"};
+    // the order in which columns are left out: what can be computed from others goes first
+    static const struct {
+        const char *head;
+        int to_right, spare;
+    } columns[] = {{"method", 0, 0},    {"status", 0, 0},       {"t", 1, 5},
+                   {"worst gap", 1, 0}, {"velocity gap", 1, 6}, {"energy change", 1, 0},
+                   {"steps", 1, 7},     {"evals", 1, 4},        {"ops", 1, 3},
+                   {"ops/step", 1, 2},  {"CPU/step", 1, 8},     {"quartiles", 0, 1}};
     const hn_scene *scene = hn_model_scene(model);
     hn_table t;
     hn_table_init(&t);
-    for (int c = 0; c < 11; c++) {
-        hn_table_column(&t, heads[c], c > 1);
+    for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
+        hn_table_column(&t, columns[c].head, columns[c].to_right);
+        hn_table_spare(&t, columns[c].spare);
     }
     const cJSON *m;
     cJSON_ArrayForEach(m, hn_document_get(summary, "methods")) {

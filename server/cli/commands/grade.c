@@ -37,7 +37,7 @@ hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
         hn_exercise_text(&b, problem);
     }
     hn_exercise_free(problem);
-    return hn_cli_print(&b);
+    return args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
 }
 
 /// The forms a verdict can be written in.

@@ -91,7 +91,7 @@ hn_exit hn_command_equations(const hn_library *lib, const hn_args *args) {
         hn_strbuf_reset(&b);
         return hn_report_diags(args, status, &diags);
     }
-    return hn_cli_print(&b);
+    return form == HN_EQUATIONS_TEXT ? hn_cli_print_text(&b) : hn_cli_print(&b);
 }
 
 enum { MAX_ENTRIES = 400 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/args.h"
 
+#include "cli/shell/fold.h"
 #include "session/kinds/job.h"
 
 #include <math.h>
@@ -25,18 +26,22 @@ typedef struct option {
     const char *about;
 } option;
 
+enum { HELP_HEAD = 26, HELP_WIDTH = 80 }; // [columns] of an option and its argument; of a line
+
 #define AT(field) offsetof(hn_args, field)
 
 static const option OPTIONS[] = {
     {"--json", NULL, OPTION_FLAG, AT(json), "one JSON object on standard output"},
     {"--help", NULL, OPTION_FLAG, AT(help), "this help"},
+    {"--wide", NULL, OPTION_FLAG, AT(wide),
+     "tables and lines as wide as they are, whatever the terminal's width"},
     {"--no-native", NULL, OPTION_FLAG, AT(no_native),
      "interpret everything, compile nothing in the background; so does HOLONOM_NATIVE=0"},
     {"--set", "NAME=VALUE", OPTION_WORD, AT(set),
      "a parameter that differs from the scene's, or start.NAME: where a coordinate or rate "
      "starts; may be repeated"},
     {"--method", "METHOD", OPTION_TEXT, AT(method),
-     "FORMULATION[:key=value,...]@INTEGRATOR[:key=value,...]"},
+     "FORMULATION[:key=value,...] @INTEGRATOR[:key=value,...], without the blank"},
     {"--methods", "METHOD...", OPTION_WORDS, AT(methods),
      "several of them; the scene's own when left out"},
     {"--time", "T", OPTION_NUMBER, AT(time), "end of the run [s]; the scene's when left out"},
@@ -437,6 +442,14 @@ void hn_args_describe(hn_strbuf *b, const hn_command *command) {
     for (int i = 0; hn_args_option(command, i, &o); i++) {
         char head[64];
         snprintf(head, sizeof head, "%s %s", o.name, o.argument ? o.argument : "");
-        hn_strbuf_printf(b, "  %-26s %s\n", head, o.about);
+        hn_strbuf_printf(b, "  %-*s ", HELP_HEAD, head);
+        // what is said of it stands in a column of its own
+        const int room = HELP_WIDTH - HELP_HEAD - 3;
+        for (const char *rest = o.about; *rest;) {
+            const size_t n = hn_fold_line(rest, room);
+            hn_strbuf_printf(b, "%*s%.*s\n", rest == o.about ? 0 : HELP_HEAD + 3, "", (int)n, rest);
+            rest += n;
+            rest += strspn(rest, " ");
+        }
     }
 }

@@ -35,7 +35,7 @@ typedef struct hn_args {
     double history, max_comparisons, max_streams, max_connections, run_cpu, idle_pause, expiry,
         keep_alive;
     int guests;
-    int json, csv, open, help, raw_lambda, reactions;
+    int json, csv, wide, open, help, raw_lambda, reactions;
     int once, ascii, blocks, plot, no_native;
     cJSON *fields; ///< of the command's kinds of jobs, by name; owned; NULL: none was given
 } hn_args;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/print.h"
 
+#include "cli/shell/fold.h"
 #include "cli/shell/plain.h"
+#include "terminal/width.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -71,6 +73,13 @@ hn_exit hn_cli_print_text(hn_strbuf *text) {
         hn_plain_add(&plain, hn_strbuf_text(text));
         hn_strbuf_reset(text);
         *text = plain;
+    }
+    if (!text->failed && hn_terminal_limit() > 0) {
+        hn_strbuf folded;
+        hn_strbuf_init(&folded);
+        hn_fold_add(&folded, hn_strbuf_text(text), hn_terminal_limit());
+        hn_strbuf_reset(text);
+        *text = folded;
     }
     if (!text->failed && wants_pager(text) && page(text)) {
         hn_strbuf_reset(text);

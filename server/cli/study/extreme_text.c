@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/study/extreme_text.h"
 
+#include "terminal/width.h"
+
 #include <stdio.h>
 #include <string.h>
 
-enum { WHAT = 58, PREDICTED = 32, OBSERVED = 40 };
+// [columns] of the table without a limit; with one, the first three share what the verdict leaves
+enum { WHAT = 58, PREDICTED = 32, OBSERVED = 40, VERDICT = 20, BETWEEN = 2 };
 
 /// Returns how many bytes of text fit into the columns, broken at a blank where there is one.
 static size_t fit(const char *text, int columns) {
@@ -35,13 +38,20 @@ static void put_part(hn_strbuf *b, const char **text, int columns) {
     *text += strspn(*text, " ");
 }
 
+/// The share of a column in a line of the terminal.
+static int width_of(int columns) {
+    const int limit = hn_terminal_limit(), whole = WHAT + PREDICTED + OBSERVED;
+    const int room = limit - VERDICT - 4 * BETWEEN;
+    return limit > 0 && room < whole ? columns * room / whole : columns;
+}
+
 static void put_row(hn_strbuf *b, const char *what, const char *predicted, const char *observed,
                     const char *verdict) {
     do {
         hn_strbuf_add(b, "  ");
-        put_part(b, &what, WHAT);
-        put_part(b, &predicted, PREDICTED);
-        put_part(b, &observed, OBSERVED);
+        put_part(b, &what, width_of(WHAT));
+        put_part(b, &predicted, width_of(PREDICTED));
+        put_part(b, &observed, width_of(OBSERVED));
         hn_strbuf_add(b, verdict);
         verdict = "";
         while (b->n > 0 && b->text[b->n - 1] == ' ') {

@@ -276,15 +276,23 @@ hn_exit hn_run_job(const hn_library *lib, const hn_args *args, const hn_job_kind
 
 // ---- the commands ----
 
-/// The kinds of `holonom study`, as "there is work-precision, stability, budget".
-static void list_kinds(char *out, size_t size) {
+/// "did you mean 'stability'?", or all kinds of `holonom study`.
+static void hint_kinds(const char *word, char *out, size_t size) {
+    enum { MOST_KINDS = 16 };
+    const char *names[MOST_KINDS];
     const hn_job_kind *kind;
     size_t used = 0;
-    for (int i = 0; (kind = hn_job_kind_at(i)) != NULL && used < size; i++) {
+    int n = 0;
+    for (int i = 0; (kind = hn_job_kind_at(i)) != NULL && n < MOST_KINDS && used < size; i++) {
         if (strcmp(kind->command, "study") == 0) {
             used += (size_t)snprintf(out + used, size - used, "%s%s", used ? ", " : "there is ",
                                      kind->name);
+            names[n++] = kind->name;
         }
+    }
+    const char *near = hn_nearest_name(word, names, n);
+    if (near) {
+        snprintf(out, size, "did you mean '%s'?", near);
     }
 }
 
@@ -296,7 +304,7 @@ hn_exit hn_command_study(const hn_library *lib, const hn_args *args) {
     }
     hn_diag diag = {0};
     char list[HN_DIAG_HINT];
-    list_kinds(list, sizeof list);
+    hint_kinds(word, list, sizeof list);
     hn_diag_set(&diag, HN_ERR_INPUT, "/study", list, "there is no study called '%.60s'", word);
     return hn_report_diag(args, &diag);
 }
