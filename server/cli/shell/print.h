@@ -9,7 +9,7 @@
 /// Prints and frees the buffer's text with a newline at its end; HN_EXIT_PROGRAM when memory or the
 /// output failed.
 hn_exit hn_cli_print(hn_strbuf *text);
-/// The same for text that people read: folded to the terminal's width, in ASCII characters where
-/// the locale has no UTF-8, and through $PAGER (less when left out) where a terminal has fewer lines.
+/// The same for text that people read: folded to the terminal's width, in ASCII where the
+/// locale has no UTF-8, and through $PAGER (less when left out) where a terminal has fewer lines.
 hn_exit hn_cli_print_text(hn_strbuf *text);
 #endif
