@@ -14,6 +14,9 @@ const FILES = [
   ["katex/dist/katex.mjs", "katex/katex.mjs"],
   ["katex/dist/katex.min.css", "katex/katex.min.css"],
   ["katex/LICENSE", "katex/LICENSE"],
+  ["three/build/three.module.min.js", "three/three.module.min.js"],
+  ["three/build/three.core.min.js", "three/three.core.min.js"],
+  ["three/LICENSE", "three/LICENSE"],
 ];
 
 await rm(join(web, "vendor"), { recursive: true, force: true });

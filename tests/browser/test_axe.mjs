@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // axe finds nothing on any view in any theme.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { violations } from "./axe.mjs";
 import { createBench, playTo, until } from "./support.mjs";
 
 const { open } = createBench();
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const LONG = 60000; // [ms] that a study may take on a busy machine
-
-/** Rules that are broken, with the places. */
-async function violations(page) {
-  await page.evaluate(AXE);
-  const found = await page.evaluate(async () => {
-    const { violations: list } = await globalThis.axe.run(document, {
-      resultTypes: ["violations"],
-    });
-    return list.flatMap(({ id, impact, nodes }) =>
-      nodes.map(({ target }) => `${id} (${impact}): ${target.join(" ")}`),
-    );
-  });
-  return found;
-}
 
 /** What is opened before axe looks, by a name. */
 const VIEWS = {

@@ -18,12 +18,23 @@
  */
 
 /**
+ * Where a joint sits in its two bodies (-1: the ground) and along which axes.
+ * @typedef {{
+ *   name: string, type: string, parent: number, child: number,
+ *   parent_at: number[], child_at: number[], parent_axis: number[], child_axis: number[],
+ *   parent_ref: number[], child_ref: number[],
+ * }} Joint
+ */
+
+/**
  * `n` coordinates, `m` constraints of rank `rank`, `dof` degrees of freedom; `length`, `points`
  * and `envelope` in m; `duration` and `step` in s.
  * @typedef {{
  *   id: string, title: string, about: string, look_for: string, caption: string,
  *   parameters: Parameter[], n: number, m: number, rank: number, dof: number, length: number,
- *   drawing: Drawing, coordinates: {name: string, rate: string}[],
+ *   drawing: Drawing,
+ *   coordinates: {name: string, rate: string, kind: string, joint: string, actuated: boolean}[],
+ *   bodies: {name: string, com: number[]}[], joints: Joint[],
  *   points: number[], ground_points: number[], envelope: number[], extremes?: number[],
  *   view: {spatial: boolean, vertical: "y" | "z", right: number[], up: number[]},
  *   methods: string[], duration: number, step: number,

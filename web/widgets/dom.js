@@ -56,6 +56,23 @@ export function say(node, text) {
   }
 }
 
+/**
+ * A style sheet of a view that is opened: fetched once.
+ * @param {string} href
+ * @returns {Promise<void>} when it is here
+ */
+export function loadStyle(href) {
+  if (document.querySelector(`link[href="${href}"]`)) {
+    return Promise.resolve();
+  }
+  return new Promise((resolve, reject) => {
+    const failed = () => reject(new Error(`${href} cannot be loaded`));
+    document.head.append(
+      h("link", { rel: "stylesheet", href, onload: () => resolve(), onerror: failed }),
+    );
+  });
+}
+
 const ICONS = {
   play: "M7 4.5v15l12-7.5z",
   pause: "M6.5 5h4v14h-4zM13.5 5h4v14h-4z",

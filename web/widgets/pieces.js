@@ -36,6 +36,14 @@ function pointsOf({ kind, p, q, n }) {
   return kind === "polygon" ? Array.from({ length: n }, (_, i) => p + i) : q >= 0 ? [p, q] : [p];
 }
 
+/** Points that are drawn, without those that only give a direction. @param {Scene} scene */
+export function drawnPoints(scene) {
+  const used = scene.drawing.shapes.flatMap((shape) =>
+    shape.kind === "guide" || shape.kind === "slider" ? [shape.p] : pointsOf(shape),
+  );
+  return [...new Set([...used, ...scene.drawing.tears.flatMap(({ p, q }) => [p, q])])];
+}
+
 /** Stands on the ground: drawn once, whatever the methods do. @param {Scene} scene */
 export function baseOf(scene) {
   const still = new Set(scene.ground_points);

@@ -114,6 +114,50 @@ static void put_coordinates(hn_strbuf *b, const hn_model *model, const double *u
     hn_json_end_array(b);
 }
 
+static void put_vector(hn_strbuf *b, const char *key, const hn_quantity at[3]) {
+    const double place[3] = {at[0].value, at[1].value, at[2].value};
+    hn_json_put_numbers(b, key, place, 3);
+}
+
+/// One joint: where it sits in both bodies and along which axes, as hn_joint says.
+static void put_joint(hn_strbuf *b, const hn_joint *joint) {
+    hn_json_object(b);
+    hn_json_put_string(b, "name", joint->name);
+    hn_json_put_string(b, "type", hn_joint_type_name(joint->type));
+    hn_json_put_int(b, "parent", joint->parent);
+    hn_json_put_int(b, "child", joint->child);
+    put_vector(b, "parent_at", joint->parent_at);
+    put_vector(b, "child_at", joint->child_at);
+    hn_json_put_numbers(b, "parent_axis", joint->parent_axis, 3);
+    hn_json_put_numbers(b, "child_axis", joint->child_axis, 3);
+    hn_json_put_numbers(b, "parent_ref", joint->parent_ref, 3);
+    hn_json_put_numbers(b, "child_ref", joint->child_ref, 3);
+    hn_json_end_object(b);
+}
+
+/// Bodies and joints with numbers: with the coordinates they give the frame of every body.
+static void put_bodies_and_joints(hn_strbuf *b, const hn_scene *scene) {
+    hn_json_key(b, "bodies");
+    hn_json_array(b);
+    for (int i = 0; i < scene->n_bodies; i++) {
+        hn_json_object(b);
+        hn_json_put_string(b, "name", scene->bodies[i].name);
+        put_vector(b, "com", scene->bodies[i].com);
+        hn_json_end_object(b);
+    }
+    hn_json_end_array(b);
+
+    // a joint that only carries a coordinate of formulas is not drawn
+    hn_json_key(b, "joints");
+    hn_json_array(b);
+    for (int i = 0; i < scene->n_joints; i++) {
+        if (!scene->joints[i].is_formal) {
+            put_joint(b, &scene->joints[i]);
+        }
+    }
+    hn_json_end_array(b);
+}
+
 static void put_rows(hn_strbuf *b, const hn_system *sys) {
     hn_json_key(b, "rows");
     hn_json_array(b);
@@ -246,6 +290,7 @@ void hn_model_json(hn_strbuf *b, const hn_model *model) {
     put_sizes(b, model);
     put_coordinates(b, model, u, u + hn_system_get_info(hn_model_system(model)).n_user);
     put_rows(b, hn_model_system(model));
+    put_bodies_and_joints(b, scene);
 
     // how the start was assembled
     hn_json_key(b, "assembly");

@@ -10,8 +10,8 @@
 /// load is listed with its "errors".
 void hn_scenes_json(hn_strbuf *b, const hn_library *lib);
 /// Writes the data from which the page draws and sets up a scene: id, title, about, look_for, kind,
-/// parameters, coordinates, rows, n, m, rank, dof, caption, assembly, drawing, points (at the
-/// start), envelope, methods, duration, step.
+/// parameters, coordinates, rows, bodies, joints, n, m, rank, dof, caption, assembly, drawing,
+/// points (at the start), envelope, methods, duration, step.
 void hn_model_json(hn_strbuf *b, const hn_model *model);
 /// Writes into the open object "ok": whether the loops are closed at the start; if they are not,
 /// also "reason" and "hint".

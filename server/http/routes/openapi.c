@@ -51,6 +51,7 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"id\",\"title\",\"parameters\",\"coordinates\","
      "\"drawing\"],\"properties\":{"
      "\"id\":" TEXT ",\"title\":" TEXT ",\"parameters\":" OBJECTS ",\"coordinates\":" OBJECTS
+     ",\"bodies\":" OBJECTS ",\"joints\":" OBJECTS
      ",\"drawing\":{\"type\":\"object\"},\"points\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},"
      "\"methods\":" TEXTS ",\"duration\":{\"type\":\"number\"},\"step\":{\"type\":\"number\"}}}"},

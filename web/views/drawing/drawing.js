@@ -5,6 +5,7 @@
 import { lookOf } from "../../state/look.js";
 import { listen, shownIndex } from "../../state/store.js";
 import { h, s, say, set } from "../../widgets/dom.js";
+import { createDepth } from "./depth.js";
 import { createGhosts } from "./ghosts.js";
 import { createMarks } from "./marks.js";
 import { createNotices } from "./notices.js";
@@ -90,14 +91,26 @@ export function createDrawing(el, store, actions) {
     if (!data.scene || !data.history || now < 0 || !ghosts.isReady()) {
       return;
     }
-    ghosts.draw(now);
+    depth.draw(now);
+    if (!stage.camera3) {
+      ghosts.draw(now);
+    }
     marks.draw(now);
     notices.update(now);
   }
 
   function fit() {
     stage.fit();
-    update();
+    depth.fit(stage.foot);
+    refit();
+  }
+
+  /** The camera has moved. */
+  function refit() {
+    if (data.scene) {
+      stage.refresh();
+      update();
+    }
   }
 
   function makeGhosts() {
@@ -105,6 +118,7 @@ export function createDrawing(el, store, actions) {
     demonstrations.hidden = !(data.scene?.m > 0);
     if (data.scene) {
       ghosts.make();
+      depth.make();
       update();
     }
   }
@@ -119,7 +133,11 @@ export function createDrawing(el, store, actions) {
       ? `the reference solution, grey: ${known.means.join(" and ")} agree to ${digits}`
       : (known?.reason ?? "");
     set(toggles.reference, { "aria-disabled": ready ? null : "true" });
-    update();
+    if (stage.camera3) {
+      fit(); // the motion may go farther than was known
+    } else {
+      update();
+    }
   }
 
   function showView() {
@@ -127,7 +145,7 @@ export function createDrawing(el, store, actions) {
       set(button, { "aria-pressed": String(data.view[key]) });
     }
     if (stage.camera.look !== lookOf(data)) {
-      fit();
+      (stage.camera3 ? refit : fit)();
     }
     if (ghosts.isStale()) {
       makeGhosts();
@@ -136,7 +154,12 @@ export function createDrawing(el, store, actions) {
     }
   }
 
-  const observer = new ResizeObserver(fit);
+  const depth = createDepth(frame, store, actions, stage, { refit, fit });
+  const observer = new ResizeObserver(() => {
+    stage.fit();
+    depth.resize();
+    fit();
+  });
   observer.observe(frame);
   const stop = listen(store, {
     scene: () => {
@@ -147,6 +170,7 @@ export function createDrawing(el, store, actions) {
     methods: makeGhosts,
     reactions: update,
     reference: makeReference,
+    theme: makeGhosts,
     view: showView,
     state: () => {
       if (data.state !== "running") {
@@ -160,6 +184,7 @@ export function createDrawing(el, store, actions) {
     dispose() {
       stop();
       observer.disconnect();
+      depth.dispose();
       el.replaceChildren();
     },
   };

@@ -23,7 +23,13 @@ export function createStage(svg, layers, data) {
     /** null until a scene is there @type {ReturnType<typeof createPen>} */
     pen: /** @type {any} */ (null),
     places: createNamePlaces({ width: 100, height: 100 }),
+    /** makes the camera of a view in space; null: the flat one is used
+     * @type {(() => ReturnType<typeof createCamera>) | null} */
+    camera3: null,
+    /** [px] room below the mechanism */
+    foot: /** @type {number | undefined} */ (undefined),
     fit,
+    refresh,
   };
 
   /** Supports and guides, that never move. @param {number[]} points */
@@ -56,12 +62,21 @@ export function createStage(svg, layers, data) {
       return;
     }
 
+    stage.foot = data.scene.drawing.tears.length > 0 ? GLASS_ROOM : undefined;
+    refresh();
+  }
+
+  function makeFlatCamera() {
     const from = lookOf(data);
-    const foot = data.scene.drawing.tears.length > 0 ? GLASS_ROOM : undefined;
     const box = data.scene.extremes
       ? seenBox(data.scene.extremes, from)
       : boxAround(data.scene.envelope, data.scene.points);
-    stage.camera = createCamera(box, size.width, size.height, from, foot);
+    return createCamera(box, size.width, size.height, from, stage.foot);
+  }
+
+  /** Camera and pen of now, and what they draw once. */
+  function refresh() {
+    stage.camera = stage.camera3 ? stage.camera3() : makeFlatCamera();
     stage.pen = createPen(data.scene, stage.camera, size);
     stage.places = createNamePlaces(size);
 

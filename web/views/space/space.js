@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// A mechanism in space, drawn by WebGL under the drawing's SVG: light, ground, shadows, solids,
+// joints with their axes, paths as tubes. Names, arrows and cut joints stay in the SVG.
+import * as THREE from "three";
+import { referenceAt } from "../../state/reference.js";
+import { h } from "../../widgets/dom.js";
+import { makeFloor } from "./floor.js";
+import { makeBase, makeModel, makeReference, release, widthOf } from "./models.js";
+import { createRig } from "./rig.js";
+import { createTools } from "./tools.js";
+import { createTrail } from "./trail.js";
+
+const MOST_PIXELS = 2; // of the canvas per pixel of the page
+const SLOW = 30; // [ms] a picture: then shadows and fine pixels are left out
+const NEAR = 0.02; // of the distance
+const FAR = 12;
+
+function makeRenderer() {
+  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
+  return renderer;
+}
+
+/** @param {string} name of a custom property of the page */
+const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** The box of the motion. @param {import("../../state/types.js").Scene} scene */
+function boxOf(scene) {
+  const flat = [...(scene.extremes ?? []), ...scene.points];
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  flat.forEach((x, i) => {
+    if (Number.isFinite(x)) {
+      low[i % 3] = Math.min(low[i % 3], x);
+      high[i % 3] = Math.max(high[i % 3], x);
+    }
+  });
+  const radius = Math.max(1e-6, 0.5 * Math.hypot(...low.map((x, k) => high[k] - x)));
+  return { low, high, radius, vertical: scene.view.vertical === "z" ? 2 : 1 };
+}
+
+/**
+ * @param {HTMLElement} frame the drawing's stage; its SVG lies on top
+ * @param {import("../../state/store.js").Store} store
+ * @param {import("../../session/session.js").Session} actions
+ * @param {{size: {width: number, height: number}, refit: () => void}} drawing
+ *   refit: the SVG is drawn again by the camera of now
+ */
+export function createSpace(frame, store, actions, drawing) {
+  const data = store.data;
+  const renderer = makeRenderer();
+  const rig = createRig(data, drawing.size);
+  const world = new THREE.Scene();
+  const cameras = {
+    near: new THREE.PerspectiveCamera(),
+    flat: new THREE.OrthographicCamera(),
+  };
+  const canvas = renderer.domElement;
+  canvas.setAttribute("aria-hidden", "true");
+  const place = h("div", { class: "space" }, canvas);
+  frame.prepend(place);
+  const tools = createTools(frame, rig, data, actions, { refit: changed, showFrames });
+
+  /** @type {{ghosts: any[], reference: any, base: any, floor: any, trails: any[]} | null} */
+  let made = null;
+  let frames = false;
+  let lost = false;
+  let pace = { last: 0, slow: 0, coarse: false };
+
+  function clear() {
+    if (made) {
+      made.trails.forEach(({ node }) => release(node));
+      [...made.ghosts, made.reference].forEach(({ group }) => release(group));
+      [made.base, made.floor.group].forEach(release);
+      made.floor.sun.shadow.map?.dispose();
+      made = null;
+    }
+  }
+
+  /** All solids of the scene, in the colours of now. */
+  function make() {
+    clear();
+    const scene = data.scene;
+    if (!scene?.view?.spatial || !data.methods.length) {
+      return;
+    }
+    const dark = data.theme === "dark";
+    const colours = { ink: colourOf("--ink"), pale: colourOf(dark ? "--edge" : "--paper") };
+    const floor = makeFloor(boxOf(scene), { line: colourOf("--hairline"), dark });
+    const base = makeBase(scene, floor, colourOf("--edge"));
+    const ghosts = data.methods.map(({ slot }, m) =>
+      makeModel(scene, {
+        ...colours,
+        colour: data.look.slots[slot][data.theme],
+        selected: m === data.view.selected,
+      }),
+    );
+    const reference = makeReference(scene, colourOf("--reference"));
+    const traced = scene.drawing.shapes.filter(({ kind }) => kind === "trace");
+    const which = (traced.length ? traced : scene.drawing.tears).map(({ p }) => p);
+    const { slot } = data.methods[data.view.selected];
+    const trails = which.map((p) => ({
+      p,
+      ...createTrail(
+        0.45 * widthOf(scene),
+        new THREE.MeshStandardMaterial({ color: data.look.slots[slot][data.theme], roughness: 1 }),
+      ),
+    }));
+    world.add(
+      floor.group,
+      base,
+      reference.group,
+      ...ghosts.map(({ group }) => group),
+      ...trails.map(({ node }) => node),
+    );
+    made = { ghosts, reference, base, floor, trails };
+    showFrames(frames);
+  }
+
+  /** @param {boolean} on */
+  function showFrames(on) {
+    frames = on;
+    made?.ghosts.forEach((ghost) => ghost.showFrames(on));
+    changed();
+  }
+
+  /** The view is another one. */
+  function changed() {
+    drawing.refit();
+  }
+
+  function setCamera() {
+    const { width, height } = drawing.size;
+    const aspect = width / Math.max(1, height);
+    const far = rig.distance();
+    const half = rig.halfHeight();
+    const toward = rig.toward();
+    const camera = rig.perspective ? cameras.near : cameras.flat;
+    const look = rig.camera().look;
+    camera.up.fromArray(look.up);
+    camera.position.set(...rig.target.map((x, k) => x + far * toward[k]));
+    camera.lookAt(...rig.target);
+    camera.near = rig.perspective ? NEAR * far : -FAR * far;
+    camera.far = FAR * far + (made ? 8 * boxOf(data.scene).radius : 0);
+    Object.assign(
+      camera,
+      rig.perspective
+        ? { fov: (360 / Math.PI) * rig.HALF_ANGLE, aspect }
+        : { left: -half * aspect, right: half * aspect, top: half, bottom: -half },
+    );
+    camera.updateProjectionMatrix();
+    return camera;
+  }
+
+  /** A machine that is slow gets coarser pictures; never back, so that they do not flicker. */
+  function keepPace() {
+    const now = performance.now();
+    const since = now - pace.last;
+    pace.last = now;
+    const running = data.state === "running" || data.view.replaying;
+    pace.slow = running && since < 500 && since > SLOW ? pace.slow + 1 : 0;
+    if (pace.slow > 30 && !pace.coarse) {
+      pace.coarse = true;
+      renderer.setPixelRatio(1);
+      renderer.shadowMap.enabled = false;
+      make();
+    }
+  }
+
+  /** @param {number} now index of the frame shown */
+  function drawTrails(now) {
+    const { history, view } = data;
+    const m = view.selected;
+    for (const { p, node, draw } of made?.trails ?? []) {
+      node.visible = view.traces;
+      if (view.traces) {
+        const key = `${data.run} ${m} ${history.stride}`;
+        draw(key, history.count, now, (i) => history.pointsAt(m, i).subarray(3 * p, 3 * p + 3));
+      }
+    }
+  }
+
+  /** @param {number} now index of the frame shown */
+  function drawReference(now) {
+    const points = data.view.reference
+      ? referenceAt(data.reference, data.history.frameAt(now))
+      : null;
+    if (made) {
+      made.reference.group.visible = Boolean(points);
+      if (points) {
+        made.reference.place(points);
+      }
+    }
+  }
+
+  canvas.addEventListener("webglcontextlost", (event) => {
+    event.preventDefault();
+    lost = true;
+    frame.classList.remove("solid");
+    changed();
+  });
+  canvas.addEventListener("webglcontextrestored", () => {
+    lost = false;
+    make();
+    changed();
+  });
+
+  return {
+    make,
+    rig,
+    /** What is drawn is here, and the SVG leaves it out. */
+    get shows() {
+      return made !== null && !lost && Boolean(data.scene?.view?.spatial);
+    },
+    fit: rig.fitOnce,
+    camera: rig.camera,
+    resize() {
+      const { width, height } = drawing.size;
+      renderer.setPixelRatio(pace.coarse ? 1 : Math.min(MOST_PIXELS, devicePixelRatio));
+      renderer.setSize(width, height);
+    },
+    show(on) {
+      place.hidden = !on;
+      tools.show(on);
+    },
+    /** @param {number} now index of the frame shown */
+    follow(now) {
+      if (made) {
+        const { scene, history, view } = data;
+        const points = history.pointsAt(view.selected, now);
+        const traced = scene.drawing.shapes.find(({ kind }) => kind === "trace");
+        const p = traced?.p ?? scene.drawing.tears[0]?.p ?? 0;
+        rig.track([...points.slice(3 * p, 3 * p + 3)]);
+      }
+    },
+    /** @param {number} now index of the frame shown */
+    draw(now) {
+      if (!made || lost) {
+        return;
+      }
+      const { history, view } = data;
+      made.ghosts.forEach((ghost, m) => {
+        ghost.group.visible = !view.hidden.has(m);
+        if (ghost.group.visible) {
+          ghost.place(history.pointsAt(m, now), history.stateAt(m, now).q);
+        }
+      });
+      drawReference(now);
+      drawTrails(now);
+      renderer.render(world, setCamera());
+      keepPace();
+    },
+    dispose() {
+      clear();
+      tools.dispose();
+      renderer.dispose();
+      place.remove();
+    },
+  };
+}
+
+/** @typedef {ReturnType<typeof createSpace>} Space */
