@@ -19,11 +19,14 @@ static const double DENSE_BUDGET = 2e5;
 // reports what it finds below the second share
 static const double FALLEN = 0.9;
 static const double REACHED = 2e-3;
+static const double AT_END = 0.999; // of a step
 // singular values within this factor of the smallest are lost together
 static const double TOGETHER = 5;
 static const double WEAK = 0.02; // and none above this of the largest pivot is
 static const double CUSP = 1e-6; // discriminant against the squares of the form's entries
 enum { SWEEPS = 2, FIRST_SWEEPS = 30, PROBE_SWEEPS = 8, PILOT_STEPS = 48, NARROWINGS = 24 };
+enum { CONFIRMING = 4 };             // times as many steps in the run that confirms a prediction
+static const double CONFIRMED = 0.1; // of the time to go: two pilot runs agree
 
 struct hn_singularity {
     const hn_system *sys;
@@ -238,16 +241,19 @@ static double smallest_inside(hn_singularity *r, double *share) {
     return fmin(sigma[0], sigma[1]);
 }
 
-/// Seconds until the pilot run reaches a singular configuration within `horizon`, else HUGE_VAL.
+/// Seconds until the pilot run reaches a singular configuration within `horizon`, else HUGE_VAL. It
+/// makes `steps` steps for half a turn, and as many more where the motion becomes faster on the
+/// way.
 ///
 /// A zero of sigma_min is passed between two steps, so every step whose ends do not rule it out is
 /// searched: sigma_min falls towards a zero and rises from it like a straight line.
 static double run_pilot(hn_singularity *r, double t, const double *q, const double *v,
-                        double horizon, double sigma_now) {
-    const double h = horizon / PILOT_STEPS;
+                        double horizon, double sigma_now, int steps) {
     double before = sigma_now, slope = 0;
     hn_pilot_start(r->pilot, t, q, v);
-    for (int k = 0; k < PILOT_STEPS; k++) {
+    for (int k = 0; k < 2 * steps && hn_pilot_time(r->pilot) < t + horizon; k++) {
+        const double half_turn = hn_pilot_half_turn(r->pilot, hn_pilot_v(r->pilot));
+        const double h = fmin(horizon, half_turn) / steps;
         if (hn_pilot_step(r->pilot, h) != HN_OK) {
             return HUGE_VAL;
         }
@@ -255,7 +261,8 @@ static double run_pilot(hn_singularity *r, double t, const double *q, const doub
         const double steepest = fmax(slope, fabs(sigma - before));
         double share = 1;
         if (sigma + before < 2 * steepest || sigma < REACHED * r->largest) {
-            if (smallest_inside(r, &share) < REACHED * r->largest) {
+            const bool reached = smallest_inside(r, &share) < REACHED * r->largest;
+            if (reached && share < AT_END) { // lowest at its end: it lies in the next step
                 return hn_pilot_time(r->pilot) - (1 - share) * h - t;
             }
         }
@@ -265,17 +272,28 @@ static double run_pilot(hn_singularity *r, double t, const double *q, const doub
     return HUGE_VAL;
 }
 
-/// Decides whether a pilot run is due: sigma_min has fallen, and the last run is over or was long
-/// ago against how fast the motion is.
+/// The same, confirmed: a second run with finer steps reaches the configuration at the same time.
+static double pilot_ahead(hn_singularity *r, double t, const double *q, const double *v,
+                          double horizon, double sigma_now) {
+    const double coarse = run_pilot(r, t, q, v, horizon, sigma_now, PILOT_STEPS);
+    if (!isfinite(coarse)) {
+        return HUGE_VAL;
+    }
+    const double fine = run_pilot(r, t, q, v, horizon, sigma_now, CONFIRMING * PILOT_STEPS);
+    return fabs(fine - coarse) < CONFIRMED * coarse ? fine : HUGE_VAL;
+}
+
+/// Decides whether a pilot run is due: sigma_min has fallen, or there has been a singular
+/// configuration already; and the last run is over or was long ago against how fast the motion is.
 static void look_ahead(hn_singularity *r, double t, const double *q, const double *v,
                        hn_singularity_info *info) {
     const double horizon = hn_pilot_half_turn(r->pilot, v);
-    const int falls = info->sigma_min < r->last.sigma_min;
-    if (!falls || !(info->sigma_min < FALLEN * r->largest) || r->wait > 0 || t < r->next_pilot ||
-        !isfinite(horizon)) {
+    const bool falls = info->sigma_min < r->last.sigma_min && info->sigma_min < FALLEN * r->largest;
+    const bool again = isfinite(r->last.predicted);
+    if (!(falls || again) || r->wait > 0 || t < r->next_pilot || !isfinite(horizon)) {
         return;
     }
-    info->ahead = run_pilot(r, t, q, v, horizon, info->sigma_min);
+    info->ahead = pilot_ahead(r, t, q, v, horizon, info->sigma_min);
     info->predicted = isfinite(info->ahead) ? t + info->ahead : info->predicted;
     r->next_pilot = t + (isfinite(info->ahead) ? info->ahead + 0.1 * horizon : 0.25 * horizon);
 }

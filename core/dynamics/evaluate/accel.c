@@ -39,6 +39,7 @@ struct hn_accel {
     double *gamma, *dense_a, *dense_lambda;
     double *row_unit;   ///< nc: the characteristic length for rows in metres, else 1
     double *speed_unit; ///< nv: the same for velocities of lengths
+    double pull;        ///< squared rate at which the present call pulls the gap to zero [1/s^2]
     // refinement of the tape's answer
     hn_factor *factor;
     double *rest, *step; ///< nv + nc each
@@ -159,6 +160,7 @@ static double eval_terms(hn_accel *s, double t, const double *q, const double *v
                          double beta) {
     hn_eval_run(s->terms, t, q, v);
     s->ops += hn_eval_info(s->terms).ops + 4.0 * s->n_J;
+    s->pull = s->opts.baumgarte ? beta * beta : 0;
     memcpy(s->gamma, hn_eval_get(s->terms, HN_TERM_GAMMA), (size_t)s->nc * sizeof *s->gamma);
     return stabilise(s, v, alpha, beta);
 }
@@ -327,14 +329,18 @@ static double dense_ops(const hn_accel *s) {
 
 /// The accelerations that the present velocities alone can make, in the units of the equilibrated
 /// system: the largest sqrt(M_jj) v_j times the largest rate, a length counting by the mechanism's.
+/// A pull on the gap makes others: the gap is a difference of lengths, and the pull one of lengths
+/// times its squared rate, however small both are.
 static double accelerations_of_motion(const hn_accel *s) {
     const double *M = hn_eval_get(s->terms, HN_TERM_M), *v = s->in.x + s->in.nq;
-    double momentum = 0, rate = 0;
+    double momentum = 0, rate = 0, inertia = 0;
     for (int i = 0; i < s->nv; i++) {
-        momentum = fmax(momentum, sqrt(fmax(M[(size_t)i * s->nv + i], 0)) * fabs(v[i]));
+        const double root = sqrt(fmax(M[(size_t)i * s->nv + i], 0));
+        momentum = fmax(momentum, root * fabs(v[i]));
+        inertia = fmax(inertia, root * s->speed_unit[i]);
         rate = fmax(rate, fabs(v[i]) / s->speed_unit[i]);
     }
-    return momentum * rate;
+    return fmax(momentum * rate, inertia * s->pull);
 }
 
 /// Tolerances of the dense solve. A row that is short at a pose is not stretched to unit length:

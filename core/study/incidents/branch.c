@@ -30,13 +30,15 @@ static int find_flipped_loop(const hn_watch *w) {
 }
 
 // A change of sign in smooth motion means that a dead point was passed; with a jump it means the
-// other branch.
+// other branch. A long step of a method of high order looks like a jump, and a pilot run with short
+// steps arrives at its end.
 static void check_mode(hn_watch *w) {
     const hn_system *sys = w->run->sys;
     hn_mode_watch_values(w->mode, w->run->now.t, w->run->now.q, w->modes);
     const int loop = find_flipped_loop(w);
     const bool named = !hn_system_scene(sys)->is_lagrangian; // formulas share their loops
-    if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP) {
+    if (loop >= 0 && hn_motion_unexplained(w, 0) > HN_RUN_WARN_JUMP &&
+        !hn_motion_is_followed(w, &w->run->before, &w->run->now)) {
         hn_incident_report(
             w, &hn_incident_branch_flip, "assembly mode", w->modes[loop], HN_RUN_WARN_MODE,
             "the loop%s%s went from one assembly mode to the other in one step (%.2g to %.2g)",
@@ -65,7 +67,8 @@ static void check_turn(hn_watch *w) {
     }
     const double speed = fmin(hn_norm2(n, s->now.v), hn_norm2(n, s->before.v));
     const double change = (s->now.t - s->before.t) * hn_norm2(n, w->a);
-    if (back < HN_RUN_WARN_BACK * speed && change < HN_RUN_WARN_BACK * 2 * speed) {
+    if (back < HN_RUN_WARN_BACK * speed && change < HN_RUN_WARN_BACK * 2 * speed &&
+        !hn_motion_is_followed(w, &s->before, &s->now)) {
         hn_incident_report(w, &hn_incident_branch_flip, "change of speed", 2 * speed, change,
                            "the velocities turned round within one step of %.3g s: by the "
                            "accelerations they could change by %.2g of their size, and they "

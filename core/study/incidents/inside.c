@@ -52,7 +52,8 @@ static void check_branch(hn_watch *w, const hn_state_at *at) {
     for (int k = 0; k < hn_mode_watch_count(w->mode); k++) {
         const double jump = fabs(w->modes[k] - w->last_modes[k]);
         if (w->modes[k] * w->last_modes[k] < 0 && jump > HN_RUN_WARN_MODE &&
-            hn_motion_unexplained_between(w, from, at, 0) > HN_RUN_WARN_JUMP) {
+            hn_motion_unexplained_between(w, from, at, 0) > HN_RUN_WARN_JUMP &&
+            !hn_motion_is_followed(w, from, at)) {
             set_time(hn_incident_report(w, &hn_incident_branch_flip, "assembly mode", w->modes[k],
                                         HN_RUN_WARN_MODE,
                                         "the output at t = %.6g s, inside a step, is on another "

@@ -20,6 +20,49 @@ double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
     return moved > 0 ? rest / moved : 0;
 }
 
+/// Steps of a pilot run: in one of the run, in half a turn of the fastest coordinate, in all.
+enum { PILOT_FINER = 8, PILOT_HALF_TURN = 48, PILOT_MOST = 400 };
+/// Of the length: where the loops are open by more a pilot run would follow links that drift apart.
+static const double CLOSED = 1e-6;
+/// Of the way between two states: a pilot run that ends this near to the second arrives there.
+static const double ARRIVES = 0.25;
+
+const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t) {
+    hn_pilot *pilot = hn_singularity_pilot(w->singular.monitor);
+    const double span = t - from->t;
+    const double pace =
+        fmin(w->run->h / PILOT_FINER, hn_pilot_half_turn(pilot, from->v) / PILOT_HALF_TURN);
+    const int steps = (int)fmin(PILOT_MOST, ceil(span / pace));
+    if (!(w->measure.gap < CLOSED * w->length)) {
+        return NULL;
+    }
+    hn_pilot_start(pilot, from->t, from->q, from->v);
+    for (int k = 0; k < steps; k++) {
+        if (hn_pilot_step(pilot, span / steps) != HN_OK) {
+            return NULL;
+        }
+    }
+    return pilot;
+}
+
+bool hn_motion_is_followed(hn_watch *w, const hn_state_at *from, const hn_state_at *to) {
+    const hn_stepping *s = w->run;
+    const hn_pilot *pilot = hn_motion_pilot(w, from, to->t);
+    double way = 0, rest = 0;
+    if (!pilot) {
+        return false;
+    }
+    hn_system_difference(s->sys, from->q, to->q, w->scratch);
+    for (int i = 0; i < s->info.nv; i++) {
+        way = fmax(way, fabs(w->scratch[i]));
+    }
+    hn_system_difference(s->sys, hn_pilot_q(pilot), to->q, w->scratch);
+    for (int i = 0; i < s->info.nv; i++) {
+        rest = fmax(rest, fabs(w->scratch[i]));
+    }
+    return rest < ARRIVES * way;
+}
+
 double hn_motion_unexplained(const hn_watch *w, double least) {
     return hn_motion_unexplained_between(w, &w->run->before, &w->run->now, least);
 }

@@ -18,5 +18,12 @@ double hn_motion_way(const hn_watch *w, const double *from, double *step);
 double hn_motion_shortest_row(const hn_watch *w);
 /// Degrees of freedom at the start.
 int hn_motion_dof(const hn_watch *w);
+/// Runs a pilot run (dynamics/analyse/pilot.h) from a state to time t, with steps finer than those
+/// of the run and short against the motion; at most a few hundred. Returns it, NULL where its
+/// equations have no solution on the way, or the loops stand open. Allocates nothing.
+const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t);
+/// Says whether the accelerations lead from one state to the other: a pilot run from the first
+/// arrives near the second, against the way between them.
+bool hn_motion_is_followed(hn_watch *w, const hn_state_at *from, const hn_state_at *to);
 
 #endif

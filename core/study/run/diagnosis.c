@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/run/diagnosis.h"
 
+#include "study/spectrum/load_share.h"
 #include "study/spectrum/region.h"
 
 #include <math.h>
@@ -8,7 +9,12 @@
 #include <string.h>
 
 /// A pilot run may take this many steps: 2000 of a four-bar cost about 10 ms.
-enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, MOST_EIGENVALUES = 256, MOST_SPEEDS = 60 };
+/// A remedy makes about FINER steps for one of the run.
+enum { PILOT_STEPS = 2000, PILOT_SIZE = 20, FINER = 4, MOST_SPEEDS = 60 };
+
+/// How the results of remedies begin.
+#define TRIED "tried to"
+#define IN_VAIN "; tried in vain:"
 
 /// A pilot run goes past the event by this share of the time to it: a remedy that only postpones
 /// the event is found out.
@@ -16,25 +22,58 @@ static const double BEYOND = 0.5;
 
 // ---- the cause ----
 
-/// Returns the largest stable step at a state [s], and the fastest eigenvalue of the motion there;
-/// HUGE_VAL where there is no limit or none can be computed.
-static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_eigenvalue *fastest) {
+/// The fastest part of the motion at a state.
+typedef struct fastest_part {
+    double limit; ///< largest stable step [s]; HUGE_VAL: none, or none that can be computed
+    hn_eigenvalue value;
+    const hn_load *load; ///< that makes it fast; NULL: none alone
+} fastest_part;
+
+static bool is_decay(hn_eigenvalue s) {
+    return fabs(s.re) > fabs(s.im);
+}
+
+/// The load that makes the mode of an eigenvalue fast, NULL where that is none alone.
+static const hn_load *find_load(const hn_stepping *s, hn_spectrum *spectrum, hn_arena *arena,
+                                const hn_state_at *at, hn_eigenvalue value) {
+    double *x = hn_arena_doubles(arena, (size_t)s->info.nv);
+    if (!x || hn_spectrum_mode(spectrum, value, x) != HN_OK) {
+        return NULL;
+    }
+    const double size = hypot(value.re, value.im);
+    const hn_mode_at mode = {at->t, at->q, at->v, x, is_decay(value)};
+    return hn_load_share_find(s->sys, &mode, is_decay(value) ? size : size * size);
+}
+
+static fastest_part find_fastest(const hn_stepping *s, const hn_state_at *at) {
     hn_arena *arena = hn_arena_create(0);
     hn_spectrum *spectrum = NULL;
     const hn_eigenvalue *found = NULL;
-    hn_eigenvalue all[MOST_EIGENVALUES + 2];
-    double limit = HUGE_VAL;
+    fastest_part out = {.limit = HUGE_VAL};
     int n = 0;
     if (arena && hn_spectrum_create(s->sys, arena, &spectrum) == HN_OK &&
-        hn_spectrum_calc(spectrum, at->t, at->q, at->v, &found, &n) == HN_OK && n > 0 &&
-        n <= MOST_EIGENVALUES) {
-        memcpy(all, found, (size_t)n * sizeof *all);
-        *fastest = all[0];
-        limit = hn_stability_limit(s->spec.stepper, all, n);
+        hn_spectrum_calc(spectrum, at->t, at->q, at->v, &found, &n) == HN_OK && n > 0) {
+        out.value = found[0];
+        const double limit = hn_stability_limit(s->spec.stepper, found, n);
+        out.limit = isfinite(limit) ? limit : HUGE_VAL;
+        out.load = find_load(s, spectrum, arena, at, out.value);
     }
     hn_spectrum_free(spectrum);
     hn_arena_free(arena);
-    return isfinite(limit) ? limit : HUGE_VAL;
+    return out;
+}
+
+/// "the damping of load 'left motor' decays", "a vibration of the mechanism oscillates".
+static void describe_part(const fastest_part *part, char *out, size_t size) {
+    const bool decays = is_decay(part->value);
+    const char *verb = decays ? "decays" : "oscillates";
+    if (part->load) {
+        snprintf(out, size, "the %s of '%.60s' %s", decays ? "damping" : "stiffness",
+                 part->load->name, verb);
+    } else {
+        snprintf(out, size, "a %s of the mechanism %s", decays ? "damped motion" : "vibration",
+                 verb);
+    }
 }
 
 /// Writes why the run ended where the step is above the stability limit; false where that is not
@@ -42,7 +81,7 @@ static double stability_limit(const hn_stepping *s, const hn_state_at *at, hn_ei
 static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
     const double h = hn_method_option(&s->spec, "h", 0);
     const bool is_ode = hn_method_form(s->spec.formulation, s->spec.stepper) == HN_FORM_ODE;
-    hn_eigenvalue fastest = {0, 0};
+    char what[128];
 
     // methods and mechanisms for which a limit cannot be computed
     if (s->adaptive || !is_ode || s->info.nv > MOST_SPEEDS ||
@@ -51,19 +90,15 @@ static bool explain_instability(const hn_stepping *s, char *out, size_t size) {
         return false;
     }
 
-    const double limit = stability_limit(s, &s->earlier, &fastest);
-    if (!(h > limit)) {
+    const fastest_part part = find_fastest(s, &s->earlier);
+    if (!(h > part.limit)) {
         return false;
     }
-
-    // the fastest eigenvalue in words
-    const bool decays = fabs(fastest.re) > fabs(fastest.im);
-    snprintf(out, size,
-             "h = %.4g s is above the stability limit of %s here, %.3g s: a %s of the mechanism "
-             "%s at %.2g %s",
-             h, s->spec.stepper->name, limit, decays ? "damped motion" : "vibration",
-             decays ? "decays" : "oscillates", decays ? fabs(fastest.re) : fabs(fastest.im),
-             decays ? "1/s" : "rad/s");
+    describe_part(&part, what, sizeof what);
+    const bool decays = is_decay(part.value);
+    snprintf(out, size, "h = %.4g s is above the stability limit of %s here, %.3g s: %s at %.2g %s",
+             h, s->spec.stepper->name, part.limit, what,
+             decays ? fabs(part.value.re) : fabs(part.value.im), decays ? "1/s" : "rad/s");
     return true;
 }
 
@@ -118,6 +153,13 @@ static bool is_right(const hn_run *pilot, hn_status status) {
 
 typedef enum outcome { REMOVES, FAILS, UNKNOWN } outcome;
 
+/// Where a pilot run begins. A state shortly before the event may hold its error already, so the
+/// start of the run is taken where it is not many steps away.
+static const hn_state_at *pilot_start(const hn_stepping *s, double event) {
+    const bool near = s->steps + s->rejected <= PILOT_STEPS / FINER;
+    return !near && s->earlier.t < event ? &s->earlier : &s->start;
+}
+
 /// Runs a remedy from the state before the event to a time past it and writes the result to `said`.
 static outcome try_remedy(const hn_stepping *s, double event, const char *text, hn_remedy said) {
     hn_run_opts opts = hn_run_opts_default();
@@ -125,8 +167,8 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
     hn_run *pilot = NULL;
     hn_diag diag = {0};
 
-    // from the last state before the event to some time after it; large mechanisms get fewer steps
-    const hn_state_at *from = s->earlier.t < event ? &s->earlier : &s->start;
+    // to some time after the event; large mechanisms get fewer steps
+    const hn_state_at *from = pilot_start(s, event);
     const int size = s->info.nv > PILOT_SIZE ? s->info.nv : PILOT_SIZE;
     const double end = event + BEYOND * (event - from->t) + 10 * s->h;
     opts.t0 = from->t;
@@ -150,8 +192,8 @@ static outcome try_remedy(const hn_stepping *s, double event, const char *text, 
                  sum.steps, sum.t);
         return UNKNOWN;
     }
-    snprintf(said, sizeof(hn_remedy), "tried to t = %.3g s: largest gap %.2g m, energy %.2g J",
-             sum.t, sum.worst_gap, sum.worst_energy_change);
+    snprintf(said, sizeof(hn_remedy), TRIED " t = %.3g s: largest gap %.2g m, energy %.2g J", sum.t,
+             sum.worst_gap, sum.worst_energy_change);
     return right ? REMOVES : FAILS;
 }
 
@@ -183,8 +225,66 @@ static void try_remedies(hn_run *run, hn_incident *i) {
         i->remedy[kept][0] = i->tried[kept][0] = '\0';
     }
     if (n > 0 && kept == 0) {
-        hn_incident_append(&w->log, i, "; tried in vain: %s%s%s%s%s", texts[0], n > 1 ? ", " : "",
+        hn_incident_append(&w->log, i, IN_VAIN " %s%s%s%s%s", texts[0], n > 1 ? ", " : "",
                            n > 1 ? texts[1] : "", n > 2 ? ", " : "", n > 2 ? texts[2] : "");
+    }
+}
+
+/// The reports of the run that a remedy removes.
+static int count_removed(const hn_watch *w, const char *text) {
+    int n = 0;
+    for (int k = 0; k < w->log.n; k++) {
+        const hn_incident *i = &w->log.list[k];
+        for (int j = 0; j < HN_REMEDIES && i->remedy[j][0]; j++) {
+            n += strcmp(i->remedy[j], text) == 0 && strncmp(i->tried[j], TRIED, strlen(TRIED)) == 0;
+        }
+    }
+    return n;
+}
+
+/// The remedy that removes most reports of the run, NULL where none removes any.
+static const char *find_best(const hn_watch *w) {
+    const char *best = NULL;
+    int most = 0;
+    for (int k = 0; k < w->log.n; k++) {
+        const hn_incident *i = &w->log.list[k];
+        for (int j = 0; j < HN_REMEDIES && i->remedy[j][0]; j++) {
+            const int n = count_removed(w, i->remedy[j]);
+            best = n > most ? i->remedy[j] : best;
+            most = n > most ? n : most;
+        }
+    }
+    return best;
+}
+
+/// Offers a report whose own remedies were all in vain the one that removes most others of this
+/// run, where it removes this one too: so that a run is not told that nothing helps and what helps.
+static void share_remedies(const hn_watch *w, hn_incident *i) {
+    const char *best = find_best(w);
+    hn_remedy said = "";
+    if (!i->remedy[0][0] && best && try_remedy(w->run, i->t, best, said) == REMOVES) {
+        memcpy(i->remedy[0], best, sizeof i->remedy[0]);
+        memcpy(i->tried[0], said, sizeof i->tried[0]);
+        i->remedy[1][0] = i->tried[1][0] = '\0';
+    }
+}
+
+static void swap(hn_remedy a, hn_remedy b) {
+    hn_remedy kept;
+    memcpy(kept, a, sizeof kept);
+    memcpy(a, b, sizeof kept);
+    memcpy(b, kept, sizeof kept);
+}
+
+/// The remedy that removes most reports of the run comes first in each: one that helps against the
+/// first report alone is not what to try for the whole run.
+static void put_best_first(const hn_watch *w, hn_incident *i) {
+    for (int j = 1; j < HN_REMEDIES && i->remedy[j][0]; j++) {
+        for (int k = j;
+             k > 0 && count_removed(w, i->remedy[k]) > count_removed(w, i->remedy[k - 1]); k--) {
+            swap(i->remedy[k], i->remedy[k - 1]);
+            swap(i->tried[k], i->tried[k - 1]);
+        }
     }
 }
 
@@ -198,5 +298,14 @@ void hn_run_diagnose(hn_run *run) {
         if (hn_incident_kinds()[i->code]->is_wrong && i->remedy[0][0]) {
             try_remedies(run, i);
         }
+    }
+    for (int k = 0; k < w->log.n; k++) {
+        hn_incident *i = &w->log.list[k];
+        if (hn_incident_kinds()[i->code]->is_wrong && strstr(i->message, IN_VAIN)) {
+            share_remedies(w, i);
+        }
+    }
+    for (int k = 0; k < w->log.n; k++) {
+        put_best_first(w, &w->log.list[k]);
     }
 }

@@ -9,6 +9,7 @@
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -267,4 +268,49 @@ hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const doub
     status = find_eigenvalues(s, r);
     *n = status == HN_OK ? 2 * r : 0;
     return status;
+}
+
+/// The vector of unit length that the r x r matrix P all but takes to zero; P is spoiled.
+static hn_status find_null_vector(gsl_matrix *P, double *y) {
+    const size_t r = P->size1;
+    gsl_matrix *V = gsl_matrix_alloc(r, r);
+    gsl_vector *sigma = gsl_vector_alloc(r), *work = gsl_vector_alloc(r);
+    hn_status status = V && sigma && work ? HN_OK : HN_ERR_MEMORY;
+    if (status == HN_OK && gsl_linalg_SV_decomp(P, V, sigma, work) != 0) {
+        status = HN_ERR_NO_CONVERGENCE;
+    }
+    for (size_t i = 0; i < r && status == HN_OK; i++) {
+        y[i] = gsl_matrix_get(V, i, r - 1);
+    }
+    gsl_vector_free(work);
+    gsl_vector_free(sigma);
+    gsl_matrix_free(V);
+    return status;
+}
+
+hn_status hn_spectrum_mode(hn_spectrum *s, hn_eigenvalue value, double *x) {
+    const size_t r = (size_t)(s->nv - s->rank);
+    const bool damped = fabs(value.re) > fabs(value.im);
+    const double square = value.re * value.re + (damped ? -1 : 1) * value.im * value.im;
+    gsl_matrix *P = r > 0 ? gsl_matrix_alloc(r, r) : NULL;
+    double *y = s->product;
+    if (!P) {
+        return HN_ERR_MEMORY;
+    }
+
+    // s^2 + s C + K of a damped mode; K - |s|^2 of a vibration
+    for (size_t i = 0; i < r * r; i++) {
+        const double one = i % (r + 1) == 0;
+        P->data[i] = damped ? square * one + value.re * s->C[i] + s->K[i] : s->K[i] - square * one;
+    }
+    const hn_status status = find_null_vector(P, y);
+    gsl_matrix_free(P);
+    if (status != HN_OK) {
+        return status;
+    }
+
+    // from M_r = L L' back to velocities: x = N L^-T y
+    hn_lower_t_solve((int)r, s->M, (int)r, y);
+    hn_mat_vec(s->nv, (int)r, s->N, y, x);
+    return HN_OK;
 }

@@ -32,5 +32,9 @@ void hn_spectrum_free(hn_spectrum *s); ///< NULL is legal
 /// HN_ERR_NO_CONVERGENCE; *n is then 0.
 HN_MUST_CHECK hn_status hn_spectrum_calc(hn_spectrum *s, double t, const double *q, const double *v,
                                          const hn_eigenvalue **out, int *n);
+/// Writes the direction of motion x (nv) of one of the eigenvalues of the last calculation, with
+/// x' M x = 1: of a damped mode, or of a vibration without its damping. Fails: HN_ERR_MEMORY,
+/// HN_ERR_NO_CONVERGENCE.
+HN_MUST_CHECK hn_status hn_spectrum_mode(hn_spectrum *s, hn_eigenvalue value, double *x);
 
 #endif

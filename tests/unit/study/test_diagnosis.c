@@ -28,7 +28,7 @@ static void a_step_above_the_stability_limit_is_named_as_the_cause(void **state)
     const hn_incident *end = last_of(run);
     assert_true(end->revision > revision);
     assert_non_null(strstr(end->message, "above the stability limit of rk4 here, 0.000675 s"));
-    assert_non_null(strstr(end->message, "decays at 4.1e+03 1/s"));
+    assert_non_null(strstr(end->message, "the damping of 'left motor' decays at 4.1e+03 1/s"));
     assert_non_null(strstr(hn_run_get_summary(run).reason, "above the stability limit"));
 
     // what is offered was tried, and does what was said
@@ -100,9 +100,57 @@ static void where_finer_steps_fail_an_implicit_method_is_left(void **state) {
     hn_model_close(&m);
 }
 
+// The load behind the fastest mode has its name, whether it is a formula, a damper or a spring; a
+// pendulum's swing has none.
+static void the_load_that_limits_the_step_is_named(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene, *settings, *method, *words;
+    } cases[] = {
+        {"quick-return", "kd=500", "projection@rk4:h=1e-3", "the damping of 'motor' decays at"},
+        {"stiff-four-bar", "k=1e9", "index1@rk4:h=5e-4", "the stiffness of 'spring' oscillates at"},
+        {"slider-crank", NULL, "index1@euler:h=0.01", "a vibration of the mechanism oscillates"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        hn_model m;
+        hn_model_open_closed(&m, cases[c].scene, cases[c].settings);
+        hn_run *run = hn_motion_start(&m, cases[c].method);
+        assert_true(hn_run_advance(run, 3) != HN_OK);
+        hn_run_diagnose(run);
+        if (!strstr(last_of(run)->message, cases[c].words)) {
+            fail_msg("%s: %s", cases[c].scene, last_of(run)->message);
+        }
+        hn_run_free(run);
+        hn_model_close(&m);
+    }
+}
+
+// Three reports of one run: what removes all of them is offered for each, and first.
+static void the_reports_of_a_run_agree_on_what_helps(void **state) {
+    (void)state;
+    hn_model m;
+    hn_model_open_closed(&m, "four-bar", NULL);
+    hn_run *run = hn_motion_start(&m, "index1@rk4:h=0.05");
+    assert_int_equal(hn_run_advance(run, 3), HN_OK);
+    hn_run_diagnose(run);
+    const hn_incident *list = NULL;
+    int wrong = 0;
+    for (int i = 0, n = hn_run_incidents(run, &list); i < n; i++) {
+        if (hn_incident_kinds()[list[i].code]->is_wrong) {
+            assert_string_equal(list[i].remedy[0], "ggl@radau5:rtol=1e-06");
+            wrong++;
+        }
+    }
+    assert_true(wrong >= 3);
+    hn_run_free(run);
+    hn_model_close(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_above_the_stability_limit_is_named_as_the_cause),
+        cmocka_unit_test(the_load_that_limits_the_step_is_named),
+        cmocka_unit_test(the_reports_of_a_run_agree_on_what_helps),
         cmocka_unit_test(remedies_that_do_not_remove_it_are_not_offered),
         cmocka_unit_test(where_finer_steps_fail_an_implicit_method_is_left),
     };
