@@ -21,6 +21,7 @@ import { createReactions } from "./views/reactions.js";
 import { createStatus } from "./views/status.js";
 import { createTear } from "./views/tear.js";
 import { createTransport } from "./views/transport.js";
+import { createUndoButtons } from "./views/undo.js";
 import { createVerdictBar } from "./views/verdict-bar.js";
 import { createWhyCard } from "./views/why-card.js";
 import { saveFile } from "./widgets/save.js";
@@ -103,6 +104,7 @@ const views = [
     store,
     session,
   ),
+  createUndoButtons(/** @type {HTMLElement} */ (document.querySelector(".stage")), store, session),
   createVerdictBar(at("verdict"), store),
   createHappening(at("happening"), store, session),
   createNotes(at("notes"), store, session),
@@ -137,7 +139,26 @@ function takesKey(event) {
   return Boolean(pressable) && (event.key === " " || event.key === "Enter");
 }
 
+/** Control with Z and Y means the same wherever nothing is typed. @param {KeyboardEvent} event */
+function undoes(event) {
+  const on = (event.ctrlKey || event.metaKey) && !event.altKey && !takesKey(event);
+  const key = event.key.toLowerCase();
+  return !on
+    ? ""
+    : key === "y" || (key === "z" && event.shiftKey)
+      ? "redo"
+      : key === "z"
+        ? "undo"
+        : "";
+}
+
 addEventListener("keydown", (event) => {
+  const move = undoes(event);
+  if (move) {
+    event.preventDefault();
+    session[move]();
+    return;
+  }
   const key =
     event.defaultPrevented || takesKey(event) ? undefined : findKey(event, store.data.view.letters);
   if (key) {

@@ -7,6 +7,7 @@ import { limits, readIndex } from "../state/catalogue.js";
 import { plain } from "../state/format.js";
 import { LONGEST_NOTE, decodeLink, encodeLink, fits } from "../state/link.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
+import { isStart } from "../state/start.js";
 import { createKeeper } from "./keeper.js";
 import { SHORT, firstSpeed } from "./speeds.js";
 
@@ -31,6 +32,9 @@ const FIRST_METHODS = [
 export function dropUnknown(left, parameters) {
   return Object.entries(left.settings).flatMap(([name, value]) => {
     const known = parameters.find((one) => one.name === name);
+    if (isStart(name)) {
+      return []; // the server names a coordinate that is not there
+    }
     if (known && value >= known.min && value <= known.max) {
       return [];
     }

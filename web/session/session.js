@@ -6,10 +6,12 @@
 import { createReactionFeed } from "../state/reaction-feed.js";
 import { createReferenceFeed } from "../state/reference.js";
 import { createStudyFeed } from "../state/studies.js";
+import { createDragActions } from "./drag.js";
 import { createExchange } from "./exchange.js";
 import { createMethodActions } from "./methods.js";
 import { createPlayback } from "./playback.js";
 import { createSceneActions } from "./scenes.js";
+import { createUndo } from "./undo.js";
 
 /** @param {import("../state/store.js").Store} store */
 export function createSession(store) {
@@ -26,8 +28,19 @@ export function createSession(store) {
 
   const scenes = createSceneActions(store, exchange, notice);
 
+  const undo = createUndo(
+    store,
+    ({ scene, settings, methods }) =>
+      scene === store.data.scene.id
+        ? exchange.restart({ parameters: settings, methods })
+        : scenes.loadScene(scene, { settings, methods }),
+    notice,
+  );
+
   return {
     ...scenes,
+    ...createDragActions(store, exchange, notice),
+    ...undo,
     ...createPlayback(store, exchange),
     ...createMethodActions(store, exchange, notice),
     studies,

@@ -77,6 +77,8 @@ export const KEYS = [
     means: "study: where the error comes from",
     shown: "E",
   },
+  { key: "z", context: "page", action: "undo", means: "undo the last change", shown: "Z" },
+  { key: "y", context: "page", action: "redo", means: "redo it", shown: "Y" },
   { key: "F1", context: "page", action: "help", means: "this table" },
   ...Array.from({ length: 8 }, (_, i) => ({
     key: String(i + 1),

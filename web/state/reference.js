@@ -4,6 +4,7 @@
 // stored for every scene with its own parameters; for others it is computed when somebody asks for
 // that.
 import { api, sentenceOf } from "../api/client.js";
+import { isStart } from "./start.js";
 
 const MOST_SAMPLES = 1200;
 const MOST_NUMBERS = 300000; // the server's bound is a little above
@@ -113,7 +114,10 @@ export function createReferenceFeed(store) {
     if (!key || key === data.reference?.key) {
       return;
     }
-    if (Object.keys(changedSettings(data)).length > 0) {
+    const changed = Object.keys(changedSettings(data));
+    if (changed.length > 0 && changed.every(isStart)) {
+      ask(true); // the mechanism is the one that the scene's own reference solution was made for
+    } else if (changed.length > 0) {
       tell(without(key, "none", "none is stored for these parameters"));
     } else {
       ask(false);

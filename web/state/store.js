@@ -32,6 +32,8 @@ export const EVENTS = [
   "reference", // the reference solution of the scene, or why there is none
   "study", // a study goes on or has ended; the detail is its kind
   "notice", // a sentence for the status line
+  "drag", // the mechanism is dragged, or was let go
+  "undo", // how much can be undone and redone
   "file", // something is to be saved: {name, type, text}
   "offer", // the last session can be continued, or no longer
   "note", // the notes were replaced: by a link, or by another session
@@ -94,6 +96,9 @@ function initialData() {
     /** by kind @type {Record<string, import("./studies.js").Study>} */
     studies: Object.fromEntries(KINDS.map((kind) => [kind, noStudy()])),
     stream: { state: "connecting", id: "" },
+    /** while the mechanism is dragged @type {import("../session/drag.js").Drag | null} */
+    drag: null,
+    /** changes that can be undone and redone */ undo: { past: 0, future: 0 },
     notice: "",
     /** what was written beside the comparison; it travels with the link */ note: "",
     /** the link to what was shown last in this browser, while it is offered */ offer: "",

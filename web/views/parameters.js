@@ -8,6 +8,8 @@ import { listen } from "../state/store.js";
 import { createSliderField } from "../widgets/slider-field.js";
 import { h, set } from "../widgets/dom.js";
 
+const MOST_STARTS = 12; // coordinates that have a field of their own
+const FARTHEST = 1e6; // [rad or m]
 const WIDE = 1000; // a range over so many times its least value is better shown in decades
 
 /**
@@ -54,6 +56,8 @@ export function createParameters(el, place, store, actions) {
   place.prepend(button);
   /** @type {Map<string, ReturnType<typeof createSliderField>>} */
   const fields = new Map();
+  /** where coordinates start @type {typeof fields} */
+  let starts = new Map();
   let scene = "";
 
   /** @param {boolean} open */
@@ -69,6 +73,24 @@ export function createParameters(el, place, store, actions) {
     if (event.key === "Escape" && !(event.target instanceof HTMLInputElement)) {
       toggle(false);
     }
+  }
+
+  /** A coordinate of the start: set by number, as by dragging; the others follow. */
+  function makeStart({ name, kind }) {
+    const angle = kind === "angle";
+    const most = Number((angle ? Math.PI : 2 * data.scene.length).toPrecision(3));
+    const unit = angle ? "rad" : "m";
+    return createSliderField({
+      id: `start-${name}`,
+      label: `${name}, where the motion starts`,
+      unit,
+      hint: `the other coordinates follow; ${angle ? "30 deg" : "45 cm"} is understood`,
+      min: -most,
+      max: most,
+      read: (text) => parseQuantity(text, unit),
+      check: (value) => (Math.abs(value) > FARTHEST ? { error: `${name} is too large` } : {}),
+      commit: (value) => actions.setStart(name, value),
+    });
   }
 
   /** The range of a parameter's slider; what has no bounds gets one round its value. */
@@ -115,11 +137,14 @@ export function createParameters(el, place, store, actions) {
       fields.forEach((field) => field.dispose());
       fields.clear();
       data.scene.parameters.forEach((one) => fields.set(one.name, makeField(one)));
-      list.replaceChildren(...[...fields.values()].map((field) => field.el));
-      button.hidden = data.scene.parameters.length === 0;
-      drawer.hidden ||= button.hidden;
+      starts.forEach((field) => field.dispose());
+      starts = new Map(
+        data.scene.coordinates.slice(0, MOST_STARTS).map((one) => [one.name, makeStart(one)]),
+      );
+      list.replaceChildren(...[...fields.values(), ...starts.values()].map((field) => field.el));
     }
     data.scene.parameters.forEach(({ name, value }) => fields.get(name)?.update(value));
+    data.scene.coordinates.forEach(({ name, value }) => starts.get(name)?.update(value));
   }
 
   const stop = listen(store, { scene: show });
@@ -127,7 +152,7 @@ export function createParameters(el, place, store, actions) {
     update() {},
     dispose() {
       stop();
-      fields.forEach((field) => field.dispose());
+      [...fields.values(), ...starts.values()].forEach((field) => field.dispose());
       drawer.remove();
       button.remove();
     },

@@ -146,3 +146,14 @@ export function arrow(p, q) {
   const barb = (side) => at(offset(q, d, -head, n, side * 0.45 * head));
   return `M${at(p)}L${at(q)}M${barb(1)}L${at(q)}L${barb(-1)}`;
 }
+
+/**
+ * Distance of a place from the straight line between two others.
+ * @param {number[]} at @param {number[]} a @param {number[]} b
+ */
+export function distanceToBar([x, y], [ax, ay], [bx, by]) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const share = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
+  const f = Math.min(1, Math.max(0, share));
+  return Math.hypot(x - ax - f * dx, y - ay - f * dy);
+}

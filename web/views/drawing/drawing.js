@@ -7,6 +7,7 @@ import { listen, shownIndex } from "../../state/store.js";
 import { h, s, say, set } from "../../widgets/dom.js";
 import { createDepth } from "./depth.js";
 import { createGhosts } from "./ghosts.js";
+import { createHandles } from "./handles.js";
 import { createMarks } from "./marks.js";
 import { createNotices } from "./notices.js";
 import { createStage } from "./stage.js";
@@ -17,6 +18,7 @@ const LAYERS = /** @type {const} */ ([
   "traces",
   "truth",
   "ghosts",
+  "drag",
   "tears",
   "arrows",
   "labels",
@@ -45,6 +47,7 @@ export function createDrawing(el, store, actions) {
   const ghosts = createGhosts(layers, data, stage);
   const marks = createMarks(layers, data, stage);
   const notices = createNotices(data);
+  const handles = createHandles(svg, layers.drag, data, stage, actions);
 
   const toggles = Object.fromEntries(
     Object.entries(TOGGLES).map(([key, word]) => [key, makeToggle(key, word)]),
@@ -55,7 +58,7 @@ export function createDrawing(el, store, actions) {
     "describe",
   );
   const caption = h("p", { class: "caption" });
-  const frame = h("div", { class: "stage" }, svg, notices.ahead);
+  const frame = h("div", { class: "stage" }, svg, notices.ahead, handles.note);
   const choices = h("div", { class: "choices" }, ...Object.values(toggles), describe);
   const demonstrations = h(
     "div",
@@ -169,6 +172,7 @@ export function createDrawing(el, store, actions) {
     },
     methods: makeGhosts,
     reactions: update,
+    drag: handles.draw,
     reference: makeReference,
     theme: makeGhosts,
     view: showView,
@@ -185,6 +189,7 @@ export function createDrawing(el, store, actions) {
       stop();
       observer.disconnect();
       depth.dispose();
+      handles.dispose();
       el.replaceChildren();
     },
   };

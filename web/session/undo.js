@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// @ts-check
+// Undo and redo of changes that start the runs anew: methods, parameters, the start, the scene.
+import { sentenceOf } from "../api/client.js";
+
+const MOST = 100; // changes that are remembered
+const TOGETHER = 1000; // [ms] between changes of one value, as by a slider: they are one change
+
+/** What differs between two snapshots. @param {string} a @param {string} b */
+function differenceOf(a, b) {
+  const [one, other] = [a, b].map((text) => JSON.parse(text));
+  const names = new Set([...Object.keys(one.settings), ...Object.keys(other.settings)]);
+  const changed = [...names].filter((name) => one.settings[name] !== other.settings[name]);
+  const methods = JSON.stringify(one.methods) !== JSON.stringify(other.methods);
+  return [
+    one.scene === other.scene ? "" : other.scene,
+    methods ? "methods" : "",
+    ...changed,
+  ].join();
+}
+
+/**
+ * @param {import("../state/store.js").Store} store
+ * @param {(what: any) => Promise<void>} apply makes what was there before
+ * @param {(text: string) => void} notice
+ */
+export function createUndo(store, apply, notice) {
+  const data = store.data;
+  /** what was there, as text, the newest last @type {string[]} */
+  let past = [];
+  /** @type {string[]} */
+  let future = [];
+  let present = "";
+  let busy = false;
+  let last = { what: "", at: 0 };
+
+  const snapshot = () =>
+    JSON.stringify({
+      scene: data.scene.id,
+      settings: data.settings,
+      methods: data.methods.map(({ spelling }) => spelling),
+    });
+
+  function tell() {
+    data.undo = { past: past.length, future: future.length };
+    store.emit("undo");
+  }
+
+  store.on("methods", () => {
+    const now = data.scene ? snapshot() : "";
+    if (busy || now === present) {
+      return;
+    }
+    if (present) {
+      const what = differenceOf(present, now);
+      const goesOn = what === last.what && performance.now() - last.at < TOGETHER;
+      last = { what, at: performance.now() };
+      past = goesOn ? past : [...past, present].slice(-MOST);
+      future = [];
+    }
+    present = now;
+    tell();
+  });
+
+  /** @param {string[]} from @param {string[]} to @param {string} word */
+  async function move(from, to, word) {
+    const wanted = from.pop();
+    if (busy || !wanted) {
+      notice(`there is nothing to ${word}`);
+      return;
+    }
+    busy = true;
+    to.push(present);
+    try {
+      await apply(JSON.parse(wanted));
+      present = snapshot();
+    } catch (error) {
+      notice(sentenceOf(error));
+    }
+    busy = false;
+    tell();
+  }
+
+  return {
+    undo: () => move(past, future, "undo"),
+    redo: () => move(future, past, "redo"),
+  };
+}
