@@ -10,6 +10,7 @@ import { distanceToBar } from "../../widgets/shapes.js";
 
 const REACH = 16; // [px] from a joint
 const BAR_REACH = 9; // [px] from the middle line of a link
+const LAG = 24; // [px] behind the pointer that need no word: the loops leave one way open
 const GRID = 0.1; // of the scale bar: what Shift snaps to
 const MOST_SNAPS = 1e4; // farther away a grid means nothing
 
@@ -164,19 +165,19 @@ export function createHandles(svg, layer, data, stage, actions) {
     return pieces;
   }
 
-  /** A line from the held point to where it was wanted, when the loops hold it back. */
-  function leash(points) {
+  /** From the held point to where it was wanted, when it is held back visibly; else null. */
+  function lag(points) {
     if (!held || !data.drag?.held) {
-      return [];
+      return null;
     }
     const [x0, y0] = stage.camera.point(points, held.point);
     const [x1, y1] = stage.camera.point(held.target, 0);
-    return [s("path", { class: "leash", d: `M${x0} ${y0}L${x1} ${y1}` })];
+    return Math.hypot(x1 - x0, y1 - y0) > LAG ? `M${x0} ${y0}L${x1} ${y1}` : null;
   }
 
   /** Words beside the dragged mechanism. */
   function wordsOf(points) {
-    if (data.drag?.held) {
+    if (data.drag?.held && (!held || lag(points))) {
       return `Held here: ${data.drag.held}`;
     }
     const name = held ? (data.scene.drawing.labels[held.point] ?? "the point") : "";
@@ -205,7 +206,8 @@ export function createHandles(svg, layer, data, stage, actions) {
         set(path, { d: shapes.map((shape) => stage.pen.outline(shape, drag.points)).join("") });
         group.append(path);
       }
-      layer.replaceChildren(group, ...leash(drag.points));
+      const d = lag(drag.points);
+      layer.replaceChildren(group, ...(d ? [s("path", { class: "leash", d })] : []));
       say(note, wordsOf(drag.points));
     },
     dispose() {

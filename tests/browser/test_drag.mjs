@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A joint is dragged to where the motion starts: the loops stay closed, what cannot follow is held
+// with a reason, and every change can be undone.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createBench, drawn, read, until } from "./support.mjs";
+
+const { open } = createBench();
+
+/** Where a joint is on the screen: the pin nearest to its name. */
+async function jointAt(page, name) {
+  await drawn(page);
+  return page.evaluate((wanted) => {
+    const svg = document.querySelector(".picture").getBoundingClientRect();
+    const texts = [...document.querySelectorAll(".picture .labels text")];
+    const label = texts.find(({ textContent }) => textContent === wanted);
+    const near = [Number(label.getAttribute("x")), Number(label.getAttribute("y"))];
+    const pins = document.querySelector(".ghosts .ghost.selected .pins").getAttribute("d");
+    const places = [...pins.matchAll(/M([-\d.]+) ([-\d.]+)a([\d.]+)/g)].map(([, x, y, r]) => [
+      Number(x) + Number(r),
+      Number(y),
+    ]);
+    const distance = ([x, y]) => Math.hypot(x - near[0], y - near[1]);
+    const [x, y] = places.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+    return { x: svg.left + x, y: svg.top + y };
+  }, name);
+}
+
+/** Takes hold of a joint and moves it by so many pixels, step by step. */
+async function drag(page, name, dx, dy) {
+  const { x, y } = await jointAt(page, name);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let k = 1; k <= 6; k++) {
+    await page.mouse.move(x + (k * dx) / 6, y + (k * dy) / 6);
+    await until(page, (data) => data.drag?.moved);
+  }
+}
+
+const ends = (data) => ({
+  q: data.latest.methods.map(({ q }) => q),
+  gaps: data.latest.methods.map(({ gap }) => gap),
+  t: data.latest.t,
+});
+
+test("a dragged joint takes the closed mechanism along and becomes the start of all methods; undo and redo", async (t) => {
+  const page = await open(t);
+  const before = await read(page, ends);
+  await drag(page, "A", -70, 12);
+  const held = await read(page, (data) => data.drag.state.th1);
+  assert.ok(held > before.q[0][0] + 0.3, `the crank has turned to ${held}`);
+  assert.match(
+    await page.textContent(".drag-note"),
+    /^A at .+ m?m, .+ m?m\. Let go to start from here\.$/,
+  );
+  await page.mouse.up();
+  await until(page, (data) => data.drag === null && data.settings["start.th1"] > 1.3);
+  const after = await read(page, ends);
+  assert.equal(after.t, 0);
+  assert.ok(
+    after.q.every((q) => Math.abs(q[0] - after.q[0][0]) < 1e-12),
+    "one start for all",
+  );
+  assert.ok(
+    after.gaps.every((gap) => gap < 1e-12),
+    `closed: ${after.gaps}`,
+  );
+  await until(page, (data) => data.reference?.state === "ready");
+  await page.focus("#play");
+  await page.keyboard.press("Control+z");
+  await until(page, (data) => Object.keys(data.settings).length === 0 && data.latest?.t === 0);
+  assert.deepEqual((await read(page, ends)).q, before.q);
+  await page.getByRole("button", { name: "Redo" }).click();
+  await until(page, (data) => data.settings["start.th1"] > 1.3);
+  assert.deepEqual((await read(page, ends)).q, after.q);
+});
+
+test("where the loops allow no more, the last configuration is held and the reason said; Escape lets go of nothing", async (t) => {
+  const page = await open(t);
+  await drag(page, "B", 60, -150);
+  await until(page, (data) => data.drag?.held);
+  assert.match(await page.textContent(".drag-note"), /^Held here: the loops allow no pose/);
+  assert.equal(await page.locator(".leash").count(), 1);
+  const finite = await read(page, (data) => data.drag.points.every(Number.isFinite));
+  assert.ok(finite);
+  await page.keyboard.press("Escape");
+  await until(page, (data) => data.drag === null);
+  await page.mouse.up();
+  assert.deepEqual(await read(page, (data) => data.settings), {});
+});
+
+test("the start is set by number too, and a link carries it", async (t) => {
+  const page = await open(t);
+  await page.getByRole("button", { name: "lengths, masses, start" }).click();
+  await page.fill("#start-th1", "100 deg");
+  await page.press("#start-th1", "Enter");
+  await until(page, (data) => Math.abs(data.settings["start.th1"] - (100 * Math.PI) / 180) < 1e-9);
+  const { gaps, q } = await read(page, ends);
+  assert.ok(gaps.every((gap) => gap < 1e-12));
+  await page.fill("#start-th1", "2e9");
+  await page.press("#start-th1", "Enter");
+  assert.match(await page.textContent("#start-th1-hint"), /too large/);
+  await page.focus("#play");
+  await page.keyboard.press("l");
+  await until(page, (data) => /link copied|address line/.test(data.notice));
+  const other = await open(t, { hash: new URL(page.url()).hash });
+  assert.deepEqual((await read(other, ends)).q, q);
+});
