@@ -245,6 +245,7 @@ help:
 	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
 	@echo 'make bench        time the engine: CSV on standard output'
+	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
 	@echo 'make survival     the ladder of four-bars through its flat poses: which step sizes survive, kept in tests/survival/results.txt'
 	@echo 'make steps        steps and evaluations of adaptive integrators beside GSL and IDA, kept in tests/reference/steps.txt'
@@ -266,7 +267,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench reports
+.PHONY: test test-quick asan tsan bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench reports
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -283,6 +284,17 @@ tsan: build/.packages-test
 
 bench: all
 	@$(MAKE) -s $(JOBS) --no-print-directory run-bench
+
+# other programs on the same motion: tests/bench/peers/README.md
+PEER_PACKAGES := libmujoco-dev libsimbody-dev python3-scipy octave g++
+PEER_LIBS     := -lsundials_nvecserial -lsundials_sunlinsoldense -lsundials_sunmatrixdense
+bench-peers: all
+	@dpkg -s $(PEER_PACKAGES) >/dev/null 2>&1 || { apt-get update -q && apt-get install -q -y --no-install-recommends $(PEER_PACKAGES); }
+	@mkdir -p build/peers
+	$(Q)$(CC) $(CFLAGS) $(CPPFLAGS) -Icore -Itests tests/bench/peers/ours.c -o build/peers/ours $(LIBRARY) $(PEER_LIBS) $(LDLIBS)
+	$(Q)$(CC) $(CFLAGS) -D_DEFAULT_SOURCE tests/bench/peers/mujoco.c -o build/peers/mujoco -lmujoco -lm
+	$(Q)$(CXX) -O2 -w -isystem /usr/include/simbody tests/bench/peers/simbody.cpp -o build/peers/simbody -lSimTKsimbody -lSimTKmath -lSimTKcommon
+	@python3 tests/bench/peers/peers.py $(PROGRAM) build/peers
 
 # kept only when every run was good
 reference: build/.packages-test
