@@ -220,6 +220,53 @@ static void look_sparsely(hn_singularity *r, int sweeps, hn_singularity_info *in
     }
 }
 
+/// Two rows, as every planar loop has: singular values and left vectors in closed form, sigma_min
+/// from the part of one row across the other, which loses no digits. False where the rows are as
+/// good as dependent.
+static bool look_at_two(hn_singularity *r, hn_singularity_info *info) {
+    fill_qr(r);
+    const int n = r->nv;
+    const double *row[2] = {r->qr.a, r->qr.a + n};
+    const double size[2] = {hn_dot(n, row[0], row[0]), hn_dot(n, row[1], row[1])};
+    const int base = size[1] > size[0];
+    const double both = hn_dot(n, row[0], row[1]);
+    if (!(size[base] > 0)) {
+        return false;
+    }
+
+    // the shorter row less its part along the longer one
+    double across = 0;
+    for (int j = 0; j < n; j++) {
+        const double x = row[!base][j] - both / size[base] * row[base][j];
+        across += x * x;
+    }
+
+    // the symmetric 2x2 matrix of the products of rows
+    const double half = (size[0] - size[1]) / 2, phi = 0.5 * atan2(both, half);
+    const double largest = (size[0] + size[1]) / 2 + sqrt(half * half + both * both);
+    info->sigma_max = sqrt(largest);
+    info->sigma_min = sqrt(size[base] * across / largest);
+    r->top[0] = r->w[1] = cos(phi);
+    r->top[1] = sin(phi);
+    r->w[0] = -sin(phi);
+    return info->sigma_min > RANK_TOL * info->sigma_max;
+}
+
+/// Singular values at a state whose rows and scales are there; returns false when the dense
+/// factorisation had to answer.
+static bool look(hn_singularity *r, double t, const double *q, int sweeps,
+                 hn_singularity_info *info) {
+    if (r->nc == 2 && r->start_rank == 2 && look_at_two(r, info)) {
+        return true;
+    }
+    if (hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
+        look_sparsely(r, sweeps, info);
+        return true;
+    }
+    look_densely(r, info);
+    return false;
+}
+
 /// The smallest sigma_min inside the pilot's last step, by golden section; *share: where.
 static double smallest_inside(hn_singularity *r, double *share) {
     const double golden = 0.6180339887498949, t = hn_pilot_time(r->pilot);
@@ -313,15 +360,10 @@ void hn_singularity_check(hn_singularity *r, double t, const double *q, const do
         return;
     }
 
-    // singular values here, sparse if the factor allows
+    // singular values here
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
-
-    const int sparse = hn_factor_update(r->factor, t, q, NULL) == HN_OK;
-    if (sparse) {
-        look_sparsely(r, r->first ? FIRST_SWEEPS : SWEEPS, info);
-    } else {
-        look_densely(r, info);
+    if (!look(r, t, q, r->first ? FIRST_SWEEPS : SWEEPS, info)) {
         // a loop that is redundant everywhere is looked at less often when it is large
         r->wait = (int)(2.0 * r->nv * r->nc * r->nc / DENSE_BUDGET);
     }
@@ -358,11 +400,7 @@ double hn_singularity_probe(hn_singularity *r, double t, const double *q) {
     keep(r, 0);
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
-    if (hn_factor_update(r->factor, t, q, NULL) == HN_OK) {
-        look_sparsely(r, PROBE_SWEEPS, &info);
-    } else {
-        look_densely(r, &info);
-    }
+    (void)look(r, t, q, PROBE_SWEEPS, &info);
     keep(r, 1);
     r->start_rank = rank;
     return info.sigma_min;
