@@ -92,27 +92,33 @@ static double continue_heading(hn_heading_record *r, int n) {
     return change;
 }
 
+/// The longest way that a step of this size goes. Near a turning point the steps are short, and half
+/// of one is no jump: a jump is as long as a step elsewhere.
+static double way_of_step(const hn_watch *w) {
+    return w->swiftest * (w->run->now.t - w->run->before.t);
+}
+
 /// Whether the heading is to be compared: past a singular configuration, or when the step itself
 /// looks like a jump.
 static bool is_suspect(const hn_watch *w) {
     const hn_singular_record *s = &w->singular;
-    // near a turning point the steps are short, and half of one is no jump: a jump is as long as a
-    // step elsewhere
-    const double way = w->swiftest * (w->run->now.t - w->run->before.t);
     return s->passing || s->info.sigma_min < RANGE * s->largest ||
-           hn_motion_unexplained(w, way) > HN_RUN_WARN_JUMP;
+           hn_motion_unexplained(w, way_of_step(w)) > HN_RUN_WARN_JUMP;
 }
 
-/// Of the length: through a singular configuration loops that stand open by g lead like links of
-/// other lengths, off by about the root of g.
-static const double CLOSED = 1e-12;
+// Loops that stand open by g lead past a singular configuration like links of other lengths do, at
+// a distance of about the root of g. There a pilot run proves nothing, unless they are closed to
+// rounding or sigma_min stays well above that, and above the share of its largest that short steps
+// can miss.
+static const double CLOSED = 1e-12, ABOVE = 5, REGULAR = 0.1;
 
 /// Links that all but line up turn fast without leaving their branch. A pilot run with finer steps
 /// from where the last direction was taken tells that from a jump: it arrives at the present one.
 static bool is_explained(hn_watch *w) {
     hn_heading_record *r = &w->heading;
-    const bool closed = w->measure.gap < CLOSED * w->length;
-    const hn_pilot *pilot = closed ? hn_motion_pilot(w, &r->outside, w->run->now.t) : NULL;
+    const double gap = w->measure.gap / w->length, regular = REGULAR * w->singular.largest;
+    double lowest = 0;
+    const hn_pilot *pilot = hn_motion_pilot(w, &r->outside, w->run->now.t, &lowest);
     const double *scale = hn_singularity_scale(w->singular.monitor);
     const int n = w->run->info.nv;
     double *e = r->smooth;
@@ -122,8 +128,15 @@ static bool is_explained(hn_watch *w) {
     if (!pilot || !(hn_norm2(n, e) > 0)) {
         return false;
     }
+
+    // branches meet at singular configurations alone: a step elsewhere may be wrong, but not so
+    if (!w->singular.passing && lowest > regular &&
+        hn_motion_unexplained(w, way_of_step(w)) < HN_RUN_WARN_JUMP) {
+        return true;
+    }
     align(n, r->now.e, e);
-    return angle_between(n, e, r->now.e) < HN_RUN_WARN_TURN;
+    return lowest >= (gap < CLOSED ? 0 : fmax(regular, ABOVE * sqrt(gap))) &&
+           angle_between(n, e, r->now.e) < HN_RUN_WARN_TURN;
 }
 
 static void keep_outside(hn_watch *w) {

@@ -27,28 +27,30 @@ static const double CLOSED = 1e-6;
 /// Of the way between two states: a pilot run that ends this near to the second arrives there.
 static const double ARRIVES = 0.25;
 
-const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t) {
+const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t, double *lowest) {
     hn_pilot *pilot = hn_singularity_pilot(w->singular.monitor);
     const double span = t - from->t;
     const double pace =
         fmin(w->run->h / PILOT_FINER, hn_pilot_half_turn(pilot, from->v) / PILOT_HALF_TURN);
     const int steps = (int)fmin(PILOT_MOST, ceil(span / pace));
-    if (!(w->measure.gap < CLOSED * w->length)) {
-        return NULL;
-    }
+    *lowest = HUGE_VAL;
     hn_pilot_start(pilot, from->t, from->q, from->v);
     for (int k = 0; k < steps; k++) {
         if (hn_pilot_step(pilot, span / steps) != HN_OK) {
             return NULL;
         }
+        const double sigma =
+            hn_singularity_probe(w->singular.monitor, hn_pilot_time(pilot), hn_pilot_q(pilot));
+        *lowest = fmin(*lowest, sigma);
     }
     return pilot;
 }
 
 bool hn_motion_is_followed(hn_watch *w, const hn_state_at *from, const hn_state_at *to) {
     const hn_stepping *s = w->run;
-    const hn_pilot *pilot = hn_motion_pilot(w, from, to->t);
-    double way = 0, rest = 0;
+    double way = 0, rest = 0, lowest = 0;
+    const bool closed = w->measure.gap < CLOSED * w->length;
+    const hn_pilot *pilot = closed ? hn_motion_pilot(w, from, to->t, &lowest) : NULL;
     if (!pilot) {
         return false;
     }

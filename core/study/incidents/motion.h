@@ -20,10 +20,11 @@ double hn_motion_shortest_row(const hn_watch *w);
 int hn_motion_dof(const hn_watch *w);
 /// Runs a pilot run (dynamics/analyse/pilot.h) from a state to time t, with steps finer than those
 /// of the run and short against the motion; at most a few hundred. Returns it, NULL where its
-/// equations have no solution on the way, or the loops stand open. Allocates nothing.
-const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t);
+/// equations have no solution on the way. *lowest gets the lowest sigma_min at its steps. Allocates
+/// nothing.
+const hn_pilot *hn_motion_pilot(hn_watch *w, const hn_state_at *from, double t, double *lowest);
 /// Says whether the accelerations lead from one state to the other: a pilot run from the first
-/// arrives near the second, against the way between them.
+/// arrives near the second, against the way between them. Says no where the loops stand open.
 bool hn_motion_is_followed(hn_watch *w, const hn_state_at *from, const hn_state_at *to);
 
 #endif
