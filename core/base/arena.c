@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -63,16 +64,16 @@ void hn_arena_free(hn_arena *arena) {
 
 /// A new block of at least `size` bytes, twice the last one's, so that n requests take O(log n)
 /// blocks.
-static int grow(hn_arena *arena, size_t size) {
+static bool grow(hn_arena *arena, size_t size) {
     const size_t last = arena->newest->size;
     const size_t doubled = last <= SIZE_MAX / 4 ? 2 * last : last;
     block *b = block_create(size > doubled ? size : doubled, arena->newest);
     if (b == NULL) {
         arena->failed = 1;
-        return 0;
+        return false;
     }
     arena->newest = b;
-    return 1;
+    return true;
 }
 
 void *hn_arena_get(hn_arena *arena, size_t size) {

@@ -2,6 +2,7 @@
 #include "base/json_text.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -50,12 +51,12 @@ static void describe(const scan *s, char *out, size_t size) {
     }
 }
 
-static int fail(scan *s, hn_status status, const char *hint, const char *what) {
+static bool fail(scan *s, hn_status status, const char *hint, const char *what) {
     int line, column;
     locate(s, s->at, &line, &column);
     s->status =
         hn_diag_set(s->diag, status, "", hint, "line %d, column %d: %s", line, column, what);
-    return 0;
+    return false;
 }
 
 /// "expected ..., found ..."
@@ -72,7 +73,7 @@ static void skip_space(scan *s) {
     }
 }
 
-static int is_digit(int c) {
+static bool is_digit(int c) {
     return c >= '0' && c <= '9';
 }
 

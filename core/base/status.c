@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 static const struct {
@@ -18,7 +19,7 @@ _Noreturn void hn_assert_failed(const char *cond, const char *file, int line) {
     abort();
 }
 
-static int is_known(hn_status status) {
+static bool is_known(hn_status status) {
     return (int)status >= 0 && (int)status < HN_STATUS_COUNT;
 }
 

@@ -2,6 +2,7 @@
 #include "base/strbuf.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,18 +46,18 @@ const char *hn_strbuf_text(const hn_strbuf *b) {
 }
 
 /// Room for `more` bytes and the zero; 0 (and the flag) when memory is out.
-static int reserve(hn_strbuf *b, size_t more) {
+static bool reserve(hn_strbuf *b, size_t more) {
     if (b->failed) {
-        return 0;
+        return false;
     }
     if (b->text != NULL && more < b->cap - b->n) {
-        return 1;
+        return true;
     }
 
     // sizes that would overflow count as out of memory
     if (more > SIZE_MAX / 4 || b->n > SIZE_MAX / 4) {
         b->failed = 1;
-        return 0;
+        return false;
     }
     size_t cap = b->cap > 0 ? 2 * b->cap : FIRST_CAP;
     if (cap < b->n + more + 1) {
@@ -66,11 +67,11 @@ static int reserve(hn_strbuf *b, size_t more) {
     char *text = realloc(b->text, cap);
     if (text == NULL) {
         b->failed = 1;
-        return 0;
+        return false;
     }
     b->text = text;
     b->cap = cap;
-    return 1;
+    return true;
 }
 
 void hn_strbuf_add_n(hn_strbuf *b, const char *bytes, size_t n) {

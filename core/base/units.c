@@ -4,6 +4,7 @@
 #include "base/status.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,11 +13,11 @@ enum { SMALLEST = -5, LARGEST = 4, MAX_UNIT = 16 };
 // f p n µ m (none) k M G T
 static const char *const prefixes[] = {"f", "p", "n", "\xc2\xb5", "m", "", "k", "M", "G", "T"};
 
-static int takes_prefix(const char *unit) {
+static bool takes_prefix(const char *unit) {
     static const char *const bare[] = {"", "kg", "deg", "\xc2\xb0", "%"};
     for (size_t i = 0; i < sizeof bare / sizeof *bare; i++) {
         if (strcmp(unit, bare[i]) == 0) {
-            return 0;
+            return false;
         }
     }
     // kilo of a power would mean the power of a kilo; "kg m" and the like begin with a prefix

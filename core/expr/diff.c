@@ -7,6 +7,7 @@
 #include "expr/graph_internal.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 /// The nodes of a sweep with one expression each.
@@ -26,11 +27,11 @@ static void sweep_values_reset(sweep_values *s) {
 
 /// Collects the nodes below e and copies the order: constructors called during the sweep start
 /// their own.
-static int sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n, uint64_t deps) {
+static bool sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n, uint64_t deps) {
     *s = (sweep_values){0};
     if (g->failed || !hn_sweep_collect(g, e, n, deps)) {
         g->failed = 1;
-        return 0;
+        return false;
     }
 
     // room for the nodes and their arguments
@@ -43,7 +44,7 @@ static int sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n
     s->argument_at = malloc(s->n_arguments * sizeof *s->argument_at + 1);
     if (!s->id || !s->value || !s->argument_at) {
         g->failed = 1;
-        return 0;
+        return false;
     }
 
     // positions of the arguments, looked up once
@@ -55,7 +56,7 @@ static int sweep_values_init(hn_graph *g, sweep_values *s, const hn_ex *e, int n
             s->argument_at[k++] = hn_sweep_find(g, node->args[j].n);
         }
     }
-    return 1;
+    return true;
 }
 
 static uint64_t deps_of_symbols(const hn_graph *g, const int *symbols, int n_sym) {
@@ -216,7 +217,7 @@ static void push_back(hn_graph *g, adjoints *a, int32_t id, const int *at, hn_ex
     }
 }
 
-static int adjoints_init(hn_graph *g, adjoints *a, const sweep_values *s) {
+static bool adjoints_init(hn_graph *g, adjoints *a, const sweep_values *s) {
     const size_t terms = s->n_arguments + 1;
     *a = (adjoints){.first = malloc((size_t)s->n * sizeof *a->first + 1),
                     .next = malloc(terms * sizeof *a->next),

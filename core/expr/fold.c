@@ -6,6 +6,7 @@
 #include "expr/graph_internal.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 // ---- numbers ----
 
@@ -114,7 +115,7 @@ static hn_ex rebuild(hn_graph *g, const product *p, hn_ex start) {
 }
 
 /// p * (1/p) for a product p, whose factors alone do not show that it cancels.
-static int is_recip_of(const hn_graph *g, int32_t a, int32_t b) {
+static bool is_recip_of(const hn_graph *g, int32_t a, int32_t b) {
     const hn_node *node = &g->nodes[a];
     return node->op == HN_OP_RECIP && node->args[0].n == b && node->args[0].c == 1;
 }
@@ -181,20 +182,20 @@ static hn_ex node_of(hn_graph *g, hn_op op, const hn_ex *args) {
 }
 
 /// A function of numbers alone is a number, where that is finite.
-static int fold_numbers(hn_op op, const hn_ex *args, hn_ex *out) {
+static bool fold_numbers(hn_op op, const hn_ex *args, hn_ex *out) {
     const hn_op_info *info = hn_op_get_info(op);
     double x[2] = {0, 0};
     for (int i = 0; i < info->arity; i++) {
         if (!hn_is_number(args[i], &x[i])) {
-            return 0;
+            return false;
         }
     }
     const double value = info->value(x);
     if (!isfinite(value)) {
-        return 0;
+        return false;
     }
     *out = hn_num(value);
-    return 1;
+    return true;
 }
 
 static hn_ex apply_recip(hn_graph *g, hn_ex a) {

@@ -4,6 +4,7 @@
 #include "base/hash.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,32 +34,32 @@ static void *carve(hn_graph *g, size_t size) {
     return p;
 }
 
-static int grow_nodes(hn_graph *g) {
+static bool grow_nodes(hn_graph *g) {
     if (g->n < g->cap) {
-        return 1;
+        return true;
     }
     const int32_t cap = g->cap ? 2 * g->cap : FIRST_NODES;
     hn_node *nodes = realloc(g->nodes, (size_t)cap * sizeof *nodes);
     if (!nodes) {
         g->failed = 1;
-        return 0;
+        return false;
     }
     g->nodes = nodes;
     g->cap = cap;
-    return 1;
+    return true;
 }
 
 /// Keeps the table at most half full.
-static int grow_table(hn_graph *g) {
+static bool grow_table(hn_graph *g) {
     if (2u * (uint32_t)(g->n + 1) <= g->table_size) {
-        return 1;
+        return true;
     }
 
     const uint32_t size = g->table_size ? 2 * g->table_size : FIRST_TABLE;
     int32_t *table = malloc(size * sizeof *table);
     if (!table) {
         g->failed = 1;
-        return 0;
+        return false;
     }
 
     // every node finds its place in the larger table
@@ -74,7 +75,7 @@ static int grow_table(hn_graph *g) {
     free(g->table);
     g->table = table;
     g->table_size = size;
-    return 1;
+    return true;
 }
 
 // ---- keys ----
@@ -102,19 +103,19 @@ static uint64_t hash_product(const hn_factor *f, int n) {
     return hn_hash_mix(h);
 }
 
-static int same_args(const hn_node *node, hn_op op, const hn_ex *args, int n) {
+static bool same_args(const hn_node *node, hn_op op, const hn_ex *args, int n) {
     if (node->op != op || node->n_args != n || op == HN_OP_MUL || op == HN_OP_SYMBOL) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < n; i++) {
         if (node->args[i].n != args[i].n || node->args[i].c != args[i].c) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int same_product(const hn_node *node, const hn_factor *f, int n) {
+static bool same_product(const hn_node *node, const hn_factor *f, int n) {
     return node->op == HN_OP_MUL && node->n_factors == n &&
            memcmp(node->factors, f, (size_t)n * sizeof *f) == 0;
 }
@@ -190,14 +191,14 @@ int32_t hn_graph_intern_args(hn_graph *g, hn_op op, const hn_ex *args, int n_arg
     return new_node(g, op, h, args, n_args) ? publish(g) : -1;
 }
 
-static int has_trig_square(const hn_graph *g, const hn_factor *f, int n) {
+static bool has_trig_square(const hn_graph *g, const hn_factor *f, int n) {
     for (int i = 0; i < n; i++) {
         const int op = g->nodes[f[i].node].op;
         if (f[i].power >= 2 && (op == HN_OP_SIN || op == HN_OP_COS)) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 int32_t hn_graph_intern_product(hn_graph *g, const hn_factor *factors, int n, int32_t left,
@@ -296,19 +297,19 @@ static const char *copy_text(hn_graph *g, const char *text) {
     return own ? memcpy(own, text, n) : NULL;
 }
 
-static int grow_symbols(hn_graph *g) {
+static bool grow_symbols(hn_graph *g) {
     if (g->n_symbols < g->cap_symbols) {
-        return 1;
+        return true;
     }
     const int32_t cap = g->cap_symbols ? 2 * g->cap_symbols : 32;
     hn_symbol_entry *symbols = realloc(g->symbols, (size_t)cap * sizeof *symbols);
     if (!symbols) {
         g->failed = 1;
-        return 0;
+        return false;
     }
     g->symbols = symbols;
     g->cap_symbols = cap;
-    return 1;
+    return true;
 }
 
 hn_ex hn_symbol(hn_graph *g, const char *name, const char *latex) {
@@ -377,9 +378,9 @@ hn_node_view hn_graph_node(const hn_graph *g, int32_t node) {
 
 // ---- sweeps ----
 
-static int grow_sweep(hn_sweep *s, int32_t size) {
+static bool grow_sweep(hn_sweep *s, int32_t size) {
     if (size <= s->cap) {
-        return 1;
+        return true;
     }
     const int32_t cap = size + size / 2 + 64;
     int32_t *stamp = realloc(s->stamp, (size_t)cap * sizeof *stamp);
@@ -389,11 +390,11 @@ static int grow_sweep(hn_sweep *s, int32_t size) {
     int32_t *order = realloc(s->order, (size_t)cap * sizeof *order);
     s->order = order ? order : s->order;
     if (!stamp || !slot || !order) {
-        return 0;
+        return false;
     }
     memset(s->stamp + s->cap, 0, (size_t)(cap - s->cap) * sizeof *stamp);
     s->cap = cap;
-    return 1;
+    return true;
 }
 
 static int compare_ids(const void *a, const void *b) {

@@ -4,6 +4,8 @@
 // The one table of operators: name as typed, arity, cost, value, derivative, text and LaTeX form, C
 // form. The parser, the folder, differentiation, the printers and the tape all read it.
 
+#include <stdbool.h>
+
 /// code, name as typed, arity (-1: any), 1 if people may type name(...), parity, value_ and
 /// partials_ suffix (ops.c), LaTeX, C (#1 and #2 stand for the arguments)
 #define HN_OP_LIST(X)                                                                      \
@@ -59,7 +61,7 @@ typedef void (*hn_op_partials)(struct hn_graph *g, const struct hn_ex *self,
 typedef struct hn_op_info {
     const char *name;            ///< as typed
     int arity;                   ///< -1: any number
-    int typed;                   ///< 1: people may write name(...) in a formula
+    bool typed;                  ///< people may write name(...) in a formula
     hn_parity parity;            ///< of a function of one argument
     hn_op_value value;           ///< NULL for one, symbol and sum
     hn_op_value_long value_long; ///< likewise

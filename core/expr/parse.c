@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,19 +66,19 @@ static const char *found(parser *p, char out[32]) {
     return out;
 }
 
-static int enter(parser *p) {
+static bool enter(parser *p) {
     if (++p->depth > p->max_depth) {
         fail(p, p->at, "split it with parameters", "nested more than %d deep", p->max_depth);
-        return 0;
+        return false;
     }
-    return 1;
+    return true;
 }
 
-static int is_name_start(char c) {
+static bool is_name_start(char c) {
     return isalpha((unsigned char)c) || c == '_';
 }
 
-static int is_name_char(char c) {
+static bool is_name_char(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
@@ -410,12 +411,12 @@ typedef struct chain {
     hn_ex few[CHUNK];
 } chain;
 
-static int chain_add(parser *p, chain *s, hn_ex term) {
+static bool chain_add(parser *p, chain *s, hn_ex term) {
     if (s->n == s->cap) {
         hn_ex *term_list = malloc(2 * (size_t)s->cap * sizeof *term_list);
         if (!term_list) {
             p->status = hn_diag_set(p->diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
-            return 0;
+            return false;
         }
         memcpy(term_list, s->term, (size_t)s->n * sizeof *term_list);
         if (s->term != s->few) {
@@ -425,7 +426,7 @@ static int chain_add(parser *p, chain *s, hn_ex term) {
         s->cap *= 2;
     }
     s->term[s->n++] = term;
-    return 1;
+    return true;
 }
 
 static hn_ex parse_sum(parser *p) {

@@ -6,6 +6,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,16 +53,16 @@ static void format_number(double value, int digits, char out[40]) {
 }
 
 /// 1/2, 5/12: small fractions read better than decimals.
-static int put_fraction(printer *p, double value) {
+static bool put_fraction(printer *p, double value) {
     for (int q = 2; q <= 12; q++) {
         const double top = value * q;
         if (fabs(top) < 100 && fabs(top - round(top)) < 1e-12 * fabs(top) &&
             fabs(value - round(value)) > 1e-12) {
             hn_strbuf_printf(p->b, "\\tfrac{%.0f}{%d}", round(top), q);
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static void put_latex_number(printer *p, double value) {
@@ -209,12 +210,12 @@ static void put_function(printer *p, const hn_node *node, int power) {
     }
 }
 
-static int is_function(const hn_node *node) {
+static bool is_function(const hn_node *node) {
     return node->op > HN_OP_MUL && node->op != HN_OP_RECIP;
 }
 
 /// LaTeX writes sin^2 x; only functions with a macro and no template of their own do.
-static int takes_power(const printer *p, const hn_node *node) {
+static bool takes_power(const printer *p, const hn_node *node) {
     return p->form == HN_PRINT_LATEX && is_function(node) &&
            !strchr(hn_op_get_info((hn_op)node->op)->latex, '#');
 }
@@ -262,7 +263,7 @@ static parts split_factors(const hn_graph *g, int32_t n, parts *out) {
     return *out;
 }
 
-static int is_bottom(const printer *p, const hn_factor *f) {
+static bool is_bottom(const printer *p, const hn_factor *f) {
     return p->g->nodes[f->node].op == HN_OP_RECIP;
 }
 
@@ -329,14 +330,14 @@ static void put_product(printer *p, int32_t n, double c) {
 /// A factor before a sum is given to its terms: 3*x + 1 reads better than the graph's own 3*(x +
 /// 1/3). Text must give the same node when read, so there only where division by the factor brings
 /// every coefficient back.
-static int can_distribute(const printer *p, const hn_node *node, double factor) {
+static bool can_distribute(const printer *p, const hn_node *node, double factor) {
     for (int i = 0; i < node->n_args && p->form == HN_PRINT_TEXT && p->digits == 0; i++) {
         const double c = node->args[i].c;
         if (factor * c / factor != c || !isnormal(factor * c)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static void put_sum(printer *p, const hn_node *node, double factor) {

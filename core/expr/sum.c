@@ -7,6 +7,7 @@
 #include "expr/graph_internal.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,29 +35,29 @@ static void terms_reset(terms *s) {
     }
 }
 
-static int terms_reserve(hn_graph *g, terms *s, int n) {
+static bool terms_reserve(hn_graph *g, terms *s, int n) {
     if (n <= s->cap) {
-        return 1;
+        return true;
     }
     hn_ex *t = malloc(2 * (size_t)n * sizeof *t);
     if (!t) {
         g->failed = 1;
-        return 0;
+        return false;
     }
     memcpy(t, s->t, (size_t)s->n * sizeof *t);
     terms_reset(s);
     s->t = t;
     s->cap = 2 * n;
-    return 1;
+    return true;
 }
 
-static int terms_copy(hn_graph *g, terms *to, const terms *from) {
+static bool terms_copy(hn_graph *g, terms *to, const terms *from) {
     if (!terms_reserve(g, to, from->n)) {
-        return 0;
+        return false;
     }
     memcpy(to->t, from->t, (size_t)from->n * sizeof *to->t);
     to->n = from->n;
-    return 1;
+    return true;
 }
 
 /// Order of terms: by node, the constant last (so that it never leads).
@@ -186,7 +187,7 @@ static hn_ex without_square(hn_graph *g, hn_ex term, int factor) {
     return rest;
 }
 
-static int combine_one_square(hn_graph *g, terms *s) {
+static bool combine_one_square(hn_graph *g, terms *s) {
     for (int i = 0; i < s->n; i++) {
         if (!(g->nodes[s->t[i].n].flags & HN_NODE_TRIG_SQUARE)) {
             continue;
@@ -201,11 +202,11 @@ static int combine_one_square(hn_graph *g, terms *s) {
                 s->t[i] = without_square(g, s->t[i], f);
                 s->t[k] = s->t[--s->n];
                 merge(s);
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 static void reduce(hn_graph *g, terms *s) {
@@ -226,11 +227,11 @@ static int cost(const terms *s) {
 }
 
 /// Replaces the term at `at`, a sum, by its terms.
-static int expand(hn_graph *g, terms *s, int at) {
+static bool expand(hn_graph *g, terms *s, int at) {
     const double c = s->t[at].c;
     const hn_node sum = g->nodes[s->t[at].n];
     if (!terms_reserve(g, s, s->n + sum.n_args)) {
-        return 0;
+        return false;
     }
     s->t[at] = s->t[--s->n];
     for (int i = 0; i < sum.n_args; i++) {
@@ -270,7 +271,7 @@ static int flatten_from(hn_graph *g, terms *s, int first, int depth) {
 }
 
 /// Two searches: through all levels from the outermost sum, and each nested sum on its own.
-static int flatten_once(hn_graph *g, terms *s) {
+static bool flatten_once(hn_graph *g, terms *s) {
     const int last = last_sum(g, s);
     if (last < 0 || flatten_from(g, s, last, MAX_EXPANSIONS)) {
         return last >= 0;
@@ -280,11 +281,11 @@ static int flatten_once(hn_graph *g, terms *s) {
         if (g->nodes[s->t[i].n].op == HN_OP_SUM) {
             tried++;
             if (flatten_from(g, s, i, 1)) {
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 // ---- the sum ----

@@ -7,6 +7,7 @@
 #include "expr/tape_interpret.h"
 #include "expr/tape_lower.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,14 +43,14 @@ static const hn_ir_arg *args_of(const compiler *c, int32_t id) {
     return c->ir.args + c->ir.nodes[id].first;
 }
 
-static int is_lone(const compiler *c, int32_t id, hn_ir_kind kind) {
+static bool is_lone(const compiler *c, int32_t id, hn_ir_kind kind) {
     return c->ir.nodes[id].kind == kind && c->ir.nodes[id].uses == 1 && !c->absorbed[id];
 }
 
 /// A sum of two slots, which (a + b) * c can take in.
-static int is_lone_pair(const compiler *c, int32_t id) {
+static bool is_lone_pair(const compiler *c, int32_t id) {
     if (!is_lone(c, id, HN_IR_SUM) || c->ir.nodes[id].n_args != 2) {
-        return 0;
+        return false;
     }
     const hn_ir_arg *a = args_of(c, id);
     return !c->absorbed[a[0].node] && !c->absorbed[a[1].node];
@@ -335,7 +336,7 @@ static void find_last_uses(compiler *c) {
 }
 
 /// Inputs and constants have places of their own. Returns 0 beyond the limit.
-static int place_fixed(compiler *c, int n_inputs) {
+static bool place_fixed(compiler *c, int n_inputs) {
     int32_t next = n_inputs;
     for (int32_t i = 0; i < c->ir.n; i++) {
         const hn_ir_node *node = &c->ir.nodes[i];
@@ -343,7 +344,7 @@ static int place_fixed(compiler *c, int n_inputs) {
             c->slot[i] = (uint16_t)node->input;
         } else if (node->kind == HN_IR_CONST && node->live) {
             if (next >= HN_TAPE_MAX_SLOTS) {
-                return 0;
+                return false;
             }
             c->slot[i] = (uint16_t)next++;
         }
@@ -358,12 +359,12 @@ typedef struct free_slots {
     int32_t n;
 } free_slots;
 
-static int take_slot(compiler *c, free_slots *f, int32_t id) {
+static bool take_slot(compiler *c, free_slots *f, int32_t id) {
     if (f->n == 0 && c->n_slots >= HN_TAPE_MAX_SLOTS) {
-        return 0;
+        return false;
     }
     c->slot[id] = f->n ? f->slot[--f->n] : (uint16_t)c->n_slots++;
-    return 1;
+    return true;
 }
 
 /// Frees the slots of operands that die here; the result may take one of them at once.
@@ -392,7 +393,7 @@ static void write_instruction(const compiler *c, const draft *d, hn_tape_instruc
 }
 
 /// Gives every value a slot and writes the code. Returns 0 beyond the limit.
-static int place_all(compiler *c, free_slots *f, hn_tape_instruction *code) {
+static bool place_all(compiler *c, free_slots *f, hn_tape_instruction *code) {
     const int32_t fixed = c->n_slots;
     for (int32_t i = 0; i < c->n_drafts; i++) {
         const draft *d = &c->drafts[i];
@@ -402,12 +403,12 @@ static int place_all(compiler *c, free_slots *f, hn_tape_instruction *code) {
         }
         release_operands(c, f, i, fixed);
         if (!take_slot(c, f, d->result) || (d->second >= 0 && !take_slot(c, f, d->second))) {
-            return 0;
+            return false;
         }
         write_instruction(c, d, &code[i], slots);
     }
     code[c->n_drafts] = (hn_tape_instruction){.code = TAPE_END};
-    return 1;
+    return true;
 }
 
 // ---- counting and assembling ----

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,12 +17,12 @@ void hn_ir_reset(hn_ir *ir) {
     *ir = (hn_ir){0};
 }
 
-static int grow(hn_ir *ir, int32_t more_args) {
+static bool grow(hn_ir *ir, int32_t more_args) {
     if (ir->n == ir->cap) {
         const int32_t cap = ir->cap ? 2 * ir->cap : FIRST_TABLE;
         hn_ir_node *nodes = realloc(ir->nodes, (size_t)cap * sizeof *nodes);
         if (!nodes) {
-            return 0;
+            return false;
         }
         ir->nodes = nodes;
         ir->cap = cap;
@@ -30,12 +31,12 @@ static int grow(hn_ir *ir, int32_t more_args) {
         const int32_t cap = 2 * (ir->n_args + more_args) + FIRST_TABLE;
         hn_ir_arg *args = realloc(ir->args, (size_t)cap * sizeof *args);
         if (!args) {
-            return 0;
+            return false;
         }
         ir->args = args;
         ir->cap_args = cap;
     }
-    return 1;
+    return true;
 }
 
 static uint64_t hash_node(const hn_ir_node *node, const hn_ir_arg *args) {
@@ -47,8 +48,8 @@ static uint64_t hash_node(const hn_ir_node *node, const hn_ir_arg *args) {
     return hn_hash_mix(hn_hash_bytes(h, args, (size_t)node->n_args * sizeof *args));
 }
 
-static int same_node(const hn_ir *ir, const hn_ir_node *a, const hn_ir_node *b,
-                     const hn_ir_arg *b_args) {
+static bool same_node(const hn_ir *ir, const hn_ir_node *a, const hn_ir_node *b,
+                      const hn_ir_arg *b_args) {
     return a->kind == b->kind && a->op == b->op && a->n_args == b->n_args && a->input == b->input &&
            (a->kind != HN_IR_CONST || memcmp(&a->value, &b->value, sizeof a->value) == 0) &&
            (a->n_args == 0 ||
@@ -77,14 +78,14 @@ static void enter(hn_ir *ir, int32_t id) {
     ir->table[k] = id;
 }
 
-static int grow_table(hn_ir *ir) {
+static bool grow_table(hn_ir *ir) {
     if (2u * (uint32_t)(ir->n + 1) <= ir->table_size) {
-        return 1;
+        return true;
     }
     const uint32_t size = ir->table_size ? 2 * ir->table_size : FIRST_TABLE;
     int32_t *table = malloc(size * sizeof *table);
     if (!table) {
-        return 0;
+        return false;
     }
     memset(table, 0xff, size * sizeof *table);
     free(ir->table);
@@ -93,7 +94,7 @@ static int grow_table(hn_ir *ir) {
     for (int32_t i = 0; i < ir->n; i++) {
         enter(ir, i);
     }
-    return 1;
+    return true;
 }
 
 static int32_t intern(hn_ir *ir, hn_ir_node node, const hn_ir_arg *args, int *fresh) {
@@ -190,7 +191,7 @@ void hn_ir_mark_live(hn_ir *ir) {
     free(stack);
 }
 
-static int is_lone_sum(const hn_ir *ir, int32_t id) {
+static bool is_lone_sum(const hn_ir *ir, int32_t id) {
     return ir->nodes[id].kind == HN_IR_SUM && ir->nodes[id].uses == 1;
 }
 

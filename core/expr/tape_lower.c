@@ -8,6 +8,7 @@
 #include "expr/tape_ir.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,11 +58,11 @@ static void mark_single(lowering *l, int32_t ir, int fresh, int single) {
     l->ir->nodes[ir].single = (uint8_t)(fresh && single);
 }
 
-static int is_one(const hn_ir *ir, int32_t id) {
+static bool is_one(const hn_ir *ir, int32_t id) {
     return ir->nodes[id].kind == HN_IR_CONST && ir->nodes[id].value == 1;
 }
 
-static int is_single_recip(const hn_ir *ir, int32_t id) {
+static bool is_single_recip(const hn_ir *ir, int32_t id) {
     const hn_ir_node *node = &ir->nodes[id];
     return node->kind == HN_IR_DIV && node->single && is_one(ir, ir->args[node->first].node);
 }
@@ -164,13 +165,13 @@ static void collect_atoms(const hn_ir *ir, int32_t id, item *out) {
     }
 }
 
-static int has_atom(const item *t, int32_t atom) {
+static bool has_atom(const item *t, int32_t atom) {
     for (int i = 0; i < t->n; i++) {
         if (t->atom[i] == atom) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static void remove_atom(item *t, int32_t atom) {

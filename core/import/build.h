@@ -27,9 +27,9 @@ typedef struct hn_im_body {
     const char *name;   ///< in the scene
     const char *about;
     hn_im_mass mass;
-    int has_mass;
+    bool has_mass;
     const char *line; ///< "line 3", "leg.xml, line 3"
-    int is_carrier;   ///< between several joints of one body
+    bool is_carrier;  ///< between several joints of one body
     hn_im_frame world;
 } hn_im_body;
 

@@ -5,6 +5,8 @@
 
 #include "import/xml.h"
 
+#include <stdbool.h>
+
 typedef enum hn_mj_from_geoms { HN_MJ_AUTO, HN_MJ_ALWAYS, HN_MJ_NEVER } hn_mj_from_geoms;
 
 typedef struct hn_mj_site {
@@ -61,7 +63,7 @@ bool hn_mj_number(hn_mj *m, const hn_mj_element *e, const char *name, double oth
                   double *out);
 bool hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwise);
 /// true, false or auto, where auto asks whether `range` is given.
-int hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range);
+bool hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range);
 /// pos and one of quat, axisangle, xyaxes, zaxis, euler.
 bool hn_mj_frame(hn_mj *m, const hn_mj_element *e, hn_im_frame *out);
 bool hn_mj_orientation(hn_mj *m, const hn_mj_element *e, double R[3][3]);

@@ -5,6 +5,7 @@
 #include "linalg/small3.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // ---- default classes ----
@@ -164,7 +165,7 @@ bool hn_mj_flag(hn_mj *m, const hn_mj_element *e, const char *name, int otherwis
     return yes;
 }
 
-int hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range) {
+bool hn_mj_is_limited(hn_mj *m, const hn_mj_element *e, const char *limited, const char *range) {
     return hn_mj_flag(m, e, limited, m->autolimits && hn_mj_attr(m, e, range) != NULL);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linalg/compressed.h"
 
+#include <stdbool.h>
 #include <string.h>
 
-int hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max, int entries_max) {
+bool hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max, int entries_max) {
     const size_t n = (size_t)n_max, m = (size_t)entries_max;
     *c = (hn_compressed){.n_max = n_max, .entries_max = entries_max, .n_known = -1, .n_sorted = -1};
     int **of_m[] = {&c->row, &c->put_row, &c->put_col, &c->place, &c->by_row};
@@ -80,7 +81,7 @@ static void sort_places(hn_compressed *c) {
     c->n_known = c->n_puts;
 }
 
-int hn_compressed_end(hn_compressed *c, int parts, double *values) {
+bool hn_compressed_end(hn_compressed *c, int parts, double *values) {
     const int known = !c->changed && c->n_puts == c->n_known;
     if (!known) {
         sort_places(c);

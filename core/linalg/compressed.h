@@ -7,6 +7,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
+#include <stdbool.h>
+
 typedef struct hn_compressed {
     int n_max, entries_max;
     int n;            ///< size of the matrix
@@ -20,13 +22,14 @@ typedef struct hn_compressed {
     int *next, *by_row;
 } hn_compressed;
 
-/// Matrices up to n_max with up to entries_max puts. Returns 0 when memory is out, else 1.
-HN_MUST_CHECK int hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max, int entries_max);
+/// Matrices up to n_max with up to entries_max puts. Returns false when memory is out.
+HN_MUST_CHECK bool hn_compressed_init(hn_compressed *c, hn_arena *arena, int n_max,
+                                      int entries_max);
 void hn_compressed_begin(hn_compressed *c, int n);
 void hn_compressed_put(hn_compressed *c, int row, int col, double re, double im);
 /// Sums what was put into `values` (`parts` for each of start[n] places: re, or re and im). Returns
-/// 1 when the places are those of the last time, 0 when they are new. Allocates nothing.
-int hn_compressed_end(hn_compressed *c, int parts, double *values);
+/// Whether the places are those of the last time; false when they are new. Allocates nothing.
+bool hn_compressed_end(hn_compressed *c, int parts, double *values);
 /// What was put so far, real parts, as n x n row-major.
 void hn_compressed_copy(const hn_compressed *c, double *out);
 

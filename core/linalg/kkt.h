@@ -31,6 +31,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
+#include <stdbool.h>
+
 typedef enum hn_kkt_way {
     HN_KKT_DENSE,
     HN_KKT_RANGE_SPACE,
@@ -42,7 +44,7 @@ typedef enum hn_kkt_way {
 
 typedef struct hn_kkt_opts {
     int max_refine; ///< corrections at most; 4. Proximal: turns, never below 1
-    int want_cond;  ///< estimate the condition number: about five more solves
+    bool want_cond; ///< estimate the condition number: about five more solves
     double rank_tol, residual_tol, noise, motion, row_floor; ///< as in hn_saddle_opts
     const double *row_unit;                                  ///< likewise
 } hn_kkt_opts;

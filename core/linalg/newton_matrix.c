@@ -6,6 +6,7 @@
 #include "linalg/dense.h"
 #include "linalg/square.h"
 
+#include <stdbool.h>
 #include <suitesparse/klu.h>
 
 #include <math.h>
@@ -45,7 +46,7 @@ struct hn_newton_matrix {
     long long nnz;
 };
 
-int hn_newton_matrix_wants_sparse(int n, long long n_entries) {
+bool hn_newton_matrix_wants_sparse(int n, long long n_entries) {
     return n >= HN_NEWTON_SPARSE_FROM && 4 * n_entries <= (long long)n * n;
 }
 
@@ -60,14 +61,14 @@ static int allocate_dense(hn_newton_matrix *m, hn_arena *arena) {
     return m->dense && m->pivot && m->scale;
 }
 
-static int allocate_sparse(hn_newton_matrix *m, hn_arena *arena, int entries_max) {
+static bool allocate_sparse(hn_newton_matrix *m, hn_arena *arena, int entries_max) {
     m->values = hn_arena_doubles(arena, (size_t)(m->parts * entries_max));
     const int good = klu_defaults(&m->common);
     m->common.tol = THRESHOLD;
     return good && m->values && hn_compressed_init(&m->places, arena, m->n_max, entries_max);
 }
 
-static int allocate_scales(hn_newton_matrix *m, hn_arena *arena) {
+static bool allocate_scales(hn_newton_matrix *m, hn_arena *arena) {
     const size_t n = (size_t)m->n_max;
     m->by_row = hn_arena_doubles(arena, n);
     m->by_col = hn_arena_doubles(arena, n);
@@ -77,7 +78,7 @@ static int allocate_scales(hn_newton_matrix *m, hn_arena *arena) {
     return m->by_row && m->by_col && m->sum && m->count && (m->sparse || m->kept);
 }
 
-hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field, int sparse,
+hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field, bool sparse,
                                           int n_max, int entries_max) {
     hn_newton_matrix *m = hn_arena_get(arena, sizeof *m);
     if (!m) {
@@ -107,7 +108,7 @@ void hn_newton_matrix_free(hn_newton_matrix *m) {
     }
 }
 
-int hn_newton_matrix_is_sparse(const hn_newton_matrix *m) {
+bool hn_newton_matrix_is_sparse(const hn_newton_matrix *m) {
     return m->sparse;
 }
 
@@ -182,7 +183,7 @@ static hn_status choose_pivots(hn_newton_matrix *m) {
     return HN_OK;
 }
 
-static int grows(hn_newton_matrix *m) {
+static bool grows(hn_newton_matrix *m) {
     hn_compressed *p = &m->places;
     const int good =
         m->parts == 1
@@ -192,10 +193,10 @@ static int grows(hn_newton_matrix *m) {
 }
 
 // 1 when the pivots of before serve the new entries
-static int keep_pivots(hn_newton_matrix *m) {
+static bool keep_pivots(hn_newton_matrix *m) {
     hn_compressed *p = &m->places;
     if (!m->numeric) {
-        return 0;
+        return false;
     }
     m->ops += m->factor_ops;
     const int good =
@@ -205,7 +206,7 @@ static int keep_pivots(hn_newton_matrix *m) {
     return good && m->common.status == KLU_OK && !grows(m);
 }
 
-static int is_singular(hn_newton_matrix *m) {
+static bool is_singular(hn_newton_matrix *m) {
     const int good = m->parts == 1 ? klu_rcond(m->symbolic, m->numeric, &m->common)
                                    : klu_z_rcond(m->symbolic, m->numeric, &m->common);
     return !good || !(m->common.rcond > SINGULAR);
@@ -275,7 +276,7 @@ static void scale(const hn_newton_matrix *m, const double *exponents, double *x)
 }
 
 // pivots that pass for regular and yet hold few digits
-static int is_doubtful(const hn_newton_matrix *m) {
+static bool is_doubtful(const hn_newton_matrix *m) {
     if (m->sparse) {
         return m->common.rcond < DOUBTFUL;
     }

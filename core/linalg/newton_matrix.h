@@ -14,21 +14,23 @@
 #include "base/status.h"
 #include "linalg/lu.h"
 
+#include <stdbool.h>
+
 typedef struct hn_newton_matrix hn_newton_matrix;
 
 /// From this size on a matrix with at most a quarter of its entries in use is sparse.
 enum { HN_NEWTON_SPARSE_FROM = 24 };
-/// 1 when a matrix of size n with so many entries is factored sparsely.
-int hn_newton_matrix_wants_sparse(int n, long long n_entries);
+/// Whether a matrix of size n with so many entries is factored sparsely.
+bool hn_newton_matrix_wants_sparse(int n, long long n_entries);
 
 typedef enum hn_number_field { HN_REAL, HN_COMPLEX } hn_number_field;
 
 /// Room for matrices up to n_max; sparse ones with up to entries_max puts. Memory from `arena`,
 /// what the library allocates is freed by hn_newton_matrix_free. NULL when memory is out.
 HN_MUST_CHECK hn_newton_matrix *hn_newton_matrix_create(hn_arena *arena, hn_number_field field,
-                                                        int sparse, int n_max, int entries_max);
+                                                        bool sparse, int n_max, int entries_max);
 void hn_newton_matrix_free(hn_newton_matrix *m); ///< NULL is legal
-int hn_newton_matrix_is_sparse(const hn_newton_matrix *m);
+bool hn_newton_matrix_is_sparse(const hn_newton_matrix *m);
 
 /// Begins a matrix of size n, all zero.
 void hn_newton_matrix_begin(hn_newton_matrix *m, int n);

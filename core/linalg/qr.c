@@ -5,10 +5,11 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 
 enum { SIGMA_ITERATIONS = 60 };
 
-int hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max) {
+bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max) {
     size_t m = (size_t)m_max, n = (size_t)n_max;
     *qr = (hn_qr){.m_max = m_max, .n_max = n_max};
     qr->a = hn_arena_doubles(arena, m * n);

@@ -14,6 +14,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
+#include <stdbool.h>
+
 /// One factorisation and its scratch. Plain data: read rank, perm, and R as a[column * m + row] for
 /// row <= column.
 typedef struct hn_qr {
@@ -29,8 +31,8 @@ typedef struct hn_qr {
     double *work; ///< max(m, n) scratch
 } hn_qr;
 
-/// Memory for up to m x n from the arena; returns 0 when memory is out, else 1.
-HN_MUST_CHECK int hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max);
+/// Memory for up to m x n from the arena; returns false when memory is out.
+HN_MUST_CHECK bool hn_qr_init(hn_qr *qr, hn_arena *arena, int m_max, int n_max);
 
 /// Factors qr->a, filled by the caller as m x n. Columns whose remaining norm is at most rank_tol *
 /// |R_00| are dropped.

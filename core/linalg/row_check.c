@@ -5,6 +5,7 @@
 #include "linalg/sparse_spd.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,7 +132,7 @@ static void take_unit_rows(hn_row_check *c, const double *J) {
     }
 }
 
-int hn_row_check_run(hn_row_check *c, const double *J) {
+bool hn_row_check_run(hn_row_check *c, const double *J) {
     take_unit_rows(c, J);
     memset(c->sums, 0, (size_t)c->n_sums * sizeof *c->sums);
     for (int k = 0; k < c->n_products; k++) {

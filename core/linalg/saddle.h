@@ -24,6 +24,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
+#include <stdbool.h>
+
 /// Scratch for systems up to (nv, nc). Owned by the arena it came from; one per thread.
 typedef struct hn_saddle_ws hn_saddle_ws;
 
@@ -49,7 +51,7 @@ typedef struct hn_saddle_opts {
     const double *row_unit; ///< nc: units in which those lengths are compared, borrowed; NULL: 1
     double refine_tol;      ///< refine until the correction is below this * the solution [-]; 2 eps
     int max_refine;         ///< 4; 0 switches refinement off
-    int want_cond;          ///< 1: estimate the condition number too, about five more solves
+    bool want_cond;         ///< estimate the condition number too, about five more solves
 } hn_saddle_opts;
 
 /// What happened. rank and pivot_ratio are set unless an input was not finite or M has a negative

@@ -4,6 +4,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static const double THRESHOLD = 0.1; // of the largest entry of a column: what may be its pivot
@@ -145,10 +146,10 @@ static void eliminate_row(hn_sparse_lu *lu, int i, int p, int q) {
     lu->row_count[i]--; // its entry in the pivot's column
 }
 
-static int eliminate(hn_sparse_lu *lu, int k) {
+static bool eliminate(hn_sparse_lu *lu, int k) {
     const int n = lu->n, q = choose_column(lu), p = choose_row(lu, q);
     if (p < 0) {
-        return 0;
+        return false;
     }
     lu->p[k] = p;
     lu->q[k] = q;
@@ -162,7 +163,7 @@ static int eliminate(hn_sparse_lu *lu, int k) {
             eliminate_row(lu, i, p, q);
         }
     }
-    return 1;
+    return true;
 }
 
 static void list_pattern(hn_sparse_lu *lu) {
@@ -225,19 +226,19 @@ static int parity(int n, const int *perm, int *seen) {
     return sign;
 }
 
-static int choose_order(hn_sparse_lu *lu, const double *values) {
+static bool choose_order(hn_sparse_lu *lu, const double *values) {
     lu->ordered = 0;
     spread(lu, values);
     for (int k = 0; k < lu->n; k++) {
         if (!eliminate(lu, k)) {
-            return 0;
+            return false;
         }
     }
     list_pattern(lu);
     list_entries(lu);
     lu->sign = parity(lu->n, lu->p, lu->col_count) * parity(lu->n, lu->q, lu->col_count);
     lu->ordered = 1;
-    return 1;
+    return true;
 }
 
 // ---- factoring and solving ----
@@ -278,15 +279,15 @@ static double factor_row(hn_sparse_lu *lu, int k, const double *values) {
 }
 
 // 0 when the order does not serve these values
-static int factor_in_order(hn_sparse_lu *lu, const double *values) {
+static bool factor_in_order(hn_sparse_lu *lu, const double *values) {
     lu->last_ops += lu->refactor_ops;
     for (int k = 0; k < lu->n; k++) {
         const double growth = factor_row(lu, k, values);
         if (!(growth <= HN_SPARSE_LU_GROWTH) || lu->diag[k] == 0 || !isfinite(lu->diag[k])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 hn_status hn_sparse_lu_factor(hn_sparse_lu *lu, const double *values) {

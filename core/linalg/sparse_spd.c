@@ -3,6 +3,7 @@
 
 #include "linalg/dense.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 struct hn_sparse_spd {
@@ -60,14 +61,14 @@ static int take_out(graph *g, int i, int *list) {
     return count;
 }
 
-static int graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const int *row,
-                      const int *col) {
+static bool graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const int *row,
+                       const int *col) {
     *g = (graph){.n = n,
                  .joined = hn_arena_get(scratch, (size_t)n * (size_t)n + 1),
                  .degree = hn_arena_ints(scratch, (size_t)n),
                  .gone = hn_arena_ints(scratch, (size_t)n)};
     if (hn_arena_failed(scratch)) {
-        return 0;
+        return false;
     }
     for (int k = 0; k < n_entries; k++) {
         const size_t i = (size_t)row[k], j = (size_t)col[k];
@@ -77,7 +78,7 @@ static int graph_init(graph *g, hn_arena *scratch, int n, int n_entries, const i
             g->degree[j]++;
         }
     }
-    return 1;
+    return true;
 }
 
 // the order, and the number of entries of each row of L in row_start[k + 1]; the entries themselves
@@ -101,13 +102,13 @@ static void choose_order(hn_sparse_spd *spd, graph *g, int *list) {
     }
 }
 
-static int list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
+static bool list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
     const size_t n = (size_t)spd->n;
     spd->row_col = hn_arena_ints(arena, (size_t)spd->nnz);
     spd->col_row = hn_arena_ints(arena, (size_t)spd->nnz);
     spd->L = hn_arena_doubles(arena, (size_t)spd->nnz);
     if (hn_arena_failed(arena)) {
-        return 0;
+        return false;
     }
 
     // joined unknowns: entries of L by rows and by columns
@@ -129,7 +130,7 @@ static int list_pattern(hn_sparse_spd *spd, const graph *g, hn_arena *arena) {
 
     spd->row_start[spd->n] = n_row;
     spd->col_start[spd->n] = n_col;
-    return 1;
+    return true;
 }
 
 static void list_entries(hn_sparse_spd *spd, const int *row, const int *col) {

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-int hn_square_init(hn_square *s, hn_arena *arena, int n_max) {
+bool hn_square_init(hn_square *s, hn_arena *arena, int n_max) {
     const size_t n = (size_t)n_max;
     *s = (hn_square){.n_max = n_max};
     s->lu = hn_arena_doubles(arena, n * n);

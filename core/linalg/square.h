@@ -14,6 +14,8 @@
 #include "base/arena.h"
 #include "base/status.h"
 
+#include <stdbool.h>
+
 /// One factorisation and its memory. Plain data: read pivot_ratio.
 typedef struct hn_square {
     int n_max, n;
@@ -28,8 +30,8 @@ typedef struct hn_square {
 /// Below this pivot_ratio the matrix counts as singular.
 #define HN_SQUARE_SINGULAR 1e-13
 
-/// Memory for up to n_max x n_max; returns 0 when memory is out, else 1.
-HN_MUST_CHECK int hn_square_init(hn_square *s, hn_arena *arena, int n_max);
+/// Memory for up to n_max x n_max; returns false when memory is out.
+HN_MUST_CHECK bool hn_square_init(hn_square *s, hn_arena *arena, int n_max);
 /// Factors s->lu, filled by the caller as n x n. Fails: HN_ERR_DIVERGED (an entry is not finite),
 /// HN_ERR_SINGULAR.
 /// Cost: 2 n^3 / 3 operations. Allocates nothing.

@@ -16,6 +16,8 @@
 #include "base/strbuf.h"
 #include "render/look.h"
 
+#include <stdbool.h>
+
 enum { HN_CANVAS_MIN = 16, HN_CANVAS_MAX = 4096, HN_CANVAS_SAMPLES = 4 };
 
 typedef struct hn_canvas hn_canvas;

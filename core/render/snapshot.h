@@ -24,6 +24,8 @@
 #include "render/canvas.h"
 #include "render/view.h"
 
+#include <stdbool.h>
+
 typedef struct hn_snapshot_pose {
     /// 3 per point of the drawing, world [m]; NULL: the method has no pose and is only listed
     const double *points;
@@ -52,7 +54,7 @@ typedef struct hn_snapshot_opts {
     double view[4];
     int n_loads;
     const hn_snapshot_load *loads;
-    int labels; ///< 1: points with a name show it
+    bool labels; ///< points with a name show it
 } hn_snapshot_opts;
 /// no texts, no loads, labels on, from the front, fitted to the poses
 hn_snapshot_opts hn_snapshot_opts_default(void);

@@ -346,7 +346,7 @@ static void draw_trace(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *
 }
 
 void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                           const hn_snapshot_pose *pose, int is_selected) {
+                           const hn_snapshot_pose *pose, bool is_selected) {
     const hn_theme theme = hn_canvas_theme(c);
     pen p = {.c = c,
              .s = s,
@@ -443,8 +443,8 @@ static void place_label(const hn_sheet *s, const hn_drawing *d, const double *po
 
 /// The names of all points that are seen where point `first` is, "B1 A2"; 0: an earlier one has
 /// told them.
-static int names_at(const hn_sheet *s, const hn_drawing *d, const double *points, int first,
-                    char text[LABEL_TEXT]) {
+static bool names_at(const hn_sheet *s, const hn_drawing *d, const double *points, int first,
+                     char text[LABEL_TEXT]) {
     double here[2], there[2];
     size_t used = 0;
     hn_sheet_pixel(s, points + 3 * first, here);
@@ -454,12 +454,12 @@ static int names_at(const hn_sheet *s, const hn_drawing *d, const double *points
             continue;
         }
         if (i < first) {
-            return 0;
+            return false;
         }
         const int n = snprintf(text + used, LABEL_TEXT - used, used ? " %s" : "%s", d->labels[i]);
         used = n > 0 && used + (size_t)n < LABEL_TEXT ? used + (size_t)n : LABEL_TEXT - 1;
     }
-    return 1;
+    return true;
 }
 
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,

@@ -5,11 +5,13 @@
 
 #include "render/snapshot_sheet.h"
 
+#include <stdbool.h>
+
 /// Ground, guides: what belongs to no pose, from the selected one.
 void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose);
 void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
-                           const hn_snapshot_pose *pose, int is_selected);
+                           const hn_snapshot_pose *pose, bool is_selected);
 void hn_snapshot_labels(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose);
 void hn_snapshot_loads(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose *pose,

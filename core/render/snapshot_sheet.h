@@ -35,7 +35,7 @@ typedef struct hn_sheet {
     int selected;   ///< index of the opaque pose
     hn_tear widest; ///< shown in the inset
     double magnification; ///< of the inset against the drawing
-    int is_closed;        ///< 1: even the widest tear is within rounding
+    bool is_closed;       ///< even the widest tear is within rounding
     double scale_bar;     ///< [m]
 } hn_sheet;
 

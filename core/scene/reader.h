@@ -118,18 +118,18 @@ void hn_rd_list(hn_reader *r, const cJSON *node, const char *key, int object, hn
 
 // ---- values ----
 /// Returns a text unchanged (title, about); NULL if it is absent.
-const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int required);
+const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, bool required);
 /// Returns a name with its {formulas} filled in, checked for length. NULL when it is absent: a
 /// fault only if `required`.
-const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int required);
+const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, bool required);
 /// Returns `raw` with every {formula} replaced by its whole-number value; NULL after a fault.
 const char *hn_rd_fill(hn_reader *r, const char *raw);
 bool hn_rd_flag(hn_reader *r, const cJSON *object, const char *key);
 /// Reads a number or a formula. After a fault *out is 0 and the result false.
 bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_scope scope);
 /// Reads the member `key`; where it is absent, `fallback` (a fault when `required`).
-bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
-                  hn_quantity *out, hn_rd_scope scope);
+bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, bool required,
+                  double fallback, hn_quantity *out, hn_rd_scope scope);
 /// Reads a vector of two (then z = 0) or three entries.
 bool hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_scope scope);
 /// Reads the member `key` as a direction: two or three numbers, not all zero, scaled to length 1.

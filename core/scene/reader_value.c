@@ -10,6 +10,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -305,8 +306,8 @@ bool hn_rd_quantity(hn_reader *r, const cJSON *node, hn_quantity *out, hn_rd_sco
     return true;
 }
 
-bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, int required, double fallback,
-                  hn_quantity *out, hn_rd_scope scope) {
+bool hn_rd_member(hn_reader *r, const cJSON *object, const char *key, bool required,
+                  double fallback, hn_quantity *out, hn_rd_scope scope) {
     const cJSON *node = hn_rd_get(object, key);
     *out = (hn_quantity){.value = fallback};
     if (!node) {
@@ -334,7 +335,7 @@ bool hn_rd_vector(hn_reader *r, const cJSON *node, hn_quantity out[3], hn_rd_sco
     return ok;
 }
 
-const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int required) {
+const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, bool required) {
     const cJSON *node = hn_rd_get(object, key);
     if (!node) {
         if (required) {
@@ -350,7 +351,7 @@ const char *hn_rd_text(hn_reader *r, const cJSON *object, const char *key, int r
     return hn_rd_keep(r, node->valuestring);
 }
 
-const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, int required) {
+const char *hn_rd_name(hn_reader *r, const cJSON *object, const char *key, bool required) {
     const cJSON *node = hn_rd_get(object, key);
     if (!node || !cJSON_IsString(node)) {
         return hn_rd_text(r, object, key, required);

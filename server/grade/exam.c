@@ -8,6 +8,7 @@
 #include "grade/spelling.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_DRAWS = 10000 };

@@ -10,6 +10,7 @@
 #include "grade/submission.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,8 +57,8 @@ static hn_status parse_entry(hn_verdict *v, hn_exam *exam, const char *text, hn_
 }
 
 /// The formula of an entry; 0 when there is none that can be read.
-static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_verdict *e,
-                      hn_ex *given, hn_status *status) {
+static bool read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_verdict *e,
+                       hn_ex *given, hn_status *status) {
     const char *text = cJSON_IsString(node) ? node->valuestring : "";
     char number[40];
     if (cJSON_IsNumber(node)) {
@@ -68,14 +69,14 @@ static int read_entry(hn_verdict *v, hn_exam *exam, const cJSON *node, hn_entry_
     if (strspn(text, " \t\r\n") == strlen(text)) {
         set_mistake(v, e, "blank");
         snprintf(e->explanation, sizeof e->explanation, "nothing was handed in here");
-        return 0;
+        return false;
     }
 
     // an unreadable entry is a wrong entry, no failure of the grader
     *status = parse_entry(v, exam, text, e, given);
     if (*status == HN_ERR_INPUT || *status == HN_ERR_LIMIT) {
         *status = HN_OK;
-        return 0;
+        return false;
     }
     return *status == HN_OK;
 }
@@ -225,18 +226,18 @@ static void summarise(hn_verdict *v) {
 }
 
 /// 1, and ungradable, when no formula that was handed in can be read.
-static int refuse_unreadable(hn_verdict *v) {
+static bool refuse_unreadable(hn_verdict *v) {
     int handed_in = 0, first = -1;
     for (int k = v->n_entries; k-- > 0;) {
         handed_in += strcmp(v->entry[k].mistake, "blank") != 0;
         first = strcmp(v->entry[k].mistake, "unreadable") == 0 ? k : first;
     }
     if (v->n_unreadable == 0 || v->n_unreadable < handed_in) {
-        return 0;
+        return false;
     }
     hn_submission_refuse(v, v->entry[first].explanation, "none of the %d formulas can be read (%s)",
                          v->n_unreadable, v->entry[first].name);
-    return 1;
+    return true;
 }
 
 /// The whole matrix handed in transposed: each right entry earns its share.
@@ -285,7 +286,7 @@ static void begin_entry(hn_verdict *v, const hn_exam *exam, int k) {
     hn_strbuf_reset(&b);
 }
 
-static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer, int transposed) {
+static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer, bool transposed) {
     const hn_exercise *p = v->problem;
     v->n_entries = p->n_rows * p->n_columns;
     v->n_states = p->n_closed;

@@ -8,6 +8,7 @@
 #include "expr/diff.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -184,7 +185,7 @@ static const struct {
     {"factor", "right but for a factor", make_factor},
 };
 
-int hn_grade_is_mistake(const char *id) {
+bool hn_grade_is_mistake(const char *id) {
     int known = strcmp(id, "transposed") == 0; // of the whole matrix, found by its shape
     for (size_t k = 0; k < sizeof MISTAKES / sizeof MISTAKES[0]; k++) {
         known |= strcmp(id, MISTAKES[k].id) == 0;
@@ -193,12 +194,12 @@ int hn_grade_is_mistake(const char *id) {
 }
 
 /// 1 if the formula has the values of the entry at all states, within the tolerance.
-static int agrees(const place *at, hn_ex e, const double *value) {
+static bool agrees(const place *at, hn_ex e, const double *value) {
     double worst = 0, size = 0;
     for (int s = 0; s < at->exam->n_states; s++) {
         const double x = hn_exam_value(at->exam, e, s), difference = fabs(x - value[s]);
         if (!isfinite(difference)) {
-            return 0;
+            return false;
         }
         worst = fmax(worst, difference);
         size = fmax(size, fabs(x));

@@ -5,6 +5,8 @@
 
 #include "grade/exam.h"
 
+#include <stdbool.h>
+
 /// Names the mistake in a wrong entry, or "other". `value` holds the values of `given` at all
 /// states; `by` receives what the text refers to ("J21") and may stay empty.
 typedef struct hn_grade_mistake {
@@ -13,6 +15,6 @@ typedef struct hn_grade_mistake {
 } hn_grade_mistake;
 hn_grade_mistake hn_grade_find_mistake(hn_exam *exam, int row, int column, hn_ex given,
                                        const double *value);
-/// 1 if the mistake's id is one that verdicts can hold.
-int hn_grade_is_mistake(const char *id);
+/// Whether the mistake's id is one that verdicts can hold.
+bool hn_grade_is_mistake(const char *id);
 #endif

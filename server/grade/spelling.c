@@ -2,6 +2,7 @@
 #include "grade/spelling.h"
 
 #include <ctype.h>
+#include <stdbool.h>
 #include <string.h>
 #include <strings.h>
 
@@ -68,7 +69,7 @@ static const char *find_function(const char *name) {
     return NULL;
 }
 
-static int is_one_of(const char *const *words, const char *word) {
+static bool is_one_of(const char *const *words, const char *word) {
     while (*words && strcmp(*words, word) != 0) {
         words++;
     }

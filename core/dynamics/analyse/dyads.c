@@ -403,7 +403,7 @@ int hn_dyads_find_turned(hn_dyads *d, double t, const double *q) {
     return -1;
 }
 
-int hn_dyads_take_branch(hn_dyads *d, double t, const double *q) {
+bool hn_dyads_take_branch(hn_dyads *d, double t, const double *q) {
     read_branches(d, t, q);
     int stands = 1;
     for (int k = 0; k < d->n; k++) {

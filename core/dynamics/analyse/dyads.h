@@ -69,9 +69,9 @@ hn_tape_info hn_dyads_info(const hn_dyads *d);        ///< of one solve
 hn_tape_info hn_dyads_branch_info(const hn_dyads *d); ///< of one check of the branches
 double hn_dyads_ops(const hn_dyads *d);               ///< arithmetic operations so far
 
-/// Takes the branch of every dyad at q (nq) as the one to keep. Returns 0 when a dyad is at its
+/// Takes the branch of every dyad at q (nq) as the one to keep. Returns false when a dyad is at its
 /// dead point, where the two branches meet; its sign is then 0.
-int hn_dyads_take_branch(hn_dyads *d, double t, const double *q);
+bool hn_dyads_take_branch(hn_dyads *d, double t, const double *q);
 /// Returns the first step that is on the other branch at q (nq), -1 when none is. q is near a pose,
 /// e.g. predicted along a tangent.
 int hn_dyads_find_turned(hn_dyads *d, double t, const double *q);

@@ -7,6 +7,7 @@
 #include "linalg/small3.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // ---- poses of bodies, straight from the scene ----

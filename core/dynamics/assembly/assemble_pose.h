@@ -6,6 +6,8 @@
 
 #include "dynamics/assembly/assemble_state.h"
 
+#include <stdbool.h>
+
 typedef struct hn_body_pose {
     double R[3][3]; ///< body to world
     double p[3];    ///< world position of the body's origin

@@ -336,7 +336,7 @@ hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out) {
     return *out ? search_init(*out, s) : HN_ERR_MEMORY;
 }
 
-int hn_assemble_descend(hn_assemble_search *w) {
+bool hn_assemble_descend(hn_assemble_search *w) {
     return descend(w, CLOSED, MAX_ITERATIONS) && hn_assemble_flipped(w->s) < 0;
 }
 

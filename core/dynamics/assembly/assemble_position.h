@@ -8,6 +8,7 @@
 
 #include "dynamics/assembly/assemble_state.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual,
@@ -17,7 +18,7 @@ HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
 /// Descents from s->x, as many as wanted: each returns 1 when it closed the loops.
 typedef struct hn_assemble_search hn_assemble_search;
 HN_MUST_CHECK hn_status hn_assemble_search_create(hn_assembler *s, hn_assemble_search **out);
-int hn_assemble_descend(hn_assemble_search *w);
+bool hn_assemble_descend(hn_assemble_search *w);
 double hn_assemble_random(uint64_t *seed); ///< in [-1, 1), the same on every machine
 
 #endif

@@ -6,8 +6,9 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 
-int hn_assemble_evaluate(hn_assembler *s) {
+bool hn_assemble_evaluate(hn_assembler *s) {
     hn_system_from_user(s->sys, s->x, s->q);
     hn_eval_run(s->eval, s->t, s->q, s->rest);
     const double *phi = hn_eval_get(s->eval, HN_TERM_PHI);

@@ -6,6 +6,8 @@
 #include "base/diag.h"
 #include "dynamics/evaluate/eval.h"
 
+#include <stdbool.h>
+
 /// One assembly at work. The search runs in USER coordinates x, because pins are user coordinates.
 /// They are scaled to be comparable: z = x / reach (1 rad, or the characteristic length), residual
 /// r = phi / L in length rows, phi elsewhere.
@@ -36,8 +38,8 @@ typedef struct hn_assembler {
     const char *route;
 } hn_assembler;
 
-/// Evaluates at s->x: q, residual, size. 0 when phi is not finite (size is then HUGE_VAL).
-int hn_assemble_evaluate(hn_assembler *s);
+/// Evaluates at s->x: q, residual, size. False when phi is not finite (size is then HUGE_VAL).
+bool hn_assemble_evaluate(hn_assembler *s);
 /// Moves x by `delta` (n, user rates times time): a sum, and for orientations a turn about the
 /// child's axes.
 void hn_assemble_move(const hn_assembler *s, double *x, const double *delta);

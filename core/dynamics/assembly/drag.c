@@ -163,11 +163,11 @@ static double size_of(const drag *d, const double *change) {
 }
 
 /// Tries the move: 1 when it leads to a closed pose of the same branch, left in d->trial.
-static int close_after_move(drag *d) {
+static bool close_after_move(drag *d) {
     memcpy(d->trial, d->q, (size_t)d->info.nq * sizeof *d->q);
     hn_system_move(d->sys, d->trial, d->move);
     if (hn_project_position(d->projector, d->t, d->trial, CLOSED, NULL) != HN_OK) {
-        return 0;
+        return false;
     }
     hn_system_difference(d->sys, d->q, d->trial, d->change);
     for (int i = 0; i < d->info.nv; i++) {

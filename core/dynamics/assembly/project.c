@@ -242,7 +242,7 @@ static hn_status factor_dense(hn_projector *p, double t, const double *q) {
 }
 
 /// `force_dense`: the sparse factor was tried and did not contract.
-static hn_status make_factor(hn_projector *p, double t, const double *q, int force_dense) {
+static hn_status make_factor(hn_projector *p, double t, const double *q, bool force_dense) {
     p->evals++;
     p->factorisations++;
     p->have_factor = 0;

@@ -73,8 +73,8 @@ hn_direction hn_closure_direction(const hn_closure *c, int end, const double v[3
     return d;
 }
 
-hn_status hn_closure_add_row(hn_closure *c, const char *what, int is_length, hn_ex phi, hn_ex gamma,
-                             int n) {
+hn_status hn_closure_add_row(hn_closure *c, const char *what, bool is_length, hn_ex phi,
+                             hn_ex gamma, int n) {
     hn_system *sys = c->m->sys;
     char name[160];
     snprintf(name, sizeof name, "%s: %s", c->name, what);

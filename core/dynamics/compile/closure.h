@@ -11,6 +11,8 @@
 
 #include "dynamics/compile/relate.h"
 
+#include <stdbool.h>
+
 /// A direction fixed to one end, with its first derivative and the second at zero u-dot, in the
 /// closure's frame.
 typedef struct hn_direction {
@@ -60,6 +62,6 @@ HN_MUST_CHECK hn_status hn_closure_position_row(hn_closure *c, int i);
 HN_MUST_CHECK hn_status hn_closure_perpendicular_row(hn_closure *c, const char *what,
                                                      const hn_direction *p, const hn_direction *r);
 /// Adds a row whose entries and wrench are set, under the name "name: what".
-HN_MUST_CHECK hn_status hn_closure_add_row(hn_closure *c, const char *what, int is_length,
+HN_MUST_CHECK hn_status hn_closure_add_row(hn_closure *c, const char *what, bool is_length,
                                            hn_ex phi, hn_ex gamma, int n);
 #endif

@@ -204,7 +204,7 @@ static int collect_entries(hn_system *sys, coordinate_row *row, hn_entry *entrie
 }
 
 static hn_status add_coordinate_row(hn_system *sys, coordinate_row *row, hn_ex phi,
-                                    const hn_constraint *k, int index, int is_length) {
+                                    const hn_constraint *k, int index, bool is_length) {
     hn_graph *g = sys->g;
     hn_entry *entries = hn_arena_get(sys->arena, ((size_t)sys->nv + 1) * sizeof *entries);
     hn_ex rate, gamma, phi_t;

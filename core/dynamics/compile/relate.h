@@ -6,9 +6,11 @@
 
 #include "dynamics/compile/mech.h"
 
+#include <stdbool.h>
+
 typedef struct hn_lever {
     int coordinate;
-    int is_slide;
+    bool is_slide;
     int group;
     int open;      ///< still turns whatever comes: at the end of a path, the end link
     hn_vec3 axis;  ///< of the turn or slide

@@ -63,7 +63,7 @@ void hn_symmat_free(hn_symmat *m) {
     }
 }
 
-int hn_symmat_failed(const hn_symmat *m) {
+bool hn_symmat_failed(const hn_symmat *m) {
     return m->failed;
 }
 

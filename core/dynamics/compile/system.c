@@ -31,7 +31,7 @@ int hn_system_row_loop(const hn_system *sys, int row) {
     return sys->rows[row].loop;
 }
 
-int hn_system_row_is_length(const hn_system *sys, int row) {
+bool hn_system_row_is_length(const hn_system *sys, int row) {
     HN_ASSERT(row >= 0 && row < sys->nc);
     return sys->rows[row].is_length;
 }

@@ -39,8 +39,8 @@ typedef struct hn_system_info {
     int n_points; ///< world points for drawing
     /// closure rows written down, and those that vanished identically
     int rows_before, rows_dropped;
-    int has_time; ///< phi or f depend on t explicitly
-    int nodes;    ///< graph size
+    bool has_time; ///< phi or f depend on t explicitly
+    int nodes;     ///< graph size
 } hn_system_info;
 hn_system_info hn_system_get_info(const hn_system *sys);
 
@@ -50,7 +50,7 @@ int hn_system_user_coordinate(const hn_system *sys, int i);
 /// angle or has another unit.
 const char *hn_system_row_name(const hn_system *sys, int row);
 int hn_system_row_loop(const hn_system *sys, int row);
-int hn_system_row_is_length(const hn_system *sys, int row);
+bool hn_system_row_is_length(const hn_system *sys, int row);
 /// The unit in which rows are compared: the characteristic length for a row in metres, else 1.
 double hn_system_row_unit(const hn_system *sys, int row);
 /// Of a loop: the joint (scene index) that closes it, -1 where a constraint or a formula does; its

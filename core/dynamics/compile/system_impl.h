@@ -11,6 +11,8 @@
 #include "dynamics/compile/tree.h"
 #include "dynamics/compile/vec3.h"
 
+#include <stdbool.h>
+
 /// The forces of one unit of a row's multiplier, in the frame of its closure (closure.h): `force`
 /// acts on end b at its point and opposite on end a at its own; the moments act on the two bodies
 /// in addition. `turn` takes the axes E of b's link to that frame.
@@ -22,7 +24,7 @@ typedef struct hn_row_wrench {
 typedef struct hn_row {
     const char *name;
     int loop;
-    int is_length;
+    bool is_length;
     hn_row_wrench wrench; ///< bodies only; zero for gears and formulas, which act along coordinates
 } hn_row;
 

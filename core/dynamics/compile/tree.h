@@ -48,11 +48,11 @@ typedef struct hn_link {
     int joint;  ///< scene joint, -1 for the ground
     /// scene body; of a virtual link, the body at the end of its chain; -1 for the ground
     int body;
-    int is_virtual;     ///< not the body yet: inside the chain of a joint
-    int is_first;       ///< the first link of its chain
+    bool is_virtual;    ///< not the body yet: inside the chain of a joint
+    bool is_first;      ///< the first link of its chain
     hn_joint_type type; ///< primitive: revolute, prismatic, spherical or fixed
     hn_carry carry;
-    int reversed; ///< the joint's own parent is this link
+    bool reversed; ///< the joint's own parent is this link
     int depth;
     int first_child, next_sibling, last_child; ///< links, -1 ends
     int coordinate; ///< its (first) velocity, -1 for the ground and fixed links
@@ -72,9 +72,9 @@ typedef struct hn_link {
 } hn_link;
 
 typedef struct hn_group {
-    int base;   ///< link whose rotation carries the frame (a root); nb: the ground; a ball: itself
-    int moving; ///< the base rotates
-    int ball;   ///< the link whose own frame it is, -1
+    int base;    ///< link whose rotation carries the frame (a root); nb: the ground; a ball: itself
+    bool moving; ///< the base rotates
+    int ball;    ///< the link whose own frame it is, -1
     double R[3][3]; ///< frame to base body axes
     /// frame to the base's theta-free frame: C(base) R; ball: axes `here` to that of the parent
     double X[3][3];

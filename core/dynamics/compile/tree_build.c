@@ -258,7 +258,7 @@ static hn_status check_cuts(const hn_scene *scene, const hn_tree *tree, hn_diags
     return HN_OK;
 }
 
-hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena, hn_tree *tree,
+hn_status hn_tree_build(const hn_scene *scene, bool align, hn_arena *arena, hn_tree *tree,
                         hn_diags *diags) {
     HN_TRY(allocate(scene, arena, tree));
     HN_TRY(span(scene, arena, tree, diags));

@@ -8,6 +8,8 @@
 #include "base/diag.h"
 #include "dynamics/compile/tree.h"
 
+#include <stdbool.h>
+
 /// Builds the tree of a scene, with memory from `arena`. The tree is of least depth in bodies
 /// (breadth first from the ground, ties by the order of the joints).
 ///
@@ -15,6 +17,6 @@
 ///            short; 0: an absolute angle is a plain sum of the scene's, for equations to be read
 /// Fails: HN_ERR_INPUT when joints marked "cut" leave a body hanging, or a free joint would close
 ///        a loop; HN_ERR_MEMORY
-HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, int align, hn_arena *arena,
+HN_MUST_CHECK hn_status hn_tree_build(const hn_scene *scene, bool align, hn_arena *arena,
                                       hn_tree *out, hn_diags *diags);
 #endif

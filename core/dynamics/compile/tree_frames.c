@@ -150,7 +150,7 @@ static bool is_aligned(const double arm[2], double turned) {
 /// Where the link's angle counts from. theta = theta(ref) + sigma q + offset, C = Rz(delta -
 /// offset) D.
 static void choose_offset(const hn_scene *scene, hn_link *link, int body, double delta,
-                          double D[3][3], int align) {
+                          double D[3][3], bool align) {
     double arm[2];
     link->offset = 0;
     if (!align || link->is_virtual ||
@@ -168,7 +168,7 @@ static void choose_offset(const hn_scene *scene, hn_link *link, int body, double
 /// Orientation of a revolute link in its group's frame: N Rz(s q) Ch' with N = Rz(delta) D0, D0 the
 /// identity or a half turn about x (which reverses the sense of q).
 static void place_revolute(const hn_scene *scene, hn_link *link, int body, double N[3][3],
-                           double child[3][3], int align) {
+                           double child[3][3], bool align) {
     double sigma = N[2][2] < 0 ? -1 : 1;
     double delta = atan2(N[1][0], N[0][0]);
     double D0[3][3] = {{1, 0, 0}, {0, sigma, 0}, {0, 0, sigma}}, back[3][3], D[3][3];
@@ -210,7 +210,7 @@ static void place_ball(hn_tree *tree, int index, double N[3][3]) {
     hn_num3_transpose(link->there, link->C);
 }
 
-static void place_link(const hn_scene *scene, hn_tree *tree, int index, int align) {
+static void place_link(const hn_scene *scene, hn_tree *tree, int index, bool align) {
     hn_link *link = &tree->links[index], *parent = &tree->links[link->parent];
     double N[3][3], back[3][3];
     hn_num3_compose(parent->C, link->here, N);
@@ -276,7 +276,7 @@ void hn_tree_choose_ground_frame(const hn_scene *scene, hn_tree *tree) {
     }
 }
 
-void hn_tree_place_links(const hn_scene *scene, hn_tree *tree, int align) {
+void hn_tree_place_links(const hn_scene *scene, hn_tree *tree, bool align) {
     // where nothing revolves, the world's own axes
     if (tree->n_groups == 0) {
         static const double Z[3] = {0, 0, 1};

@@ -14,6 +14,8 @@
 #include "expr/native.h"
 #include "expr/tape.h"
 
+#include <stdbool.h>
+
 /// The solvers of K. "auto" is the tape, corrected by iterative refinement with the sparse factor
 /// where pivots have lost digits (below HN_PIVOT_DOUBT), and replaced by the least-norm solve where
 /// a pivot is lost altogether, or a row of J has all but vanished. The others solve alone and
@@ -37,13 +39,13 @@ extern const char *const hn_solver_names[HN_SOLVER_COUNT];
 typedef struct hn_accel hn_accel;
 
 typedef struct hn_accel_opts {
-    int baumgarte;    ///< phi and J v enter, alpha and beta are inputs
-    int want_lambda;  ///< 0: everything that only multipliers need is left out
+    bool baumgarte;   ///< phi and J v enter, alpha and beta are inputs
+    bool want_lambda; ///< else everything that only multipliers need is left out
     hn_solver solver; ///< 0: automatic
 } hn_accel_opts;
 
 typedef struct hn_accel_info {
-    int fallback;     ///< 1: the dense solve answered in place of the tape
+    bool fallback;    ///< the dense solve answered in place of the tape
     hn_solver solver; ///< the solver that answered; the tape counts as ldl
     int refinements;  ///< corrections of the answer that were kept
     int massless;     ///< the velocity without mass where the range space refused; else -1

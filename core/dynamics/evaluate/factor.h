@@ -13,6 +13,8 @@
 #include "dynamics/compile/system.h"
 #include "expr/tape.h"
 
+#include <stdbool.h>
+
 typedef struct hn_factor hn_factor;
 
 /// Diagonal: M_jj, and 1 where that vanishes identically (a massless coordinate keeps its own
@@ -25,7 +27,7 @@ typedef enum hn_factor_weight {
 
 typedef struct hn_factor_info {
     /// 0: no static order exists for this system; hn_factor_update() always says HN_ERR_SINGULAR
-    int available;
+    bool available;
     int n_blocks;   ///< pivots (1 x 1 or 2 x 2)
     int nnz;        ///< entries of L below the diagonal blocks
     int update_ops; ///< arithmetic operations of one update

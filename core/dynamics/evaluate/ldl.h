@@ -17,8 +17,10 @@
 #include "base/arena.h"
 #include "dynamics/compile/entries.h"
 
+#include <stdbool.h>
+
 typedef struct hn_ldl {
-    int available; ///< 0: no static order without a zero pivot, or too dense to be unrolled
+    bool available; ///< false: no static order without a zero pivot, or too dense to be unrolled
     int n, nv, nc;
     int n_blocks;
     int *unknown;     ///< n: unknowns in order of elimination

@@ -418,7 +418,7 @@ int hn_linear_entries(const hn_linear *l, hn_linear_term term) {
 }
 
 /// out += X x, or X' x.
-static void add_product(const hn_linear *l, hn_linear_term term, int transposed, const double *x,
+static void add_product(const hn_linear *l, hn_linear_term term, bool transposed, const double *x,
                         double *out) {
     const term_values *of = &l->terms[index_of(term)];
     const size_t cols = (size_t)count_cols(l, index_of(term));

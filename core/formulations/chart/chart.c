@@ -7,6 +7,7 @@
 #include "formulations/ground/reduced_mass.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,13 +15,13 @@ enum { MAX_NEWTON = 25 };
 static const double STRAIGHT = 0.5; // a basis that changes by less of its size has gone on smoothly
 static const double FLOOR = 1e-11;  // ||phi|| / length: what rounding can leave open, generously
 
-static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
+static bool init_point(const hn_chart *chart, hn_chart_point *p, int with_factor, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv;
     p->q = hn_arena_doubles(arena, (size_t)chart->nq);
     p->N = hn_arena_doubles(arena, nv * nv);
     p->s = hn_arena_doubles(arena, nv);
     if (!with_factor) {
-        return 1;
+        return true;
     }
     p->J = hn_arena_doubles(arena, (size_t)chart->n_J);
     p->jd_values = hn_arena_doubles(arena, (size_t)chart->n_J);
@@ -28,7 +29,7 @@ static int init_point(const hn_chart *chart, hn_chart_point *p, int with_factor,
     return p->lu && hn_qr_init(&p->jd, arena, chart->nc, chart->nv);
 }
 
-static int init_memory(hn_chart *chart, hn_arena *arena) {
+static bool init_memory(hn_chart *chart, hn_arena *arena) {
     const size_t nv = (size_t)chart->nv, nc = (size_t)chart->nc;
 
     // points of the chart
@@ -64,7 +65,7 @@ static int init_memory(hn_chart *chart, hn_arena *arena) {
     return ok && !hn_arena_failed(arena);
 }
 
-hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate, hn_arena *arena,
+hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate, hn_arena *arena,
                         hn_diag *diag) {
     const hn_system_info info = hn_system_get_info(sys);
     memset(chart, 0, sizeof *chart);
@@ -137,7 +138,7 @@ hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *p, double t, const do
     return HN_OK;
 }
 
-int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *p, double t, const double *q) {
+bool hn_chart_is_at(const hn_chart *chart, const hn_chart_point *p, double t, const double *q) {
     return p->valid && p->t == t && memcmp(p->q, q, (size_t)chart->nq * sizeof *q) == 0;
 }
 

@@ -29,7 +29,9 @@
 #include "formulations/chart/chart_dependent.h"
 #include "formulations/chart/chart_state.h"
 
-HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, int with_rate,
+#include <stdbool.h>
+
+HN_MUST_CHECK hn_status hn_chart_init(hn_chart *chart, const hn_system *sys, bool with_rate,
                                       hn_arena *arena, hn_diag *diag);
 void hn_chart_destroy(hn_chart *chart);
 
@@ -43,8 +45,8 @@ HN_MUST_CHECK hn_status hn_chart_close(hn_chart *chart, hn_chart_point *point, d
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);
 /// The check of hn_chart_settle() alone.
 HN_MUST_CHECK hn_status hn_chart_check_mode(hn_chart *chart);
-/// 1 when `point` is at (t, q) already: q (nq).
-int hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
+/// Whether `point` is at (t, q) already: q (nq).
+bool hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
 
 /// The point at q as it is, closed or not: J, N, s and the factor.
 HN_MUST_CHECK hn_status hn_chart_locate(hn_chart *chart, hn_chart_point *point, double t,

@@ -8,6 +8,7 @@
 #include "formulations/ground/unit_scales.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -147,13 +148,13 @@ static void scale_columns(hn_chart *chart, double t, const double *q, const doub
 }
 
 // 1 when all speeds of balls are dependent, or may be independent
-static int serves(const hn_chart *chart) {
+static bool serves(const hn_chart *chart) {
     for (int j = 0; j < chart->r && chart->plain_only; j++) {
         if (chart->at[chart->ind[j]] < 0) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static hn_status fail_ball(hn_chart *chart, double t, int column) {
@@ -227,7 +228,7 @@ static hn_status improve(hn_chart *chart, double t, const double *q) {
                               : "a singular pose: no choice of coordinates is regular there");
 }
 
-int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
+bool hn_chart_has_full_rank(hn_chart *chart, double t, const double *q) {
     double volume;
     eval_here(chart, t, q);
     fill_scaled(chart);
@@ -372,10 +373,10 @@ bool hn_chart_nears_end(const hn_chart *chart, double h) {
     return chart->has_rate && chart->volume + STEPS_AHEAD * h * chart->volume_rate < 0;
 }
 
-int hn_chart_is_poor(hn_chart *chart, double h, double tau) {
+bool hn_chart_is_poor(hn_chart *chart, double h, double tau) {
     int k, j;
     if (chart->rank <= 0 || chart->r == 0) {
-        return 0;
+        return false;
     }
     const double gain = best_exchange(chart, &chart->here, &k, &j);
     chart->cost.ops += 3.0 * chart->rank * chart->r;

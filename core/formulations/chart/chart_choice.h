@@ -5,6 +5,8 @@
 
 #include "formulations/chart/chart_state.h"
 
+#include <stdbool.h>
+
 /// Which column has to be independent: the number of one, or
 enum {
     /// the actuated coordinates and then the first ones, as long as |det J_d| is at least
@@ -25,17 +27,17 @@ HN_MUST_CHECK hn_status hn_chart_choose_other(hn_chart *chart);
 /// ball could have taken over since `base` (plain_only), HN_ERR_UNSUPPORTED and the ball's name,
 /// because a shorter step changes nothing about that.
 hn_status hn_chart_fail_end(hn_chart *chart, double t, const double *q, const char *what);
-/// 1 when changing one dependent column for an independent one would make |det J_d| at `here`
+/// Whether changing one dependent column for an independent one would make |det J_d| at `here`
 /// larger by more than 1 / tau, and at least double it, or when the chart nears its end and another
 /// is better. With one freedom this compares with the best choice there is.
 /// h    size of the last step [s]
 /// tau  0: never
-int hn_chart_is_poor(hn_chart *chart, double h, double tau);
+bool hn_chart_is_poor(hn_chart *chart, double h, double tau);
 /// Says whether det J_d, which falls as it did in the last step, vanishes within two more steps of
 /// size h [s].
 bool hn_chart_nears_end(const hn_chart *chart, double h);
-/// 1 when all of J has full row rank nearby; for telling a dead point of the chart from a singular
+/// Whether all of J has full row rank nearby; for telling a dead point of the chart from a singular
 /// pose.
-int hn_chart_has_full_rank(hn_chart *chart, double t, const double *q);
+bool hn_chart_has_full_rank(hn_chart *chart, double t, const double *q);
 
 #endif

@@ -5,6 +5,7 @@
 #include "formulations/ground/flops.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // The dependent columns at one configuration: factor of J_d, basis, volume. Square J_d sparse,
@@ -12,7 +13,7 @@
 
 #define PIVOT_TOL 1e-13 // of the largest pivot: J_d is singular to rounding
 
-static int is_square(const hn_chart *chart) {
+static bool is_square(const hn_chart *chart) {
     return chart->nc == chart->rank;
 }
 
@@ -71,7 +72,7 @@ void hn_chart_set_columns(hn_chart *chart) {
     }
 }
 
-static int factor_sparse(hn_chart *chart, hn_chart_point *p) {
+static bool factor_sparse(hn_chart *chart, hn_chart_point *p) {
     for (int i = 0; i < chart->n_jd; i++) {
         const int e = chart->jd_entry[i];
         p->jd_values[i] = p->J[e] * chart->scale[chart->J_col[e]];
@@ -82,7 +83,7 @@ static int factor_sparse(hn_chart *chart, hn_chart_point *p) {
     return status == HN_OK;
 }
 
-static int factor_dense(hn_chart *chart, hn_chart_point *p) {
+static bool factor_dense(hn_chart *chart, hn_chart_point *p) {
     const int nc = chart->nc, rank = chart->rank;
     memset(p->jd.a, 0, (size_t)nc * (size_t)rank * sizeof *p->jd.a);
     for (int i = 0; i < chart->n_jd; i++) {
@@ -112,7 +113,7 @@ static bool has_regular_order(hn_chart *chart, hn_chart_point *p) {
     return factor_sparse(chart, p) && !is_near_fold(chart, p);
 }
 
-int hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
+bool hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
     const double *J = hn_eval_get(chart->loop, HN_TERM_J);
     const size_t nv = (size_t)chart->nv;
     for (int e = 0; e < chart->n_J; e++) {
@@ -120,7 +121,7 @@ int hn_chart_factor(hn_chart *chart, hn_chart_point *p) {
     }
     chart->cost.factorisations++;
     if (!(is_square(chart) ? factor_sparse(chart, p) : factor_dense(chart, p))) {
-        return 0;
+        return false;
     }
     return !is_near_fold(chart, p) || has_regular_order(chart, p);
 }

@@ -6,9 +6,11 @@
 
 #include "formulations/chart/chart_state.h"
 
-/// J_d at the point factored; 0 when it is singular, or has come too near to it for this chart. For
-/// hn_chart_locate() and close().
-int hn_chart_factor(hn_chart *chart, hn_chart_point *point);
+#include <stdbool.h>
+
+/// Factors J_d at the point, for hn_chart_locate() and hn_chart_close(). Returns false when it is
+/// singular, or too near to that for this chart.
+bool hn_chart_factor(hn_chart *chart, hn_chart_point *point);
 /// x (rank, in the scaled columns) <- J_d^-1 b, b (nc) overwritten.
 void hn_chart_solve_dependent(hn_chart *chart, const hn_chart_point *point, double *b, double *x);
 /// N and s from the factor.

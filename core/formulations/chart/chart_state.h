@@ -9,11 +9,13 @@
 #include "linalg/sparse_lu.h"
 #include "formulations/ground/formulation.h"
 
+#include <stdbool.h>
+
 enum { HN_CHART_TEXT = 240 };
 
 /// Everything that belongs to one configuration on the chart.
 typedef struct hn_chart_point {
-    int valid;
+    bool valid;
     double t;
     double *q; ///< nq, closed when made by hn_chart_close
     /// the entries of J that are not identically zero, in the order of hn_chart.J_row, J_col
@@ -32,18 +34,18 @@ typedef struct hn_chart {
     const hn_system *sys;
     int nq, nv, nc, rank, r; ///< r = nv - rank
     bool advises;            ///< failures name the coordinate that would pass
-    int plain_only; ///< 1: only coordinates with a position of their own may be independent
+    bool plain_only;         ///< only coordinates with a position of their own may be independent
     /// entries that are not identically zero, and where: borrowed from the evaluators
     int n_J, n_M;
     const int *J_row, *J_col, *M_row, *M_col;
     int *jd_entry, *jd_row, *jd_col; ///< entries of J that are in J_d, and their places there
     int n_jd;
-    int *dep_at;          ///< nv: where a column is in dep, -1: independent
-    int *at;              ///< nv: its entry of q, -1 for the speed of a ball
-    hn_eval *loop, *full; ///< phi, phi_t, J; and M, f, gamma
-    int *dep, *ind;       ///< rank and r column numbers, ascending
-    double *scale;        ///< nv, what counts as one: makes columns of J comparable
-    int with_rate;        ///< 1: gamma is evaluated, c of (2) enters (3); 0: c is taken as zero
+    int *dep_at;                ///< nv: where a column is in dep, -1: independent
+    int *at;                    ///< nv: its entry of q, -1 for the speed of a ball
+    hn_eval *loop, *full;       ///< phi, phi_t, J; and M, f, gamma
+    int *dep, *ind;             ///< rank and r column numbers, ascending
+    double *scale;              ///< nv, what counts as one: makes columns of J comparable
+    bool with_rate;             ///< gamma is evaluated, c of (2) enters (3); else c is 0
     hn_chart_point here, probe; ///< where the right-hand side is, and one for looking elsewhere
     hn_chart_point base;        ///< the last accepted state: q, N, s, t and sign alone
     hn_qr all;                  ///< pivoted factor of all of J, for choosing
@@ -54,7 +56,7 @@ typedef struct hn_chart {
     int *first_dep, has_first; ///< the first choice of all
     /// largest of the smallest pivots of the scaled J_d where charts were chosen
     double pivot_start;
-    int is_measured;     ///< the next two belong to the present choice
+    bool is_measured;    ///< the next two belong to the present choice
     double volume_start; ///< logarithm of |det J_d| there
     /// |det J_d| against that at the last accepted state, and its rate where has_rate is set
     double volume, volume_rate;

@@ -3,6 +3,7 @@
 
 #include "formulations/chart/chart_follow.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -97,12 +98,12 @@ void hn_minimal_ode(void *self, hn_ode *out) {
 }
 
 // the closed form takes over at the closed pose `here`; 0: a dyad stands at its dead point
-static int adopt_dyads(hn_minimal_state *s, double t) {
+static bool adopt_dyads(hn_minimal_state *s, double t) {
     if (!hn_dyads_take_branch(s->dyads, t, s->chart.here.q)) {
-        return 0;
+        return false;
     }
     s->chart.dyads = s->dyads;
-    return 1;
+    return true;
 }
 
 // the closed form must serve, or the run is refused with the reason
@@ -214,11 +215,11 @@ hn_status hn_minimal_get_state(void *self, double t, const double *y, double *q,
 // A step that jumps over a dead point finds a closed loop on the near side of it again: the
 // coordinate turns back although the mechanism went on. Then |det J_d| was on its way to zero and
 // all speeds have turned round.
-static int jumped_a_dead_point(const hn_minimal_state *s, double h) {
+static bool jumped_a_dead_point(const hn_minimal_state *s, double h) {
     const hn_chart *chart = &s->chart;
     double along = 0;
     if (chart->r == 0 || !hn_chart_nears_end(chart, h)) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < chart->nv; i++) {
         along += s->v[i] * s->last_v[i] / (chart->scale[i] * chart->scale[i]);

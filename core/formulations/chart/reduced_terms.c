@@ -8,6 +8,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -58,14 +59,14 @@ static hn_status allocate(hn_reduced_terms *w, hn_arena *arena) {
     return ok && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
 }
 
-static int closures_move(const hn_system *sys) {
+static bool closures_move(const hn_system *sys) {
     const hn_system_exprs x = hn_system_get_exprs(sys);
     for (int i = 0; i < hn_system_get_info(sys).nc; i++) {
         if (!hn_is_zero(x.phi_t[i])) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 hn_status hn_reduced_terms_init(hn_reduced_terms *w, const hn_system *sys, hn_arena *arena,
@@ -136,7 +137,7 @@ static double volume_of(hn_reduced_terms *w, const int *list) {
 
 /// The motors into `list`; 0 unless there are as many as freedoms, each behind a coordinate of the
 /// tree.
-static int list_motors(const hn_reduced_terms *w, int *list) {
+static bool list_motors(const hn_reduced_terms *w, int *list) {
     const hn_scene *scene = hn_system_scene(w->chart.sys);
     int n = 0, all = 0;
     for (int i = 0; i < scene->n_coordinates; i++) {
@@ -162,7 +163,7 @@ static void sort_ints(int *list, int n) {
 }
 
 /// Motors, then the chart's own, as long as they are not much worse than the best there are.
-static int choose_coordinates(hn_reduced_terms *w) {
+static bool choose_coordinates(hn_reduced_terms *w) {
     // the largest volume there is
     for (int i = 0; i < w->nv; i++) {
         put_row(w, i, i);
@@ -170,7 +171,7 @@ static int choose_coordinates(hn_reduced_terms *w) {
     hn_qr_factor(&w->rows, w->r, w->nv, DBL_EPSILON);
     const double best = log_volume(w);
     if (!isfinite(best) && w->r > 0) {
-        return 0;
+        return false;
     }
 
     memcpy(w->pivot, w->rows.perm, (size_t)w->r * sizeof *w->pivot);
@@ -179,16 +180,16 @@ static int choose_coordinates(hn_reduced_terms *w) {
     // prefer motors, then the chart's own coordinates, then the best ones
     w->choice = HN_REDUCED_BY_MOTORS;
     if (w->r > 0 && list_motors(w, w->ind) && volume_of(w, w->ind) >= best + log(HN_CHART_TAU)) {
-        return 1;
+        return true;
     }
     w->choice = HN_REDUCED_BY_CHART;
     memcpy(w->ind, w->chart.ind, (size_t)w->r * sizeof *w->ind);
     if (w->r == 0 || volume_of(w, w->ind) >= best + log(HN_CHART_TAU)) {
-        return 1;
+        return true;
     }
     w->choice = HN_REDUCED_BY_PIVOTS;
     memcpy(w->ind, w->pivot, (size_t)w->r * sizeof *w->ind);
-    return 1;
+    return true;
 }
 
 /// basis = N R^-1 and offset, so that v = basis v_r + offset with v_r the user rates `ind`: R =

@@ -23,6 +23,8 @@
 #include "dynamics/evaluate/force_parts.h"
 #include "formulations/chart/chart.h"
 
+#include <stdbool.h>
+
 typedef enum hn_reduced_choice {
     HN_REDUCED_BY_MOTORS, ///< as many motors as freedoms, and they can serve
     HN_REDUCED_BY_CHART,  ///< the coordinates that the reduced method integrates here
@@ -43,8 +45,8 @@ typedef struct hn_reduced_terms {
     double *v_r, *a_r;
     double *M_r, *C_r; ///< r x r
     double *g_r, *tau_r;
-    double *d_r;  ///< r: what closures that move with time add
-    int is_moved; ///< 1: a closure moves with time, so that s and d_r need not be zero
+    double *d_r;   ///< r: what closures that move with time add
+    bool is_moved; ///< a closure moves with time, so that s and d_r need not be zero
     /// largest entry of v - (Phi v_r + s): 0 to rounding where the given speeds fit the loops
     double speed_gap;
     // in system coordinates

@@ -7,6 +7,7 @@
 #include "formulations/ground/unit_scales.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ enum { MAX_NEWTON = 25 };
 // smallest pivot of J Y0, of the one at the base: the tangent space has turned by a right angle
 #define TURNED 1e-3
 
-static int init_memory(hn_tspace *ts, hn_arena *arena) {
+static bool init_memory(hn_tspace *ts, hn_arena *arena) {
     const size_t nq = (size_t)ts->nq, nv = (size_t)ts->nv, nc = (size_t)ts->nc;
     const int ok = hn_qr_init(&ts->base_qr, arena, ts->nv, ts->nc) &&
                    hn_qr_init(&ts->jy, arena, ts->nc, ts->nv);
@@ -131,7 +132,7 @@ static void take_columns(hn_tspace *ts, int from, int n, double *B) {
 
 // N0 = N L^-T with L L' = N' W^-1 N, which differs from I by the square of the angle turned through
 // since the last base
-static int carry_basis(hn_tspace *ts) {
+static bool carry_basis(hn_tspace *ts) {
     const int nv = ts->nv, r = ts->r;
     for (int i = 0; i < nv; i++) {
         for (int j = 0; j < r; j++) {
@@ -141,20 +142,20 @@ static int carry_basis(hn_tspace *ts) {
     hn_mass_project(nv, r, ts->N, ts->MN, ts->A);
     ts->cost.ops += 2.0 * nv * r * r;
     if (hn_cholesky(r, ts->A, r, 0) != HN_OK) {
-        return 0;
+        return false;
     }
     memcpy(ts->N0, ts->N, (size_t)nv * (size_t)r * sizeof(double));
     for (int i = 0; i < nv; i++) {
         hn_lower_solve(r, ts->A, r, ts->N0 + i * r);
     }
-    return 1;
+    return true;
 }
 
-int hn_tspace_base_is_at(const hn_tspace *ts, double t, const double *q) {
+bool hn_tspace_base_is_at(const hn_tspace *ts, double t, const double *q) {
     return ts->has_base && ts->t0 == t && memcmp(ts->q0, q, (size_t)ts->nq * sizeof *q) == 0;
 }
 
-static int is_at(const hn_tspace *ts, double t, const double *q) {
+static bool is_at(const hn_tspace *ts, double t, const double *q) {
     return ts->valid && ts->t == t && memcmp(ts->q, q, (size_t)ts->nq * sizeof *q) == 0;
 }
 

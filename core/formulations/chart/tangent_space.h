@@ -27,6 +27,8 @@
 #include "formulations/ground/formulation.h"
 #include "formulations/ground/reduced_mass.h"
 
+#include <stdbool.h>
+
 enum { HN_TSPACE_TEXT = 240 };
 
 typedef struct hn_tspace {
@@ -40,7 +42,7 @@ typedef struct hn_tspace {
     double length; ///< characteristic length [m]
 
     // the base
-    int has_base;
+    bool has_base;
     double t0;
     double *q0;        ///< nq
     double *scale;     ///< nv: W^1/2
@@ -50,7 +52,7 @@ typedef struct hn_tspace {
     double *new_scale; ///< scratch
 
     // where equations (2) and (3) were last taken
-    int valid;
+    bool valid;
     double t;
     double *q;      ///< nq
     hn_qr jy;       ///< J Y0, nc x rank
@@ -74,8 +76,8 @@ typedef enum hn_tspace_basis { HN_TSPACE_FRESH, HN_TSPACE_CARRIED } hn_tspace_ba
 /// q is not finite; the base is then the old one.
 HN_MUST_CHECK hn_status hn_tspace_set_base(hn_tspace *ts, double t, const double *q,
                                            hn_tspace_basis basis);
-/// 1 when the base is at (t, q).
-int hn_tspace_base_is_at(const hn_tspace *ts, double t, const double *q);
+/// Whether the base is at (t, q).
+bool hn_tspace_base_is_at(const hn_tspace *ts, double t, const double *q);
 
 /// N and s at (t, q), closed or not; nothing is done when they are there already. HN_ERR_CHART when
 /// J Y0 is singular there.

@@ -5,10 +5,11 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
-hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, int with_rate, int orthonormal,
-                          hn_arena *arena, hn_diag *diag) {
+hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, bool with_rate,
+                          int orthonormal, hn_arena *arena, hn_diag *diag) {
     s->orthonormal = orthonormal;
     s->with_rate = with_rate;
     s->arena = arena;
@@ -106,7 +107,7 @@ static hn_status jacobian(void *self, double t, const double *y, double *jac) {
 // The form that leaves out the rate of the basis has accelerations of its own, an orthonormal basis
 // turns by a rule of its own, and the positions of balls are not moved one speed at a time: these
 // are left to differences.
-static int has_derivatives(const hn_tangent_state *s) {
+static bool has_derivatives(const hn_tangent_state *s) {
     return s->with_rate && !s->orthonormal && s->chart.nq == s->chart.nv;
 }
 

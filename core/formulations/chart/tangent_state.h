@@ -8,18 +8,20 @@
 #include "formulations/chart/chart.h"
 #include "formulations/chart/chart_jacobian.h"
 
+#include <stdbool.h>
+
 typedef struct hn_tangent_state {
     hn_chart chart;
     hn_chart_jacobian slopes;
     hn_arena *arena;
-    int with_rate; ///< see hn_tangent_init
+    bool with_rate; ///< see hn_tangent_init
     /// 1: the columns of N have length 1 and are orthogonal, 0: N = [I; -J_d^-1 J_i]
     int orthonormal;
     double *v; ///< nv, scratch
 } hn_tangent_state;
 
 /// `with_rate` 0 leaves out the basis-rate term (a model error, see nullspace_as_printed.c).
-HN_MUST_CHECK hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, int with_rate,
+HN_MUST_CHECK hn_status hn_tangent_init(hn_tangent_state *s, const hn_system *sys, bool with_rate,
                                         int orthonormal, hn_arena *arena, hn_diag *diag);
 void hn_tangent_destroy(void *self);
 void hn_tangent_ode(void *self, hn_ode *out);

@@ -4,6 +4,7 @@
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/accel.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 static hn_accel_law law(const void *self) {
@@ -11,7 +12,7 @@ static hn_accel_law law(const void *self) {
     return (hn_accel_law){ode->alpha, ode->beta, 0};
 }
 
-hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
+hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, bool baumgarte,
                             hn_solver solver, hn_arena *arena, hn_diag *diag) {
     const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 0, .solver = solver};
     ode->base.law = baumgarte ? law : NULL;

@@ -13,13 +13,15 @@
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/state_ode.h"
 
+#include <stdbool.h>
+
 typedef struct hn_accel_ode {
     hn_state_ode base; // first
     hn_accel *accel;
     double alpha, beta; ///< [1/s], used with baumgarte
 } hn_accel_ode;
 
-HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, int baumgarte,
+HN_MUST_CHECK hn_status hn_accel_ode_init(hn_accel_ode *ode, const hn_system *sys, bool baumgarte,
                                           hn_solver solver, hn_arena *arena, hn_diag *diag);
 /// The option "solver" of the formulations that use this; the value is an hn_solver.
 #define HN_ACCEL_ODE_SOLVER_OPTION                                                            \

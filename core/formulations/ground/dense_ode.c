@@ -5,10 +5,11 @@
 #include "dynamics/evaluate/pivot_noise.h"
 #include "linalg/dense.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_gap, hn_arena *arena,
+hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, bool with_gap, hn_arena *arena,
                             hn_diag *diag) {
     const unsigned gap = with_gap ? HN_TERM_PHI | HN_TERM_PHI_T : 0;
     hn_status status = hn_state_ode_init(&ode->base, sys, arena);

@@ -12,6 +12,8 @@
 #include "dynamics/evaluate/eval.h"
 #include "formulations/ground/state_ode.h"
 
+#include <stdbool.h>
+
 typedef struct hn_dense_ode {
     hn_state_ode base; // first
     hn_eval *eval;
@@ -26,7 +28,7 @@ typedef struct hn_dense_ode {
 } hn_dense_ode;
 
 /// `with_gap`: phi and phi_t are wanted too. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, told in diag.
-HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, int with_gap,
+HN_MUST_CHECK hn_status hn_dense_ode_init(hn_dense_ode *ode, const hn_system *sys, bool with_gap,
                                           hn_arena *arena, hn_diag *diag);
 /// out (nc) = gamma + 2 xi omega (J v + phi_t) + omega^2 phi at the terms last evaluated.
 void hn_dense_ode_pull(const hn_dense_ode *ode, const double *v, double omega, double xi,

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,21 +60,21 @@ static hn_status find_choice(const hn_option *option, const char *word, double *
 }
 
 // 1 when the unit that follows a number is known; *parts of it make the option's own unit
-static int read_unit(const hn_option *option, const char *unit, double *parts) {
+static bool read_unit(const hn_option *option, const char *unit, double *parts) {
     *parts = 1;
     if (unit[0] == '\0' || (option->unit && strcmp(unit, option->unit) == 0)) {
-        return 1;
+        return true;
     }
     const int is_time = option->unit && strcmp(option->unit, "s") == 0;
     if (is_time && strcmp(unit, "ms") == 0) {
         *parts = 1e3;
-        return 1;
+        return true;
     }
     if (is_time && strcmp(unit, "us") == 0) {
         *parts = 1e6;
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
 // Length of the decimal number at the start of s (no hexadecimal, no nan, no inf), 0 if there is

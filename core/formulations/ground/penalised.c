@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,7 +48,7 @@ static size_t count_pairs(const hn_dense_ode *ode) {
     return n;
 }
 
-static int make_pattern(hn_penalised *p, hn_arena *arena) {
+static bool make_pattern(hn_penalised *p, hn_arena *arena) {
     const hn_dense_ode *ode = &p->ode;
     const size_t nv = (size_t)ode->base.nv, pairs = count_pairs(ode);
     const size_t cap = nv + (size_t)ode->n_M + pairs;

@@ -11,6 +11,8 @@
 #include "linalg/qr.h"
 #include "formulations/ground/accel_jacobian.h"
 
+#include <stdbool.h>
+
 enum { HN_SLOPES_REAL, HN_SLOPES_COMPLEX, HN_SLOPES_RESTING, HN_SLOPES_MATRICES }; // the last: (2)
 
 /// Four entries of q from `position`, three speeds from `speed`.
@@ -21,7 +23,7 @@ typedef struct hn_ball_place {
 struct hn_accel_jacobian {
     const hn_system *sys;
     int nq, nv, nc, n_balls, has_time;
-    int stabilised, gives;
+    bool stabilised, gives;
     hn_ball_place *balls;
     int *at;      ///< nv: entry of q, -1 for the speeds of a ball
     int *ball_of; ///< nv: which ball, -1: none
@@ -54,7 +56,7 @@ void hn_slopes_subtract_by_position(const hn_accel_jacobian *j, const double *x,
 typedef struct hn_slopes_target {
     hn_newton_matrix *to;
     int rows_from; ///< first row; of constraint rows: nv
-    int by_row;    ///< 1: rows are constraints
+    bool by_row;   ///< rows are constraints
 } hn_slopes_target;
 
 /// Puts entry (row, col) of a term at its destination.

@@ -3,6 +3,8 @@
 #include "formulations/ground/formulation.h"
 #include "formulations/chart/tangent_state.h"
 
+#include <stdbool.h>
+
 // (N' M N) u' + N' (M N' u + h) = N' Q    with the rate of the basis (the prime is a transpose to
 // the left of M, a rate to its right). Two bases: the partition N = [I; -J_d^-1 J_i], for which N'
 // u = [0; -J_d^-1 gamma] (tangent_state.h), and an orthonormal one that is carried along with the

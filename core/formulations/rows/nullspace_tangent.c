@@ -4,6 +4,7 @@
 #include "formulations/chart/tangent_space.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // Inside one step, from q_n with the bases N_n of the free speeds and Y_n across them
@@ -23,7 +24,7 @@ typedef struct nullspace_tangent {
     int n_balls;
 } nullspace_tangent;
 
-static int init(nullspace_tangent *s, const hn_system *sys, hn_arena *arena) {
+static bool init(nullspace_tangent *s, const hn_system *sys, hn_arena *arena) {
     const hn_system_info info = hn_system_get_info(sys);
     const size_t nv = (size_t)info.nv;
     s->q = hn_arena_doubles(arena, (size_t)info.nq);
@@ -31,7 +32,7 @@ static int init(nullspace_tangent *s, const hn_system *sys, hn_arena *arena) {
     s->delta = hn_arena_doubles(arena, nv);
     s->ball = hn_arena_ints(arena, nv);
     if (!s->q || !s->v || !s->delta || !s->ball) {
-        return 0;
+        return false;
     }
     s->n_balls = 0;
     for (int i = 0; i < info.nv; i++) {
@@ -40,7 +41,7 @@ static int init(nullspace_tangent *s, const hn_system *sys, hn_arena *arena) {
             i += 2;
         }
     }
-    return 1;
+    return true;
 }
 
 static hn_status create(const hn_system *sys, const double *options, hn_arena *arena, void **self,

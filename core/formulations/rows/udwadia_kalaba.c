@@ -7,6 +7,7 @@
 #include "formulations/ground/formulation.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,12 +48,12 @@ typedef struct udwadia_kalaba {
 // ---- eq. (1) ----
 
 // L and the scale; 0 where M is singular
-static int factor_mass(udwadia_kalaba *u) {
+static bool factor_mass(udwadia_kalaba *u) {
     const int nv = u->ode.base.nv;
     for (int i = 0; i < nv; i++) {
         const double m = u->ode.M[(size_t)i * nv + i];
         if (!(m > 0)) {
-            return 0;
+            return false;
         }
         u->scale[i] = 1 / sqrt(m);
     }

@@ -5,11 +5,12 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static const double KEEP_FACTOR_BELOW = 0.05; // contraction with which an old matrix goes on
 
-static int is_extended(const hn_newmark *s) {
+static bool is_extended(const hn_newmark *s) {
     return s->stabilised && s->base.sparse;
 }
 
@@ -53,7 +54,7 @@ void hn_newmark_carried_init(hn_newmark_carried *c, hn_arena *arena, size_t nv, 
     c->lambda = hn_arena_doubles(arena, nc);
 }
 
-hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised, hn_arena *arena,
+hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, bool stabilised, hn_arena *arena,
                           hn_diag *diag) {
     const unsigned rest = HN_LINEAR_RESIDUAL | HN_LINEAR_PHI | HN_LINEAR_SPEED_GAP;
     const unsigned matrices =

@@ -18,9 +18,11 @@
 #include "dynamics/evaluate/linearise.h"
 #include "integrators/step/dae_base.h"
 
+#include <stdbool.h>
+
 typedef struct hn_newmark {
     hn_dae_base base; ///< first
-    int stabilised;   ///< 1: with eta
+    bool stabilised;  ///< with eta
     double beta, gamma, weight;
     hn_linear *rest;     ///< R, phi, J v + phi_t
     hn_linear *matrices; ///< M, K, C, J, V
@@ -44,7 +46,7 @@ typedef struct hn_newmark_carried {
 void hn_newmark_carried_init(hn_newmark_carried *c, hn_arena *arena, size_t nv, size_t nc);
 
 /// Fails: HN_ERR_MEMORY, HN_ERR_LIMIT, with the reason in diag.
-HN_MUST_CHECK hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, int stabilised,
+HN_MUST_CHECK hn_status hn_newmark_init(hn_newmark *s, const hn_system *sys, bool stabilised,
                                         hn_arena *arena, hn_diag *diag);
 void hn_newmark_destroy(hn_newmark *s);
 /// Solves (1) to (4); y_new receives (q1, v1). Fails with its reason in base.why.

@@ -12,12 +12,14 @@
 //
 //  err |err| / sqrt(err^2 + err2^2 / 100) of the order of h^8 when err = O(h^6), err2 = O(h^4) (3)
 
+#include <stdbool.h>
+
 typedef struct hn_tableau {
     int stages; ///< that y1 needs
     int extra;  ///< stages after those, for dense output only; the first of them is F(t + h, y1)
     int order;  ///< of y1
     int embedded_order, embedded_order2; ///< of the solutions behind e and e2, 0: none
-    int fsal;         ///< 1: the last stage is F(t + h, y1), the first of the next step
+    bool fsal;        ///< the last stage is F(t + h, y1), the first of the next step
     const double *c;  ///< stages + extra
     const double *A;  ///< square of stages + extra, row-major, strictly lower
     const double *b;  ///< stages

@@ -8,6 +8,7 @@
 
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
+#include <stdbool.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -85,7 +86,7 @@ static int give_residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void *
     return 0;
 }
 
-static int is_sparse(const ida_stepper *s) {
+static bool is_sparse(const ida_stepper *s) {
     return !s->by_differences && hn_ida_jacobian_is_sparse(&s->jacobian);
 }
 
@@ -221,7 +222,7 @@ static hn_status create(const hn_system *sys, hn_dae_form form, const double *op
 
 // ---- start ----
 
-static int create_vectors(ida_stepper *s) {
+static bool create_vectors(ida_stepper *s) {
     s->y = N_VNew_Serial(s->n, s->context);
     s->ydot = N_VNew_Serial(s->n, s->context);
     s->id = N_VNew_Serial(s->n, s->context);
@@ -360,7 +361,7 @@ static hn_status start(void *self, double t, const double *y) {
 
 // ---- a step ----
 
-static int is_another_state(const ida_stepper *s, const double *y) {
+static bool is_another_state(const ida_stepper *s, const double *y) {
     const int n = s->problem.nq + s->problem.nv;
     const double *mine = data_of(s->y);
     double sum = 0;

@@ -5,6 +5,7 @@
 #include "linalg/dense.h"
 #include "linalg/newton_matrix.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 static unsigned terms_of(hn_dae_form form) {
@@ -19,7 +20,7 @@ static unsigned terms_of(hn_dae_form form) {
     return always | speeds[form] | (index1 ? gamma : 0);
 }
 
-static int is_index1(const hn_ida_problem *p) {
+static bool is_index1(const hn_ida_problem *p) {
     return p->form == HN_FORM_INDEX1 || p->form == HN_FORM_STABILISED;
 }
 
@@ -300,7 +301,7 @@ const hn_compressed *hn_ida_jacobian_fill_sparse(hn_ida_jacobian *j, double t, d
     return &j->sparse->places;
 }
 
-int hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j) {
+bool hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j) {
     return j->sparse != NULL;
 }
 

@@ -22,6 +22,8 @@
 #include "integrators/external/ida_problem.h"
 #include "linalg/compressed.h"
 
+#include <stdbool.h>
+
 typedef struct hn_ida_sparse {
     hn_compressed places;
     double *values;
@@ -47,10 +49,10 @@ void hn_ida_jacobian_free(hn_ida_jacobian *j);
 /// Fills A (n x n, column by column).
 void hn_ida_jacobian_fill(hn_ida_jacobian *j, double t, double c, const double *y,
                           const double *ydot, double *A);
-/// 1 when the matrix is large and has few entries: it is then filled in compressed columns with at
+/// Whether the matrix is large and has few entries: it is then filled in compressed columns with at
 /// most so many entries. Their places are the same from one filling to the next as long as the rows
 /// that are kept are.
-int hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j);
+bool hn_ida_jacobian_is_sparse(const hn_ida_jacobian *j);
 int hn_ida_jacobian_puts(const hn_ida_jacobian *j);
 /// The places, and the values of their entries (borrowed).
 const hn_compressed *hn_ida_jacobian_fill_sparse(hn_ida_jacobian *j, double t, double c,

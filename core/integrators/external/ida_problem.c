@@ -8,17 +8,18 @@
 #include "formulations/ground/flops.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // a row of J shorter than this beside the others, once they are taken out of it, depends on
 // them
 #define ROW_RANK 1e-10
 
-static int has_mu(const hn_ida_problem *p) {
+static bool has_mu(const hn_ida_problem *p) {
     return p->form == HN_FORM_GGL;
 }
 
-static int is_stabilised(const hn_ida_problem *p) {
+static bool is_stabilised(const hn_ida_problem *p) {
     return p->form == HN_FORM_STABILISED;
 }
 

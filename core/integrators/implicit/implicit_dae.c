@@ -14,6 +14,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -49,11 +50,11 @@ typedef struct implicit_dae {
     char why[HN_STAGES_WHY];
 } implicit_dae;
 
-static int wants_phi(hn_dae_form form) {
+static bool wants_phi(hn_dae_form form) {
     return form == HN_FORM_INDEX3 || form == HN_FORM_GGL;
 }
 
-static int wants_speed_gap(hn_dae_form form) {
+static bool wants_speed_gap(hn_dae_form form) {
     return form == HN_FORM_INDEX2 || form == HN_FORM_GGL;
 }
 
@@ -159,15 +160,15 @@ static void solve(void *self, hn_parts r) {
     hn_implicit_linear_solve(&s->lin, r);
 }
 
-static int has_driven_loop(const hn_system *sys) {
+static bool has_driven_loop(const hn_system *sys) {
     const hn_system_exprs exprs = hn_system_get_exprs(sys);
     const int nc = hn_system_get_info(sys).nc;
     for (int i = 0; i < nc; i++) {
         if (!hn_is_zero(exprs.phi_t[i])) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 // ---- life ----

@@ -6,6 +6,7 @@
 #include "formulations/ground/unit_scales.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define ROW_FLOOR \
@@ -35,28 +36,28 @@ static int wants_sparse(const hn_implicit_linear *l) {
                                          most + 2LL * hn_linear_entries(l->terms, HN_LINEAR_J));
 }
 
-static int create_matrices(hn_implicit_linear *l, hn_arena *arena) {
+static bool create_matrices(hn_implicit_linear *l, hn_arena *arena) {
     const int puts = count_puts(l), n = l->nv + l->nc, extended = l->sparse && l->stabilised;
     for (int which = 0; which < 2; which++) {
         l->matrix[which] = hn_newton_matrix_create(arena, which ? HN_COMPLEX : HN_REAL, l->sparse,
                                                    extended ? 2 * n : n, puts);
         if (!l->matrix[which]) {
-            return 0;
+            return false;
         }
     }
     l->packed = hn_arena_doubles(arena, 4 * (size_t)n);
     l->packed_rows = hn_arena_doubles(arena, (size_t)n);
-    return 1;
+    return true;
 }
 
 // M's lower triangle as its own sparse matrix
-static int create_mass_factor(hn_implicit_linear *l, hn_arena *arena) {
+static bool create_mass_factor(hn_implicit_linear *l, hn_arena *arena) {
     const int *rows, *cols, n = hn_linear_pattern(l->terms, HN_LINEAR_M, &rows, &cols);
     int *row = hn_arena_ints(arena, (size_t)n), *col = hn_arena_ints(arena, (size_t)n);
     l->lower = hn_arena_ints(arena, (size_t)n);
     l->lower_values = hn_arena_doubles(arena, (size_t)n);
     if (hn_arena_failed(arena)) {
-        return 0;
+        return false;
     }
     for (int k = 0; k < n; k++) {
         if (rows[k] >= cols[k]) {
@@ -313,7 +314,7 @@ static void put_term(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linea
 
 // w times the kept rows of J or V, or of their transpose
 static void put_rows(const hn_implicit_linear *l, hn_newton_matrix *to, hn_linear_term term,
-                     int transposed, hn_complex w, int row, int col) {
+                     bool transposed, hn_complex w, int row, int col) {
     const double *values = hn_linear_get(l->terms, term);
     const int *rows, *cols, n = hn_linear_pattern(l->terms, term, &rows, &cols);
     for (int k = 0; k < n; k++) {

@@ -14,6 +14,8 @@
 // stage (real: odd number of stages; complex: two or three). Source: Hairer & Wanner 1996, sections
 // IV.5 and IV.8.
 
+#include <stdbool.h>
+
 enum { HN_IMPLICIT_STAGES = 3 };
 
 typedef struct hn_collocation {
@@ -29,7 +31,7 @@ typedef struct hn_collocation {
     double gamma, alpha, beta;
     /// With error weights e: F(y0) + sum e_i Z_i / h, brought back by the real Newton matrix,
     /// estimates the error.
-    int has_error;
+    bool has_error;
     double e[HN_IMPLICIT_STAGES];
 } hn_collocation;
 

@@ -4,6 +4,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -144,9 +145,9 @@ typedef struct progress {
 } progress;
 
 // 1 when what is left is below the tolerance, or is rounding
-static int is_done(const hn_stages *nw, const progress *p) {
+static bool is_done(const hn_stages *nw, const progress *p) {
     if (p->size <= nw->floor) {
-        return 1;
+        return true;
     }
     if (nw->tol > 0) {
         return p->ratio < 1 && p->ratio / (1 - p->ratio) * p->size <= nw->tol;

@@ -5,6 +5,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -327,7 +328,7 @@ double hn_method_option(const hn_method_spec *spec, const char *key, double othe
     return value ? *value : otherwise;
 }
 
-int hn_method_is_adaptive(const hn_method_spec *spec) {
+bool hn_method_is_adaptive(const hn_method_spec *spec) {
     return spec->stepper->adaptive && !(hn_method_option(spec, "h", 0) > 0);
 }
 

@@ -8,6 +8,8 @@
 #include "integrators/step/stepper.h"
 #include "formulations/ground/formulation.h"
 
+#include <stdbool.h>
+
 enum { HN_SPEC_MAX = 256 };
 
 typedef struct hn_method_spec {
@@ -36,8 +38,8 @@ double hn_method_option(const hn_method_spec *spec, const char *key, double othe
 hn_dae_form hn_method_form(const hn_formulation *formulation, const hn_stepper *stepper);
 /// 1 if the integrator serves what the formulation hands over.
 int hn_method_fits(const hn_formulation *formulation, const hn_stepper *stepper);
-/// 1 if the step is chosen from tolerances: the integrator is adaptive and no h > 0 fixes it.
-int hn_method_is_adaptive(const hn_method_spec *spec);
+/// Whether the step is chosen from tolerances: the integrator is adaptive and no h > 0 fixes it.
+bool hn_method_is_adaptive(const hn_method_spec *spec);
 /// Checks one value against its table entry: HN_OK or HN_ERR_INPUT with the reason in diag (no
 /// column).
 HN_MUST_CHECK hn_status hn_option_check(const hn_option *info, double value, hn_diag *diag);

@@ -6,6 +6,7 @@
 #include "formulations/ground/flops.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -183,7 +184,7 @@ void hn_dae_put_mass(const hn_dae_base *b, hn_newton_matrix *to, double s, int r
     }
 }
 
-static void put_border(const hn_dae_base *b, hn_newton_matrix *to, const double *J, int transposed,
+static void put_border(const hn_dae_base *b, hn_newton_matrix *to, const double *J, bool transposed,
                        double s, int row, int col) {
     for (int k = 0; k < b->n_J; k++) {
         const int at = b->place[b->J_row[k]], j = b->J_col[k];

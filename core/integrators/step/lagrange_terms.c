@@ -8,6 +8,7 @@
 #include "expr/tape.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // one tape with its memory
@@ -272,7 +273,7 @@ void hn_lagrange_free(hn_lagrange *l) {
     }
 }
 
-int hn_lagrange_mass_is_constant(const hn_lagrange *l) {
+bool hn_lagrange_mass_is_constant(const hn_lagrange *l) {
     return l->constant;
 }
 
@@ -291,7 +292,7 @@ static double next_signed(unsigned *seed) {
     return (double)(*seed >> 8) / 8388608.0 - 1;
 }
 
-int hn_lagrange_has_dissipation(hn_lagrange *l) {
+bool hn_lagrange_has_dissipation(hn_lagrange *l) {
     enum { STATES = 6 };
     unsigned seed = 1;
     for (int k = 0; k < STATES; k++) {
@@ -305,11 +306,11 @@ int hn_lagrange_has_dissipation(hn_lagrange *l) {
         for (int i = 0; i < l->n; i++) {
             const double left = fabs(l->rest.out[i]), size = sqrt(l->rest.out[l->n + i]);
             if (isfinite(size) && left > 1e-10 * size) {
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 void hn_lagrange_forces(hn_lagrange *l, double t, const double *q, const double *v,

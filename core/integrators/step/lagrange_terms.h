@@ -17,17 +17,19 @@
 #include "base/arena.h"
 #include "dynamics/compile/system.h"
 
+#include <stdbool.h>
+
 typedef struct hn_lagrange hn_lagrange;
 
 /// Memory from `arena`, the tapes owned. Fails: HN_ERR_MEMORY, HN_ERR_LIMIT.
 HN_MUST_CHECK hn_status hn_lagrange_create(const hn_system *sys, hn_arena *arena,
                                            hn_lagrange **out);
 void hn_lagrange_free(hn_lagrange *l); ///< NULL is legal
-/// 1 when no entry of M depends on q or t.
-int hn_lagrange_mass_is_constant(const hn_lagrange *l);
-/// 1 when Q_v differs from zero at some of a few states with coordinates and speeds of order one:
+/// Whether no entry of M depends on q or t.
+bool hn_lagrange_mass_is_constant(const hn_lagrange *l);
+/// Whether Q_v differs from zero at some of a few states with coordinates and speeds of order one:
 /// more than rounding makes it.
-int hn_lagrange_has_dissipation(hn_lagrange *l);
+bool hn_lagrange_has_dissipation(hn_lagrange *l);
 
 /// All below are borrowed from the object and stay until the next call of the same function.
 /// out: M v (nv) and L_q (nv) at (t, q, v).

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -143,7 +144,7 @@ static void find_horizon(hn_accounts *a, hn_account_row *row) {
 }
 
 /// Computes the budget of one method. Returns 0 when it was stopped.
-static int make_row(hn_accounts *a, hn_account_row *row) {
+static bool make_row(hn_accounts *a, hn_account_row *row) {
     const hn_account_opts opts = {.stop = ask_stop, .progress = report_progress, .user = a};
     hn_diag diag = {0};
     row->status =
@@ -157,7 +158,7 @@ static int make_row(hn_accounts *a, hn_account_row *row) {
     return row->status != HN_ERR_BUDGET && !a->stopped && !a->out_of_time;
 }
 
-int hn_accounts_run(hn_accounts *a) {
+bool hn_accounts_run(hn_accounts *a) {
     const double limit = a->request.limits.time_limit;
     int going = 1;
     a->deadline = limit > 0 ? hn_clock_wall() + limit : HUGE_VAL;
@@ -177,11 +178,11 @@ int hn_accounts_resumed(const hn_accounts *a) {
     return a->resumed;
 }
 
-int hn_accounts_stopped(const hn_accounts *a) {
+bool hn_accounts_stopped(const hn_accounts *a) {
     return a->stopped;
 }
 
-int hn_accounts_out_of_time(const hn_accounts *a) {
+bool hn_accounts_out_of_time(const hn_accounts *a) {
     return a->out_of_time;
 }
 

@@ -8,6 +8,8 @@
 #include "session/job/job_request.h"
 #include "study/account/account.h"
 
+#include <stdbool.h>
+
 enum { HN_ACCOUNTS_METHODS = 24 };
 
 /// One method's account, or why there is none.
@@ -48,10 +50,10 @@ typedef struct hn_accounts hn_accounts;
 HN_MUST_CHECK hn_status hn_accounts_open(const hn_job_request *request, hn_accounts **out,
                                          hn_diags *diags);
 void hn_accounts_free(hn_accounts *accounts); ///< NULL is legal
-/// Computes the missing budgets. Returns 1 when all are complete; 0: stopped, or out of time. The
-/// row of a method without a budget gives the reason.
-int hn_accounts_run(hn_accounts *accounts);
-int hn_accounts_stopped(const hn_accounts *accounts),
+/// Computes the missing budgets. Returns whether all are complete; false when it was stopped or out
+/// of time. The row of a method without a budget gives the reason.
+bool hn_accounts_run(hn_accounts *accounts);
+bool hn_accounts_stopped(const hn_accounts *accounts),
     hn_accounts_out_of_time(const hn_accounts *accounts);
 
 int hn_accounts_resumed(const hn_accounts *accounts); ///< budgets kept from an earlier run

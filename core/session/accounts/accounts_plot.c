@@ -7,6 +7,7 @@
 #include "session/precision/study_page.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,13 +46,13 @@ static int take_parts(const hn_model *model, const hn_account_row *row, int ener
     return isfinite(p->whole);
 }
 
-int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy) {
+bool hn_accounts_can_plot(const hn_account_row *rows, int n, int energy) {
     for (int i = 0; i < n; i++) {
         if (rows[i].status == HN_OK && (energy || rows[i].account.coordinate >= 0)) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static void format_signed(double value, const char *unit, char out[SIGNED_TEXT]) {

@@ -5,8 +5,10 @@
 
 #include "session/accounts/accounts.h"
 
-/// 1 if one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
-int hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
+#include <stdbool.h>
+
+/// Whether one of the rows has an error at the end (energy = 0), a bill of energy (1) to draw.
+bool hn_accounts_can_plot(const hn_account_row *rows, int n, int energy);
 /// One <svg> element: where the errors come from (energy = 0) or who put energy in (1), a bar a
 /// row; colours as in study_plot.h.
 void hn_accounts_plot(hn_strbuf *b, const hn_model *model, const hn_account_row *rows, int n,

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 enum { FORMAT = 2 }; // counts up when the meaning of a line changes
 
@@ -29,7 +30,7 @@ static uint64_t accounts_key(const hn_accounts *a) {
 enum { N_NUMBERS = 0 NUMBERS(COUNT) };
 #undef COUNT
 
-static int take_account(const cJSON *o, int n_user, hn_account *a) {
+static bool take_account(const cJSON *o, int n_user, hn_account *a) {
     double numbers[N_NUMBERS], steps;
     int state, k = 0;
     if (!hn_stored_int(o, "state", HN_RUN_FAILED + 1, &state) ||
@@ -40,7 +41,7 @@ static int take_account(const cJSON *o, int n_user, hn_account *a) {
         !hn_stored_numbers(o, "numbers", numbers, N_NUMBERS) ||
         !hn_stored_numbers(o, "parts", a->part, HN_CAUSE_COUNT) ||
         !hn_stored_numbers(o, "bill", a->bill, HN_BILL_COUNT)) {
-        return 0;
+        return false;
     }
     a->coordinate--; // -1: none
     a->state = (hn_run_state)state;
@@ -48,7 +49,7 @@ static int take_account(const cJSON *o, int n_user, hn_account *a) {
 #define TAKE(name) a->name = numbers[k++];
     NUMBERS(TAKE)
 #undef TAKE
-    return 1;
+    return true;
 }
 
 static int take_line(void *user, const cJSON *o) {

@@ -8,6 +8,7 @@
 #include "study/run/pace.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -186,53 +187,53 @@ int hn_comparison_slot(const hn_comparison *c, int method) {
     return c->entries[method].slot;
 }
 
-static int is_live(const entry *e) {
+static bool is_live(const entry *e) {
     return !e->over_budget && hn_run_get_summary(e->run).state != HN_RUN_FAILED;
 }
 
-int hn_comparison_finished(const hn_comparison *c) {
+bool hn_comparison_finished(const hn_comparison *c) {
     if ((double)c->frame * c->frame_dt >= c->duration * (1 - 1e-12)) {
-        return 1;
+        return true;
     }
     for (int i = 0; i < c->n; i++) {
         if (is_live(&c->entries[i])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 /// Stops a method whose frame has cost too much; 1 when it did.
-static int check_budget(const hn_comparison *c, entry *e) {
+static bool check_budget(const hn_comparison *c, entry *e) {
     const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
     if (cpu <= c->cpu_budget) {
-        return 0;
+        return false;
     }
     e->over_budget = 1;
     e->slowness = cpu / fmax(hn_run_time(e->run) - e->frame_t, 1e-300);
-    return 1;
+    return true;
 }
 
 /// Steps one method to the last point of its own grid at or before t (fixed step), or past t
 /// (adaptive). Returns 0 when `stop` asked for it.
-static int advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void *user),
-                         void *user) {
+static bool advance_entry(hn_comparison *c, entry *e, double t, int (*stop)(void *user),
+                          void *user) {
     double target = e->h > 0 ? floor(t / e->h + 1e-9) * e->h : t;
     hn_pace pace = hn_pace_begin();
     while (hn_run_time(e->run) < target * (1 - 1e-14)) {
         if (hn_run_step_towards(e->run, target) != HN_OK) {
-            return 1;
+            return true;
         }
         if (hn_pace_is_due(&pace)) {
             if (check_budget(c, e)) {
-                return 1;
+                return true;
             }
             if (stop && stop(user)) {
-                return 0;
+                return false;
             }
         }
     }
-    return 1;
+    return true;
 }
 
 /// Records the mean computing time of a step in this frame.
@@ -264,7 +265,7 @@ hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method) {
     return cost;
 }
 
-int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
+bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
         const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
         c->entries[i].frame_cpu = s.cpu_seconds;
@@ -279,7 +280,7 @@ int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
         // the order rotates, so that no method always starts with cold caches
         entry *e = &c->entries[(k + c->frame) % c->n];
         if (is_live(e) && !advance_entry(c, e, t, stop, user)) {
-            return 0;
+            return false;
         }
     }
     for (int i = 0; i < c->n; i++) {
@@ -290,7 +291,7 @@ int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && hn_comparison_finished(c); i++) {
         hn_run_diagnose(c->entries[i].run);
     }
-    return 1;
+    return true;
 }
 
 void hn_comparison_next(hn_comparison *c) {
@@ -310,14 +311,14 @@ void hn_comparison_reset(hn_comparison *c) {
 }
 
 /// 1 if the formulation of this method has the setting.
-static int has_setting(const hn_run *run, const char *key) {
+static bool has_setting(const hn_run *run, const char *key) {
     const hn_formulation *f = hn_run_spec(run)->formulation;
     for (int i = 0; i < f->n_options; i++) {
         if (strcmp(f->options[i].key, key) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, double value,
@@ -343,17 +344,17 @@ hn_status hn_comparison_set(hn_comparison *c, int method, const char *key, doubl
     return HN_OK;
 }
 
-int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out) {
+bool hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out) {
     const entry *e = &c->entries[method];
     double t = (double)c->frame * c->frame_dt;
     if (is_live(e) && hn_run_sample(e->run, t, out) == HN_OK) {
-        return 1;
+        return true;
     }
     // the last good state: a failed run keeps it as its present one
     if (hn_run_sample(e->run, hn_run_time(e->run), out) != HN_OK) {
         *out = (hn_sample){0};
     }
-    return 0;
+    return false;
 }
 
 /// Returns the present state of the method: "running", "finished" or "failed".

@@ -10,6 +10,8 @@
 #include "session/model/model.h"
 #include "study/run/run.h"
 
+#include <stdbool.h>
+
 enum { HN_COMPARISON_MAX_METHODS = 8 };
 
 typedef struct hn_comparison hn_comparison;
@@ -37,15 +39,15 @@ double hn_comparison_frame_dt(const hn_comparison *c);
 double hn_comparison_duration(const hn_comparison *c);
 long long
 hn_comparison_frame(const hn_comparison *c); ///< index of the present frame, 0 at the start
-int hn_comparison_finished(
+bool hn_comparison_finished(
     const hn_comparison *c); ///< the clock reached the duration, or every method failed
 /// Advances every method to the next frame. The failure of one method is not an error of the
 /// comparison.
 void hn_comparison_next(hn_comparison *c);
-/// Advances in pieces. Returns 1 when the next frame is complete, 0 when `stop` (called every few
-/// milliseconds; may be NULL) returned 1. The next call continues the frame; until it is complete
-/// there are no samples. hn_comparison_reset() discards an unfinished frame.
-int hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
+/// Advances in pieces. Returns whether the next frame is complete; false when `stop` (called every
+/// few milliseconds; may be NULL) returned 1. The next call continues the frame; until it is
+/// complete there are no samples. hn_comparison_reset() discards an unfinished frame.
+bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user);
 void hn_comparison_reset(hn_comparison *c);
 /// Changes an option, such as "alpha", of one method while it runs; method -1: of all that have it.
 HN_MUST_CHECK hn_status hn_comparison_set(hn_comparison *c, int method, const char *key,
@@ -60,9 +62,9 @@ typedef struct hn_step_cost {
 } hn_step_cost;
 enum { HN_STEP_COST_FRAMES = 5 };
 hn_step_cost hn_comparison_step_cost(const hn_comparison *c, int method);
-/// Returns the sample of a method at the present frame. Returns 0 when the method has failed; *out
-/// is then its last good state.
-int hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
+/// Gives the sample of a method at the present frame. Returns false when the method has failed;
+/// *out is then its last good state.
+bool hn_comparison_sample(const hn_comparison *c, int method, hn_sample *out);
 
 /// Writes the present frame: {"frame","t","finished","methods":[{"state","t","points":[...],"gap",
 /// "velocity_gap","energy","work","energy_change","steps","evals","ops","cpu","step_cpu":{"median",

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ int hn_extreme_is_stopped(void *user) {
 
 /// Runs one trial; `whole` is its share of the matrix. Returns 0 when it was stopped: a trial that
 /// is not complete has no result.
-static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t, double whole) {
+static bool run_trial(hn_extreme_bench *bench, hn_extreme_trial *t, double whole) {
     const int n = t->n_scenes * t->n_methods;
     for (int i = 0; i < n; i++) {
         const hn_extreme_scene *scene = t->scenes[i / t->n_methods];
@@ -29,11 +30,11 @@ static int run_trial(hn_extreme_bench *bench, hn_extreme_trial *t, double whole)
         t->measure->see(bench, t, scene, method, &t->seen[i]);
         bench->share += whole / n;
         if (hn_extreme_is_stopped(bench)) {
-            return 0;
+            return false;
         }
     }
     hn_extreme_conclude(t);
-    return 1;
+    return true;
 }
 
 static hn_extreme_verdict case_verdict(const hn_extreme_case *c) {

@@ -22,6 +22,8 @@
 #include "session/job/job_request.h"
 #include "session/model/library.h"
 
+#include <stdbool.h>
+
 enum {
     HN_EXTREME_CASES = 64,
     HN_EXTREME_TRIALS = 32, ///< of a case
@@ -91,12 +93,12 @@ typedef struct hn_extreme_trial {
     int n_scenes, n_methods, n_set, n_state, n_truth, n_sweep;
     const hn_extreme_scene *scenes[HN_EXTREME_RUNS];
     const char *methods[HN_EXTREME_RUNS]; ///< {formula} in the swept name is filled in
-    int solvers;                          ///< 1: methods are solvers of the saddle system
+    bool solvers;                         ///< methods are solvers of the saddle system
     int refine;                           ///< corrections allowed to them
     hn_extreme_assign set[HN_EXTREME_SETTINGS], state[HN_EXTREME_SETTINGS],
         truth[HN_EXTREME_SETTINGS];
     const char *truth_method; ///< a run that counts as exact, or NULL
-    int is_open; ///< the start is moved off row `row` of the constraints: by gap, and speed
+    bool is_open; ///< the start is moved off row `row` of the constraints: by gap, and speed
     int row;
     double gap, speed;
     const char *sweep; ///< NULL: none
@@ -108,7 +110,7 @@ typedef struct hn_extreme_trial {
         limit[2]; ///< of a search for the largest stable step [s]; {0, 0}: about the predicted one
     double max_steps; ///< 0: no bound of its own
     double steps;     ///< number of steps for which a step size is tried
-    int is_long;      ///< run only when asked for
+    bool is_long;     ///< run only when asked for
     hn_extreme_expect expect;
     // what was seen
     hn_extreme_verdict verdict;

@@ -10,6 +10,7 @@
 
 #include <ctype.h>
 #include <dirent.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,11 +71,11 @@ static int number_of(const char *file) {
                : 0;
 }
 
-static int is_wanted(const char *file, const char *const *ids, int n_ids) {
+static bool is_wanted(const char *file, const char *const *ids, int n_ids) {
     const int number = number_of(file);
     for (int i = 0; i < n_ids; i++) {
         if (tolower((unsigned char)ids[i][0]) == 'x' && atoi(ids[i] + 1) == number) {
-            return 1;
+            return true;
         }
     }
     return n_ids == 0;

@@ -11,10 +11,11 @@
 #include "study/cost/convergence.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-static int fits(const hn_extreme_expect *e, const char *word, const char *reason) {
+static bool fits(const hn_extreme_expect *e, const char *word, const char *reason) {
     const int same = strcmp(e->word, word) == 0 ||
                      (strcmp(e->word, "ended") == 0 && strcmp(word, "finished") != 0);
     return same && (!e->says || strstr(reason, e->says));
@@ -69,9 +70,9 @@ static void see_outcome(hn_extreme_bench *bench, const hn_extreme_trial *trial,
 
 /// Measures the quantity at every value of the sweep. Returns 0, with a reason in out, when one is
 /// missing.
-static int see_sweep(hn_extreme_bench *bench, const hn_extreme_trial *trial,
-                     const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out,
-                     double *y) {
+static bool see_sweep(hn_extreme_bench *bench, const hn_extreme_trial *trial,
+                      const hn_extreme_scene *scene, const char *method, hn_extreme_seen *out,
+                      double *y) {
     for (int i = 0; i < trial->n_sweep; i++) {
         const hn_extreme_point point = {trial, scene, method, trial->values[i]};
         char reason[200];
@@ -81,10 +82,10 @@ static int see_sweep(hn_extreme_bench *bench, const hn_extreme_trial *trial,
             snprintf(out->reason, sizeof out->reason, "%.40s = %g: %.140s", trial->sweep,
                      trial->values[i], reason);
             out->value = (double)NAN;
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static void see_value(hn_extreme_bench *bench, const hn_extreme_trial *trial,

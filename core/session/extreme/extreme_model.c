@@ -12,6 +12,7 @@
 #include "linalg/saddle.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -105,25 +106,25 @@ void hn_extreme_bench_clear(hn_extreme_bench *bench) {
 }
 
 /// Returns 1 when the trial can use a scene whose loops cannot be closed.
-static int may_be_open(const hn_extreme_trial *t) {
+static bool may_be_open(const hn_extreme_trial *t) {
     return t->of && (t->of->needs & HN_EXTREME_MODEL);
 }
 
 /// Returns 1 when the loaded model already has these settings.
-static int is_loaded(const hn_extreme_bench *bench, const hn_extreme_point *point,
-                     const hn_setting *settings) {
+static bool is_loaded(const hn_extreme_bench *bench, const hn_extreme_point *point,
+                      const hn_setting *settings) {
     const hn_extreme_trial *t = point->trial;
     if (!bench->model || bench->scene != point->scene || bench->n_set != t->n_set ||
         bench->is_open != may_be_open(t)) {
-        return 0;
+        return false;
     }
     for (int i = 0; i < t->n_set; i++) {
         if (bench->settings[i].name != settings[i].name ||
             memcmp(&bench->settings[i].value, &settings[i].value, sizeof(double)) != 0) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 const hn_model *hn_extreme_model(hn_extreme_bench *bench, const hn_extreme_point *point) {

@@ -3,6 +3,7 @@
 #include "session/extreme/extreme_model.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -57,10 +58,10 @@ void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const 
 
 /// Checks that `node` is an object and reports fields that are unknown or given twice.
 /// Returns 1 for an object, else 0.
-int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields) {
+bool hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields) {
     if (!cJSON_IsObject(node)) {
         hn_xr_fault(r, NULL, NULL, "expected an object");
-        return 0;
+        return false;
     }
 
     // check every member
@@ -85,7 +86,7 @@ int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields) {
             hn_xr_fault(r, m->string, NULL, "the field is given twice");
         }
     }
-    return 1;
+    return true;
 }
 
 // values ----
@@ -100,7 +101,7 @@ const char *hn_xr_keep(hn_xr *r, const char *text) {
     return copy ? copy : "";
 }
 
-const char *hn_xr_text(hn_xr *r, const cJSON *object, const char *key, int required) {
+const char *hn_xr_text(hn_xr *r, const cJSON *object, const char *key, bool required) {
     const cJSON *m = hn_xr_get(object, key);
     if (!m && !required) {
         return NULL;
@@ -126,7 +127,7 @@ double hn_xr_number(hn_xr *r, const cJSON *object, const char *key, double low, 
     return m ? hn_xr_check_number(r, m, key, low, high) : otherwise;
 }
 
-int hn_xr_flag(hn_xr *r, const cJSON *object, const char *key) {
+bool hn_xr_flag(hn_xr *r, const cJSON *object, const char *key) {
     const cJSON *m = hn_xr_get(object, key);
     if (m && !cJSON_IsBool(m)) {
         hn_xr_fault(r, key, NULL, "expected true or false");

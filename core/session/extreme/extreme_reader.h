@@ -7,6 +7,7 @@
 #include "session/extreme/extreme_internal.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 
 enum { HN_XR_TEXT = 1200, HN_XR_SCENES = 16 }; ///< bytes of a text, own scenes of a case
 #define HN_XR_TIME 1e6                         ///< [s]
@@ -33,15 +34,15 @@ void hn_xr_leave(hn_xr *r, size_t mark);
 /// "did you mean 'x'?", or the list of what there is.
 void hn_xr_suggest(char hint[HN_DIAG_HINT], const char *word, const char *const *names, int n);
 /// Returns 1 for an object; members not among `fields`, or given twice, are reported as faults.
-int hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields);
+bool hn_xr_object(hn_xr *r, const cJSON *node, const char *const *fields);
 
 const cJSON *hn_xr_get(const cJSON *object, const char *key);
 const char *hn_xr_keep(hn_xr *r, const char *text); ///< a copy in the arena
-const char *hn_xr_text(hn_xr *r, const cJSON *object, const char *key, int required);
+const char *hn_xr_text(hn_xr *r, const cJSON *object, const char *key, bool required);
 double hn_xr_check_number(hn_xr *r, const cJSON *m, const char *key, double low, double high);
 double hn_xr_number(hn_xr *r, const cJSON *object, const char *key, double low, double high,
                     double otherwise);
-int hn_xr_flag(hn_xr *r, const cJSON *object, const char *key);
+bool hn_xr_flag(hn_xr *r, const cJSON *object, const char *key);
 /// A number, or a formula in the trial's swept name; that it has a value is checked at the sweep's
 /// first one.
 hn_extreme_number hn_xr_formula(hn_xr *r, const cJSON *m, const char *key,

@@ -9,6 +9,7 @@
 #include "linalg/kkt.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,13 +27,13 @@ enum { MOST_UNKNOWNS = 60 };
 static const char *const WAYS[HN_KKT_WAYS] = {"dense", "range-space", "null-space", "proximal",
                                               "least-norm"};
 
-int hn_extreme_is_solver(const char *name) {
+bool hn_extreme_is_solver(const char *name) {
     for (int i = 0; i < HN_KKT_WAYS; i++) {
         if (strcmp(WAYS[i], name) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static hn_kkt_way way_of(const char *name) {

@@ -6,8 +6,10 @@
 
 #include "session/extreme/extreme_internal.h"
 
+#include <stdbool.h>
+
 /// Solves the saddle system at the point's start with the solver of that name.
 void hn_extreme_solve(hn_extreme_bench *bench, const hn_extreme_point *point,
                       hn_extreme_answer *out);
-int hn_extreme_is_solver(const char *name);
+bool hn_extreme_is_solver(const char *name);
 #endif

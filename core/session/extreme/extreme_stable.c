@@ -12,6 +12,7 @@
 #include "study/spectrum/spectrum.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -24,11 +25,11 @@
 #define SMALL_STEP 1e-9   // [s], for a run that is never stepped
 #define SAME_LIMIT 2.5e-4 // relative width at which the search ends
 
-static int fail(hn_extreme_seen *out, hn_status status, const char *reason) {
+static bool fail(hn_extreme_seen *out, hn_status status, const char *reason) {
     out->value = (double)NAN;
     snprintf(out->reason, sizeof out->reason, "%s%s%.150s", hn_extreme_outcome(status),
              reason[0] ? ": " : "", reason);
-    return 0;
+    return false;
 }
 
 /// Returns the same trial with the step size as its swept name.
@@ -42,20 +43,20 @@ static hn_extreme_trial with_step(const hn_extreme_trial *trial) {
 
 /// Finds the largest rate in each quarter of the steps. Returns 0 when the run ended early or was
 /// stopped.
-static int walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long steps,
-                         double most[4]) {
+static bool walk_quarters(hn_extreme_bench *bench, hn_run *run, int n, long long steps,
+                          double most[4]) {
     for (long long k = 1; k <= steps; k++) {
         hn_sample s;
         if (hn_run_step(run) != HN_OK || (k % 256 == 0 && hn_extreme_is_stopped(bench))) {
-            return 0;
+            return false;
         }
         const int quarter = (int)(4 * (k - 1) / steps);
         if (hn_run_sample(run, hn_run_time(run), &s) != HN_OK) {
-            return 0;
+            return false;
         }
         most[quarter] = fmax(most[quarter], hn_norm_max(n, s.v));
     }
-    return 1;
+    return true;
 }
 
 /// Returns 1 if the motion does not grow at step h, 0 if it does, -1 if unknown (reason in out).
@@ -93,18 +94,18 @@ static int is_stable(hn_extreme_bench *bench, hn_extreme_point *point, double h,
 
 /// Narrows the interval from a stable `low` to an unstable `high` down to the limit. Returns 0 when
 /// there is none (reason in out).
-static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, double high,
-                  hn_extreme_seen *out) {
+static bool search(hn_extreme_bench *bench, hn_extreme_point *point, double low, double high,
+                   hn_extreme_seen *out) {
     // the interval must enclose the limit
     const int at_low = is_stable(bench, point, low, out);
     const int at_high = at_low == 1 ? is_stable(bench, point, high, out) : 0;
     if (at_low < 0 || at_high < 0) {
-        return 0;
+        return false;
     }
     if (at_low == 0 || at_high == 1) {
         snprintf(out->reason, sizeof out->reason, "%s at h = %g s already",
                  at_low == 0 ? "grows" : "does not grow", at_low == 0 ? low : high);
-        return 0;
+        return false;
     }
 
     // bisect in ratios
@@ -112,12 +113,12 @@ static int search(hn_extreme_bench *bench, hn_extreme_point *point, double low, 
         const double middle = sqrt(low * high);
         const int stable = is_stable(bench, point, middle, out);
         if (stable < 0) {
-            return 0;
+            return false;
         }
         *(stable ? &low : &high) = middle;
     }
     out->value = sqrt(low * high);
-    return 1;
+    return true;
 }
 
 /// Returns the largest stable step that the spectrum on the loops predicts at the start

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { FORMAT = 1 }; // FORMAT counts up when the meaning of a line changes
@@ -44,7 +45,7 @@ static hn_status find_key(const hn_extreme *x, uint64_t *key, hn_diags *diags) {
     return status;
 }
 
-static int take_seen(const cJSON *o, hn_extreme_seen *seen) {
+static bool take_seen(const cJSON *o, hn_extreme_seen *seen) {
     return hn_stored_number(o, "value", &seen->value) &&
            hn_stored_text(o, "word", seen->word, sizeof seen->word) &&
            hn_stored_text(o, "reason", seen->reason, sizeof seen->reason);

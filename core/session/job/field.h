@@ -28,7 +28,7 @@ typedef enum hn_field_type {
 typedef struct hn_field {
     const char *name; ///< in JSON; as an option of the command line "--" and dashes for underscores
     hn_field_type type;
-    int required;
+    bool required;
     double min, max;               ///< of a number, or how many entries; both 0: any finite number
     double served_max;             ///< the bound of a request to a server; 0: `max`
     const char *argument;          ///< of the option: "N"; NULL: no option of the command line

@@ -2,6 +2,7 @@
 #include "session/model/caption.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,16 +36,16 @@ static int other_body(const hn_joint *joint, int body) {
 }
 
 /// Both of the joint's axes stand along z, the axis of a plane linkage.
-static int turns_in_the_plane(const hn_joint *j) {
+static bool turns_in_the_plane(const hn_joint *j) {
     return j->type == HN_JOINT_REVOLUTE && j->parent_axis[0] == 0 && j->parent_axis[1] == 0 &&
            j->child_axis[0] == 0 && j->child_axis[1] == 0;
 }
 
 /// Lengths of a closed plane chain of three bodies and four revolute joints: ground, input,
 /// coupler, output. 0 if it is none: Grashof's rule holds in the plane only.
-static int four_bar_lengths(const hn_scene *scene, double out[4]) {
+static bool four_bar_lengths(const hn_scene *scene, double out[4]) {
     if (scene->is_lagrangian || scene->n_bodies != 3 || scene->n_joints != 4) {
-        return 0;
+        return false;
     }
 
     // follow the joints from the ground, round the loop
@@ -54,7 +55,7 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
         for (int j = 0; j < 4 && !found; j++) {
             const hn_joint *joint = &scene->joints[j];
             if (!turns_in_the_plane(joint)) {
-                return 0;
+                return false;
             }
             int here = chain[n - 1];
             if (j != last && (joint->parent == here || joint->child == here)) {
@@ -67,7 +68,7 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
             }
         }
         if (!found) {
-            return 0;
+            return false;
         }
     }
 
@@ -75,7 +76,7 @@ static int four_bar_lengths(const hn_scene *scene, double out[4]) {
     for (int i = 0; i < 4; i++) {
         out[i] = link_length(scene, chain[i]);
         if (!(out[i] > 0)) {
-            return 0;
+            return false;
         }
     }
     return chain[1] != chain[2] && chain[2] != chain[3] && chain[1] != chain[3];

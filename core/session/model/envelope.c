@@ -5,6 +5,7 @@
 #include "study/run/run.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /// Bounds of the motion that the envelope covers: some revolutions, and little computing time for
@@ -197,7 +198,7 @@ hn_status hn_model_ground_points(const hn_model *model, char *is_ground) {
     return status;
 }
 
-static int pulls_along_z(const hn_scene *scene) {
+static bool pulls_along_z(const hn_scene *scene) {
     const double x = scene->gravity[0].value, y = scene->gravity[1].value,
                  z = scene->gravity[2].value;
     return z < 0 && fabs(z) > 10 * hypot(x, y);

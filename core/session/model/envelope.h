@@ -7,6 +7,8 @@
 #include "render/view.h"
 #include "session/model/model.h"
 
+#include <stdbool.h>
+
 /// Computes the world points (3 n_points) [m] at q (system coordinates).
 HN_MUST_CHECK hn_status hn_model_points(const hn_model *model, const double *q, double *points);
 
@@ -20,8 +22,8 @@ typedef struct hn_envelope {
     double low[3], high[3]; ///< world [m]
     /// farthest point reached [m] in each of 64 directions, to fit a view from any side
     double extremes[HN_ENVELOPE_EXTREMES][3];
-    int spatial; ///< 1: the mechanism leaves the plane of the front view
-    int z_up;    ///< 1: gravity acts along -z, and the mechanism is not planar in z = const
+    bool spatial; ///< the mechanism leaves the plane of the front view
+    bool z_up;    ///< gravity acts along -z, and the mechanism is not planar in z = const
     /// the view asked for; by default the front view, or an oblique view for a spatial mechanism
     hn_view look;
     double box[4]; ///< in that view [m]: minimum right and up, maximum right and up

@@ -8,6 +8,7 @@
 #include "session/model/position_form.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -89,7 +90,7 @@ static void put_coordinate(hn_strbuf *b, const hn_system *sys, int i, double *un
 }
 
 /// Returns 1 if the entry is written: not zero, and for a symmetric matrix not above the diagonal.
-static int is_told(const term *m, int i, int j) {
+static bool is_told(const term *m, int i, int j) {
     return !(m->symmetric && j > i) && !hn_is_zero(m->cols ? m->e[i * m->cols + j] : m->e[i]);
 }
 

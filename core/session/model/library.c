@@ -3,6 +3,7 @@
 #include "session/model/library.h"
 
 #include <dirent.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -23,33 +24,33 @@ struct hn_library {
     shelf scenes, problems;
 };
 
-static int is_folder(const char *path) {
+static bool is_folder(const char *path) {
     struct stat st;
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
 }
 
 /// Joins two parts; 0 if the result would not fit.
-static int join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name) {
+static bool join_path(char out[MAX_PATH_CHARS], const char *folder, const char *name) {
     int n = snprintf(out, MAX_PATH_CHARS, "%s/%s", folder, name);
     return n > 0 && n < MAX_PATH_CHARS;
 }
 
 /// Finds the folder of the running program, without a trailing slash; returns 0 if it is unknown.
-static int program_folder(char out[MAX_PATH_CHARS]) {
+static bool program_folder(char out[MAX_PATH_CHARS]) {
     ssize_t n = readlink("/proc/self/exe", out, MAX_PATH_CHARS - 1);
     if (n <= 0) {
-        return 0;
+        return false;
     }
     out[n] = 0;
     char *slash = strrchr(out, '/');
     if (!slash) {
-        return 0;
+        return false;
     }
     *slash = 0;
-    return 1;
+    return true;
 }
 
-static int is_home(const char *folder) {
+static bool is_home(const char *folder) {
     char path[MAX_PATH_CHARS];
     return join_path(path, folder, "lessons") && is_folder(path) &&
            join_path(path, folder, "web") && is_folder(path);

@@ -29,7 +29,7 @@ static void find_title(const char *folder, const char *id, char title[MAX_TITLE]
     hn_strbuf_reset(&text);
 }
 
-static int lies_in(const char *path, const char *folder) {
+static bool lies_in(const char *path, const char *folder) {
     size_t n = strlen(folder);
     return path && strncmp(path, folder, n) == 0 && path[n] == '/';
 }

@@ -4,6 +4,7 @@
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -62,7 +63,7 @@ static hn_status load_scene(const hn_library *lib, const hn_model_source *source
 }
 
 /// Computes consistent starting values. An open loop is an error unless allow_open is set.
-static hn_status assemble(hn_model *model, int allow_open, hn_diags *diags) {
+static hn_status assemble(hn_model *model, bool allow_open, hn_diags *diags) {
     hn_system_info info = hn_system_get_info(model->system);
     model->q = hn_arena_doubles(model->arena, (size_t)info.nq);
     model->v = hn_arena_doubles(model->arena, (size_t)info.nv);

@@ -12,6 +12,8 @@
 #include "dynamics/compile/system.h"
 #include "session/model/library.h"
 
+#include <stdbool.h>
+
 typedef struct hn_model hn_model;
 
 /// The scene to load: exactly one of name, path and text is set. `name` is a shipped scene; an
@@ -25,7 +27,7 @@ typedef struct hn_model_source {
     const hn_setting *settings;
     int n_settings;
     /// 1: a scene that cannot be assembled still gives a model, for `inspect`, which reports why
-    int allow_open;
+    bool allow_open;
 } hn_model_source;
 
 HN_MUST_CHECK hn_status hn_model_load(const hn_library *lib, const hn_model_source *source,

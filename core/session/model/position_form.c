@@ -3,6 +3,7 @@
 
 #include "expr/print.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 enum { LONGEST_FORM = 1 << 16 }; // bytes of one unknown
@@ -19,7 +20,7 @@ const char *hn_position_name(const hn_system *sys, int coordinate) {
 
 /// Returns 1 if both systems have the same numbers of coordinates and constraint rows, so that the
 /// chart of one is valid for the other.
-static int is_same_shape(const hn_system *a, const hn_system *b) {
+static bool is_same_shape(const hn_system *a, const hn_system *b) {
     const hn_system_info x = hn_system_get_info(a), y = hn_system_get_info(b);
     return x.nq == y.nq && x.nv == y.nv && x.nc == y.nc;
 }

@@ -5,6 +5,7 @@
 #include "session/references/reference_store.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -160,7 +161,7 @@ static void keep_sample(void *user, int m, int k) {
     hn_store_keep_sample(user, m, k);
 }
 
-int hn_study_run(hn_study *s) {
+bool hn_study_run(hn_study *s) {
     const hn_wp_hooks hooks = {s, ask_to_stop, pass_progress, keep_point, keep_sample};
     const int finished = hn_wp_run(s->wp, &hooks);
     for (int m = 0; m < s->wp->n_methods; m++) {
@@ -194,6 +195,6 @@ int hn_study_resumed(const hn_study *s) {
     return s->resumed;
 }
 
-int hn_study_kept_reference(const hn_study *s) {
+bool hn_study_kept_reference(const hn_study *s) {
     return s->kept_reference;
 }

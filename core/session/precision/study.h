@@ -9,6 +9,8 @@
 #include "study/truth/chaos.h"
 #include "study/cost/pareto.h"
 
+#include <stdbool.h>
+
 typedef struct hn_study hn_study;
 
 /// Returns the methods of a study whose request names none.
@@ -26,9 +28,9 @@ const char *const *hn_study_standard(int *n);
 HN_MUST_CHECK hn_status hn_study_open(const hn_job_request *request, hn_study **out,
                                       hn_diags *diags);
 void hn_study_free(hn_study *study); ///< NULL is legal; the journal of an unfinished study stays
-/// Runs the remaining points. Returns 1 when the study is finished; its journal is then deleted,
-/// the reference stays. Returns 0 when it was stopped or the time limit was reached.
-int hn_study_run(hn_study *study);
+/// Runs the remaining points. Returns whether the study is finished; its journal is then deleted,
+/// the reference stays. Returns false when it was stopped or the time limit was reached.
+bool hn_study_run(hn_study *study);
 void hn_study_forget(hn_study *study); ///< after a run: deletes its journal; the reference stays
 
 // parts
@@ -49,8 +51,8 @@ const hn_chaos *hn_study_chaos(const hn_study *study);
 #define HN_STUDY_TINY 1e-13 ///< rounding error of some thousand steps
 #define HN_STUDY_LARGE 0.1  ///< no correct digit is left
 
-int hn_study_resumed(const hn_study *study);        ///< points resumed from an interrupted study
-int hn_study_kept_reference(const hn_study *study); ///< 1: the reference was read, not computed
+int hn_study_resumed(const hn_study *study);         ///< points resumed from an interrupted study
+bool hn_study_kept_reference(const hn_study *study); ///< read, not computed
 
 // documents
 #endif

@@ -9,6 +9,7 @@
 #include "study/run/timing.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -134,16 +135,16 @@ void hn_study_put_method(hn_strbuf *b, const hn_study *s, int m) {
 
 // answers ----
 
-int hn_study_is_timed(const hn_study *s) {
+bool hn_study_is_timed(const hn_study *s) {
     const hn_wp *wp = hn_study_wp(s);
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             if (wp->methods[m].point[k].n_samples > 0) {
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 static void put_answer(hn_strbuf *b, const hn_study *s, hn_error_kind error, hn_cost_kind cost) {

@@ -7,6 +7,8 @@
 #include "session/precision/study.h"
 #include "session/precision/study_page.h"
 
+#include <stdbool.h>
+
 /// Writes the page: plots, tables and sentences; light and dark; for screen and paper.
 void hn_study_html(hn_strbuf *b, const hn_study *study);
 /// Writes <!doctype> to <main>: the colours of both themes, the common styles, and then `style`.
@@ -15,7 +17,7 @@ void hn_page_head(hn_strbuf *b, const char *title, const char *style);
 void hn_page_theme(hn_strbuf *b, hn_theme theme);
 /// Writes how CPU time was measured and when it is ranked. The text is the same for every study.
 void hn_page_timing(hn_strbuf *b);
-int hn_study_is_timed(const hn_study *s);
+bool hn_study_is_timed(const hn_study *s);
 void hn_study_put_chaos(hn_strbuf *b, const hn_study *s); ///< one line
 void hn_study_put_plots(hn_strbuf *b, const hn_study *s); ///< every error against every cost
 void hn_study_put_race(hn_strbuf *b, const hn_study *s, int level);

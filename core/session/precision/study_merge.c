@@ -11,6 +11,7 @@
 #include "study/cost/shards.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,14 +60,14 @@ static const char *text_of(const cJSON *o, const char *path) {
 }
 
 /// Reads a whole number from low to high. Returns 0 when there is none.
-static int whole_of(const cJSON *o, const char *path, int low, int high, int *out) {
+static bool whole_of(const cJSON *o, const char *path, int low, int high, int *out) {
     const cJSON *item = at_path(o, path);
     const double x = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
     if (!(x >= low && x <= high) || x != floor(x)) {
-        return 0;
+        return false;
     }
     *out = (int)x;
-    return 1;
+    return true;
 }
 
 // reading ----

@@ -5,6 +5,7 @@
 #include "render/look.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -81,7 +82,7 @@ static double floor_of(const hn_wp *wp, hn_error_kind error) {
     return HN_WP_ABOVE_REFERENCE * wp->ref->error[error];
 }
 
-static int is_drawn(const hn_wp_point *p, const frame *f) {
+static bool is_drawn(const hn_wp_point *p, const frame *f) {
     return p->state == HN_WP_DONE && hn_wp_cost(p, f->cost) > 0 && isfinite(p->worst[f->error]);
 }
 
@@ -97,7 +98,7 @@ static double y_of(const frame *f, double error) {
 
 /// Finds the ranges of the axes: whole decades of the error, the costs with a margin. Returns 0
 /// when nothing can be drawn.
-static int find_frame(const hn_wp *wp, frame *f) {
+static bool find_frame(const hn_wp *wp, frame *f) {
     f->x0 = HUGE_VAL;
     f->x1 = -HUGE_VAL;
     f->y0 = 0;

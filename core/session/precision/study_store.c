@@ -7,6 +7,7 @@
 #include "base/hash.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 // counted up when the meaning of a line changes
@@ -89,7 +90,7 @@ static int are_counts(const double *n, int count) {
     return ok;
 }
 
-int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
+bool hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
     // every member must be there and in range
     double state, status, numbers[3], counts[N_COUNTS];
     if (!hn_stored_number(o, "state", &state) || !hn_stored_number(o, "status", &status) ||
@@ -102,7 +103,7 @@ int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
         !are_counts(counts, ENERGY) || !are_counts(counts + ENERGY + 1, N_COUNTS - ENERGY - 1) ||
         !(status >= 0 && status < HN_STATUS_COUNT) ||
         (state != HN_WP_DONE && state != HN_WP_FAILED && state != HN_WP_SKIPPED)) {
-        return 0;
+        return false;
     }
 
     // a refused line never sets the state of the point
@@ -112,17 +113,17 @@ int hn_store_take_point(const hn_study *s, const cJSON *o, hn_wp_point *p) {
     p->steps = (long long)numbers[1];
     p->rejected = (long long)numbers[2];
     p->cost = cost_of(counts);
-    return 1;
+    return true;
 }
 
-int hn_store_take_sample(hn_wp_point *p, double cpu, double busy) {
+bool hn_store_take_sample(hn_wp_point *p, double cpu, double busy) {
     if (p->n_samples >= HN_WP_SAMPLES || !(cpu > 0) || !(busy >= 0 && busy <= HN_WP_SAMPLES)) {
-        return 0;
+        return false;
     }
     p->sample[p->n_samples++] = cpu;
     p->busy = (int)busy;
     hn_wp_point_statistics(p);
-    return 1;
+    return true;
 }
 
 /// Takes the line of a point. Returns 0 when it is not valid.
@@ -133,7 +134,7 @@ static int take_point_line(hn_study *s, const cJSON *o, hn_wp_point *p) {
     return ok;
 }
 
-static int take_sample_line(hn_wp_point *p, const cJSON *o) {
+static bool take_sample_line(hn_wp_point *p, const cJSON *o) {
     double cpu, busy;
     return hn_stored_number(o, "cpu", &cpu) && hn_stored_number(o, "busy", &busy) &&
            hn_store_take_sample(p, cpu, busy);

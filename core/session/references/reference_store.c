@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -27,16 +28,16 @@ hn_ref_request hn_ref_request_default(void) {
 // reading ----
 
 /// Returns 1 if all values are finite. A null, read as NaN, makes a reference invalid.
-static int are_finite(const double *x, size_t n) {
+static bool are_finite(const double *x, size_t n) {
     for (size_t i = 0; i < n; i++) {
         if (!isfinite(x[i])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int fill(hn_ref *ref, const cJSON *o) {
+static bool fill(hn_ref *ref, const cJSON *o) {
     const size_t rows = (size_t)ref->n + 1, nu = (size_t)ref->n_user, nc = (size_t)ref->nc;
     const cJSON *means = cJSON_GetObjectItemCaseSensitive(o, "means");
     double scales[4];
@@ -45,14 +46,14 @@ static int fill(hn_ref *ref, const cJSON *o) {
     for (int i = 0; i < HN_REF_MEANS; i++) {
         const char *text = cJSON_GetStringValue(cJSON_GetArrayItem(means, i));
         if (!text) {
-            return 0;
+            return false;
         }
         snprintf(ref->means[i], HN_SPEC_MAX, "%s", text);
     }
 
     // scales of the errors
     if (!hn_stored_numbers(o, "scales", scales, 4)) {
-        return 0;
+        return false;
     }
     ref->scales = (hn_scales){scales[0], scales[1], scales[2], scales[3]};
 
@@ -146,7 +147,7 @@ hn_status hn_reference_save(const char *path, const hn_model *model, const hn_re
 
 // finding ----
 
-static int kept_path(const char *folder, uint64_t scene, double T, int n, char out[512]) {
+static bool kept_path(const char *folder, uint64_t scene, double T, int n, char out[512]) {
     uint64_t hash = hn_hash_bytes(HN_HASH_START, &scene, sizeof scene);
     char hex[17];
     hash = hn_hash_double(hash, T);

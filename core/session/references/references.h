@@ -8,13 +8,15 @@
 #include "session/model/model.h"
 #include "study/truth/reference.h"
 
+#include <stdbool.h>
+
 typedef enum hn_ref_source { HN_REF_SHIPPED, HN_REF_KEPT, HN_REF_COMPUTED } hn_ref_source;
 
 typedef struct hn_ref_request {
     double time;        ///< end [s]; NaN: that of the shipped one, else the scene's
     const char *folder; ///< cache of computed references; NULL: none
-    int again;          ///< 1: compute, ignore stored references
-    int only_stored;    ///< 1: use stored references only
+    bool again;         ///< compute, ignore stored references
+    bool only_stored;   ///< use stored references only
     hn_ref_opts opts;
 } hn_ref_request;
 

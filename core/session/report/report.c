@@ -5,6 +5,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -314,7 +315,7 @@ double hn_report_elapsed(const hn_report *r) {
     return r->elapsed;
 }
 
-int hn_report_stopped(const hn_report *r) {
+bool hn_report_stopped(const hn_report *r) {
     return r->stopped;
 }
 

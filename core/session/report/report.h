@@ -17,6 +17,8 @@
 #include "session/precision/study.h"
 #include "study/cost/survival.h"
 
+#include <stdbool.h>
+
 enum { HN_REPORT_ACCOUNTS = 3, HN_REPORT_SIZES = 24 };
 
 /// The scenes of a report that names none: plane and space, singular, stiff, one loop and several.
@@ -52,7 +54,7 @@ typedef struct hn_report_scene {
     char reason[HN_DIAG_MESSAGE]; ///< why there is no study
     hn_account_row accounts[HN_REPORT_ACCOUNTS];
     int n_accounts;
-    int singular;       ///< 1: it passes near singular poses
+    bool singular;      ///< it passes near singular poses
     double singular_at; ///< the first of them [s]
     hn_strip *strips;   ///< one a method of the study where it is singular, else NULL
 } hn_report_scene;
@@ -60,7 +62,7 @@ typedef struct hn_report_scene {
 int hn_report_n_scenes(const hn_report *report);
 const hn_report_scene *hn_report_scene_at(const hn_report *report, int i);
 double hn_report_elapsed(const hn_report *report); ///< wall time [s]
-int hn_report_stopped(const hn_report *report);    ///< 1: on request
+bool hn_report_stopped(const hn_report *report);   ///< on request
 /// Sizes that a method survived, of strip->n.
 int hn_strip_survived(const hn_strip *strip);
 
@@ -88,7 +90,7 @@ typedef struct hn_verdict {
     /// NaN: none
     double best;
     int done, failed, skipped; ///< sizes
-    int untrusted;             ///< 1: nothing that came out is right to one digit
+    bool untrusted;            ///< nothing that came out is right to one digit
     char text[64];             ///< "1e-12", "2e-9, 3 of 7 fail", "no digit", "elsewhere, by 0.3"
     const char *why; ///< the reason of the coarsest failure, or the class's words; borrowed
 } hn_verdict;

@@ -10,6 +10,7 @@
 #include "session/report/report_words.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -162,14 +163,14 @@ hn_report_plot hn_report_plot_at(const hn_report *r, int i) {
     return p;
 }
 
-static int draw(hn_strbuf *b, const hn_report_plot *p) {
+static bool draw(hn_strbuf *b, const hn_report_plot *p) {
     const hn_report_scene *s = &p->of->scenes[p->scene];
     const int timed = s->study && hn_study_is_timed(s->study);
     if (!s->study || (p->kind == KIND_STUDY && p->cost == HN_COST_TIME && !timed) ||
         (p->kind == KIND_SURVIVAL && !s->strips) ||
         ((p->kind == KIND_ERRORS || p->kind == KIND_ENERGY) &&
          !hn_accounts_can_plot(s->accounts, s->n_accounts, p->kind == KIND_ENERGY))) {
-        return 0;
+        return false;
     }
     if (p->kind == KIND_STUDY) {
         hn_study_plot(b, s->study, (hn_error_kind)p->error, (hn_cost_kind)p->cost);
@@ -205,7 +206,7 @@ static void put_resolved(hn_strbuf *b, const char *text, const char *theme) {
     hn_strbuf_add(b, text);
 }
 
-int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *p) {
+bool hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *p) {
     hn_strbuf inner, theme, whole;
     hn_strbuf_init(&inner);
     hn_strbuf_init(&theme);

@@ -6,10 +6,12 @@
 #include "session/report/report.h"
 #include "session/report/report_internal.h"
 
+#include <stdbool.h>
+
 int hn_report_n_plots(const hn_report *report);
 hn_report_plot hn_report_plot_at(const hn_report *report, int i);
-/// Writes a standalone SVG file in the light theme. Returns 0 when there is nothing to draw.
-int hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *plot);
+/// Writes a standalone SVG file in the light theme. Returns false when there is nothing to draw.
+bool hn_report_plot_svg(hn_strbuf *b, const hn_report_plot *plot);
 /// Draws every counted run: its step size across, the time it reached upwards.
 void hn_report_survival_plot(hn_strbuf *b, const hn_report_scene *scene);
 #endif

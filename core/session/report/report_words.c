@@ -7,6 +7,7 @@
 #include "session/precision/study_html.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 const double hn_report_accuracy[HN_REPORT_BANDS] = {1e-3, 1e-6, 1e-9};
@@ -139,16 +140,16 @@ static void say_cheapest(hn_strbuf *b, const hn_report *r, const hn_wp *wp) {
 }
 
 /// Returns 1 if in every scene all tried sizes reached the end and the best reached that error.
-static int is_dependable(const hn_report *r, int m) {
+static bool is_dependable(const hn_report *r, int m) {
     for (int i = 0; i < r->n; i++) {
         if (r->scenes[i].study) {
             const hn_verdict v = hn_report_find_verdict(&r->scenes[i], m);
             if (v.kind != HN_VERDICT_GOOD || !(v.best <= DEPENDABLE)) {
-                return 0;
+                return false;
             }
         }
     }
-    return 1;
+    return true;
 }
 
 static void say_dependable(hn_strbuf *b, const hn_report *r, const hn_wp *wp) {
@@ -166,17 +167,17 @@ static void say_dependable(hn_strbuf *b, const hn_report *r, const hn_wp *wp) {
                   "1e-6 or less.\n");
 }
 
-static int fails(const hn_verdict *v) {
+static bool fails(const hn_verdict *v) {
     return v->kind != HN_VERDICT_ELSEWHERE && (v->untrusted || v->kind == HN_VERDICT_PARTLY);
 }
 
-static int is_elsewhere(const hn_verdict *v) {
+static bool is_elsewhere(const hn_verdict *v) {
     return v->kind == HN_VERDICT_ELSEWHERE;
 }
 
 /// "WHAT in n-four-bar: A, B.", a line a scene; returns how many scenes there are.
 static int say_where(hn_strbuf *b, const hn_report *r, const hn_wp *wp,
-                     int (*is)(const hn_verdict *), const char *what) {
+                     bool (*is)(const hn_verdict *), const char *what) {
     int scenes = 0;
     for (int i = 0; i < r->n; i++) {
         const hn_report_scene *s = &r->scenes[i];

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 // The motion of one scene may take a PATH_SHARE-th of the time limit, or PATH_SECONDS [s] of
@@ -78,15 +79,15 @@ hn_method_spec hn_map_spec_at(const hn_map *map, int m, int column, double y) {
     return spec;
 }
 
-int hn_map_must_end(hn_map *map) {
+bool hn_map_must_end(hn_map *map) {
     const double limit = map->request.limits.time_limit;
     map->stopped |= hn_job_must_stop(&map->request.limits);
     map->out_of_time |= limit > 0 && hn_clock_wall() - map->started > limit;
     return map->stopped || map->out_of_time;
 }
 
-int hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
-               hn_stability_trial *out) {
+bool hn_map_try(hn_map *map, hn_map_scene *scene, const hn_method_spec *spec,
+                hn_stability_trial *out) {
     const hn_walk_limits limits = {HN_MAP_CELL_SECONDS, ask_to_stop, map};
     if (!scene->path) {
         *out = (hn_stability_trial){.kind = HN_STABILITY_REFUSED, .status = HN_ERR_UNSUPPORTED};

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum { COARSEST_STRIDE = 8 };
@@ -74,16 +75,16 @@ void hn_map_free(hn_map *map) {
     }
 }
 
-static int try_cell(hn_map *map, int m, int column, int row) {
+static bool try_cell(hn_map *map, int m, int column, int row) {
     hn_map_cell *cell = hn_map_cell_at(map, m, column, row);
     const hn_method_spec spec = hn_map_spec_at(map, m, column, map->y.value[row]);
     hn_stability_trial trial;
     if (!hn_map_try(map, hn_map_scene_of(map, column, row), &spec, &trial)) {
-        return 0;
+        return false;
     }
     cell->trial = trial;
     hn_map_keep_cell(map, m, column, row);
-    return 1;
+    return true;
 }
 
 // rounds ----
@@ -98,7 +99,7 @@ static int count_pending(const hn_map *map) {
 
 // Tries the cells on the grid of this stride that have no outcome yet. Returns 0 when the map must
 // end.
-static int try_round(hn_map *map, int stride) {
+static bool try_round(hn_map *map, int stride) {
     const double all = (double)map->n_methods * map->x.n * map->y.n;
     for (int row = 0; row < map->y.n; row += stride) {
         for (int column = 0; column < map->x.n; column += stride) {
@@ -107,28 +108,28 @@ static int try_round(hn_map *map, int stride) {
                     continue;
                 }
                 if (hn_map_must_end(map) || !try_cell(map, m, column, row)) {
-                    return 0;
+                    return false;
                 }
                 hn_job_progress(&map->request.limits, "", 0.85 * (1 - count_pending(map) / all));
             }
         }
     }
-    return 1;
+    return true;
 }
 
-static int observe(hn_map *map) {
+static bool observe(hn_map *map) {
     for (int i = 0; map->y.is_step && i < map->x.n; i++) {
         for (int m = 0; m < map->n_methods; m++) {
             if (hn_map_must_end(map) || !hn_map_observe_column(map, m, i)) {
-                return 0;
+                return false;
             }
         }
         hn_job_progress(&map->request.limits, "", 0.85 + 0.15 * (i + 1) / map->x.n);
     }
-    return 1;
+    return true;
 }
 
-int hn_map_run(hn_map *map) {
+bool hn_map_run(hn_map *map) {
     map->started = hn_clock_wall();
     map->stopped = map->out_of_time = 0;
     int going = 1;
@@ -185,11 +186,11 @@ int hn_map_resumed(const hn_map *map) {
     return map->resumed;
 }
 
-int hn_map_stopped(const hn_map *map) {
+bool hn_map_stopped(const hn_map *map) {
     return map->stopped;
 }
 
-int hn_map_out_of_time(const hn_map *map) {
+bool hn_map_out_of_time(const hn_map *map) {
     return map->out_of_time;
 }
 

@@ -13,6 +13,8 @@
 #include "study/stability/stability.h"
 #include "study/cost/workprecision.h"
 
+#include <stdbool.h>
+
 enum { HN_MAP_METHODS = 8, HN_MAP_SIDE = 64, HN_MAP_MODELS = 1024, HN_MAP_CROSSINGS = 4 };
 #define HN_MAP_STEPS 2e5 ///< most steps of one trial
 #define HN_MAP_REFINED \
@@ -79,8 +81,8 @@ typedef struct hn_map_agreement {
 /// Fails:   HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_MEMORY, HN_ERR_IO. All reported in diags.
 HN_MUST_CHECK hn_status hn_map_open(const hn_job_request *request, hn_map **out, hn_diags *diags);
 void hn_map_free(hn_map *map); ///< NULL is legal
-/// Runs the cells that have no outcome. Returns 1 when finished; 0: stopped, or out of time.
-int hn_map_run(hn_map *map);
+/// Runs the cells that have no outcome. Returns whether finished; false: stopped, or out of time.
+bool hn_map_run(hn_map *map);
 
 const hn_model *hn_map_model(const hn_map *map);
 const hn_map_axis *hn_map_x(const hn_map *map);
@@ -92,7 +94,7 @@ const hn_map_cell *hn_map_get(const hn_map *map, int m, int column, int row);
 const hn_map_column *hn_map_get_column(const hn_map *map, int m, int column);
 double hn_map_time(const hn_map *map);
 int hn_map_resumed(const hn_map *map);
-int hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
+bool hn_map_stopped(const hn_map *map), hn_map_out_of_time(const hn_map *map);
 double hn_map_elapsed(const hn_map *map); ///< [s]
 
 // documents

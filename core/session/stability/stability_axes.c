@@ -4,6 +4,7 @@
 #include "session/stability/stability_internal.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,17 +90,17 @@ static hn_status make_axis(hn_map *map, hn_map_axis *a, const char *name, double
 }
 
 // "NAME=LOW..HIGH" with ":lin" or ":log"; form: 'i', 'l', 0
-static int read_axis(char *text, char **name, double *low, double *high, int *form) {
+static bool read_axis(char *text, char **name, double *low, double *high, int *form) {
     char *equals = strchr(text, '='), *dots = equals ? strstr(equals, "..") : NULL, *end;
     if (!equals || equals == text || !dots) {
-        return 0;
+        return false;
     }
     *equals = 0;
     *dots = 0;
     *name = text;
     *low = strtod(equals + 1, &end);
     if (end == equals + 1 || *end) {
-        return 0;
+        return false;
     }
     *high = strtod(dots + 2, &end);
     *form = strcmp(end, ":lin") == 0 ? 'i' : strcmp(end, ":log") == 0 ? 'l' : 0;
@@ -173,13 +174,13 @@ static hn_status rate_with(hn_map *map, const char *name, double value, double *
     return HN_OK;
 }
 
-static int has_unit(const hn_param *p, const char *const *units, int n) {
+static bool has_unit(const hn_param *p, const char *const *units, int n) {
     for (int i = 0; i < n; i++) {
         if (strcmp(p->unit, units[i]) == 0 && p->max > 0 && !p->integer) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static hn_status steps_for(hn_map *map, double slow, double fast, int n, hn_diags *diags) {

@@ -6,6 +6,7 @@
 #include "session/stability/map_grid.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static const double WITHIN =
@@ -91,51 +92,51 @@ void hn_map_predict_column(hn_map *map, int m, int column) {
 
 // the observation ----
 
-static int is_over(hn_stability_class kind) {
+static bool is_over(hn_stability_class kind) {
     return kind == HN_STABILITY_GREW || kind == HN_STABILITY_STOPPED;
 }
 
 /// Tries one step size of a column. Returns 0 when stopped. `over`: 1 unstable, 0 stable, -1 no
 /// observation.
-static int try_step(hn_map *map, int m, int column, int row, double h, int *over,
-                    hn_map_column *c) {
+static bool try_step(hn_map *map, int m, int column, int row, double h, int *over,
+                     hn_map_column *c) {
     hn_stability_trial trial;
     const hn_method_spec spec = hn_map_spec_at(map, m, column, h);
     if (!hn_map_try(map, hn_map_scene_of(map, column, row), &spec, &trial)) {
-        return 0;
+        return false;
     }
     *over = hn_stability_is_stable(trial.kind) ? 0 : is_over(trial.kind) ? 1 : -1;
     if (*over == 1) {
         snprintf(c->how, sizeof c->how, "%s", trial.reason);
     }
-    return 1;
+    return true;
 }
 
 /// Searches beyond the ends of a single column: halves or doubles the step until the boundary lies
 /// between two steps, or a trial would take too many or too few. Returns 0 when stopped.
-static int search_beyond(hn_map *map, int m, double *low, double *high, hn_map_column *c) {
+static bool search_beyond(hn_map *map, int m, double *low, double *high, hn_map_column *c) {
     int over = isinf(*high) ? 0 : 1;
     while (over == 1 && *low == 0 && map->T / (*high / 2) <= HN_MAP_STEPS) {
         const double h = *high / 2;
         if (!try_step(map, m, 0, 0, h, &over, c)) {
-            return 0;
+            return false;
         }
         *(over == 1 ? high : low) = over >= 0 ? h : *low;
     }
     while (over == 0 && isinf(*high) && 2 * *low <= map->T / LEAST_IN_TRIAL) {
         const double h = 2 * *low;
         if (!try_step(map, m, 0, map->y.n - 1, h, &over, c)) {
-            return 0;
+            return false;
         }
         *(over == 1 ? high : low) = over >= 0 ? h : *low;
     }
-    return 1;
+    return true;
 }
 
-int hn_map_observe_column(hn_map *map, int m, int column) {
+bool hn_map_observe_column(hn_map *map, int m, int column) {
     hn_map_column *c = hn_map_column_at(map, m, column);
     if (!isnan(c->unstable)) {
-        return 1; // found by an earlier run
+        return true; // found by an earlier run
     }
 
     // the boundary lies between two rows, or beyond an end of the column
@@ -144,17 +145,17 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
         j++;
     }
     if (j < map->y.n && !is_over(hn_map_cell_at(map, m, column, j)->trial.kind)) {
-        return 1; // no observation there
+        return true; // no observation there
     }
     double low = j > 0 ? map->y.value[j - 1] : 0, high = j < map->y.n ? map->y.value[j] : HUGE_VAL;
     if (j < map->y.n) {
         snprintf(c->how, sizeof c->how, "%s", hn_map_cell_at(map, m, column, j)->trial.reason);
     }
     if (map->x.n == 1 && !search_beyond(map, m, &low, &high, c)) {
-        return 0;
+        return false;
     }
     if (isinf(high)) {
-        return 1; // stable throughout
+        return true; // stable throughout
     }
 
     // halve the interval until it is narrow
@@ -163,7 +164,7 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
         const double middle = sqrt(low * high);
         int over;
         if (!try_step(map, m, column, row, middle, &over, c)) {
-            return 0;
+            return false;
         }
         if (over < 0) {
             break; // no observation there
@@ -173,7 +174,7 @@ int hn_map_observe_column(hn_map *map, int m, int column) {
     c->stable = low;
     c->unstable = high;
     hn_map_keep_column(map, m, column);
-    return 1;
+    return true;
 }
 
 void hn_map_judge_column(hn_map *map, int m, int column) {

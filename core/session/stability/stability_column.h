@@ -6,12 +6,15 @@
 #include "session/stability/stability.h"
 #include "session/stability/stability_internal.h"
 
+#include <stdbool.h>
+
 hn_map_agreement hn_map_agrees(const hn_map *map, int m);
 /// "prediction within 5 % on 31 of 32 columns; 1: growth too slow to be seen"
 void hn_map_agreement_text(hn_strbuf *b, const hn_map *map, int m);
 /// Predicts the margins and the boundary of a column; its scenes must be loaded.
 void hn_map_predict_column(hn_map *map, int m, int column);
-/// Step axis: halves the interval between the last stable and the first other step. 0 when stopped.
-int hn_map_observe_column(hn_map *map, int m, int column);
+/// Step axis: halves the interval between the last stable and the first other step.
+/// Returns false when stopped.
+bool hn_map_observe_column(hn_map *map, int m, int column);
 void hn_map_judge_column(hn_map *map, int m, int column);
 #endif

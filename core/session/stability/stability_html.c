@@ -7,6 +7,7 @@
 #include "session/stability/stability_column.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static void put_class_colours(hn_strbuf *b, hn_theme theme) {
@@ -66,7 +67,7 @@ static void put_cell(hn_strbuf *b, const hn_map *map, int m, int i, int j) {
     hn_strbuf_reset(&text);
 }
 
-static int is_inside(double y, int m) {
+static bool is_inside(double y, int m) {
     return y >= hn_map_field_top(m) && y <= hn_map_field_top(m) + HN_MAP_FIELD_HEIGHT;
 }
 

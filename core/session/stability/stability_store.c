@@ -7,6 +7,8 @@
 
 #include "base/hash.h"
 
+#include <stdbool.h>
+
 enum { FORMAT = 1 }; // counts up when the meaning of a line changes
 
 static uint64_t hash_axis(uint64_t hash, const hn_map_axis *a) {
@@ -32,7 +34,7 @@ static uint64_t map_key(const hn_map *map) {
     return hn_hash_mix(hash);
 }
 
-static int take_cell(hn_map *map, const cJSON *o, int m, int column, int row) {
+static bool take_cell(hn_map *map, const cJSON *o, int m, int column, int row) {
     hn_stability_trial t = {0};
     double numbers[5];
     int kind, status;
@@ -40,7 +42,7 @@ static int take_cell(hn_map *map, const cJSON *o, int m, int column, int row) {
         !hn_stored_int(o, "status", HN_STATUS_COUNT, &status) ||
         !hn_stored_numbers(o, "numbers", numbers, 5) ||
         !hn_stored_text(o, "reason", t.reason, sizeof t.reason)) {
-        return 0;
+        return false;
     }
     t.kind = (hn_stability_class)kind;
     t.status = (hn_status)status;
@@ -51,18 +53,18 @@ static int take_cell(hn_map *map, const cJSON *o, int m, int column, int row) {
     t.steps = (long long)numbers[4];
     hn_map_cell_at(map, m, column, row)->trial = t;
     map->resumed++;
-    return 1;
+    return true;
 }
 
-static int take_column(hn_map_column *c, const cJSON *o) {
+static bool take_column(hn_map_column *c, const cJSON *o) {
     double between[2];
     if (!hn_stored_numbers(o, "between", between, 2) ||
         !hn_stored_text(o, "reason", c->how, sizeof c->how)) {
-        return 0;
+        return false;
     }
     c->stable = between[0];
     c->unstable = between[1];
-    return 1;
+    return true;
 }
 
 static int take_line(void *user, const cJSON *o) {

@@ -32,28 +32,28 @@ cJSON *hn_stored_open(const char *path) {
     return object;
 }
 
-int hn_stored_numbers(const cJSON *object, const char *key, double *out, size_t n) {
+bool hn_stored_numbers(const cJSON *object, const char *key, double *out, size_t n) {
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(object, key), *item;
     if (!cJSON_IsArray(list) || (size_t)cJSON_GetArraySize(list) != n) {
-        return 0;
+        return false;
     }
     size_t i = 0;
     cJSON_ArrayForEach(item, list) {
         if (!cJSON_IsNumber(item) && !cJSON_IsNull(item)) {
-            return 0;
+            return false;
         }
         out[i++] = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
     }
-    return 1;
+    return true;
 }
 
-int hn_stored_number(const cJSON *object, const char *key, double *out) {
+bool hn_stored_number(const cJSON *object, const char *key, double *out) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     *out = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
     return cJSON_IsNumber(item) || cJSON_IsNull(item);
 }
 
-int hn_stored_int(const cJSON *object, const char *key, int below, int *out) {
+bool hn_stored_int(const cJSON *object, const char *key, int below, int *out) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
     const int fits = cJSON_IsNumber(item) && item->valuedouble == item->valueint &&
                      item->valueint >= 0 && item->valueint < below;
@@ -61,7 +61,7 @@ int hn_stored_int(const cJSON *object, const char *key, int below, int *out) {
     return fits;
 }
 
-int hn_stored_text(const cJSON *object, const char *key, char *out, size_t size) {
+bool hn_stored_text(const cJSON *object, const char *key, char *out, size_t size) {
     const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
     return text && (size_t)snprintf(out, size, "%s", text) < size;
 }

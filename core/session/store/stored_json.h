@@ -5,6 +5,7 @@
 // has the expected type and size. A null is read as NaN.
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -13,10 +14,10 @@
 char *hn_stored_text_of(FILE *f, size_t *n);
 /// Returns the object in a file, owned by the caller; NULL without a file or without valid JSON.
 cJSON *hn_stored_open(const char *path);
-int hn_stored_number(const cJSON *object, const char *key, double *out);
+bool hn_stored_number(const cJSON *object, const char *key, double *out);
 /// Reads a whole number, 0 <= *out < below.
-int hn_stored_int(const cJSON *object, const char *key, int below, int *out);
+bool hn_stored_int(const cJSON *object, const char *key, int below, int *out);
 /// Reads a list of exactly n numbers.
-int hn_stored_numbers(const cJSON *object, const char *key, double *out, size_t n);
-int hn_stored_text(const cJSON *object, const char *key, char *out, size_t size);
+bool hn_stored_numbers(const cJSON *object, const char *key, double *out, size_t n);
+bool hn_stored_text(const cJSON *object, const char *key, char *out, size_t size);
 #endif

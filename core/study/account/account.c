@@ -7,6 +7,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,7 +97,7 @@ static hn_status follow(hn_books *b, double t, double h, const double *y, double
 
 // ---- one step ----
 
-static int is_ode(const hn_books *b) {
+static bool is_ode(const hn_books *b) {
     const hn_method_spec *spec = hn_run_spec(b->run);
     return hn_method_form(spec->formulation, spec->stepper) == HN_FORM_ODE;
 }

@@ -27,6 +27,8 @@
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
 
+#include <stdbool.h>
+
 #define HN_CAUSE_LIST(X)                                                                       \
     X(HN_CAUSE_TRUNCATION, "truncation", "steps of the integrator")                            \
     X(HN_CAUSE_FORMULATION, "formulation", "terms that the formulation adds to the equations") \

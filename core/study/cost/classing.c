@@ -61,9 +61,9 @@ static double slope(const ladder *l, int i) {
 
 /// Returns 1 and fills `c` where the finest points agree with each other but not with the
 /// reference. Points with the same steps (a tolerance that has no effect) prove nothing.
-static int goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
+static bool goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
     if (l->n < 3) {
-        return 0;
+        return false;
     }
     const int last = l->n - 1;
     const double own = fmax(l->own[last], l->own[last - 1]), far = l->end[last];
@@ -73,9 +73,9 @@ static int goes_elsewhere(const hn_wp *wp, const ladder *l, hn_class *c) {
         c->kind = HN_CLASS_ELSEWHERE;
         c->offset = far;
         c->own = l->own[last];
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
 /// First point of the flat end, below which errors only wander. l->n when there is none.

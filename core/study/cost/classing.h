@@ -10,6 +10,8 @@
 
 #include "study/cost/workprecision.h"
 
+#include <stdbool.h>
+
 #define HN_CLASS_FROM_THEORY_FIXED 0.2 ///< observed order from theory's, with fixed steps
 #define HN_CLASS_FROM_THEORY_ADAPTIVE \
     0.5                     ///< where steps are chosen: their number does not halve evenly
@@ -36,7 +38,7 @@ typedef struct hn_class {
     hn_class_kind kind;
     double order;      ///< of the coordinates against the number of steps; NaN: not found
     double theory;     ///< the integrator's
-    int as_theory;     ///< 1: observed within the bounds above
+    bool as_theory;    ///< observed within the bounds above
     int first, last;   ///< points the order was fitted to, -1: none
     int rounding;      ///< first point behind the fitted ones that rounding bends; -1: none
     double low, high;  ///< slopes between neighbours that were met there

@@ -7,6 +7,7 @@
 #include "study/run/timing.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static const char *const cost_names[HN_COST_COUNT] = {"time", "operations", "evaluations"};
@@ -48,8 +49,8 @@ static double claimed(const hn_wp *wp, const hn_wp_point *p, hn_error_kind error
     return fmax(p->worst[error], HN_WP_ABOVE_REFERENCE * wp->ref->error[error]);
 }
 
-static int takes_part(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
-                      hn_cost_kind cost, int m, int k) {
+static bool takes_part(const hn_wp *wp, const hn_class *classes, hn_error_kind error,
+                       hn_cost_kind cost, int m, int k) {
     const hn_wp_point *p = &wp->methods[m].point[k];
     return classes[m].kind != HN_CLASS_ELSEWHERE && p->state == HN_WP_DONE &&
            hn_wp_cost(p, cost) > 0 && isfinite(p->worst[error]);
@@ -116,7 +117,7 @@ static void range_of(const hn_wp *wp, hn_place place, double *low, double *high)
 }
 
 /// Returns 1 if two costs do not differ significantly: counts are exact, times are not.
-static int too_close(const hn_wp *wp, hn_place a, hn_place b, hn_cost_kind cost) {
+static bool too_close(const hn_wp *wp, hn_place a, hn_place b, hn_cost_kind cost) {
     double low, high, unused;
     if (cost != HN_COST_TIME) {
         return b.cost <= a.cost;
@@ -185,16 +186,16 @@ static void fill_band(const hn_wp *wp, const hn_class *classes, hn_error_kind er
     judge(wp, cost, band);
 }
 
-static int is_timed_too_seldom(const hn_wp *wp) {
+static bool is_timed_too_seldom(const hn_wp *wp) {
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             const hn_wp_point *p = &wp->methods[m].point[k];
             if (p->state == HN_WP_DONE && p->n_samples < HN_WP_ENOUGH) {
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 void hn_wp_pareto(const hn_wp *wp, const hn_class *classes, hn_error_kind error, hn_cost_kind cost,
@@ -329,10 +330,10 @@ static unsigned winners(const hn_band *band) {
 }
 
 /// Returns 1 if two bands get the same sentence.
-static int say_the_same(const hn_pareto *p, int i, int j) {
+static bool say_the_same(const hn_pareto *p, int i, int j) {
     const hn_band *a = &p->band[i], *b = &p->band[j];
     if (a->ranking != b->ranking || winners(a) != winners(b)) {
-        return 0;
+        return false;
     }
     return a->ranking == HN_RANKING_CLEAR || p->cost != HN_COST_TIME ||
            (a->unsteady.method == b->unsteady.method &&

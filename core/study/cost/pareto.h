@@ -15,6 +15,8 @@
 
 #include "study/cost/classing.h"
 
+#include <stdbool.h>
+
 typedef enum hn_cost_kind { HN_COST_TIME, HN_COST_OPS, HN_COST_EVALS, HN_COST_COUNT } hn_cost_kind;
 const char *hn_cost_name(hn_cost_kind kind);                ///< "time", "operations", "evaluations"
 double hn_wp_cost(const hn_wp_point *p, hn_cost_kind kind); ///< NaN where it was not measured
@@ -62,8 +64,8 @@ typedef struct hn_band {
 typedef struct hn_pareto {
     hn_cost_kind cost;
     hn_error_kind error;
-    int few; ///< 1: points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
-    int clocks_differ; ///< 1: nor are those of parts whose yardsticks are apart, or unknown
+    bool few; ///< points were timed fewer than HN_WP_ENOUGH times, so that times are not ranked
+    bool clocks_differ; ///< nor are those of parts whose yardsticks are apart, or unknown
     /// 1: the study ends where errors of this kind say nothing: there are no bands
     int beyond_horizon;
     int n_bands; ///< 1e-1, 1e-2, ... down to the best error reached

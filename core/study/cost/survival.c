@@ -4,6 +4,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static const double LEAST_STEP = 2.2, MOST_STEP = 20; // times the usual one
@@ -58,7 +59,7 @@ static void set_stopped(const hn_run *run, hn_survival *out) {
     snprintf(out->reason, sizeof out->reason, "%.255s", s.reason);
 }
 
-static int is_cut(const hn_walk_limits *l, double started) {
+static bool is_cut(const hn_walk_limits *l, double started) {
     return l && ((l->stop && l->stop(l->user)) ||
                  (l->seconds > 0 && hn_clock_thread() - started > l->seconds));
 }

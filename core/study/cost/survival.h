@@ -9,6 +9,8 @@
 #include "study/truth/reference.h"
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 #define HN_SURVIVAL_LIST(X)                                                                  \
     X(HN_SURVIVAL_SURVIVED, "survived", "stayed with the exact motion throughout")           \
     X(HN_SURVIVAL_OFF, "off", "left the exact motion, no loop seen folded over: inaccurate") \
@@ -38,7 +40,7 @@ typedef struct hn_survival_judge {
     double T;      ///< [s]
     int n;         ///< looks, at T (k - before) / n, k = 1..n
     double before; ///< 0: the last look is at T
-    int at_steps;  ///< 1: at the run's own times just behind these
+    bool at_steps; ///< at the run's own times just behind these
     /// 1: a run that left the motion counts as told where an incident says that it is wrong, folded
     /// or not
     int ask_incidents;

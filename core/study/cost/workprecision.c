@@ -7,6 +7,7 @@
 #include "study/run/timing.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -56,11 +57,11 @@ void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]) {
     hn_method_format(&spec, out);
 }
 
-int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error) {
+bool hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error) {
     return isfinite(error) && error > HN_WP_ABOVE_REFERENCE * wp->ref->error[kind];
 }
 
-int hn_wp_is_beyond_horizon(const hn_wp *wp) {
+bool hn_wp_is_beyond_horizon(const hn_wp *wp) {
     return wp->horizon > 0 && wp->horizon < wp->ref->T;
 }
 
@@ -174,7 +175,7 @@ hn_status hn_wp_create(const hn_system *sys, const double *q, const double *v, c
     return HN_OK;
 }
 
-int hn_wp_is_mine(const hn_wp *wp, int m, int k) {
+bool hn_wp_is_mine(const hn_wp *wp, int m, int k) {
     return wp->opts.n_shards == 0 || wp->shard[m * wp->n_levels + k] == wp->opts.shard;
 }
 
@@ -282,13 +283,13 @@ void hn_wp_compare_ends(hn_wp *wp) {
 
 /// Runs a point twice: once with checks against the reference, once without them for the counts
 /// and as a warm-up. Returns 0 if stopped on request.
-static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
+static bool measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     hn_wp_point *p = &wp->methods[m].point[k];
     hn_diag diag = {0};
     hn_run *run = run_of(wp, m, k, &diag);
     if (!run) {
         set_reason(p, HN_WP_FAILED, diag.status, diag.message);
-        return 1;
+        return true;
     }
 
     // errors at the times of the reference, then the counts of an undisturbed run
@@ -304,17 +305,17 @@ static int measure_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     // the result: stopped, failed or done
     if (end == HN_WALK_STOPPED) {
         drop_run(wp, m, k);
-        return 0;
+        return false;
     }
     keep_counts(p, run);
     if (end != HN_WALK_DONE) {
         set_failure(wp, p, run, end);
         drop_run(wp, m, k);
-        return 1;
+        return true;
     }
     p->state = HN_WP_DONE;
     p->t_reached = wp->ref->T;
-    return 1;
+    return true;
 }
 
 // ---- the budget ----
@@ -364,15 +365,15 @@ static double reserved(const hn_wp *wp) {
 }
 
 /// Returns 1 if the rest of the budget is enough for a point; otherwise marks it as left out.
-static int fits(hn_wp *wp, int m, int k, double started) {
+static bool fits(hn_wp *wp, int m, int k, double started) {
     if (!(wp->opts.budget > 0)) {
-        return 1;
+        return true;
     }
     const int coarser = coarser_mine(wp, m, k);
     if (coarser >= 0 && wp->methods[m].point[coarser].state == HN_WP_SKIPPED) {
         set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET,
                    "left out, as the coarser size before it, to keep the budget");
-        return 0;
+        return false;
     }
 
     // time that the point needs, and what is left
@@ -383,14 +384,14 @@ static int fits(hn_wp *wp, int m, int k, double started) {
     char text[256];
 
     if (needed <= left && cpu <= POINT_SHARE * wp->opts.budget) {
-        return 1;
+        return true;
     }
 
     snprintf(text, sizeof text,
              "left out: about %.2g s of computing, and %.2g s are left of the budget of %.3g s",
              needed, fmax(0, left), wp->opts.budget);
     set_reason(&wp->methods[m].point[k], HN_WP_SKIPPED, HN_ERR_BUDGET, text);
-    return 0;
+    return false;
 }
 
 // ---- time ----
@@ -424,19 +425,19 @@ double hn_wp_point_halves_apart(const hn_wp_point *p) {
     return fmax(p->half[0], p->half[1]) / fmin(p->half[0], p->half[1]);
 }
 
-static int is_stopped(const hn_wp_hooks *hooks) {
+static bool is_stopped(const hn_wp_hooks *hooks) {
     return hooks->stop && hooks->stop(hooks->user);
 }
 
 /// Takes a sample of a run that is known to reach its end and reports it as one of point (m, k).
 /// Returns 0 if stopped or failed.
-static int take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
-                       const hn_wp_hooks *hooks) {
+static bool take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
+                        const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {0, hooks->stop, hooks->user};
     double seconds = 0, load = 0;
     for (int i = 0; i <= RETRIES; i++) {
         if (!hn_timing_batch(run, wp->ref->T, p->first_cpu, &limits, &seconds, &load)) {
-            return 0;
+            return false;
         }
         if (load <= HN_WP_BUSY) {
             break;
@@ -448,10 +449,10 @@ static int take_sample(hn_wp *wp, hn_wp_point *p, hn_run *run, int m, int k,
     if (hooks->sample) {
         hooks->sample(hooks->user, m, k);
     }
-    return 1;
+    return true;
 }
 
-static int sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
+static bool sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
     hn_diag diag = {0};
     hn_run *run = run_of(wp, m, k, &diag);
     return run && take_sample(wp, &wp->methods[m].point[k], run, m, k, hooks);
@@ -459,7 +460,7 @@ static int sample_point(hn_wp *wp, int m, int k, const hn_wp_hooks *hooks) {
 
 /// The coarsest run of the first method that comes to the end of the study: the same one in every
 /// part. 0: none does.
-static int find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
+static bool find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
     const hn_walk_limits limits = {POINT_SHARE * wp->opts.budget, hooks->stop, hooks->user};
     for (int m = 0; m < wp->n_methods && !is_stopped(hooks); m++) {
         hn_diag diag = {0};
@@ -467,12 +468,12 @@ static int find_yardstick(hn_wp *wp, const hn_wp_hooks *hooks) {
         if (run && hn_walk(run, wp->ref->T, wp->ref->n, &limits, NULL, NULL) == HN_WALK_DONE) {
             wp->yardstick.first_cpu = hn_run_get_summary(run).cpu_seconds;
             wp->yardstick_method = m;
-            return 1;
+            return true;
         }
         hn_run_free(wp->yardstick_run);
         wp->yardstick_run = NULL;
     }
-    return 0;
+    return false;
 }
 
 static int sample_yardstick(hn_wp *wp, int round, const hn_wp_hooks *hooks) {
@@ -516,7 +517,7 @@ static void tell_progress(const hn_wp *wp, const hn_wp_hooks *hooks, double star
 }
 
 /// Runs every size of every method, coarse ones first. Returns 0 if stopped.
-static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
+static bool run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
     for (int k = 0; k < wp->n_levels; k++) {
         for (int m = 0; m < wp->n_methods; m++) {
             hn_wp_point *p = &wp->methods[m].point[k];
@@ -526,7 +527,7 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
             }
 
             if (is_stopped(hooks)) {
-                return 0;
+                return false;
             }
             if (p->state != HN_WP_PENDING || !hn_wp_is_mine(wp, m, k)) {
                 continue;
@@ -534,7 +535,7 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
 
             // run the point if the budget allows, then report it
             if (fits(wp, m, k, started) && !measure_point(wp, m, k, hooks)) {
-                return 0;
+                return false;
             }
             wp->out_of_time |= p->state == HN_WP_SKIPPED;
             if (hooks->point && p->state != HN_WP_SKIPPED) {
@@ -543,13 +544,13 @@ static int run_points(hn_wp *wp, const hn_wp_hooks *hooks, double started) {
             tell_progress(wp, hooks, started);
         }
     }
-    return 1;
+    return true;
 }
 
 /// Takes sample number `round` of every point that has fewer. Returns 0 if stopped or out of time.
-static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double started) {
+static bool run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double started) {
     if (!sample_yardstick(wp, round, hooks)) {
-        return 0;
+        return false;
     }
 
     for (int k = 0; k < wp->n_levels; k++) {
@@ -563,15 +564,15 @@ static int run_round(hn_wp *wp, int round, const hn_wp_hooks *hooks, double star
             const double left = wp->opts.budget - (hn_clock_wall() - started);
             if (wp->opts.budget > 0 && left < sample_cost(p->first_cpu)) {
                 wp->out_of_time = 1;
-                return 0;
+                return false;
             }
             if (!sample_point(wp, m, k, hooks)) {
-                return 0;
+                return false;
             }
             tell_progress(wp, hooks, started);
         }
     }
-    return 1;
+    return true;
 }
 
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks) {

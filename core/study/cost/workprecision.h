@@ -20,6 +20,8 @@
 #include "study/truth/errors.h"
 #include "study/truth/reference.h"
 
+#include <stdbool.h>
+
 enum { HN_WP_METHODS = 24, HN_WP_LEVELS = 10, HN_WP_SAMPLES = 10, HN_WP_ENOUGH = 4 };
 #define HN_WP_BUSY 1.05          ///< wall over CPU time beyond which the machine is busy
 #define HN_WP_ABOVE_REFERENCE 10 ///< errors below this times the reference's own are bounds
@@ -59,7 +61,7 @@ typedef struct hn_wp_point {
 typedef struct hn_wp_method {
     hn_method_spec spec;
     char spelling[HN_SPEC_MAX]; ///< without step or tolerance
-    int adaptive;
+    bool adaptive;
     hn_wp_point point[HN_WP_LEVELS];
 } hn_wp_method;
 
@@ -102,9 +104,9 @@ typedef struct hn_wp {
     double clocks_apart;
     /// from then on errors say nothing of methods (chaos.h) [s]; 0: they do to the end
     double horizon;
-    int out_of_time; ///< 1: the budget left something out
-    int stopped;     ///< 1: stopped on request
-    double elapsed;  ///< wall time of hn_wp_run() [s]
+    bool out_of_time; ///< the budget left something out
+    bool stopped;     ///< stopped on request
+    double elapsed;   ///< wall time of hn_wp_run() [s]
 } hn_wp;
 
 /// A study of n methods to the end of the reference. Sizes in the specs are replaced by the ladder.
@@ -117,8 +119,8 @@ void hn_wp_free(hn_wp *wp); ///< NULL is legal
 /// Runs what is pending: points that are done, failed or timed already (as read from a file) are
 /// left as they are. Returns 1 when nothing is left, 0 when stopped or out of time.
 int hn_wp_run(hn_wp *wp, const hn_wp_hooks *hooks);
-/// 1 if the point is run here: of the whole, or of this part.
-int hn_wp_is_mine(const hn_wp *wp, int m, int k);
+/// Whether the point is run here: of the whole, or of this part.
+bool hn_wp_is_mine(const hn_wp *wp, int m, int k);
 /// Median, quartiles, spread and the halves' medians from the samples.
 void hn_wp_point_statistics(hn_wp_point *p);
 /// The larger of the halves' medians over the smaller; NaN while there are fewer than HN_WP_ENOUGH
@@ -131,9 +133,9 @@ void hn_wp_compare_ends(hn_wp *wp);
 hn_method_spec hn_wp_spec(const hn_wp *wp, int m, double size);
 /// The spelling of one point, with its size.
 void hn_wp_spelling(const hn_wp *wp, int m, int k, char out[HN_SPEC_MAX]);
-/// 1 if the study ends where errors along the motion say nothing.
-int hn_wp_is_beyond_horizon(const hn_wp *wp);
+/// Whether the study ends where errors along the motion say nothing.
+bool hn_wp_is_beyond_horizon(const hn_wp *wp);
 /// 1 if the error is one: finite, and above HN_WP_ABOVE_REFERENCE times the reference's own;
 /// otherwise it is a bound.
-int hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error);
+bool hn_wp_is_resolved(const hn_wp *wp, hn_error_kind kind, double error);
 #endif

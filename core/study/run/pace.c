@@ -3,6 +3,8 @@
 
 #include "base/clock.h"
 
+#include <stdbool.h>
+
 enum { MOST_BETWEEN = 512 };
 static const double SOON = 1e-3, LATE = 1e-2; // between two looks [s]
 
@@ -10,9 +12,9 @@ hn_pace hn_pace_begin(void) {
     return (hn_pace){.last = hn_clock_thread(), .every = 1};
 }
 
-int hn_pace_is_due(hn_pace *pace) {
+bool hn_pace_is_due(hn_pace *pace) {
     if (++pace->n < pace->every) {
-        return 0;
+        return false;
     }
     const double now = hn_clock_thread(), took = now - pace->last;
     if (took < SOON) {
@@ -23,5 +25,5 @@ int hn_pace_is_due(hn_pace *pace) {
     }
     pace->last = now;
     pace->n = 0;
-    return 1;
+    return true;
 }

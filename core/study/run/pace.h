@@ -6,6 +6,8 @@
 // ten milliseconds apart; steps do not depend on them. One pace serves a whole run: if it started
 // again at each output, it would never check where outputs are few steps apart.
 
+#include <stdbool.h>
+
 typedef struct hn_pace {
     double last; ///< CPU time of this thread at the last look [s]
     int every;   ///< steps between looks
@@ -14,6 +16,6 @@ typedef struct hn_pace {
 
 /// Begins now, on the thread that will step.
 hn_pace hn_pace_begin(void);
-/// Counts one step; returns 1 when a check is due.
-int hn_pace_is_due(hn_pace *pace);
+/// Counts one step; returns whether a check is due.
+bool hn_pace_is_due(hn_pace *pace);
 #endif

@@ -9,6 +9,7 @@
 #include "study/run/step_clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -309,7 +310,7 @@ const char *hn_run_sample_why(const hn_run *run, hn_status status) {
     return why ? why : hn_status_text(status);
 }
 
-int hn_run_has_raw_lambda(const hn_run *run) {
+bool hn_run_has_raw_lambda(const hn_run *run) {
     return hn_engine_has_raw_lambda(&run->stepping.engine);
 }
 

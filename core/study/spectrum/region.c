@@ -5,6 +5,7 @@
 #include "study/spectrum/region.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define GROWS 1e-12         // |R| - 1 above rounding, where the step is explicit
@@ -65,11 +66,11 @@ const char *hn_stability_why_not(const hn_stepper *stepper) {
     return stepper->step ? NULL : "it chooses steps and order itself, so no step size is its limit";
 }
 
-static int open_probe(probe *p, const hn_stepper *stepper) {
+static bool open_probe(probe *p, const hn_stepper *stepper) {
     double settings[HN_MAX_OPTIONS] = {0};
     *p = (probe){.stepper = stepper};
     if (hn_stability_why_not(stepper)) {
-        return 0;
+        return false;
     }
 
     // a stepper for one position and one velocity, with its default options
@@ -77,7 +78,7 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
     p->self = p->arena ? stepper->create(1, 1, p->arena) : NULL;
     if (!p->self) {
         hn_arena_free(p->arena);
-        return 0;
+        return false;
     }
     for (int i = 0; i < stepper->n_options; i++) {
         settings[i] = stepper->options[i].initial;
@@ -94,7 +95,7 @@ static int open_probe(probe *p, const hn_stepper *stepper) {
                       .kinematics = speed,
                       .jacobian = matrix};
     p->grows = isfinite(stepper->real_limit) ? GROWS : GROWS_IMPLICIT;
-    return 1;
+    return true;
 }
 
 static void close_probe(probe *p) {
@@ -105,7 +106,7 @@ static void close_probe(probe *p) {
 }
 
 // one step of length 1 from (1, 0) or (0, 1); 0 when it fails or is not finite
-static int take_step(probe *p, int column, double y_new[2]) {
+static bool take_step(probe *p, int column, double y_new[2]) {
     double y[2] = {column == 0, column == 1}, err[2];
     p->stepper->on_accepted(p->self, 1);
     return p->stepper->step(p->self, &p->ode, 0, 1, y, y_new, err) == HN_OK && isfinite(y_new[0]) &&

@@ -11,6 +11,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -222,7 +223,7 @@ static hn_status find_eigenvalues(hn_spectrum *s, int r) {
     return HN_OK;
 }
 
-static int is_finite(const hn_spectrum *s) {
+static bool is_finite(const hn_spectrum *s) {
     return hn_linear_is_finite(s->linear, HN_LINEAR_M) &&
            hn_linear_is_finite(s->linear, HN_LINEAR_K) &&
            hn_linear_is_finite(s->linear, HN_LINEAR_C) &&

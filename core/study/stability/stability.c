@@ -9,6 +9,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +45,7 @@ const char *hn_stability_class_name(hn_stability_class kind) {
     return kind < HN_STABILITY_CLASS_COUNT ? class_names[kind] : "?";
 }
 
-int hn_stability_is_stable(hn_stability_class kind) {
+bool hn_stability_is_stable(hn_stability_class kind) {
     return kind == HN_STABILITY_FINE || kind == HN_STABILITY_INACCURATE;
 }
 
@@ -323,22 +324,22 @@ static void tell_growth(hn_stability_trial *o, double energy) {
 
 // 1 when there is no need to go on. An energy that swings widely is no growth yet: symplectic
 // integrators do that close to their limit.
-static int ran_away(trial *t, double energy, double gap) {
+static bool ran_away(trial *t, double energy, double gap) {
     hn_stability_trial *o = t->out;
     o->energy = fmax(o->energy, energy);
     o->gap = fmax(o->gap, gap);
     if (!(energy <= HN_STABILITY_RUNAWAY)) {
         tell_growth(o, energy);
-        return 1;
+        return true;
     }
     if (!(gap <= HN_STABILITY_OPEN)) {
         o->kind = HN_STABILITY_GREW;
         snprintf(o->reason, sizeof o->reason,
                  "the loop stands open by %.3g of the mechanism's length, at t = %.4g s", gap,
                  o->t_reached);
-        return 1;
+        return true;
     }
-    return 0;
+    return false;
 }
 
 static void note_third(trial *t, int k, double energy) {
@@ -362,7 +363,7 @@ static void compare_speeds(trial *t, int k, const hn_sample *s) {
 }
 
 // 1 when there is no need to go on
-static int look(trial *t, hn_run *run, int k, double time) {
+static bool look(trial *t, hn_run *run, int k, double time) {
     const hn_stability_path *p = t->path;
     const int beyond = k > HN_STABILITY_LOOKS;
     hn_sample s;
@@ -370,18 +371,18 @@ static int look(trial *t, hn_run *run, int k, double time) {
     // does not
     const int there = hn_run_sample(run, time, &s) == HN_OK;
     if (!there && hn_run_sample(run, hn_run_time(run), &s) != HN_OK) {
-        return 0;
+        return false;
     }
     const double energy = (s.energy - (beyond ? p->highest : p->energy[k])) / p->scale;
     t->out->t_reached = s.t;
     note_third(t, k, energy);
     if (ran_away(t, energy, s.gap / p->length)) {
-        return 1;
+        return true;
     }
     if (!beyond && there) {
         compare_speeds(t, k, &s);
     }
-    return 0;
+    return false;
 }
 
 static void conclude(trial *t, hn_walk_end end, const hn_run *run, const hn_walk_limits *limits) {

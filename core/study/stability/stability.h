@@ -12,6 +12,8 @@
 #include "study/spectrum/spectrum.h"
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 enum { HN_STABILITY_LOOKS = 48, HN_STABILITY_REASON = 256, HN_STABILITY_LEAST_STEPS = 500 };
 
 #define HN_STABILITY_ACCURATE 1e-2 ///< largest error of what counts as accurate
@@ -39,7 +41,7 @@ typedef enum hn_stability_class {
 } hn_stability_class;
 const char *hn_stability_class_name(hn_stability_class kind);
 /// 1: it came to its end without growth (accurate or not).
-int hn_stability_is_stable(hn_stability_class kind);
+bool hn_stability_is_stable(hn_stability_class kind);
 
 /// How one trial ended.
 typedef struct hn_stability_trial {

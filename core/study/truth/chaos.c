@@ -7,6 +7,7 @@
 #include "study/truth/errors.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -192,8 +193,8 @@ static hn_status create(twins *w, const double *q, const double *v, int windows)
 
 /// Returns 1 where the motion can be chaotic: with two degrees of freedom or more, or with one and
 /// an explicit dependence on time. Otherwise out->why has the reason, or *status the failure.
-static int is_possible(const hn_system *sys, const double *q, const double *v, hn_chaos *out,
-                       hn_diag *diag, hn_status *status) {
+static bool is_possible(const hn_system *sys, const double *q, const double *v, hn_chaos *out,
+                        hn_diag *diag, hn_status *status) {
     hn_run *run = NULL;
     hn_sample s;
     hn_method_spec spec;

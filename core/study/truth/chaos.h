@@ -17,9 +17,11 @@
 
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 typedef struct hn_chaos {
     int possible;                ///< 0: cannot be chaotic, `why` says so, and nothing was computed
-    int chaotic;                 ///< 1: the second half parts by more than HN_CHAOS_PARTING
+    bool chaotic;                ///< the second half parts by more than HN_CHAOS_PARTING
     double exponent;             ///< lambda of the second half [1/s]; 0 when not possible
     double growth, growth_first; ///< ln of the growth in the second and in the first half
     double T, window;            ///< [s]

@@ -10,6 +10,7 @@
 #include "study/truth/precise_solver.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_NEWTON = 12 };
@@ -302,17 +303,17 @@ static hn_status accelerate(void *ws, hn_real t, const hn_real *q, const hn_real
 // ---- closing ----
 
 /// 1: some chosen row is all but a combination of the others here, or vanishes.
-static int is_weak(const nullspace *s) {
+static bool is_weak(const nullspace *s) {
     for (int k = 0; k < s->rank; k++) {
         if (fabsl(column_of(s, k)[k]) < WEAK) {
-            return 1;
+            return true;
         }
     }
     return s->rank < s->n_rows;
 }
 
 /// 1: every chosen row is as close to 0 as its rounding.
-static int is_closed(const nullspace *s, const hn_real *q) {
+static bool is_closed(const nullspace *s, const hn_real *q) {
     hn_real most = 1;
     for (int i = 0; i < s->m->nq; i++) {
         most = fmaxl(most, fabsl(q[i]));
@@ -320,10 +321,10 @@ static int is_closed(const nullspace *s, const hn_real *q) {
     for (int k = 0; k < s->rank; k++) {
         const int i = s->column[k];
         if (fabsl(s->m->phi[i]) > ROUNDING * most * s->length[i]) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static hn_status close_loops(void *ws, hn_real t, hn_real *q, hn_real *v) {

@@ -5,6 +5,7 @@
 #include "study/truth/precise_solver.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { MAX_CLOSING = 12 };
@@ -271,7 +272,7 @@ static hn_real size_of_step(const saddle *s) {
 }
 
 /// 1: every kept row is as close to 0 as its rounding.
-static int is_closed(const saddle *s, const hn_real *q) {
+static bool is_closed(const saddle *s, const hn_real *q) {
     const int nv = s->m->nv;
     hn_real most = 1;
     for (int i = 0; i < s->m->nq; i++) {
@@ -280,10 +281,10 @@ static int is_closed(const saddle *s, const hn_real *q) {
     for (int k = 0; k < s->n_rows; k++) {
         const hn_real *row = s->m->J + (size_t)s->row[k] * nv;
         if (fabsl(s->m->phi[s->row[k]]) > ROUNDING * most * sqrtl(dot(nv, row, row))) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
 static hn_status close_loops(void *ws, hn_real t, hn_real *q, hn_real *v) {

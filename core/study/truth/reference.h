@@ -16,6 +16,8 @@
 #include "study/truth/errors.h"
 #include "study/run/walk.h"
 
+#include <stdbool.h>
+
 enum { HN_REF_TIMES = 32, HN_REF_MEANS = 2 };
 
 typedef struct hn_ref {
@@ -38,7 +40,7 @@ typedef struct hn_ref {
 typedef struct hn_ref_opts {
     int n;                 ///< intervals; 0: HN_REF_TIMES
     hn_walk_limits limits; ///< of each computation; those in extended precision get 0.4 of the time
-    int skip_precise;      ///< 1: those in double alone
+    bool skip_precise;     ///< those in double alone
     void (*progress)(
         void *user,
         /// of both computations; falls where one did not come to the end. NULL: not told

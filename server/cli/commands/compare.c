@@ -12,6 +12,7 @@
 #include "terminal/width.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -78,7 +79,7 @@ static const char *gap_unit(const hn_model *model) {
     return "m";
 }
 
-static int has_failed(const cJSON *method) {
+static bool has_failed(const cJSON *method) {
     return strcmp(hn_document_text(method, "state"), "failed") == 0;
 }
 

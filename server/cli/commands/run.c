@@ -12,6 +12,7 @@
 #include "terminal/width.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 

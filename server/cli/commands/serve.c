@@ -8,6 +8,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -68,14 +69,14 @@ static hn_status read_opts(const hn_args *args, hn_http_opts *opts, hn_diag *dia
     return HN_OK;
 }
 
-static int is_this_machine(const char *host) {
+static bool is_this_machine(const char *host) {
     static const char *const names[] = {"127.0.0.1", "localhost", "::1"};
     for (int i = 0; i < 3; i++) {
         if (strcmp(host, names[i]) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// The token that was given, one that is made where others can reach the server, or none.

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,17 +85,17 @@ static hn_status put_paths(hn_verdict_names *names, const char *folder,
 
 /// The first pair with one name, capital letters ignored as some file systems do; 0 when there is
 /// none.
-static int find_pair(const hn_verdict_names *names, int *first, int *second) {
+static bool find_pair(const hn_verdict_names *names, int *first, int *second) {
     for (int i = 0; i < names->n; i++) {
         for (int k = 0; k < i; k++) {
             if (strcasecmp(names->path[i], names->path[k]) == 0) {
                 *first = k;
                 *second = i;
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
 /// Makes the folders of a path, the last part being a file.

@@ -5,6 +5,7 @@
 #include "session/kinds/job.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -108,20 +109,20 @@ static const option OPTIONS[] = {
 enum { N_OPTIONS = sizeof OPTIONS / sizeof *OPTIONS };
 
 /// 1 when `name` is one of the words of `list`.
-static int lists(const char *list, const char *name) {
+static bool lists(const char *list, const char *name) {
     size_t n = strlen(name);
     for (const char *p = list; *p;) {
         size_t length = strcspn(p, " ");
         if (length == n && memcmp(p, name, n) == 0) {
-            return 1;
+            return true;
         }
         p += length;
         p += strspn(p, " ");
     }
-    return 0;
+    return false;
 }
 
-static int is_offered(const hn_command *command, const option *o) {
+static bool is_offered(const hn_command *command, const option *o) {
     return strcmp(o->name, "--json") == 0 || strcmp(o->name, "--help") == 0 ||
            strcmp(o->name, "--no-native") == 0 || lists(command->options, o->name);
 }
@@ -311,7 +312,7 @@ static hn_status read_value(hn_args *args, const option *o, const char *text, hn
 }
 
 /// A word that begins with '-' and is no number ends a list of words; "-" alone is standard input.
-static int looks_like_option(const char *word) {
+static bool looks_like_option(const char *word) {
     double number;
     return word[0] == '-' && word[1] && !hn_number_parse(word, &number);
 }

@@ -4,11 +4,12 @@
 #include "cli/shell/args.h"
 #include "cli/shell/print.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 /// An output that cannot be written is not the fault of the input.
-static int is_output(const hn_diags *diags) {
+static bool is_output(const hn_diags *diags) {
     return diags->n > 0 && diags->item[0].status == HN_ERR_IO &&
            strcmp(diags->item[0].pointer, "/out") == 0;
 }

@@ -2,6 +2,7 @@
 #include "cli/shell/document.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,7 +110,7 @@ void hn_document_list(hn_strbuf *b, const cJSON *array, const hn_list_column *co
     hn_table_reset(&t);
 }
 
-static int is_scalar(const cJSON *item) {
+static bool is_scalar(const cJSON *item) {
     return !cJSON_IsArray(item) && !cJSON_IsObject(item);
 }
 
@@ -145,14 +146,14 @@ static void put_objects(hn_strbuf *b, const cJSON *array) {
 }
 
 /// Text that is laid out by its own indentation stands line by line.
-static int holds_lines(const cJSON *array) {
+static bool holds_lines(const cJSON *array) {
     const cJSON *item;
     cJSON_ArrayForEach(item, array) {
         if (cJSON_IsString(item) && item->valuestring[0] == ' ') {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static void put_lines(hn_strbuf *b, const cJSON *array, int indent) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/shell/plain.h"
 
+#include <stdbool.h>
 #include <string.h>
 #include <strings.h>
 
@@ -23,13 +24,13 @@ static const struct {
 };
 enum { N_LIKENESSES = sizeof LIKENESSES / sizeof *LIKENESSES };
 
-static int names_utf8(const char *locale) {
+static bool names_utf8(const char *locale) {
     for (; *locale; locale++) {
         if (strncasecmp(locale, "utf-8", 5) == 0 || strncasecmp(locale, "utf8", 4) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 int hn_plain_wanted(const char *lc_all, const char *lc_ctype, const char *lang) {

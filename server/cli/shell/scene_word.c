@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "cli/shell/args.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -52,7 +53,7 @@ static hn_status see_setting(void *user, const char *name, double value) {
 }
 
 hn_status hn_args_load_model(const hn_library *lib, const hn_args *args, const char *word,
-                             int allow_open, hn_model **out, hn_diags *diags) {
+                             bool allow_open, hn_model **out, hn_diags *diags) {
     settings *s = calloc(1, sizeof *s);
     hn_strbuf text;
     hn_strbuf_init(&text);

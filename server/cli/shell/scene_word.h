@@ -6,9 +6,11 @@
 #include "cli/shell/args.h"
 #include "session/model/model.h"
 
+#include <stdbool.h>
+
 /// Loads the scene of a word: a shipped name, a file, or "-", with the settings of --set.
 HN_MUST_CHECK hn_status hn_args_load_model(const hn_library *lib, const hn_args *args,
-                                           const char *word, int allow_open, hn_model **out,
+                                           const char *word, bool allow_open, hn_model **out,
                                            hn_diags *diags);
 /// NAME=VALUE, several per word when separated by commas. `see` gets each. pointer names the option
 /// for messages.

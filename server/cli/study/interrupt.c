@@ -2,6 +2,7 @@
 #include "cli/study/interrupt.h"
 
 #include <signal.h>
+#include <stdbool.h>
 
 static volatile sig_atomic_t interrupted;
 /// Ctrl-C, and what a system sends that wants the program to end.

@@ -5,6 +5,8 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
+
 void hn_interrupt_begin(void);
 void hn_interrupt_end(void);
 int hn_is_interrupted(void *unused); ///< 1 once asked: the `stop` of a job

@@ -5,6 +5,7 @@
 #include "session/stability/stability_column.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -17,14 +18,14 @@ static double near_row(const hn_map_axis *y, double value) {
 }
 
 /// Returns 1 when the predicted boundary of this column passes between row j and the one above.
-static int is_boundary(const hn_map *map, int m, int column, int row) {
+static bool is_boundary(const hn_map *map, int m, int column, int row) {
     const hn_map_column *c = hn_map_get_column(map, m, column);
     for (int k = 0; k < c->n_predicted; k++) {
         if (c->predicted[k] > 0 && lround(near_row(hn_map_y(map), c->predicted[k])) == row) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 static void put_row(hn_strbuf *b, const hn_map *map, int m, int row) {

@@ -8,6 +8,7 @@
 #include "render/look.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -114,22 +115,22 @@ static double plotted_error(const hn_wp *wp, const hn_wp_point *p) {
     return log10(fmin(1, fmax(e, 1e-16)));
 }
 
-static int is_plotted(const hn_wp_point *p, hn_cost_kind cost) {
+static bool is_plotted(const hn_wp_point *p, hn_cost_kind cost) {
     return p->state == HN_WP_DONE && hn_wp_cost(p, cost) > 0;
 }
 
-static int has_times(const hn_wp *wp) {
+static bool has_times(const hn_wp *wp) {
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
             if (wp->methods[m].point[k].n_samples > 0) {
-                return 1;
+                return true;
             }
         }
     }
-    return 0;
+    return false;
 }
 
-static int find_range(const hn_wp *wp, range *r) {
+static bool find_range(const hn_wp *wp, range *r) {
     *r = (range){HUGE_VAL, -HUGE_VAL, 0, 0, has_times(wp) ? HN_COST_TIME : HN_COST_OPS};
     for (int m = 0; m < wp->n_methods; m++) {
         for (int k = 0; k < wp->n_levels; k++) {
@@ -296,7 +297,7 @@ static void put_race(hn_strbuf *b, const hn_study *study) {
     hn_table_reset(&t);
 }
 
-static int is_alike(const hn_wp_point *a, const hn_wp_point *b) {
+static bool is_alike(const hn_wp_point *a, const hn_wp_point *b) {
     return a->state == b->state && a->t_reached == b->t_reached &&
            strcmp(a->reason, b->reason) == 0;
 }

@@ -7,6 +7,8 @@
 // to its share of them. A client is an address. 127.0.0.1 and ::1 are this machine itself, or the
 // proxy that speaks for everybody: for them only the limits in all hold.
 
+#include <stdbool.h>
+
 enum { HN_MAX_HOSTS = 16 };
 
 typedef struct hn_http_opts {
@@ -17,7 +19,7 @@ typedef struct hn_http_opts {
     int n_allow_hosts;
 
     const char *token;       ///< that every client must show; NULL: none
-    int guests;              ///< 1: who has no token may read
+    bool guests;             ///< who has no token may read
     const char *runs_folder; ///< where finished runs are kept; NULL: in memory alone
 
     // places

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <string.h>
 
 /// Weight of the latest job in the mean duration.
@@ -102,17 +103,17 @@ static void *work(void *arg) {
     return NULL;
 }
 
-static int start_thread(hn_jobs *jobs) {
+static bool start_thread(hn_jobs *jobs) {
     worker *w = malloc(sizeof *w);
     if (!w) {
-        return 0;
+        return false;
     }
     *w = (worker){.jobs = jobs, .place = jobs->n_threads};
     if (pthread_create(&jobs->threads[jobs->n_threads], NULL, work, w) != 0) {
         free(w);
-        return 0;
+        return false;
     }
-    return 1;
+    return true;
 }
 
 hn_jobs *hn_jobs_create(int n_threads, int n_waiting, int per_client, void (*run)(void *job)) {

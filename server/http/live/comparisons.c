@@ -7,6 +7,7 @@
 #include "http/request/context.h"
 #include "http/request/request.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -56,7 +57,7 @@ static void tick(hn_comparisons *all) {
 
 /// Makes room by ending the comparison that was left alone for longest, if any was. With the lock
 /// held. Returns 1 when there is room.
-static int end_forsaken(hn_comparisons *all) {
+static bool end_forsaken(hn_comparisons *all) {
     double longest = FORSAKEN;
     int oldest = -1;
     for (int i = 0; i < all->n; i++) {

@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "session/job/field.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 /// Steps on request are not interrupted by other requests for so long [s].
@@ -33,21 +34,21 @@ static change read_change(const cJSON *body) {
 }
 
 /// 1 when the change fits the state; otherwise the reply is a problem.
-static int fits_state(const hn_session *session, const change *c, hn_request *r) {
+static bool fits_state(const hn_session *session, const change *c, hn_request *r) {
     int restart = c->methods || c->settings || c->reset;
     int running = c->wants_state ? c->run : session->state == HN_SESSION_RUNNING;
     if (c->step > 0 && running) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"state\": \"paused\" as well",
                          "a running comparison cannot be stepped");
-        return 0;
+        return false;
     }
     if (session->state == HN_SESSION_FINISHED && !restart &&
         (c->step > 0 || (c->wants_state && c->run))) {
         hn_reply_problem(r, HN_PROBLEM_CONFLICT, "send \"reset\": true as well",
                          "the comparison has finished");
-        return 0;
+        return false;
     }
-    return 1;
+    return true;
 }
 
 /// The spellings the new runs are made from: those asked, or the present ones with what was changed

@@ -7,6 +7,7 @@
 #include "http/live/stream.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +43,7 @@ static hn_request *take_patch(hn_session *session) {
 }
 
 /// Nobody reads along: 1 when the comparison should pause itself.
-static int is_unwatched(const hn_session *session) {
+static bool is_unwatched(const hn_session *session) {
     return session->n_streams == 0 &&
            hn_clock_wall() - session->touched > session->opts->idle_pause;
 }

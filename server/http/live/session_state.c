@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "session/model/model_json.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

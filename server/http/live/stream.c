@@ -8,6 +8,7 @@
 #include "http/request/context.h"
 
 #include <poll.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -31,7 +32,7 @@ struct hn_stream {
 
 /// 1 when the reader has closed the connection. A suspended one is not looked at by the HTTP
 /// library.
-static int has_gone(const hn_stream *s) {
+static bool has_gone(const hn_stream *s) {
     struct pollfd look = {.fd = s->fd, .events = POLLRDHUP};
     return s->reader.waiting && poll(&look, 1, 0) > 0 && look.revents;
 }
@@ -105,7 +106,7 @@ static void put_new_events(hn_stream *s) {
 }
 
 /// 1 when the reader has seen all there will be (until somebody resets the comparison).
-static int is_at_end(const hn_stream *s) {
+static bool is_at_end(const hn_stream *s) {
     return s->session->ending ||
            (s->session->state == HN_SESSION_FINISHED && s->cursor > s->session->history.last_id);
 }
@@ -199,26 +200,26 @@ static long long read_last_id(const hn_request *r) {
 }
 
 /// Where to begin. With the lock held; 0 when the reply is made here.
-static int choose_cursor(hn_stream *s, hn_request *r, long long last) {
+static bool choose_cursor(hn_stream *s, hn_request *r, long long last) {
     const hn_history *h = &s->session->history;
     if (last == -2 || (last >= 0 && (uint64_t)last > h->last_id)) {
         hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
                          "the last event id must be a number up to %llu, the newest event here",
                          (unsigned long long)h->last_id);
-        return 0;
+        return false;
     }
     s->cursor = last >= 0  ? (uint64_t)last + 1
                 : s->skips ? h->last_frame_id
                            : hn_history_first_id(h);
     if (last >= 0 && is_at_end(s)) {
         hn_reply_empty(r, MHD_HTTP_NO_CONTENT);
-        return 0;
+        return false;
     }
-    return 1;
+    return true;
 }
 
 /// The extras of a frame that the query names; 0 with a problem as reply.
-static int read_fields(hn_request *r, unsigned *fields) {
+static bool read_fields(hn_request *r, unsigned *fields) {
     const char *at = hn_request_query(r, "fields");
     *fields = 0;
     while (at && *at) {
@@ -232,12 +233,12 @@ static int read_fields(hn_request *r, unsigned *fields) {
         if (i == HN_FRAME_EXTRAS) {
             hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "fields=sigma_min,lambda",
                              "a frame has no field '%.*s' to add", (int)(n < 40 ? n : 40), at);
-            return 0;
+            return false;
         }
         *fields |= 1U << i;
         at += n + (at[n] == ',');
     }
-    return 1;
+    return true;
 }
 
 static void reply_stream(hn_stream *s, hn_request *r) {

@@ -4,6 +4,7 @@
 #include "http/request/context.h"
 
 #include <arpa/inet.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -18,7 +19,7 @@ static size_t trim_port(const char *authority) {
                                                              : n;
 }
 
-int hn_is_same_origin(const char *origin, const char *host) {
+bool hn_is_same_origin(const char *origin, const char *host) {
     const size_t scheme = strncmp(origin, "http://", 7) == 0    ? 7
                           : strncmp(origin, "https://", 8) == 0 ? 8
                                                                 : 0;
@@ -28,14 +29,14 @@ int hn_is_same_origin(const char *origin, const char *host) {
 }
 
 /// A page may call the server that it came from: same name, same port.
-static int check_origin(hn_request *r, const char *host) {
+static bool check_origin(hn_request *r, const char *host) {
     const char *origin = hn_request_header(r, "Origin");
     if (!origin || hn_is_same_origin(origin, host)) {
-        return 1;
+        return true;
     }
     hn_reply_problem(r, HN_PROBLEM_FOREIGN_ORIGIN, NULL,
                      "the origin '%.100s' is not that of this server, '%.100s'", origin, host);
-    return 0;
+    return false;
 }
 
 int hn_guard_host(hn_request *r, const hn_hosts *hosts) {
@@ -64,9 +65,9 @@ int hn_guard_site(hn_request *r) {
 }
 
 /// 1 when the range (n bytes, "application/*") covers the type.
-static int range_covers(const char *range, size_t n, const char *media_type) {
+static bool range_covers(const char *range, size_t n, const char *media_type) {
     if (n == 3 && memcmp(range, "*/*", 3) == 0) {
-        return 1;
+        return true;
     }
     if (n > 2 && memcmp(range + n - 2, "/*", 2) == 0) {
         return strncasecmp(range, media_type, n - 1) == 0;
@@ -75,7 +76,7 @@ static int range_covers(const char *range, size_t n, const char *media_type) {
 }
 
 /// 1 when the parameters of a range say q=0.
-static int is_refused(const char *params, size_t n) {
+static bool is_refused(const char *params, size_t n) {
     char copy[64];
     snprintf(copy, sizeof copy, "%.*s", (int)(n < 63 ? n : 63), params);
     const char *q = strstr(copy, "q=");
@@ -167,7 +168,7 @@ int hn_guard_query(hn_request *r) {
     return 0;
 }
 
-int hn_is_json_type(const char *content_type) {
+bool hn_is_json_type(const char *content_type) {
     static const char json[] = "application/json";
     size_t n = sizeof json - 1;
     return content_type && strncasecmp(content_type, json, n) == 0 &&

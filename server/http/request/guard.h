@@ -6,13 +6,15 @@
 #include "http/ground/hosts.h"
 #include "http/request/request.h"
 
+#include <stdbool.h>
+
 /// 1 when an Accept header (NULL: none) lets `media_type` through.
 int hn_accepts(const char *accept, const char *media_type);
 /// 1 for application/json, with or without parameters.
-int hn_is_json_type(const char *content_type);
+bool hn_is_json_type(const char *content_type);
 
-/// Returns 1 when an Origin header names the host and port of the Host header.
-int hn_is_same_origin(const char *origin, const char *host);
+/// Returns whether an Origin header names the host and port of the Host header.
+bool hn_is_same_origin(const char *origin, const char *host);
 
 /// Each returns 1 when all is well; otherwise the reply is a problem.
 int hn_guard_host(hn_request *r, const hn_hosts *hosts);

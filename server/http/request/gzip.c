@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/gzip.h"
 
+#include <stdbool.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -21,7 +22,7 @@ int hn_gzip_accepted(const hn_request *r) {
     return strncmp(q, "q=0", 3) != 0 || strncmp(q, "q=0.", 4) == 0;
 }
 
-int hn_gzip_is_worth(const char *media_type, size_t n) {
+bool hn_gzip_is_worth(const char *media_type, size_t n) {
     return media_type && n >= LEAST &&
            (strncmp(media_type, "text/", 5) == 0 || strstr(media_type, "json") ||
             strncmp(media_type, "image/svg", 9) == 0);

@@ -5,10 +5,12 @@
 
 #include "http/request/request.h"
 
+#include <stdbool.h>
+
 /// Returns 1 when the client takes gzip.
 int hn_gzip_accepted(const hn_request *r);
-/// Returns 1 when a text of this media type gets smaller by it.
-int hn_gzip_is_worth(const char *media_type, size_t n);
+/// Returns whether a text of this media type gets smaller by it.
+bool hn_gzip_is_worth(const char *media_type, size_t n);
 /// Appends the compressed bytes. Returns 0 when memory is out.
 int hn_gzip(hn_strbuf *out, const char *bytes, size_t n);
 /// Compresses the text of a reply where that is worth it; `most`: texts longer than that stay as

@@ -12,6 +12,7 @@
 #include "http/request/route.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 
 enum { HN_MAX_REPLY_HEADERS = 10 };
 
@@ -35,7 +36,7 @@ typedef struct hn_request {
     hn_client client;                  ///< who asks
     struct hn_connection_watch *watch; ///< deadlines of the connection; may be NULL
     const hn_route *route;
-    int is_head;
+    bool is_head;
     char path[HN_HEADER_TEXT];                ///< as asked, cut when longer (for messages)
     char parts[HN_MAX_PARTS][HN_HEADER_TEXT]; ///< what stood for {id} ... in the path
     char *body;
@@ -43,7 +44,7 @@ typedef struct hn_request {
     cJSON *json;             ///< the parsed body, when the route takes fields
     struct hn_request *next; ///< in a queue
     double wait_until;       ///< in a queue of those who wait for a run [s, wall clock]
-    int is_new;              ///< 1: it has begun what it asks for
+    int is_new;              ///< it has begun what it asks for
 
     // the reply
     long long n_unread; ///< bytes handed to the HTTP library, until the request is completed

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/route.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { MAX_ROUTES = 100 };
 
 /// 1 when the path fits the template; what stands for each {...} goes to `parts`.
-static int fits(const char *template, const char *path, char (*parts)[HN_HEADER_TEXT]) {
+static bool fits(const char *template, const char *path, char (*parts)[HN_HEADER_TEXT]) {
     int n = 0;
     while (*template) {
         if (*template == '{') {
             size_t length = strcspn(path, "/");
             if (length == 0 || length >= HN_HEADER_TEXT || n == HN_MAX_PARTS) {
-                return 0;
+                return false;
             }
             memcpy(parts[n], path, length);
             parts[n++][length] = 0;
             path += length;
             template = strchr(template, '}') + 1;
         } else if (*template ++ != *path++) {
-            return 0;
+            return false;
         }
     }
     return *path == 0;

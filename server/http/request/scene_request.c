@@ -2,6 +2,7 @@
 #include "http/request/scene_request.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -103,7 +104,7 @@ static void prefix_pointers(hn_diags *diags, int first) {
 }
 
 hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
-                                int allow_open, hn_model **out, hn_diags *diags) {
+                                bool allow_open, hn_model **out, hn_diags *diags) {
     int first = diags->n;
     hn_model_source source = {.name = order->name,
                               .text = order->text,

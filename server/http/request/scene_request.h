@@ -11,6 +11,7 @@
 #include "session/model/model.h"
 
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 
 /// What a model is made from; owns copies of everything it names.
 typedef struct hn_scene_request {
@@ -33,7 +34,7 @@ HN_MUST_CHECK hn_status hn_scene_request_copy(hn_scene_request *to, const hn_sce
 void hn_scene_request_reset(hn_scene_request *order);
 /// Loads; pointers of faults inside a scene object begin with "/scene".
 HN_MUST_CHECK hn_status hn_scene_request_load(const hn_scene_request *order, const hn_library *lib,
-                                              int allow_open, hn_model **out, hn_diags *diags);
+                                              bool allow_open, hn_model **out, hn_diags *diags);
 /// {"l1": 1.2}
 void hn_scene_request_settings_json(hn_strbuf *b, const hn_scene_request *order);
 #endif

@@ -3,6 +3,7 @@
 
 #include "http/request/context.h"
 
+#include <stdbool.h>
 #include <string.h>
 #include <sys/random.h>
 
@@ -23,10 +24,10 @@ int hn_token_make(char out[HN_TOKEN]) {
 }
 
 /// Compares in a time that does not tell how much is right.
-static int is_token(const char *shown, const char *token) {
+static bool is_token(const char *shown, const char *token) {
     const size_t n = strlen(token);
     if (!shown || strlen(shown) != n) {
-        return 0;
+        return false;
     }
     unsigned char difference = 0;
     for (size_t i = 0; i < n; i++) {
@@ -36,7 +37,7 @@ static int is_token(const char *shown, const char *token) {
 }
 
 /// A guest reads: nothing is changed, and nothing computed that has not been asked for already.
-static int may_guest(const hn_request *r, const char *method) {
+static bool may_guest(const hn_request *r, const char *method) {
     const int reads = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
     const char *compute = hn_request_query(r, "compute");
     return reads && (!compute || strcmp(compute, "true") != 0);

@@ -23,6 +23,7 @@
 #include "study/incidents/kinds.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -167,7 +168,7 @@ static hn_status see_setting(void *user, const char *value) {
     return hn_scene_request_add(q->order, value, n, x, q->diags);
 }
 
-hn_model *hn_catalogue_load_scene(hn_request *r, int allow_open) {
+hn_model *hn_catalogue_load_scene(hn_request *r, bool allow_open) {
     hn_diags diags = {0};
     hn_scene_request order = {.name = strdup(r->parts[0])};
     hn_model *model = NULL;

@@ -6,10 +6,12 @@
 
 #include "session/model/model.h"
 
+#include <stdbool.h>
+
 struct hn_request;
 
 /// Loads the scene in the path, with the settings of the query; NULL with a problem as reply.
-hn_model *hn_catalogue_load_scene(struct hn_request *r, int allow_open);
+hn_model *hn_catalogue_load_scene(struct hn_request *r, bool allow_open);
 
 void hn_handle_index(struct hn_request *r);
 void hn_handle_health(struct hn_request *r);

@@ -9,6 +9,7 @@
 #include "http/routes/static_files.h"
 
 #include <arpa/inet.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,7 +90,7 @@ static void check_head(hn_request *r, const char *method) {
 
 /// 1 when the rest of the body is not worth reading, or the client waits to be told before it sends
 /// it.
-static int must_answer_early(const hn_request *r) {
+static bool must_answer_early(const hn_request *r) {
     long long length = 0;
     const char *text = hn_request_header(r, "Content-Length");
     return hn_request_header(r, "Expect") ||
@@ -163,7 +164,7 @@ static void push(hn_request *r, hn_jobs *jobs) {
 }
 
 /// 1 when the route computes only when it is told to.
-static int may_compute(const hn_route *route) {
+static bool may_compute(const hn_route *route) {
     const hn_route_query *q = route->query;
     while (q && q->name && strcmp(q->name, "compute") != 0) {
         q++;
@@ -171,31 +172,31 @@ static int may_compute(const hn_route *route) {
     return q && q->name;
 }
 
-static int is_quick(const hn_request *r) {
+static bool is_quick(const hn_request *r) {
     const char *compute = hn_request_query(r, "compute");
     return r->route->work == HN_WORK_QUICK || r->route->work == HN_WORK_QUICK_OWN ||
            (may_compute(r->route) && (!compute || strcmp(compute, "true") != 0));
 }
 
 /// Arranges the reply. Returns 1 when it is there, 0 when another thread owns the request.
-static int start_work(hn_dispatch *d, hn_request *r) {
+static bool start_work(hn_dispatch *d, hn_request *r) {
     hn_connection_is_served(d->connections, r->watch);
     switch (r->route->work) {
     case HN_WORK_LIGHT:
         r->route->handle(r);
         hn_reply_compress(r, MOST_ZIPPED_AT_ONCE);
-        return 1;
+        return true;
     case HN_WORK_OWN:
         hn_request_suspend(r);
         r->route->handle(r);
-        return 0;
+        return false;
     case HN_WORK_QUICK:
     case HN_WORK_QUICK_OWN:
     case HN_WORK_HEAVY:
         push(r, is_quick(r) ? d->quick : d->heavy);
-        return 0;
+        return false;
     }
-    return 1;
+    return true;
 }
 
 // ---- the reply ----

@@ -6,6 +6,7 @@
 #include "http/routes/field_schema.h"
 #include "http/request/request.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -287,7 +288,7 @@ static void put_answer(hn_strbuf *b, const hn_route *route, const char *status) 
 }
 
 /// 1 when a request to this route may be answered so.
-static int may_answer(const hn_route *route, hn_http_problem kind) {
+static bool may_answer(const hn_route *route, hn_http_problem kind) {
     switch (kind) {
     // the address and the body
     case HN_PROBLEM_NOT_FOUND:
@@ -311,9 +312,9 @@ static int may_answer(const hn_route *route, hn_http_problem kind) {
     case HN_PROBLEM_TOKEN:
         return strcmp(route->path, "/healthz") != 0;
     case HN_PROBLEM_METHOD:
-        return 0; // no operation of this document
+        return false; // no operation of this document
     default:
-        return 1;
+        return true;
     }
 }
 
@@ -422,13 +423,13 @@ static void put_operation(hn_strbuf *b, const hn_route *route) {
 }
 
 /// 1 when an earlier row has the same path: its verbs are written together.
-static int is_written(const hn_route_table *table, int i) {
+static bool is_written(const hn_route_table *table, int i) {
     for (int k = 0; k < i; k++) {
         if (strcmp(table->row[k].path, table->row[i].path) == 0) {
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
 /// A path without a slash at its end; such an address is redirected to the one with it.

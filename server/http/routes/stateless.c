@@ -17,13 +17,14 @@
 #include "session/model/model_json.h"
 #include "session/model/terms_json.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 /// Computing time of one drag: a page asks many times a second.
 static const double DRAG_SECONDS = 0.05;
 
 /// Loads the scene that the body names; NULL with a problem as reply.
-static hn_model *load_model(hn_request *r, int allow_open) {
+static hn_model *load_model(hn_request *r, bool allow_open) {
     hn_scene_request order = {0};
     hn_diags diags = {0};
     hn_model *model = NULL;
@@ -94,7 +95,7 @@ void hn_handle_assemble(hn_request *r) {
 }
 
 /// 1 when the body names one thing to drag; else the reply is a problem.
-static int names_one(hn_request *r) {
+static bool names_one(hn_request *r) {
     const int n =
         cJSON_HasObjectItem(r->json, "point") + cJSON_HasObjectItem(r->json, "coordinate");
     if (n != 1) {

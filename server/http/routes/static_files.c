@@ -10,6 +10,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -68,7 +69,7 @@ static const char *find_media_type(const char *name) {
     return "application/octet-stream";
 }
 
-static int is_left_out(const char *name) {
+static bool is_left_out(const char *name) {
     return name[0] == '.' || strcmp(name, "node_modules") == 0 ||
            (strncmp(name, "package", 7) == 0 &&
             strcmp(find_media_type(name), "application/json") == 0);
@@ -218,7 +219,7 @@ const char *hn_static_files_nearest(const hn_static_files *s, const char *addres
 }
 
 /// 1 when If-None-Match names this tag or is '*'.
-static int is_known(const hn_request *r, const char *tag) {
+static bool is_known(const hn_request *r, const char *tag) {
     const char *known = hn_request_header(r, "If-None-Match");
     return known && (strcmp(known, "*") == 0 || strstr(known, tag));
 }
@@ -241,9 +242,9 @@ static int zip(file *f, const struct stat *st) {
 }
 
 /// The zipped file as a reply; 0 when the client does not take it, or it is not worth it.
-static int reply_zipped(hn_static_files *s, hn_request *r, file *f, const struct stat *st) {
+static bool reply_zipped(hn_static_files *s, hn_request *r, file *f, const struct stat *st) {
     if (!hn_gzip_is_worth(f->media_type, (size_t)st->st_size) || !hn_gzip_accepted(r)) {
-        return 0;
+        return false;
     }
     hn_strbuf copy;
     hn_strbuf_init(&copy);
@@ -255,11 +256,11 @@ static int reply_zipped(hn_static_files *s, hn_request *r, file *f, const struct
     pthread_mutex_unlock(&s->lock);
     if (!zipped || copy.failed) {
         hn_strbuf_reset(&copy);
-        return 0;
+        return false;
     }
     hn_reply_bytes(r, MHD_HTTP_OK, f->media_type, &copy);
     hn_reply_header_add(r, "Content-Encoding", "gzip");
-    return 1;
+    return true;
 }
 
 /// The file as it lies there; takes the descriptor.

@@ -3,6 +3,7 @@
 
 #include "http/runs/json_scan.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,12 +155,12 @@ static void put_row(hn_strbuf *b, const reader *r, const char *const *values,
 }
 
 /// Steps all columns to their next row; 0 at the end.
-static int next_row(reader *r, const char **values, double *t) {
+static bool next_row(reader *r, const char **values, double *t) {
     const char *time = hn_json_next(&r->time);
     for (int i = 0; i < r->n; i++) {
         values[i] = hn_json_next(&r->columns[i].at);
         if (!values[i]) {
-            return 0;
+            return false;
         }
     }
     *t = time ? strtod(time, NULL) : 0;

@@ -11,6 +11,7 @@
 #include "session/compare/run_doc.h"
 
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,26 +74,26 @@ static hn_kept_run *new_run(const char *id, hn_client client) {
 }
 
 /// Takes a document, as text.
-static int add_document(hn_kept_run *run, hn_strbuf *text) {
+static bool add_document(hn_kept_run *run, hn_strbuf *text) {
     const size_t n = text->n;
     char *taken = hn_strbuf_take(text);
     if (!taken) {
-        return 0;
+        return false;
     }
     run->documents[run->n++] = taken;
     run->bytes += n;
-    return 1;
+    return true;
 }
 
 // ---- the folder ----
 
-static int is_id(const char *id) {
+static bool is_id(const char *id) {
     return strlen(id) == HN_RUN_ID - 1 &&
            strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_") ==
                HN_RUN_ID - 1;
 }
 
-static int file_path(const hn_runs *all, const char *id, char out[1024]) {
+static bool file_path(const hn_runs *all, const char *id, char out[1024]) {
     return all->opts->runs_folder && is_id(id) &&
            snprintf(out, 1024, "%s/%s.json", all->opts->runs_folder, id) < 1024;
 }
@@ -126,15 +127,15 @@ static void keep_in_folder(const hn_runs *all, const hn_kept_run *run) {
 }
 
 /// The documents of a file; 0 when it is not whole.
-static int split_file(hn_kept_run *run, const char *text, size_t n) {
+static bool split_file(hn_kept_run *run, const char *text, size_t n) {
     char hash[HN_SHA256_BASE64];
     const size_t head = HN_SHA256_BASE64; // the hash and the end of its line
     if (n < head + 2 || text[head - 1] != '\n' || text[head] != '[') {
-        return 0;
+        return false;
     }
     hn_sha256_base64(text + head, n - head, hash);
     if (memcmp(hash, text, head - 1) != 0) {
-        return 0;
+        return false;
     }
 
     // the documents, one after the other
@@ -145,7 +146,7 @@ static int split_file(hn_kept_run *run, const char *text, size_t n) {
         hn_strbuf_init(&document);
         hn_strbuf_add_n(&document, item, (size_t)(at - item));
         if (!add_document(run, &document)) {
-            return 0;
+            return false;
         }
     }
     return run->n > 0;
@@ -188,7 +189,7 @@ static hn_kept_run *take_out(hn_runs *all, hn_kept_run **place) {
 }
 
 /// Lets go of the finished run that was longest untouched; 0 when there is none.
-static int forget_oldest(hn_runs *all) {
+static bool forget_oldest(hn_runs *all) {
     hn_kept_run **oldest = NULL;
     for (hn_kept_run **place = &all->first; *place; place = &(*place)->next) {
         if ((*place)->phase == HN_RUN_DONE && (!oldest || (*place)->touched < (*oldest)->touched)) {
@@ -196,13 +197,13 @@ static int forget_oldest(hn_runs *all) {
         }
     }
     if (!oldest) {
-        return 0;
+        return false;
     }
     hn_kept_run *dead = drop(take_out(all, oldest));
     if (dead) {
         free_run(dead);
     }
-    return 1;
+    return true;
 }
 
 static void put_in(hn_runs *all, hn_kept_run *run) {

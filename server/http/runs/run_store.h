@@ -9,6 +9,7 @@
 #include "http/runs/run_question.h"
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 struct hn_request;
 
@@ -36,7 +37,7 @@ typedef struct hn_kept_run {
     int n;                                      ///< documents: one for each method
     char *documents[HN_COMPARISON_MAX_METHODS]; ///< hn_model_run_json()
     size_t bytes;
-    int is_cut;        ///< 1: the computing time was used up; asked again it is computed again
+    bool is_cut;       ///< the computing time was used up; asked again it is computed again
     hn_status refused; ///< why there is none
     hn_diags diags;
     struct hn_kept_run *next;

@@ -9,6 +9,7 @@
 #include "http/runs/run_store.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,14 +73,14 @@ static void put_run(hn_strbuf *b, const hn_kept_run *run, hn_run_phase phase, in
 // ---- replies ----
 
 /// 1 when the client has this version: the reply is made.
-static int is_unchanged(hn_request *r, const char *etag) {
+static bool is_unchanged(hn_request *r, const char *etag) {
     const char *known = hn_request_header(r, "If-None-Match");
     if (!known || !strstr(known, etag)) {
-        return 0;
+        return false;
     }
     hn_reply_empty(r, MHD_HTTP_NOT_MODIFIED);
     hn_reply_header_add(r, "ETag", "%s", etag);
-    return 1;
+    return true;
 }
 
 static void reply_refused(hn_request *r, const hn_kept_run *run) {
@@ -135,12 +136,12 @@ static void reply_unknown(hn_request *r) {
 // ---- queries ----
 
 /// A number of the query from `low` to `high`; 0 with a problem as reply.
-static int read_number(hn_request *r, const char *name, double low, double high, int whole,
-                       double *out) {
+static bool read_number(hn_request *r, const char *name, double low, double high, int whole,
+                        double *out) {
     const char *text = hn_request_query(r, name);
     char *end = NULL;
     if (!text) {
-        return 1;
+        return true;
     }
     const double value = strtod(text, &end);
     if (end == text || *end || !(value >= low && value <= high) ||
@@ -152,10 +153,10 @@ static int read_number(hn_request *r, const char *name, double low, double high,
                      "'%s' is '%.40s'; %s from %g to %g is allowed", name, text,
                      whole ? "a whole number" : "a number", low, high);
         hn_reply_diags(r, HN_ERR_INPUT, &diags);
-        return 0;
+        return false;
     }
     *out = value;
-    return 1;
+    return true;
 }
 
 // ---- handlers ----
@@ -228,16 +229,16 @@ void hn_handle_run_delete(hn_request *r) {
 }
 
 /// The document that `method` names by its index; 0 with a problem as reply.
-static int choose_document(hn_request *r, const hn_kept_run *run, const char **document) {
+static bool choose_document(hn_request *r, const hn_kept_run *run, const char **document) {
     double method = 0;
     if (!read_number(r, "method", 0, run->n - 1, 1, &method)) {
-        return 0;
+        return false;
     }
     *document = run->documents[(int)method];
-    return 1;
+    return true;
 }
 
-static int read_samples_request(hn_request *r, hn_samples_request *q) {
+static bool read_samples_request(hn_request *r, hn_samples_request *q) {
     static const char *const types[] = {"application/json", "application/x-ndjson", "text/csv"};
     const char *accept = hn_request_header(r, "Accept");
     double stride = 1, cursor = 0, limit = MAX_ROWS;
@@ -248,7 +249,7 @@ static int read_samples_request(hn_request *r, hn_samples_request *q) {
         !read_number(r, "limit", 1, MAX_ROWS, 1, &limit) ||
         !read_number(r, "from", 0, 1e12, 0, &q->from) ||
         !read_number(r, "to", 0, 1e12, 0, &q->to)) {
-        return 0;
+        return false;
     }
     q->stride = (long long)stride;
     q->cursor = (long long)cursor;
@@ -256,7 +257,7 @@ static int read_samples_request(hn_request *r, hn_samples_request *q) {
     while (q->form < HN_SAMPLES_CSV && !hn_accepts(accept, types[q->form])) {
         q->form++;
     }
-    return 1;
+    return true;
 }
 
 /// The page that follows: this address with another cursor.

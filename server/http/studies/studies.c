@@ -10,6 +10,7 @@
 #include "base/clock.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -257,7 +258,7 @@ static void name_study(study *s) {
 
 /// A thread's place; 0 with a problem as reply. A study that was deleted holds its place until its
 /// thread has ended.
-static int reserve(hn_studies *all, hn_request *r) {
+static bool reserve(hn_studies *all, hn_request *r) {
     pthread_mutex_lock(&all->lock);
     const int stopping = all->stopping, full = all->n_threads >= all->opts->max_studies;
     all->n_threads += !stopping && !full;

@@ -12,6 +12,7 @@
 #include "support/mechanism.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static const char BODIES[] = "lessons/01-closed-loops/scenes/fb0.json";
@@ -117,7 +118,7 @@ static void start_state(double *q, double *v) {
     v[2] = (-h.J[1] * h.J[3] * 2 + h.J[4] * h.J[0] * 2) / det;
 }
 
-static hn_accel *open_accel(fourbar *s, int baumgarte) {
+static hn_accel *open_accel(fourbar *s, bool baumgarte) {
     const hn_accel_opts opts = {.baumgarte = baumgarte, .want_lambda = 1};
     hn_accel *accel;
     assert_int_equal(hn_accel_create(s->sys, &opts, s->arena, &accel), HN_OK);
