@@ -148,7 +148,9 @@ def sweep_all(program, tasks):
     with open(program, "rb") as binary:
         version = hashlib.sha256(binary.read()).hexdigest()[:16]
     kept = [json.loads(line) for line in DONE.read_text().splitlines()] if DONE.exists() else []
-    results = {tuple(one["key"]): one["result"] for one in kept if one["version"] == version and one["limits"] == [LONGEST, CORNERS, RANDOM]}
+    kept = [one for one in kept if one["version"] == version and one["limits"] == [LONGEST, CORNERS, RANDOM]]
+    DONE.write_text("".join(json.dumps(one) + "\n" for one in kept))
+    results = {tuple(one["key"]): one["result"] for one in kept}
     lock = Lock()
 
     def work(key, scene, setting):

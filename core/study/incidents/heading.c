@@ -92,8 +92,8 @@ static double continue_heading(hn_heading_record *r, int n) {
     return change;
 }
 
-/// The longest way that a step of this size goes. Near a turning point the steps are short, and half
-/// of one is no jump: a jump is as long as a step elsewhere.
+/// The longest way that a step of this size goes. Near a turning point the steps are short, and
+/// half of one is no jump: a jump is as long as a step elsewhere.
 static double way_of_step(const hn_watch *w) {
     return w->swiftest * (w->run->now.t - w->run->before.t);
 }
