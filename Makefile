@@ -6,6 +6,7 @@
 .SECONDARY:
 SHELL := /bin/sh
 
+COMMA := ,
 # V=1 shows the commands
 Q   := $(if $(V),,@)
 say  = $(if $(V),,@echo '$(if $(filter release,$(VARIANT)),,[$(VARIANT)] )$(1)')
@@ -65,11 +66,13 @@ CC_asan    := gcc
 CC_tsan    := gcc
 CC_gcc     := gcc
 CC_clang   := clang
+CC_fuzz    := clang
 FLAGS_release := -O2 -g
 FLAGS_asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS_tsan    := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
 FLAGS_gcc     := -O2 -Werror
 FLAGS_clang   := -O2 -Werror
+FLAGS_fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
 
 CC       := $(CC_$(VARIANT))
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wdouble-promotion -Wstrict-prototypes \
@@ -91,14 +94,16 @@ MAIN_SOURCE    := server/main.c
 $(foreach l,$(CORE_LAYERS),$(eval SOURCES_$(l) := $(sort $(wildcard core/$(l)/*.c core/$(l)/*/*.c))))
 SOURCES_server := $(filter-out $(MAIN_SOURCE),$(SERVER_SOURCES))
 SUPPORT        := $(sort $(wildcard tests/support/*.c))
-HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/*.h server/*/*/*.h tests/support/*.h))
+HEADERS        := $(sort $(wildcard core/*/*.h core/*/*/*.h server/*.h server/*/*.h server/*/*/*.h tests/support/*.h tests/fuzz/*.h))
 UNIT_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/test_*.c)))
 SLOW_SOURCES   := $(sort $(foreach l,$(LAYERS),$(wildcard tests/unit/$(l)/slow_*.c)))
 BENCH_SOURCES  := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLES       := tests/library/example.c
+FUZZ_SOURCES   := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_SUPPORT   := tests/fuzz/fuzz.c
 TABLE_SOURCES  := tests/survival/survival.c tests/tables/figures.c
 ALL_C          := $(foreach l,$(CORE_LAYERS),$(SOURCES_$(l))) $(SERVER_SOURCES) $(SUPPORT) \
-                  $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES)
+                  $(sort $(wildcard tests/unit/*/*.c tests/bench/*.c)) $(TABLE_SOURCES) $(FUZZ_SOURCES) $(FUZZ_SUPPORT)
 
 objects  = $(patsubst %.c,$(OUT)/%.o,$(1))
 archive  = $(OUT)/lib/libhn_$(1).a
@@ -110,6 +115,7 @@ UNIT          := $(call programs,$(UNIT_SOURCES))
 SLOW          := $(call programs,$(SLOW_SOURCES))
 BENCH         := $(call programs,$(BENCH_SOURCES))
 TABLES        := $(call programs,$(TABLE_SOURCES))
+FUZZERS       := $(call programs,$(FUZZ_SOURCES))
 SCRIPTS       := $(sort $(wildcard tests/house/test_* tests/library/test_* tests/scenes/test_* tests/mechanisms/test_* tests/cli/test_* tests/api/test_* tests/cluster/test_*))
 BROWSER       := $(sort $(wildcard tests/browser/test_*))
 
@@ -154,6 +160,12 @@ $(OUT)/tests/bench/%: $(OUT)/tests/bench/%.o $(LIBRARY)
 $(TABLES): %: %.o $(call archive,support) $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
+# VARIANT=fuzz alone has what they need; a comparison is changed without its thread
+$(FUZZERS): %: %.o $(call objects,$(FUZZ_SUPPORT)) $(call archive,server) $(LIBRARY)
+	$(call say,link $@)
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer $(if $(findstring fuzz_patch,$@),-Wl$(COMMA)--wrap=pthread_create$(COMMA)--wrap=pthread_detach) \
+	    -o $@ $^ $(LDLIBS)
 
 $(OUT)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
@@ -244,6 +256,7 @@ help:
 	@echo 'make test-quick   the unit tests alone, under 10 seconds once built'
 	@echo 'make asan         the unit tests and the tests of the server under the address and undefined-behaviour sanitisers'
 	@echo 'make tsan         the tests of the server under the thread sanitiser'
+	@echo 'make fuzz         random bytes for everything that comes from outside: MINUTES=10 for each harness'
 	@echo 'make bench        time the engine: CSV on standard output'
 	@echo 'make bench-peers  the same motion by MuJoCo, Simbody, SciPy, Octave: tests/tables/peers.csv and peers.svg'
 	@echo 'make reference    published problems: digits that agree, printed and kept in tests/reference/results.txt'
@@ -267,7 +280,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench reports
+.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench run-fuzz reports
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -281,6 +294,15 @@ asan: build/.packages-test
 
 tsan: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=tsan run-server
+
+# what comes from outside, with random bytes: MINUTES for each harness, HARNESS for some of them
+MINUTES ?= 10
+fuzz: build/.packages-check
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=release $(PROGRAM)
+	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=fuzz run-fuzz
+
+run-fuzz: $(FUZZERS)
+	@python3 tests/fuzz/run.py --minutes $(MINUTES) --programs $(OUT)/tests/fuzz --work build/fuzzing $(HARNESS)
 
 bench: all
 	@$(MAKE) -s $(JOBS) --no-print-directory run-bench
@@ -411,7 +433,6 @@ check: build/.packages-check check-house
 check-house: check-layers check-names check-circles check-licence check-width
 
 # awk gets the table above as layer:need,need and layer.room:room,room
-COMMA := ,
 SPACE := $(subst x,,x x)
 LAYER_TABLE = $(foreach l,$(LAYERS),$(l):$(subst $(SPACE),$(COMMA),$(strip $(NEEDS_$(l)))))
 ROOM_TABLE  = $(foreach l,$(LAYERS),$(addprefix $(l).,$(ROOMS_$(l))))

@@ -429,6 +429,16 @@ static bool chain_add(parser *p, chain *s, hn_ex term) {
     return true;
 }
 
+/// False where a coefficient of the expression, or of its terms, left the range of numbers.
+static int is_finite(const hn_graph *g, hn_ex e) {
+    const hn_node_view node = hn_graph_node(g, e.n);
+    int all = isfinite(e.c) != 0;
+    for (int i = 0; node.op == HN_OP_SUM && i < node.n_args; i++) {
+        all = all && isfinite(node.args[i].c);
+    }
+    return all;
+}
+
 static hn_ex parse_sum(parser *p) {
     if (!enter(p)) {
         return hn_num(0);
@@ -436,8 +446,6 @@ static hn_ex parse_sum(parser *p) {
     size_t at = p->at;
     chain s = {.n = 0, .cap = CHUNK};
     s.term = s.few;
-
-    // terms are gathered and summed at once: a chain of sums would cost n^2
 
     // terms are gathered and summed at once: a chain of sums would cost n^2
     char sign = '+';
@@ -455,7 +463,7 @@ static hn_ex parse_sum(parser *p) {
     } while (more);
 
     hn_ex e = p->status != HN_OK ? hn_num(0) : s.n == 1 ? s.term[0] : hn_sum(p->g, s.term, s.n);
-    if (!isfinite(e.c)) {
+    if (!is_finite(p->g, e)) {
         e = fail(p, at, NULL, "the sum of the numbers here is too large for a double");
     }
     if (s.term != s.few) {

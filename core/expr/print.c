@@ -331,7 +331,10 @@ static void put_product(printer *p, int32_t n, double c) {
 /// 1/3). Text must give the same node when read, so there only where division by the factor brings
 /// every coefficient back.
 static bool can_distribute(const printer *p, const hn_node *node, double factor) {
-    for (int i = 0; i < node->n_args && p->form == HN_PRINT_TEXT && p->digits == 0; i++) {
+    if (factor == 1 || p->form != HN_PRINT_TEXT || p->digits != 0) {
+        return true;
+    }
+    for (int i = 0; i < node->n_args; i++) {
         const double c = node->args[i].c;
         if (factor * c / factor != c || !isnormal(factor * c)) {
             return false;

@@ -296,6 +296,17 @@ static double snap(double k) {
     return fabs(fabs(k) - 1) <= tolerance ? copysign(1, k) : k;
 }
 
+/// False where division by the leading coefficient would lose another one to the ends of the range
+/// of numbers.
+static bool may_divide(const terms *s) {
+    for (int i = 1; i < s->n; i++) {
+        if (!isnormal(s->t[i].c / s->t[0].c)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static hn_ex finish(hn_graph *g, terms *s) {
     if (s->n == 0) {
         return hn_zero();
@@ -303,11 +314,14 @@ static hn_ex finish(hn_graph *g, terms *s) {
     if (s->n == 1) {
         return s->t[0].c == 0 ? hn_zero() : s->t[0];
     }
-    const double lead = s->t[0].c;
-    for (int i = 1; i < s->n; i++) {
-        s->t[i].c = snap(s->t[i].c / lead);
+    double lead = 1;
+    if (may_divide(s)) {
+        lead = s->t[0].c;
+        for (int i = 1; i < s->n; i++) {
+            s->t[i].c = snap(s->t[i].c / lead);
+        }
+        s->t[0].c = 1;
     }
-    s->t[0].c = 1;
     const int32_t node = hn_graph_intern_args(g, HN_OP_SUM, s->t, s->n);
     return node < 0 ? hn_zero() : (hn_ex){lead, node};
 }

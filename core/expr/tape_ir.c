@@ -27,7 +27,7 @@ static bool grow(hn_ir *ir, int32_t more_args) {
         ir->nodes = nodes;
         ir->cap = cap;
     }
-    if (ir->n_args + more_args > ir->cap_args) {
+    if (!ir->args || ir->n_args + more_args > ir->cap_args) {
         const int32_t cap = 2 * (ir->n_args + more_args) + FIRST_TABLE;
         hn_ir_arg *args = realloc(ir->args, (size_t)cap * sizeof *args);
         if (!args) {

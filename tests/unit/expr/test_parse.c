@@ -256,6 +256,45 @@ static void printed_formulas_read_back(void **state) {
     hn_graph_free(g);
 }
 
+// near the ends of the range of numbers no coefficient is lost, and the text is still a sum
+static void numbers_at_the_ends_of_the_range_read_back(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "l1 + 1e-308",     "l1 + 5e-324",       "1e+308*l1 + x",       "1e-320*l1 + x",
+        "3*l1 + 1e-310*x", "2*(1e-320*l1 + x)", "1e-310*l1 + 1e+10*x", "1e+300*l1 + 1e-300*x"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        hn_graph *g = hn_graph_create();
+        const hn_parse_opts opts = opts_for(g);
+        hn_ex e, back;
+        hn_diag diag = {0};
+        hn_strbuf text;
+        hn_strbuf_init(&text);
+        assert_int_equal(hn_parse(g, texts[i], &opts, &e, &diag), HN_OK);
+        hn_print(&text, g, e, HN_PRINT_TEXT, 0);
+        assert_string_equal(hn_strbuf_text(&text), texts[i]);
+        if (hn_parse(g, hn_strbuf_text(&text), &opts, &back, &diag) != HN_OK) {
+            fail_msg("%s: %s", texts[i], diag.message);
+        }
+        assert_true(hn_ex_same(e, back));
+        hn_strbuf_reset(&text);
+        hn_graph_free(g);
+    }
+}
+
+static void sums_beyond_the_range_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {"x-1e308-1e308", "1e308+1e308", "l1 + (1e308*x + 1e308*x)"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        hn_graph *g = hn_graph_create();
+        const hn_parse_opts opts = opts_for(g);
+        hn_ex e;
+        hn_diag diag = {0};
+        assert_int_equal(hn_parse(g, texts[i], &opts, &e, &diag), HN_ERR_INPUT);
+        assert_non_null(strstr(diag.message, "the sum of the numbers here is too large"));
+        hn_graph_free(g);
+    }
+}
+
 static void assert_printed(hn_graph *g, const char *text, hn_print_form form,
                            const char *expected) {
     hn_strbuf b;
@@ -329,6 +368,8 @@ int main(void) {
         cmocka_unit_test(every_fault_has_its_column_and_a_word_of_help),
         cmocka_unit_test(nesting_and_length_are_bounded),
         cmocka_unit_test(printed_formulas_read_back),
+        cmocka_unit_test(numbers_at_the_ends_of_the_range_read_back),
+        cmocka_unit_test(sums_beyond_the_range_are_refused),
         cmocka_unit_test(latex_and_c_read_as_people_write_them),
         cmocka_unit_test(text_that_would_explode_marks_the_buffer),
         cmocka_unit_test(random_bytes_never_crash_the_parser),
