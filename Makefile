@@ -51,7 +51,7 @@ ROOMS_session      := store: model:store job:model compare:store,model reference
                       report:store,model,job,compare,references,precision,accounts,stability,extreme \
                       kinds:job,model,references,precision,accounts,stability,extreme,report
 # the layer server is three parts, two of them with rooms; what lies in server/ itself is open to all of them
-ROOMS_server       := terminal: lesson:terminal grade:lesson \
+ROOMS_server       := terminal: lesson:terminal grade/parts: grade:grade/parts,lesson \
                       http/ground: http/request:http/ground http/live:http/ground,http/request \
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \

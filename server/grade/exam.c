@@ -5,7 +5,7 @@
 #include "expr/construct.h"
 #include "expr/diff.h"
 #include "expr/parse.h"
-#include "grade/spelling.h"
+#include "grade/parts/spelling.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -151,12 +151,48 @@ static void read_question(reader *r, const cJSON *root) {
     p->points = read_number(r, answer, "points", "/answer/points", 0, 1e6);
 }
 
-static void read_problem(reader *r, const cJSON *root) {
+/// Form 2: parts with kinds of answers, and hints.
+static void read_parts(reader *r, cJSON *root) {
+    static const char *const fields[] = {"exercise", "id",         "title", "lesson", "section",
+                                         "scene",    "statement",  "draw",  "parts",  "hints",
+                                         "about",    "conditions", NULL};
     hn_exercise *p = r->p;
-    const cJSON *states = cJSON_GetObjectItemCaseSensitive(root, "states"),
-                *tolerance = cJSON_GetObjectItemCaseSensitive(root, "tolerance");
+    const cJSON *m;
+    hn_diag diag = {0};
+    cJSON_ArrayForEach(m, root) {
+        int k = 0;
+        while (fields[k] && strcmp(fields[k], m->string) != 0) {
+            k++;
+        }
+        if (!fields[k]) {
+            fault(r, m->string, "an exercise has no such field");
+        }
+    }
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(root, "parts")) {
+        if (p->n_parts == HN_GRADE_MAX_PARTS) {
+            fault(r, "/parts", "too many parts");
+        } else if (hn_part_open(&p->parts[p->n_parts], m, &diag) != HN_OK) {
+            r->status =
+                hn_diags_add(r->diags, HN_ERR_INPUT, diag.pointer, diag.hint, "%s", diag.message);
+        } else {
+            p->points += p->parts[p->n_parts++].points;
+        }
+    }
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(root, "hints")) {
+        if (p->n_hints < HN_GRADE_MAX_HINTS && cJSON_IsString(m)) {
+            p->hints[p->n_hints++] = m->valuestring;
+        }
+    }
+    if (p->n_parts == 0) {
+        fault(r, "/parts", "an exercise needs a part that can be read");
+    }
+    p->seed = 1;
+    p->root = root;
+}
 
-    // what a person reads
+/// What a person reads.
+static void read_titles(reader *r, const cJSON *root) {
+    hn_exercise *p = r->p;
     p->id = read_text(r, root, "id", "/id");
     p->title = read_text(r, root, "title", "/title");
     p->lesson = read_text(r, root, "lesson", "/lesson");
@@ -165,9 +201,15 @@ static void read_problem(reader *r, const cJSON *root) {
                    ? read_text(r, root, "scene", "/scene")
                    : "";
     read_statement(r, cJSON_GetObjectItemCaseSensitive(root, "statement"));
-    read_question(r, root);
+}
 
-    // how answers are compared
+static void read_problem(reader *r, const cJSON *root) {
+    hn_exercise *p = r->p;
+    const cJSON *states = cJSON_GetObjectItemCaseSensitive(root, "states"),
+                *tolerance = cJSON_GetObjectItemCaseSensitive(root, "tolerance");
+
+    // what is asked, and how answers are compared
+    read_question(r, root);
     p->seed = (uint64_t)read_number(r, states, "seed", "/states/seed", 1, 9e15);
     p->n_closed =
         (int)read_number(r, states, "closed", "/states/closed", 20, HN_GRADE_MAX_STATES / 2);
@@ -215,11 +257,18 @@ hn_status hn_exercise_load_json(const char *text, size_t n, hn_exercise **out, h
         if (!cJSON_IsObject(root)) {
             fault(&r, "", "expected an object");
         } else {
-            read_problem(&r, root);
+            read_titles(&r, root);
+            if (cJSON_GetObjectItemCaseSensitive(root, "exercise")) {
+                read_parts(&r, root);
+            } else {
+                read_problem(&r, root);
+            }
         }
-        status = r.status == HN_OK ? check_problem(p, diags) : r.status;
+        status = r.status != HN_OK ? r.status : p->n_parts ? HN_OK : check_problem(p, diags);
     }
-    cJSON_Delete(root);
+    if (status != HN_OK || !p->root) {
+        cJSON_Delete(root);
+    }
     if (status != HN_OK) {
         hn_arena_free(arena);
         return status;
@@ -241,6 +290,7 @@ hn_status hn_exercise_load_file(const char *path, hn_exercise **out, hn_diags *d
 
 void hn_exercise_free(hn_exercise *problem) {
     if (problem) {
+        cJSON_Delete(problem->root);
         hn_arena_free(problem->arena); // the problem itself lives in it
     }
 }
@@ -258,7 +308,8 @@ const char *hn_exercise_scene(const hn_exercise *problem) {
 }
 
 double hn_exercise_points(const hn_exercise *problem) {
-    return problem->points * problem->n_rows * problem->n_columns;
+    return problem->n_parts ? problem->points
+                            : problem->points * problem->n_rows * problem->n_columns;
 }
 
 // ---- telling ----

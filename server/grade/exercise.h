@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_EXERCISE_H
 #define HN_GRADE_EXERCISE_H
-// An exercise asks for a matrix of formulas: the constraint Jacobian, entry by entry. Its file
-// holds the statement, phi, the ranges of all names, and what entries and mistakes are worth.
+// An exercise, as its file says: statement, ranges of all names, and what is asked. There are two
+// forms of files. "problem": 1 asks for a matrix of formulas, the constraint Jacobian, entry by
+// entry. "exercise": 2 has parts, each with its kind of answer (parts/part.h), and numbers that are
+// drawn from a seed.
 
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/strbuf.h"
+#include "grade/parts/part.h"
 
 #include <stdint.h>
 
@@ -17,7 +20,9 @@ enum {
     HN_GRADE_MAX_NAMES = 24,      ///< parameters and coordinates of a problem
     HN_GRADE_MAX_BYTES = 1 << 20, ///< of a submission
     HN_GRADE_MAX_FORMULA = 2000,  ///< characters of one entry
-    HN_GRADE_TEXT = 400
+    HN_GRADE_TEXT = 400,
+    HN_GRADE_MAX_PARTS = 12,
+    HN_GRADE_MAX_HINTS = 8
 };
 
 /// A parameter or coordinate: random in [low, high], or a formula of those that closes the loop.
@@ -50,6 +55,13 @@ typedef struct hn_exercise {
     int n_closed, n_open;
     double relative, absolute; ///< allowed: absolute + relative * (size of the entry)
     const char *why;           ///< reason for the tolerance
+    // form 2
+    cJSON *root;                       ///< owned: parts are read where they are used
+    int n_parts;                       ///< 0: form 1
+    hn_part parts[HN_GRADE_MAX_PARTS]; ///< without a draw
+    int n_hints;
+    const char *hints[HN_GRADE_MAX_HINTS];
+    const hn_library *lib; ///< scenes that parts run; NULL: none
 } hn_exercise;
 
 /// Reads an exercise (lessons/NN-topic/problems/ID.json). Returns owned.
@@ -63,8 +75,9 @@ const char *hn_exercise_title(const hn_exercise *problem);
 /// Returns the id of the scene that draws a state of it, "" if there is none.
 const char *hn_exercise_scene(const hn_exercise *problem);
 double hn_exercise_points(const hn_exercise *problem);
-/// The statement for a person: what is given, what is asked, how to hand it in.
+/// The statement for a person: what is given, what is asked, how to hand it in. Form 1 alone: see
+/// variant.h for form 2.
 void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem);
-/// {"id","title","statement","points","entries":[..],"given":[..],"submission":{..}}
+/// {"id","title","statement","points","entries":[..],"given":[..],"submission":{..}}; form 1.
 void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem);
 #endif

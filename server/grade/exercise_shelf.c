@@ -12,7 +12,9 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
                                  hn_diags *diags) {
     const char *path = hn_library_problem_path(lib, id);
     if (path) {
-        return hn_exercise_load_file(path, out, diags);
+        HN_TRY(hn_exercise_load_file(path, out, diags));
+        (*out)->lib = lib;
+        return HN_OK;
     }
     const char *names[MAX_PROBLEMS];
     int n = hn_library_n_problems(lib) < MAX_PROBLEMS ? hn_library_n_problems(lib) : MAX_PROBLEMS;
@@ -24,6 +26,21 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
     snprintf(hint, sizeof hint, near ? "did you mean '%s'?" : "'holonom list problems'%s",
              near ? near : " names them all");
     return hn_diags_add(diags, HN_ERR_INPUT, "/problem", hint, "there is no problem '%.80s'", id);
+}
+
+/// The names whose numbers differ from variant to variant, in one text.
+static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
+    hn_strbuf names;
+    hn_strbuf_init(&names);
+    const cJSON *m;
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(problem->root, "draw")) {
+        if (!cJSON_GetObjectItemCaseSensitive(m, "value")) {
+            hn_strbuf_printf(&names, "%s%s", names.n ? " " : "", m->string);
+        }
+    }
+    hn_json_put_string(b, "varied", hn_strbuf_text(&names));
+    b->failed |= names.failed;
+    hn_strbuf_reset(&names);
 }
 
 void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
@@ -40,6 +57,10 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
         if (hn_exercise_load_file(hn_library_problem_path(lib, hn_library_problem_id(lib, i)),
                                   &problem, &diags) == HN_OK) {
             hn_json_put_string(b, "title", hn_exercise_title(problem));
+            hn_json_put_string(b, "lesson", problem->lesson);
+            hn_json_put_string(b, "section", problem->section);
+            hn_json_put_int(b, "parts", problem->n_parts ? problem->n_parts : 1);
+            put_varied(b, problem);
             hn_json_put_string(b, "scene", hn_exercise_scene(problem));
             hn_json_put_number(b, "points", hn_exercise_points(problem));
         } else {

@@ -2,12 +2,14 @@
 #include "grade/grade.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/json_text.h"
 #include "expr/print.h"
 #include "grade/exam.h"
 #include "grade/mistakes.h"
-#include "grade/spelling.h"
+#include "grade/parts/spelling.h"
 #include "grade/submission.h"
+#include "grade/variant.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -315,7 +317,29 @@ static hn_status grade_matrix(hn_verdict *v, hn_exam *exam, const cJSON *answer,
     return HN_OK;
 }
 
+/// An exercise of form 2.
+static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
+    hn_variant *x = malloc(sizeof *x);
+    hn_diag diag = {0};
+    hn_status status = x ? hn_variant_init(x, v->problem, v->seed, &diag) : HN_ERR_MEMORY;
+    if (status == HN_OK) {
+        status = hn_variant_grade(x, root, v, &diag);
+    }
+    if (x) {
+        hn_variant_reset(x);
+    }
+    free(x);
+    if (status != HN_OK && status != HN_ERR_MEMORY) { // the exercise is at fault, not the student
+        snprintf(v->reason, sizeof v->reason, "%.390s", diag.message);
+        status = HN_ERR_INTERNAL;
+    }
+    return status;
+}
+
 static hn_status grade_tree(hn_verdict *v, const cJSON *root) {
+    if (v->problem->n_parts) {
+        return grade_parts(v, root);
+    }
     const cJSON *answer;
     int transposed;
     if (!hn_submission_read(v, root, &answer, &transposed)) {
@@ -344,10 +368,20 @@ static void begin(hn_verdict *v, const hn_exercise *problem, uint64_t seed) {
     v->shown_entry = -1;
 }
 
+/// What reproduces the verdict later: the hash of the submission, and the submission if it is short.
+static void keep_submission(hn_verdict *v, const char *text, size_t n) {
+    v->submission_hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, n));
+    if (n < sizeof v->submission) {
+        memcpy(v->submission, text, n);
+        v->submission[n] = 0;
+    }
+}
+
 hn_status hn_grade_json(const hn_exercise *problem, const char *text, size_t n, uint64_t seed,
                         hn_verdict *out) {
     HN_ASSERT(problem && out && (text || n == 0));
     begin(out, problem, seed);
+    keep_submission(out, text, n);
     hn_diag diag = {0};
     if (n > HN_GRADE_MAX_BYTES) {
         hn_submission_refuse(out, NULL, "the submission has more than the %d bytes allowed",

@@ -2,6 +2,7 @@
 #include "grade/verdict.h"
 
 #include "base/hash.h"
+#include "build.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,6 +32,9 @@ static void add_entry_detail(hn_strbuf *b, const hn_entry_verdict *e, const char
         return;
     }
     hn_strbuf_printf(b, "%sgiven     %s", indent, e->given);
+    if (e->state < 0 && e->expected[0] && e->max_points > 0) {
+        hn_strbuf_printf(b, "\n%sexpected  %s", indent, e->expected);
+    }
     if (e->state >= 0) {
         hn_strbuf_add(b, " = ");
         add_number(b, e->given_value);
@@ -67,8 +71,13 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
             hn_strbuf_add(b, "\n");
         }
     }
-    hn_strbuf_printf(b, "compared at %d random states, seed %llu\n", v->n_states,
-                     (unsigned long long)v->seed);
+    if (v->n_states > 0) {
+        hn_strbuf_printf(b, "compared at %d random states, seed %llu\n", v->n_states,
+                         (unsigned long long)v->seed);
+    } else {
+        hn_strbuf_printf(b, "variant of seed %llu%s%s\n", (unsigned long long)v->seed,
+                         v->student[0] ? ", " : "", v->student);
+    }
 }
 
 static void put_entry(hn_strbuf *b, const hn_entry_verdict *e) {
@@ -100,6 +109,10 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     hn_json_put_string(b, "problem_hash", hash);
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);
+    hn_json_put_string(b, "student", v->student);
+    hn_json_put_string(b, "build", HN_BUILD);
+    hn_hash_hex(v->submission_hash, hash);
+    hn_json_put_string(b, "submission_hash", hash);
     if (v->shown_entry >= 0) {
         hn_json_put_string(b, "shown_entry", v->entry[v->shown_entry].name);
         hn_json_put_string(b, "shown_scene", v->problem->scene);
@@ -125,6 +138,7 @@ void hn_verdict_json(hn_strbuf *b, const hn_verdict *v) {
     }
     hn_json_put_number(b, "max_score", v->max_score);
     hn_json_put_string(b, "note", v->note);
+    hn_json_put_string(b, "submission", v->submission);
     hn_json_key(b, "entries");
     hn_json_array(b);
     for (int k = 0; k < v->n_entries; k++) {
@@ -145,7 +159,12 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_json_object(b);
     hn_strbuf name;
     hn_strbuf_init(&name);
-    hn_strbuf_printf(&name, "%s = d phi_%d / d %s", e->name, e->row + 1, v->problem->by[e->column]);
+    if (v->problem->n_parts) {
+        hn_strbuf_printf(&name, "part %s", e->name);
+    } else {
+        hn_strbuf_printf(&name, "%s = d phi_%d / d %s", e->name, e->row + 1,
+                         v->problem->by[e->column]);
+    }
     hn_json_put_string(b, "name", hn_strbuf_text(&name));
     hn_json_put_string(b, "number", number);
     hn_json_put_number(b, "score", e->points);

@@ -5,9 +5,11 @@
 
 #include "grade/exercise.h"
 
+enum { HN_VERDICT_KEPT = 16384 };
+
 /// What became of one entry.
 typedef struct hn_entry_verdict {
-    char name[32]; ///< "J11"
+    char name[32]; ///< "J11", or a part with its entry: "b.2"
     int row, column;
     double points, max_points;
     int right;
@@ -42,6 +44,9 @@ typedef struct hn_verdict {
     int n_states;                          ///< states at which entries were compared
     uint64_t seed;
     const hn_exercise *problem; ///< borrowed
+    char student[80];           ///< whose variant it is; "" when the seed was given
+    uint64_t submission_hash;
+    char submission[HN_VERDICT_KEPT]; ///< the submission itself, "" when it is longer
 } hn_verdict;
 
 /// For a person: one line an entry, and under a wrong one given, expected, allowed difference and

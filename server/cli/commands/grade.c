@@ -10,6 +10,7 @@
 #include "cli/shell/print.h"
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
+#include "grade/variant.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,24 +21,6 @@ static hn_exit report_exercise(const hn_library *lib, const hn_args *args, hn_st
                                const hn_diags *diags) {
     const hn_exit result = hn_report_diags(args, status, diags);
     return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
-}
-
-hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
-    hn_exercise *problem = NULL;
-    hn_diags diags = {0};
-    hn_strbuf b;
-    hn_strbuf_init(&b);
-    hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &problem, &diags);
-    if (status != HN_OK) {
-        return report_exercise(lib, args, status, &diags);
-    }
-    if (args->json) {
-        hn_exercise_json(&b, problem);
-    } else {
-        hn_exercise_text(&b, problem);
-    }
-    hn_exercise_free(problem);
-    return args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
 }
 
 /// The forms a verdict can be written in.
@@ -132,10 +115,13 @@ static hn_exit write_result(const task *t, const hn_verdict *v, double seconds) 
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
-    uint64_t seed = isnan(t->args->seed) ? 0 : (uint64_t)t->args->seed;
+    const uint64_t seed = t->args->student       ? hn_variant_seed(t->exercise, t->args->student)
+                          : isnan(t->args->seed) ? 0
+                                                 : (uint64_t)t->args->seed;
     hn_status status = v ? hn_grade_file(t->exercise, t->submission, seed, v) : HN_ERR_MEMORY;
     hn_exit result = HN_EXIT_PROGRAM;
     if (status == HN_OK) {
+        snprintf(v->student, sizeof v->student, "%s", t->args->student ? t->args->student : "");
         result = write_result(t, v, hn_clock_wall() - start);
         result =
             result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE ? HN_EXIT_INPUT : result;

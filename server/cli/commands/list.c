@@ -70,8 +70,12 @@ static const struct {
     {"problems",
      hn_shelf_exercises_json,
      {{"problems",
-       3,
-       {{"problem", "id", NULL}, {"title", "title", NULL}, {"points", "points", ""}}}}},
+       5,
+       {{"problem", "id", NULL},
+        {"title", "title", NULL},
+        {"lesson", "lesson", NULL},
+        {"points", "points", ""},
+        {"drawn from the seed", "varied", NULL}}}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "grade/exercise_shelf.h"
 #include "grade/grade.h"
+#include "grade/variant.h"
 #include "http/request/context.h"
 #include "http/request/request.h"
 #include "http/request/scene_request.h"
@@ -229,8 +230,21 @@ void hn_handle_problem(hn_request *r) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_status status = hn_shelf_exercise_load(r->context->lib, r->parts[0], &problem, &diags);
+    hn_diag diag = {0};
+    hn_variant x = {0};
+    if (status == HN_OK && problem->n_parts) {
+        status = hn_variant_init(&x, problem, 0, &diag);
+        if (status != HN_OK) {
+            hn_diags_add(&diags, status, diag.pointer, NULL, "%s", diag.message);
+        }
+    }
     if (status == HN_OK) {
-        hn_exercise_json(&b, problem);
+        if (problem->n_parts) {
+            hn_variant_json(&b, &x);
+        } else {
+            hn_exercise_json(&b, problem);
+        }
+        hn_variant_reset(&x);
         hn_reply_json(r, MHD_HTTP_OK, &b);
     } else if (!hn_library_problem_path(r->context->lib, r->parts[0])) {
         hn_reply_problem(r, HN_PROBLEM_NOT_FOUND, diags.item[0].hint, "%s", diags.item[0].message);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formulas as students type them, in the parser's spelling.
-#include "grade/spelling.h"
+#include "grade/parts/spelling.h"
 
 #include "support/near.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "grade/spelling.h"
+#include "grade/parts/spelling.h"
 
 #include <ctype.h>
 #include <stdbool.h>

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom problem: an exercise with its numbers, its hints, or the proof that it is sound.
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/print.h"
+#include "grade/exercise_check.h"
+#include "grade/exercise_shelf.h"
+#include "grade/variant.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DEFAULT_SEEDS = 20 };
+
+/// "1..200"; 0 when it is none.
+static int read_seeds(const char *text, uint64_t *from, uint64_t *to) {
+    unsigned long long a, b;
+    int used = 0;
+    *from = 1;
+    *to = DEFAULT_SEEDS;
+    if (!text) {
+        return 1;
+    }
+    if (sscanf(text, "%llu..%llu%n", &a, &b, &used) != 2 || text[used] || a < 1 || b < a) {
+        return 0;
+    }
+    *from = a;
+    *to = b;
+    return 1;
+}
+
+static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r, int json) {
+    if (json) {
+        hn_json_object(b);
+        hn_json_put_string(b, "id", hn_exercise_id(e));
+        hn_json_put_int(b, "variants", r->variants);
+        hn_json_put_int(b, "bad", r->bad);
+        hn_json_put_int(b, "distinct", r->distinct);
+        hn_json_put_int(b, "right_answers", r->rights);
+        hn_json_put_int(b, "mistakes", r->faults);
+        hn_json_put_string(b, "first_fault", r->first);
+        hn_json_end_object(b);
+        return;
+    }
+    hn_strbuf_printf(b,
+                     "%s: %lld variants, %lld distinct; %lld right answers and %lld mistakes "
+                     "graded; %lld variants are bad\n",
+                     hn_exercise_id(e), r->variants, r->distinct, r->rights, r->faults, r->bad);
+    if (r->first[0]) {
+        hn_strbuf_printf(b, "  %s\n", r->first);
+    }
+}
+
+/// A fault of the exercise is the program's fault here, not that of the command line.
+static hn_exit check(const hn_args *args, const hn_exercise *e) {
+    uint64_t from, to;
+    hn_diag diag;
+    hn_exercise_report report;
+    hn_strbuf b;
+    if (!read_seeds(args->seeds, &from, &to)) {
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "--seeds 1..200", "'%.40s' is no range of seeds",
+                    args->seeds);
+        return hn_report_diag(args, &diag);
+    }
+    if (e->n_parts == 0) {
+        hn_diag_set(&diag, HN_ERR_INPUT, NULL, "its reference is differentiated from phi",
+                    "%s has no variants to check", hn_exercise_id(e));
+        return hn_report_diag(args, &diag);
+    }
+    if (hn_exercise_check(e, from, to, &report) != HN_OK) {
+        return HN_EXIT_PROGRAM;
+    }
+    hn_strbuf_init(&b);
+    put_report(&b, e, &report, args->json);
+    const hn_exit result = hn_cli_print(&b);
+    return report.bad ? HN_EXIT_PROGRAM : result;
+}
+
+static hn_exit print_hints(const hn_args *args, const hn_exercise *e, hn_variant *x) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    for (int i = 0; i < e->n_hints && i < args->hint; i++) {
+        hn_strbuf_printf(&b, "hint %d of %d: ", i + 1, e->n_hints);
+        hn_draw_text(&b, &x->draw, e->hints[i]);
+        hn_strbuf_add(&b, "\n");
+    }
+    hn_strbuf_add(&b, e->n_hints ? "" : "this exercise has no hints\n");
+    return hn_cli_print(&b);
+}
+
+static hn_exit print_variant(const hn_args *args, const hn_exercise *e) {
+    hn_variant x;
+    hn_diag diag = {0};
+    const uint64_t seed = args->student       ? hn_variant_seed(e, args->student)
+                          : isnan(args->seed) ? 0
+                                              : (uint64_t)args->seed;
+    const hn_status status = hn_variant_init(&x, e, seed, &diag);
+    hn_exit result = HN_EXIT_PROGRAM;
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (status != HN_OK) {
+        hn_report_diag(args, &diag);
+    } else if (args->hint > 0) {
+        result = print_hints(args, e, &x);
+    } else if (args->json) {
+        hn_variant_json(&b, &x);
+        result = hn_cli_print(&b);
+    } else {
+        hn_variant_text(&b, &x);
+        result = hn_cli_print_text(&b);
+    }
+    hn_variant_reset(&x);
+    return result;
+}
+
+static hn_exit print_matrix_exercise(const hn_args *args, const hn_exercise *e) {
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->json) {
+        hn_exercise_json(&b, e);
+    } else {
+        hn_exercise_text(&b, e);
+    }
+    return args->json ? hn_cli_print(&b) : hn_cli_print_text(&b);
+}
+
+hn_exit hn_command_problem(const hn_library *lib, const hn_args *args) {
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    const hn_status status = hn_shelf_exercise_load(lib, args->words.word[0], &e, &diags);
+    if (status != HN_OK) {
+        const hn_exit result = hn_report_diags(args, status, &diags);
+        return hn_library_problem_path(lib, args->words.word[0]) ? HN_EXIT_PROGRAM : result;
+    }
+    const hn_exit result = args->check  ? check(args, e)
+                           : e->n_parts ? print_variant(args, e)
+                                        : print_matrix_exercise(args, e);
+    hn_exercise_free(e);
+    return result;
+}

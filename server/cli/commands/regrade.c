@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// holonom regrade: grades again what a verdict says was handed in, and says what has changed since.
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json_text.h"
+#include "build.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/diagnostics.h"
+#include "cli/shell/print.h"
+#include "grade/exercise_shelf.h"
+#include "grade/grade.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_VERDICT = 4 << 20, MAX_DEPTH = 32 };
+
+static const char *text_of(const cJSON *node, const char *key) {
+    const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(node, key));
+    return text ? text : "";
+}
+
+/// Reads the verdict; NULL with a fault where it is none.
+static cJSON *load_verdict(const char *path, hn_diags *diags) {
+    hn_strbuf text;
+    hn_diag diag = {0};
+    cJSON *root = NULL;
+    hn_strbuf_init(&text);
+    if (hn_file_load(path, MAX_VERDICT, &text, diags) == HN_OK) {
+        if (hn_json_text_check(hn_strbuf_text(&text), text.n, MAX_DEPTH, &diag) == HN_OK) {
+            root = cJSON_ParseWithLength(hn_strbuf_text(&text), text.n);
+        }
+        if (!root || !text_of(root, "problem")[0] || !text_of(root, "seed")[0]) {
+            hn_diags_add(diags, HN_ERR_INPUT, "", "holonom grade ID FILE --format json",
+                         "'%.200s' is no verdict in JSON", path);
+            cJSON_Delete(root);
+            root = NULL;
+        }
+    }
+    hn_strbuf_reset(&text);
+    return root;
+}
+
+/// Says what differs between the verdict and this program.
+static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
+    char hash[17];
+    hn_hash_hex(v->problem->hash, hash);
+    if (strcmp(text_of(old, "problem_hash"), hash) != 0) {
+        hn_strbuf_add(b, "  the exercise has changed since the verdict\n");
+    }
+    hn_hash_hex(v->submission_hash, hash);
+    if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
+        hn_strbuf_add(b, "  the submission is another one than was graded\n");
+    }
+    if (strcmp(text_of(old, "build"), HN_BUILD) != 0) {
+        hn_strbuf_printf(b, "  graded by %s, now by %s\n", text_of(old, "build"), HN_BUILD);
+    }
+}
+
+static hn_exit compare(const hn_args *args, const cJSON *old, const hn_verdict *v) {
+    const double score = hn_part_number(old, "score", (double)NAN);
+    const int graded = strcmp(text_of(old, "status"), "graded") == 0;
+    const int same = graded == (v->kind == HN_VERDICT_GRADED) &&
+                     (!graded || fabs(score - v->score) <= 1e-9 * fmax(1, v->max_score));
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    if (args->json) {
+        hn_json_object(&b);
+        hn_json_put_string(&b, "problem", v->problem->id);
+        hn_json_put_bool(&b, "same", same);
+        hn_json_put_number(&b, "score_before", score);
+        hn_json_put_number(&b, "score", v->score);
+        hn_json_put_number(&b, "max_score", v->max_score);
+        hn_json_end_object(&b);
+        return hn_cli_print(&b);
+    }
+    hn_strbuf_printf(&b, "%s, seed %s: %s: %g before, %g now, of %g\n", v->problem->id,
+                     text_of(old, "seed"), same ? "the same score" : "ANOTHER SCORE", score,
+                     v->score, v->max_score);
+    put_changes(&b, old, v);
+    hn_verdict_text(&b, v);
+    return hn_cli_print(&b);
+}
+
+static hn_exit grade_again(const hn_library *lib, const hn_args *args, const cJSON *old,
+                           hn_verdict *v) {
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    const char *submission = text_of(old, "submission");
+    const uint64_t seed = strtoull(text_of(old, "seed"), NULL, 10);
+    hn_status status = hn_shelf_exercise_load(lib, text_of(old, "problem"), &e, &diags);
+    if (status == HN_OK && args->words.n > 1) {
+        status = hn_grade_file(e, args->words.word[1], seed, v);
+    } else if (status == HN_OK && submission[0]) {
+        status = hn_grade_json(e, submission, strlen(submission), seed, v);
+    } else if (status == HN_OK) {
+        status = hn_diags_add(&diags, HN_ERR_INPUT, "/submission", "name its file as second word",
+                              "the verdict does not hold the submission");
+    }
+    hn_exit result =
+        status == HN_OK ? compare(args, old, v) : hn_report_diags(args, status, &diags);
+    if (result == HN_EXIT_DONE && v->kind == HN_VERDICT_UNGRADABLE) {
+        result = HN_EXIT_INPUT;
+    }
+    hn_exercise_free(e);
+    return result;
+}
+
+hn_exit hn_command_regrade(const hn_library *lib, const hn_args *args) {
+    hn_diags diags = {0};
+    cJSON *old = load_verdict(args->words.word[0], &diags);
+    if (!old) {
+        return hn_report_diags(args, diags.n ? diags.item[0].status : HN_ERR_INPUT, &diags);
+    }
+    hn_verdict *v = calloc(1, sizeof *v);
+    const hn_exit result = v ? grade_again(lib, args, old, v) : HN_EXIT_PROGRAM;
+    free(v);
+    cJSON_Delete(old);
+    return result;
+}

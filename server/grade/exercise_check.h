@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_EXERCISE_CHECK_H
+#define HN_GRADE_EXERCISE_CHECK_H
+// Proves an exercise over many seeds: every variant can be drawn, its reference is confirmed by a
+// second means and gets full marks, and every listed mistake is named.
+
+#include "grade/exercise.h"
+
+typedef struct hn_exercise_report {
+    long long variants, bad;
+    long long distinct;            ///< variants with numbers of their own
+    long long rights, faults;      ///< right answers and wrong answers that were graded
+    char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
+} hn_exercise_report;
+
+/// Tries seeds from..to of an exercise of form 2. Fails: HN_ERR_MEMORY. What is wrong with the
+/// exercise is in the report.
+HN_MUST_CHECK hn_status hn_exercise_check(const hn_exercise *exercise, uint64_t from, uint64_t to,
+                                          hn_exercise_report *out);
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_DRAW_H
+#define HN_GRADE_DRAW_H
+// Numbers drawn from a seed: the parameters of one variant of an exercise, and the random states at
+// which formulas are compared. The same seed gives the same numbers on every machine.
+//
+// Names are an object {"l1": {"range": [0.4, 0.9], "digits": 2, "unit": "m"}, "g": {"value": 9.81},
+// "n": {"choose": [2, 3, 5]}, "d": {"formula": "l1 + 0.2"}}. A formula may use the names before it.
+// Conditions are formulas that must be positive; numbers are drawn until all are.
+
+#include "base/diag.h"
+#include "base/strbuf.h"
+#include "expr/graph.h"
+
+#include <cjson/cJSON.h>
+#include <stdint.h>
+
+enum { HN_DRAW_NAMES = 32, HN_DRAW_STATES = 16 };
+
+typedef struct hn_draw {
+    hn_graph *graph; ///< owned; its symbols are the names in their order
+    int n_names, n_states;
+    const char *name[HN_DRAW_NAMES], *unit[HN_DRAW_NAMES]; ///< borrowed from the JSON
+    int digits[HN_DRAW_NAMES]; ///< decimals of a drawn number; -1: as many as it has
+    double value[HN_DRAW_STATES][HN_DRAW_NAMES];
+} hn_draw;
+
+/// Draws n_states states. The names of `outer` (may be NULL; its first state) come first and are
+/// the same in every state. `names` and `conditions` may be NULL.
+/// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY. hn_draw_reset() in any case.
+HN_MUST_CHECK hn_status hn_draw_init(hn_draw *d, const cJSON *names, const cJSON *conditions,
+                                     const hn_draw *outer, int n_states, uint64_t seed,
+                                     hn_diag *diag);
+void hn_draw_reset(hn_draw *d);
+/// One formula in these names; theta_1 and theta1 stand for th1 where th1 is a name.
+HN_MUST_CHECK hn_status hn_draw_parse(hn_draw *d, const char *text, hn_ex *out, hn_diag *diag);
+double hn_draw_eval(hn_draw *d, hn_ex e, int state);
+/// The value of a formula in the first state.
+HN_MUST_CHECK hn_status hn_draw_value(hn_draw *d, const char *text, double *out, hn_diag *diag);
+/// Copies text with {name} replaced by the drawn number and {=formula} by its value with four
+/// digits; a brace that is neither stays.
+void hn_draw_text(hn_strbuf *b, hn_draw *d, const char *text);
+/// The k-th random number in [0, 1) of a seed.
+double hn_draw_random(uint64_t seed, uint64_t k);
+/// 1 when the name is an angle or a rate of one: its unit is rad, deg or rad/s.
+int hn_draw_is_angle(const hn_draw *d, int name);
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_PART_H
+#define HN_GRADE_PART_H
+// A part of an exercise: one question with one kind of answer. The kinds are rows of one table;
+// each row is one file part_*.c. A part is read from its JSON node where it is used: the exercise
+// has been tried as a whole when it was loaded (exercise_check.h).
+
+#include "grade/parts/draw.h"
+#include "session/model/library.h"
+
+enum { HN_PART_TEXT = 400, HN_PART_RESULTS = 16 };
+
+/// What became of one entry of an answer.
+typedef struct hn_part_result {
+    char name[32]; ///< "" for an answer of one entry, else "2", "12"
+    double share;  ///< of the points of this entry, 0 .. 1
+    int right, unreadable;
+    const char *mistake; ///< id: static, or borrowed from the exercise; "" when right
+    char explanation[HN_PART_TEXT], given[HN_PART_TEXT], expected[HN_PART_TEXT];
+} hn_part_result;
+
+typedef struct hn_part {
+    const cJSON *node; ///< borrowed from the exercise
+    const struct hn_part_kind *kind;
+    const char *id;
+    double points;
+    uint64_t seed;         ///< of the variant
+    hn_draw *draw;         ///< the numbers of the variant
+    const hn_library *lib; ///< shipped scenes; NULL: kinds that run mechanisms cannot grade
+} hn_part;
+
+typedef struct hn_part_kind {
+    const char *name;
+    const char *fields; ///< members of a node of this kind, separated by blanks
+    /// One line: how to write the answer.
+    void (*ask)(hn_strbuf *b, const hn_part *p);
+    /// Grades an answer (NULL: none was handed in). Fails: HN_ERR_INPUT (the exercise is at fault),
+    /// HN_ERR_MEMORY.
+    hn_status (*grade)(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
+                       hn_diag *diag);
+    /// A right answer, owned; NULL when it cannot be made.
+    cJSON *(*right)(const hn_part *p, hn_diag *diag);
+    /// The i-th wrong answer that must be named, owned, and the id of its mistake; NULL after the
+    /// last.
+    cJSON *(*fault)(const hn_part *p, int i, const char **id, hn_diag *diag);
+    /// Confirms the reference by a second means; NULL: the grading itself proves it.
+    hn_status (*prove)(const hn_part *p, hn_diag *diag);
+} hn_part_kind;
+
+extern const hn_part_kind hn_part_values, hn_part_choice, hn_part_matrix, hn_part_blocks,
+    hn_part_basis, hn_part_example, hn_part_order, hn_part_method;
+
+/// The kind of a name ("number", "choice" ...); NULL with a near miss in diag.
+const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag);
+/// Checks id, kind, points and that every member is known. `node` is the JSON of the part.
+HN_MUST_CHECK hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag);
+
+// ---- for the kinds ----
+
+/// Fills a result: wrong, with a mistake and a sentence. `share` of the points is given for it.
+void hn_part_wrong(hn_part_result *r, const char *mistake, double share, const char *format, ...)
+    HN_PRINTF(4, 5);
+/// Fills a result for an answer that cannot be read.
+void hn_part_unreadable(hn_part_result *r, const char *format, ...) HN_PRINTF(2, 3);
+void hn_part_right(hn_part_result *r);
+/// The i-th object of "faults"; NULL after the last. Its "id", its share ("share", 0 when left out).
+const cJSON *hn_part_fault_at(const hn_part *p, int i);
+const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none
+double hn_part_number(const cJSON *node, const char *key, double otherwise);
+/// Keeps the answer as the student wrote it in r->given.
+void hn_part_keep_given(hn_part_result *r, const cJSON *given);
+#endif

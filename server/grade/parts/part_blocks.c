@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A linear system of blocks, [A B; C D] [x; y] = [b; c], graded by solving it with random matrices:
+// any order of rows, any sign of an unknown, and any equivalent form is right.
+#include "grade/parts/world.h"
+#include "linalg/lu.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WORLDS = 3, MAX_BLOCKS = 4, MAX_SIZE = 24 };
+static const double ALLOWED = 1e-7; // of the largest entry; systems of ten unknowns err by 1e-12
+
+/// The solution of one system: one matrix for each unknown of the exercise.
+typedef struct solution {
+    int n;
+    hn_matrix x[MAX_BLOCKS];
+} solution;
+
+static const cJSON *unknowns_of(const hn_part *p) {
+    return cJSON_GetObjectItemCaseSensitive(p->node, "unknowns");
+}
+
+/// The number of the unknown that a word names, with its sign; -1 when there is none.
+static int find_unknown(const hn_part *p, const cJSON *word, double *sign) {
+    const char *name = cJSON_GetStringValue(word);
+    const cJSON *m;
+    int i = 0;
+    name = name ? name + strspn(name, " ") : "";
+    *sign = *name == '-' || strncmp(name, "−", 3) == 0 ? -1 : 1;
+    name += *name == '-' ? 1 : *sign < 0 ? 3 : 0;
+    name += strspn(name, " \\");
+    cJSON_ArrayForEach(m, unknowns_of(p)) {
+        if (strcmp(m->string, name) == 0 ||
+            (strcmp(name, "λ") == 0 && !strcmp(m->string, "lambda")) ||
+            (strcmp(name, "qddot") == 0 && !strcmp(m->string, "a"))) {
+            return i;
+        }
+        i++;
+    }
+    return -1;
+}
+
+/// One system being assembled.
+typedef struct system {
+    const hn_part *p;
+    hn_world *w;
+    hn_part_result *r; ///< NULL: nobody is told
+    int n_blocks, size, row_of[MAX_BLOCKS + 1], column_of[MAX_BLOCKS + 1];
+    int unknown[MAX_BLOCKS];
+    double sign[MAX_BLOCKS];
+    double K[MAX_SIZE * MAX_SIZE], b[MAX_SIZE];
+} system_t;
+
+static int tell(system_t *s, const char *id, const char *format, const char *text) {
+    if (s->r && strcmp(id, "unreadable") == 0) {
+        hn_part_unreadable(s->r, format, text);
+    } else if (s->r) {
+        hn_part_wrong(s->r, id, 0, format, text);
+    }
+    return 0;
+}
+
+/// Evaluates a block; 0 after the reason has been told.
+static int eval_block(system_t *s, const cJSON *node, hn_matrix *out) {
+    hn_diag diag = {0};
+    char number[40];
+    const char *text = cJSON_GetStringValue(node);
+    if (cJSON_IsNumber(node)) {
+        snprintf(number, sizeof number, "%.17g", node->valuedouble);
+        text = number;
+    }
+    if (!text) {
+        return tell(s, "unreadable", "%s", "a block is no text in quotes");
+    }
+    const hn_status status = hn_world_eval(s->w, text, out, &diag);
+    if (status == HN_OK) {
+        return 1;
+    }
+    return tell(s, status == HN_ERR_INPUT ? "unreadable" : "shape", "%.300s", diag.message);
+}
+
+/// The order of the unknowns and the columns that they take.
+static int read_unknowns(system_t *s, const cJSON *answer) {
+    const cJSON *order = cJSON_GetObjectItemCaseSensitive(answer, "unknowns"), *m;
+    const cJSON *list = order ? order : unknowns_of(s->p);
+    int seen = 0;
+    cJSON_ArrayForEach(m, list) {
+        double sign = 1;
+        const int i = order ? find_unknown(s->p, m, &sign) : s->n_blocks;
+        if (i < 0 || s->n_blocks == MAX_BLOCKS || (seen & 1 << i)) {
+            return tell(s, "unreadable", "an entry of 'unknowns' is unknown or twice there: %.60s",
+                        m->valuestring ? m->valuestring : "");
+        }
+        const cJSON *size = cJSON_GetArrayItem(unknowns_of(s->p), i);
+        const cJSON *n = cJSON_GetObjectItemCaseSensitive(
+            cJSON_GetObjectItemCaseSensitive(s->p->node, "sizes"), size->valuestring);
+        seen |= 1 << i;
+        s->unknown[s->n_blocks] = i;
+        s->sign[s->n_blocks] = sign;
+        s->column_of[s->n_blocks + 1] = s->column_of[s->n_blocks] + (n ? n->valueint : 1);
+        s->n_blocks++;
+    }
+    s->size = s->column_of[s->n_blocks];
+    return s->n_blocks == cJSON_GetArraySize(unknowns_of(s->p)) && s->size <= MAX_SIZE
+               ? 1
+               : tell(s, "shape", "%s", "not every unknown is there");
+}
+
+/// Copies a block into K; a number other than 0 is no block.
+static int place_block(system_t *s, const hn_matrix *m, int row, int column, int height) {
+    const int width = s->column_of[column + 1] - s->column_of[column];
+    if (m->number && m->x[0] == 0) {
+        return 1;
+    }
+    if (m->rows != height || m->cols != width) {
+        char text[120];
+        snprintf(text, sizeof text,
+                 "block %d, %d is %d x %d, but its place is %d x %d: is it transposed?", row + 1,
+                 column + 1, m->rows, m->cols, height, width);
+        return tell(s, "transposed", "%s", text);
+    }
+    for (int i = 0; i < m->rows; i++) {
+        for (int j = 0; j < m->cols; j++) {
+            s->K[(s->row_of[row] + i) * s->size + s->column_of[column] + j] = m->x[i * m->cols + j];
+        }
+    }
+    return 1;
+}
+
+/// One row of blocks with its right-hand side.
+static int read_row(system_t *s, const cJSON *row, const cJSON *side, int i) {
+    hn_matrix blocks[MAX_BLOCKS], b;
+    if (cJSON_GetArraySize(row) != s->n_blocks) {
+        return tell(s, "shape", "%s", "a row of blocks has another length than the unknowns");
+    }
+    int height = 0;
+    for (int j = 0; j < s->n_blocks; j++) {
+        if (!eval_block(s, cJSON_GetArrayItem(row, j), &blocks[j])) {
+            return 0;
+        }
+        height = blocks[j].number || height ? height : blocks[j].rows;
+    }
+    if (!eval_block(s, side, &b)) {
+        return 0;
+    }
+    height = b.number ? height : b.rows;
+    if (s->row_of[i] + height > s->size || height == 0 || (!b.number && b.cols != 1)) {
+        return tell(s, "shape", "%s", "the rows of blocks do not make a square system");
+    }
+    s->row_of[i + 1] = s->row_of[i] + height;
+    for (int k = 0; k < height; k++) {
+        s->b[s->row_of[i] + k] = b.number ? 0 : b.x[k];
+    }
+    for (int j = 0; j < s->n_blocks; j++) {
+        if (!place_block(s, &blocks[j], i, j, height)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int assemble(system_t *s, const cJSON *answer) {
+    const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(answer, "matrix"),
+                *right = cJSON_GetObjectItemCaseSensitive(answer, "right");
+    if (!cJSON_IsArray(matrix) || !cJSON_IsArray(right) || !read_unknowns(s, answer)) {
+        return cJSON_IsArray(matrix) && cJSON_IsArray(right)
+                   ? 0
+                   : tell(s, "unreadable", "%s",
+                          "expected {\"matrix\": [[...], ...], \"right\": [...]}");
+    }
+    if (cJSON_GetArraySize(matrix) != s->n_blocks || cJSON_GetArraySize(right) != s->n_blocks) {
+        return tell(s, "shape", "%s", "the system needs as many rows of blocks as unknowns");
+    }
+    for (int i = 0; i < s->n_blocks; i++) {
+        if (!read_row(s, cJSON_GetArrayItem(matrix, i), cJSON_GetArrayItem(right, i), i)) {
+            return 0;
+        }
+    }
+    return s->row_of[s->n_blocks] == s->size
+               ? 1
+               : tell(s, "shape", "%s", "the rows of blocks do not make a square system");
+}
+
+/// Solves the system of an answer in one world; 0 after the reason has been told.
+static int solve(const hn_part *p, hn_world *w, const cJSON *answer, hn_part_result *r,
+                 solution *out) {
+    system_t s = {.p = p, .w = w, .r = r};
+    int pivot[MAX_SIZE];
+    double scale[MAX_SIZE];
+    if (!assemble(&s, answer)) {
+        return 0;
+    }
+    if (hn_lu_factor(s.size, s.K, pivot, scale) != HN_OK) {
+        return tell(&s, "singular", "%s",
+                    "this system is singular although J has full row rank and M is definite");
+    }
+    hn_lu_solve(s.size, s.K, pivot, s.b);
+    out->n = s.n_blocks;
+    for (int k = 0; k < s.n_blocks; k++) {
+        const int height = s.column_of[k + 1] - s.column_of[k];
+        hn_matrix *x = &out->x[s.unknown[k]];
+        *x = hn_matrix_new(w->arena, height, 1);
+        for (int i = 0; i < height && x->x; i++) {
+            x->x[i] = s.sign[k] * s.b[s.column_of[k] + i];
+        }
+    }
+    return 1;
+}
+
+/// The reference solution by elimination: the formulas of "second".
+static hn_status eliminate(const hn_part *p, hn_world *w, solution *out, hn_diag *diag) {
+    const cJSON *second = cJSON_GetObjectItemCaseSensitive(p->node, "second"), *m;
+    out->n = 0;
+    cJSON_ArrayForEach(m, unknowns_of(p)) {
+        if (out->n == MAX_BLOCKS) {
+            return HN_ERR_INPUT;
+        }
+        HN_TRY(hn_world_eval(w, hn_part_text(second, m->string), &out->x[out->n++], diag));
+    }
+    return HN_OK;
+}
+
+static int agrees(const solution *a, const solution *b, int k, double sign) {
+    return hn_world_distance(&a->x[k], &b->x[k], sign) <= ALLOWED;
+}
+
+/// Names the mistake: a listed one with the same solution, or an unknown with the wrong sign.
+static void explain(const hn_part *p, hn_world *w, const solution *given, const solution *wanted,
+                    hn_part_result *r) {
+    const cJSON *fault;
+    for (int i = 0; (fault = hn_part_fault_at(p, i)) != NULL; i++) {
+        solution wrong;
+        int same = solve(p, w, cJSON_GetObjectItemCaseSensitive(fault, "answer"), NULL, &wrong);
+        for (int k = 0; k < wanted->n && same; k++) {
+            same &= agrees(given, &wrong, k, 1);
+        }
+        if (same) {
+            hn_part_wrong(r, hn_part_text(fault, "id"), hn_part_number(fault, "share", 0), "%s",
+                          hn_part_text(fault, "says"));
+            return;
+        }
+    }
+    const char *wrong = "";
+    int n = 0, signs = 0;
+    for (int k = 0; k < wanted->n; k++) {
+        const int right = agrees(given, wanted, k, 1);
+        n += !right;
+        signs += !right && agrees(given, wanted, k, -1);
+        wrong = right ? wrong : cJSON_GetArrayItem(unknowns_of(p), k)->string;
+    }
+    if (n == 1 && signs == 1) {
+        hn_part_wrong(r, "sign", 0.5, "%s comes out with the wrong sign", wrong);
+    } else if (n == 1) {
+        hn_part_wrong(r, "other", 0.25, "only %s comes out wrong", wrong);
+    } else {
+        hn_part_wrong(r, "other", 0, "the solution is another one: check every block and sign");
+    }
+}
+
+static hn_status grade_worlds(const hn_part *p, const cJSON *given, hn_part_result *r,
+                              hn_diag *diag) {
+    for (int i = 0; i < WORLDS && r->right; i++) {
+        hn_world w;
+        solution found = {0}, wanted = {0};
+        hn_status status = hn_world_init(&w, p, p->seed + 77 * (uint64_t)i, diag);
+        status = status == HN_OK ? eliminate(p, &w, &wanted, diag) : status;
+        if (status == HN_OK && !solve(p, &w, given, r, &found)) {
+            r->right = 0;
+        }
+        for (int k = 0; k < wanted.n && status == HN_OK && r->right; k++) {
+            if (!agrees(&found, &wanted, k, 1)) {
+                explain(p, &w, &found, &wanted, r);
+            }
+        }
+        hn_world_reset(&w);
+        HN_TRY(status == HN_ERR_MEMORY ? status : status == HN_OK ? HN_OK : HN_ERR_INPUT);
+    }
+    return HN_OK;
+}
+
+static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *r, int *n,
+                       hn_diag *diag) {
+    *n = 1;
+    *r = (hn_part_result){.mistake = ""};
+    snprintf(r->expected, sizeof r->expected, "a system with the right solution");
+    hn_part_keep_given(r, given);
+    if (!given || cJSON_IsNull(given)) {
+        hn_part_wrong(r, "blank", 0, "nothing was handed in here");
+        return HN_OK;
+    }
+    hn_part_right(r);
+    return grade_worlds(p, given, r, diag);
+}
+
+static cJSON *right(const hn_part *p, hn_diag *diag) {
+    (void)diag;
+    return cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(p->node, "answer"), 1);
+}
+
+static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
+    const cJSON *node = hn_part_fault_at(p, i);
+    (void)diag;
+    *id = hn_part_text(node, "id");
+    return node ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(node, "answer"), 1) : NULL;
+}
+
+static void ask(hn_strbuf *b, const hn_part *p) {
+    const cJSON *m;
+    hn_strbuf_add(b, "{\"matrix\": [[\"...\", ...], ...], \"right\": [\"...\", ...], "
+                     "\"unknowns\": [");
+    cJSON_ArrayForEach(m, unknowns_of(p)) {
+        hn_strbuf_printf(b, "%s\"%s\"", m == unknowns_of(p)->child ? "" : ", ", m->string);
+    }
+    hn_strbuf_add(b, "]}; names:");
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, "matrices")) {
+        hn_strbuf_printf(b, " %s", m->string);
+    }
+}
+
+const hn_part_kind hn_part_blocks = {
+    .name = "blocks",
+    .fields = "sizes matrices unknowns answer second faults",
+    .ask = ask,
+    .grade = grade,
+    .right = right,
+    .fault = fault,
+    .prove = NULL, // grading compares the solved system with the elimination of "second"
+};

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A choice among options, and the reason for it among reasons. The letters are dealt out anew for
+// every seed. Half of the points are for the choice, half for the reason.
+#include "grade/parts/part.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_OPTIONS = 10 };
+
+/// The options in the order of this seed.
+static int deal(const hn_part *p, const char *key, const cJSON *order[MAX_OPTIONS]) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(p->node, key), *m;
+    int n = 0;
+    cJSON_ArrayForEach(m, list) {
+        if (n < MAX_OPTIONS) {
+            order[n++] = m;
+        }
+    }
+    const int reasons = strcmp(key, "reasons") == 0;
+    for (int i = n - 1; i > 0; i--) { // Fisher and Yates
+        const uint64_t k = (uint64_t)(100 * (reasons + 1) + i);
+        const int j = (int)(hn_draw_random(p->seed ^ 0xdea1, k) * (i + 1));
+        const cJSON *swap = order[i];
+        order[i] = order[j];
+        order[j] = swap;
+    }
+    return n;
+}
+
+static int find_right(const cJSON *const *order, int n) {
+    int right = -1, count = 0;
+    for (int i = 0; i < n; i++) {
+        if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(order[i], "right"))) {
+            right = i;
+            count++;
+        }
+    }
+    return count == 1 ? right : -1;
+}
+
+static void put_options(hn_strbuf *b, const hn_part *p, const char *key) {
+    const cJSON *order[MAX_OPTIONS];
+    const int n = deal(p, key, order);
+    for (int i = 0; i < n; i++) {
+        hn_strbuf_printf(b, "\n    (%c) ", 'a' + i);
+        hn_draw_text(b, p->draw, hn_part_text(order[i], "text"));
+    }
+}
+
+static int has_reasons(const hn_part *p) {
+    return cJSON_GetObjectItemCaseSensitive(p->node, "reasons") != NULL;
+}
+
+static void ask(hn_strbuf *b, const hn_part *p) {
+    hn_strbuf_add(b, has_reasons(p) ? "{\"choice\": \"a\", \"reason\": \"b\"}" : "a letter: \"a\"");
+    put_options(b, p, "options");
+    if (has_reasons(p)) {
+        hn_strbuf_add(b, "\n  because");
+        put_options(b, p, "reasons");
+    }
+}
+
+/// The option that a letter names, -1 with the reason in `r`.
+static int read_letter(const cJSON *node, int n, const char *what, hn_part_result *r) {
+    const char *text = cJSON_GetStringValue(node);
+    if (!text || !*text) {
+        hn_part_wrong(r, "blank", 0, "no %s was handed in", what);
+        return -1;
+    }
+    text += strspn(text, " (");
+    const int i = tolower((unsigned char)*text) - 'a';
+    if (i < 0 || i >= n || isalnum((unsigned char)text[1])) {
+        hn_part_unreadable(r, "the %s '%.40s' is not a letter from a to %c", what, text,
+                           'a' + n - 1);
+        return -1;
+    }
+    return i;
+}
+
+/// Grades one of the two lists into one result.
+static hn_status grade_list(const hn_part *p, const char *key, const cJSON *given,
+                            hn_part_result *r, hn_diag *diag) {
+    const cJSON *order[MAX_OPTIONS];
+    const int n = deal(p, key, order), right = find_right(order, n);
+    const int reasons = strcmp(key, "reasons") == 0;
+    *r = (hn_part_result){.mistake = ""};
+    snprintf(r->name, sizeof r->name, "%s", reasons ? "reason" : has_reasons(p) ? "choice" : "");
+    if (right < 0) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/parts/options", NULL,
+                           "part %s: exactly one of the %s must be right", p->id, key);
+    }
+    hn_part_keep_given(r, given);
+    const int i = read_letter(given, n, reasons ? "reason" : "choice", r);
+    if (i == right) {
+        hn_part_right(r);
+    } else if (i >= 0) {
+        const char *id = hn_part_text(order[i], "fault");
+        hn_part_wrong(r, id[0] ? id : "choice", 0, "%s", hn_part_text(order[i], "says"));
+    }
+    return HN_OK;
+}
+
+static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
+                       hn_diag *diag) {
+    const cJSON *choice =
+        cJSON_IsObject(given) ? cJSON_GetObjectItemCaseSensitive(given, "choice") : given;
+    *n = has_reasons(p) ? 2 : 1;
+    HN_TRY(grade_list(p, "options", choice, &results[0], diag));
+    return *n == 2 ? grade_list(p, "reasons", cJSON_GetObjectItemCaseSensitive(given, "reason"),
+                                &results[1], diag)
+                   : HN_OK;
+}
+
+static cJSON *write_letters(const hn_part *p, int choice, int reason) {
+    char letter[2] = {(char)('a' + choice), 0}, other[2] = {(char)('a' + reason), 0};
+    if (!has_reasons(p)) {
+        return cJSON_CreateString(letter);
+    }
+    cJSON *out = cJSON_CreateObject();
+    cJSON_AddStringToObject(out, "choice", letter);
+    cJSON_AddStringToObject(out, "reason", other);
+    return out;
+}
+
+static cJSON *right(const hn_part *p, hn_diag *diag) {
+    const cJSON *order[MAX_OPTIONS], *reasons[MAX_OPTIONS];
+    (void)diag;
+    return write_letters(p, find_right(order, deal(p, "options", order)),
+                         find_right(reasons, deal(p, "reasons", reasons)));
+}
+
+/// Each wrong option with the right reason, then the right option with each wrong reason.
+static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
+    const cJSON *order[MAX_OPTIONS], *reasons[MAX_OPTIONS];
+    const int n = deal(p, "options", order), m = deal(p, "reasons", reasons);
+    (void)diag;
+    if (i >= n + m) {
+        return NULL;
+    }
+    const cJSON *wrong = i < n ? order[i] : reasons[i - n];
+    const char *named = hn_part_text(wrong, "fault");
+    *id = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(wrong, "right")) ? ""
+          : named[0]                                                     ? named
+                                                                         : "choice";
+    return write_letters(p, i < n ? i : find_right(order, n),
+                         i < n ? find_right(reasons, m) : i - n);
+}
+
+/// Every wrong option says why it is wrong.
+static hn_status prove(const hn_part *p, hn_diag *diag) {
+    static const char *const keys[] = {"options", "reasons"};
+    for (int k = 0; k < 2; k++) {
+        const cJSON *m;
+        cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->node, keys[k])) {
+            if (!cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(m, "right")) &&
+                !hn_part_text(m, "says")[0]) {
+                return hn_diag_set(diag, HN_ERR_INPUT, "/parts/options", NULL,
+                                   "part %s: a wrong option does not say why: %.80s", p->id,
+                                   hn_part_text(m, "text"));
+            }
+        }
+    }
+    return HN_OK;
+}
+
+const hn_part_kind hn_part_choice = {
+    .name = "choice",
+    .fields = "options reasons",
+    .ask = ask,
+    .grade = grade,
+    .right = right,
+    .fault = fault,
+    .prove = prove,
+};

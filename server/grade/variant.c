@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/variant.h"
+
+#include "base/hash.h"
+#include "grade/submission.h"
+
+#include <stdio.h>
+#include <string.h>
+
+hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t seed,
+                          hn_diag *diag) {
+    memset(x, 0, sizeof *x);
+    x->exercise = exercise;
+    x->seed = seed ? seed : exercise->seed;
+    x->n_parts = exercise->n_parts;
+    const hn_status status =
+        hn_draw_init(&x->draw, cJSON_GetObjectItemCaseSensitive(exercise->root, "draw"),
+                     cJSON_GetObjectItemCaseSensitive(exercise->root, "conditions"), NULL, 1,
+                     hn_hash_mix(x->seed), diag);
+    for (int i = 0; i < x->n_parts; i++) {
+        x->part[i] = exercise->parts[i];
+        x->part[i].draw = &x->draw;
+        x->part[i].lib = exercise->lib;
+        x->part[i].seed = hn_hash_mix(x->seed + 7919 * (uint64_t)(i + 1));
+    }
+    return status;
+}
+
+void hn_variant_reset(hn_variant *x) {
+    hn_draw_reset(&x->draw);
+}
+
+uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student) {
+    uint64_t hash = hn_hash_text(HN_HASH_START, exercise->id);
+    hash = hn_hash_mix(hn_hash_text(hash, student));
+    return (hash & ((1ull << 48) - 1)) + 1; // programs that read it as a double keep it
+}
+
+// ---- text ----
+
+static void put_statement(hn_strbuf *b, hn_variant *x) {
+    const cJSON *line;
+    cJSON_ArrayForEach(line, cJSON_GetObjectItemCaseSensitive(x->exercise->root, "statement")) {
+        hn_draw_text(b, &x->draw, cJSON_IsString(line) ? line->valuestring : "");
+        hn_strbuf_add(b, "\n");
+    }
+}
+
+static void put_question(hn_strbuf *b, hn_variant *x, const hn_part *p) {
+    const cJSON *ask = cJSON_GetObjectItemCaseSensitive(p->node, "ask"), *line;
+    if (cJSON_IsString(ask)) {
+        hn_draw_text(b, &x->draw, ask->valuestring);
+    }
+    const cJSON *lines = cJSON_IsArray(ask) ? ask : NULL;
+    cJSON_ArrayForEach(line, lines) {
+        hn_draw_text(b, &x->draw, cJSON_IsString(line) ? line->valuestring : "");
+        hn_strbuf_add(b, line->next ? "\n" : "");
+    }
+}
+
+void hn_variant_text(hn_strbuf *b, hn_variant *x) {
+    const hn_exercise *p = x->exercise;
+    hn_strbuf_printf(b, "Exercise %s: %s (lesson %s, %s; %g points; seed %llu)\n\n", p->id,
+                     p->title, p->lesson, p->section, hn_exercise_points(p),
+                     (unsigned long long)x->seed);
+    put_statement(b, x);
+    for (int i = 0; i < x->n_parts; i++) {
+        const hn_part *part = &x->part[i];
+        hn_strbuf_printf(b, "\n%s) [%g point%s] ", part->id, part->points,
+                         part->points == 1 ? "" : "s");
+        put_question(b, x, part);
+        hn_strbuf_printf(b, "\n  answer \"%s\": ", part->id);
+        part->kind->ask(b, part);
+        hn_strbuf_add(b, "\n");
+    }
+
+    // how to hand it in
+    hn_strbuf_add(b, "\nHand in a JSON file: {");
+    for (int i = 0; i < x->n_parts; i++) {
+        hn_strbuf_printf(b, "%s\"%s\": ...", i ? ", " : "", x->part[i].id);
+    }
+    hn_strbuf_printf(b, "}\n");
+    if (p->n_hints) {
+        hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
+                         p->n_hints == 1 ? "" : "s", p->id);
+    }
+}
+
+static void put_part(hn_strbuf *b, hn_variant *x, const hn_part *part) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", part->id);
+    hn_json_put_string(b, "kind", hn_part_text(part->node, "kind"));
+    hn_json_put_number(b, "points", part->points);
+    put_question(&text, x, part);
+    hn_json_put_string(b, "ask", hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_clear(&text);
+    part->kind->ask(&text, part);
+    hn_json_put_string(b, "answer_form", hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
+    hn_json_end_object(b);
+}
+
+void hn_variant_json(hn_strbuf *b, hn_variant *x) {
+    const hn_exercise *p = x->exercise;
+    char hash[17], seed[32];
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_hash_hex(p->hash, hash);
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)x->seed);
+    hn_json_object(b);
+    hn_json_put_string(b, "id", p->id);
+    hn_json_put_string(b, "title", p->title);
+    hn_json_put_string(b, "lesson", p->lesson);
+    hn_json_put_string(b, "section", p->section);
+    hn_json_put_string(b, "scene", p->scene);
+    hn_json_put_number(b, "points", hn_exercise_points(p));
+    hn_json_put_string(b, "hash", hash);
+    hn_json_put_string(b, "seed", seed);
+    put_statement(&text, x);
+    hn_json_put_string(b, "statement", hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
+
+    // the parts, and the numbers that were drawn
+    hn_json_key(b, "parts");
+    hn_json_array(b);
+    for (int i = 0; i < x->n_parts; i++) {
+        put_part(b, x, &x->part[i]);
+    }
+    hn_json_end_array(b);
+    hn_json_key(b, "numbers");
+    hn_json_object(b);
+    for (int i = 0; i < x->draw.n_names; i++) {
+        hn_json_put_number(b, x->draw.name[i], x->draw.value[0][i]);
+    }
+    hn_json_end_object(b);
+    hn_json_put_int(b, "hints", p->n_hints);
+    hn_json_end_object(b);
+}
+
+// ---- grading ----
+
+/// Copies what a kind of answer found into entries of the verdict.
+static void add_results(hn_verdict *v, const hn_part *p, const hn_part_result *results, int n) {
+    for (int i = 0; i < n && v->n_entries < HN_GRADE_MAX_ENTRIES; i++) {
+        const hn_part_result *r = &results[i];
+        hn_entry_verdict *e = &v->entry[v->n_entries++];
+        *e = (hn_entry_verdict){.row = v->n_entries - 1, .state = -1};
+        snprintf(e->name, sizeof e->name, "%s%s%.12s", p->id, r->name[0] ? "." : "", r->name);
+        e->max_points = p->points / n;
+        e->points = e->max_points * r->share;
+        e->right = r->right;
+        e->mistake = r->mistake;
+        snprintf(e->explanation, sizeof e->explanation, "%s", r->explanation);
+        snprintf(e->given, sizeof e->given, "%s", r->given);
+        snprintf(e->expected, sizeof e->expected, "%s", r->expected);
+        v->n_right += r->right;
+        v->n_unreadable += r->unreadable;
+        v->score += e->points;
+    }
+}
+
+static int has_part(const hn_variant *x, const char *id) {
+    for (int i = 0; i < x->n_parts; i++) {
+        if (strcmp(x->part[i].id, id) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/// Fields that no part asks for; the file of another exercise or another seed.
+static int check_fields(hn_variant *x, const cJSON *submission, hn_verdict *v) {
+    static const char *const others[] = {"problem", "exercise", "student", "seed", "comment"};
+    const cJSON *m;
+    int answers = 0;
+    cJSON_ArrayForEach(m, submission) {
+        int known = has_part(x, m->string);
+        answers += known;
+        for (int i = 0; i < 5 && !known; i++) {
+            known = strcmp(m->string, others[i]) == 0;
+        }
+        if (!known && !v->note[0]) {
+            snprintf(v->note, sizeof v->note, "the field '%.60s' was not read", m->string);
+        }
+    }
+    const cJSON *id = cJSON_GetObjectItemCaseSensitive(submission, "problem");
+    const cJSON *seed = cJSON_GetObjectItemCaseSensitive(submission, "seed");
+    if (cJSON_IsString(id) && strcmp(id->valuestring, x->exercise->id) != 0) {
+        return hn_submission_refuse(v, NULL, "the submission says it answers '%.40s', this is '%s'",
+                                    id->valuestring, x->exercise->id);
+    }
+    if (cJSON_IsNumber(seed) && seed->valuedouble != (double)x->seed) {
+        return hn_submission_refuse(v, "grade it with --seed of that number",
+                                    "the submission answers the variant of seed %.0f, this is %llu",
+                                    seed->valuedouble, (unsigned long long)x->seed);
+    }
+    return answers > 0
+               ? 1
+               : hn_submission_refuse(v, "'holonom problem' shows the shape of a submission",
+                                      "no part of the exercise is answered (the first is "
+                                      "'%s')",
+                                      x->part[0].id);
+}
+
+static void summarise(hn_verdict *v) {
+    const char *first = "";
+    for (int k = v->n_entries; k-- > 0;) {
+        first = v->entry[k].right ? first : v->entry[k].name;
+    }
+    if (v->n_right == v->n_entries) {
+        snprintf(v->summary, sizeof v->summary, "all %d answers are right", v->n_entries);
+    } else {
+        snprintf(v->summary, sizeof v->summary, "%d of %d answers are right; look at %s first",
+                 v->n_right, v->n_entries, first);
+    }
+    if (v->n_unreadable) {
+        const size_t used = strlen(v->summary);
+        snprintf(v->summary + used, sizeof v->summary - used, "; %d cannot be read",
+                 v->n_unreadable);
+    }
+}
+
+/// Ungradable when nothing that was handed in can be read.
+static void refuse_unreadable(hn_verdict *v) {
+    int handed_in = 0, first = -1;
+    for (int k = v->n_entries; k-- > 0;) {
+        handed_in += strcmp(v->entry[k].mistake, "blank") != 0;
+        first = strcmp(v->entry[k].mistake, "unreadable") == 0 ? k : first;
+    }
+    if (first >= 0 && v->n_unreadable == handed_in) {
+        hn_submission_refuse(v, v->entry[first].explanation, "no answer can be read (%s)",
+                             v->entry[first].name);
+    }
+}
+
+hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v, hn_diag *diag) {
+    if (!cJSON_IsObject(submission)) {
+        hn_submission_refuse(v, "as in {\"a\": 1.2, \"b\": \"...\"}",
+                             "the submission is no object with a member for each part");
+        return HN_OK;
+    }
+    if (!check_fields(x, submission, v)) {
+        return HN_OK;
+    }
+    for (int i = 0; i < x->n_parts; i++) {
+        hn_part_result results[HN_PART_RESULTS];
+        int n = 0;
+        const hn_part *p = &x->part[i];
+        HN_TRY(p->kind->grade(p, cJSON_GetObjectItemCaseSensitive(submission, p->id), results, &n,
+                              diag));
+        add_results(v, p, results, n);
+    }
+    summarise(v);
+    refuse_unreadable(v);
+    return HN_OK;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HN_GRADE_VARIANT_H
+#define HN_GRADE_VARIANT_H
+// One variant of an exercise: its numbers drawn from a seed, its text, and its grading.
+
+#include "grade/verdict.h"
+
+typedef struct hn_variant {
+    const hn_exercise *exercise; ///< borrowed
+    uint64_t seed;
+    hn_draw draw;
+    int n_parts;
+    hn_part part[HN_GRADE_MAX_PARTS];
+} hn_variant;
+
+/// Draws the numbers of an exercise of form 2. seed 0: the exercise's own.
+/// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY. hn_variant_reset() in any case.
+HN_MUST_CHECK hn_status hn_variant_init(hn_variant *x, const hn_exercise *exercise, uint64_t seed,
+                                        hn_diag *diag);
+void hn_variant_reset(hn_variant *x);
+/// The seed of a student's variant: the same for the same name, never 0.
+uint64_t hn_variant_seed(const hn_exercise *exercise, const char *student);
+/// Statement, parts with their numbers, and the shape of a submission.
+void hn_variant_text(hn_strbuf *b, hn_variant *x);
+void hn_variant_json(hn_strbuf *b, hn_variant *x);
+/// Grades a submission, an object with a member for each part, into the verdict.
+/// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY.
+HN_MUST_CHECK hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v,
+                                         hn_diag *diag);
+#endif

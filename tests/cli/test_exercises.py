@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exercises from the shell: variants, checks, verdicts and their exit statuses, grading again. Speaks TAP."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.environ.get("HOLONOM", "build/holonom")
+RESULTS = []
+
+
+def run(*words, home=None):
+    env = dict(os.environ, HOLONOM_HOME=home) if home else os.environ
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=120, env=env)
+
+
+def expect(name, good, said=""):
+    RESULTS.append((name, good, said))
+
+
+def write(folder, name, content):
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="utf-8") as f:
+        f.write(content if isinstance(content, str) else json.dumps(content))
+    return path
+
+
+def variants():
+    a, b, c = (run("problem", "p1", *w).stdout for w in (["--seed", "42"], ["--seed", "42"], ["--seed", "43"]))
+    expect("the same seed gives the same text", a == b and a != c)
+    s, t = (run("problem", "p1", "--student", n).stdout for n in ("s1001", "s1002"))
+    expect("every student has a variant", s != t and s == run("problem", "p1", "--student", "s1001").stdout)
+    hints = run("problem", "p1", "--hint", "1").stdout
+    expect("a hint is printed when asked for", hints.startswith("hint 1 of 3:") and hints.count("hint") == 1, hints)
+    near = run("problem", "p11111")
+    expect("an unknown exercise is the input's fault", near.returncode == 2, near.stderr)
+
+
+def checks():
+    done = run("problem", "p4", "--seeds", "1..10", "--check", "--json")
+    report = json.loads(done.stdout)
+    expect("a sound exercise passes its check", done.returncode == 0 and report["variants"] == 10 and report["bad"] == 0, done.stdout)
+    expect("its mistakes were tried", report["mistakes"] >= 100 and report["right_answers"] == 40, done.stdout)
+    bad = run("problem", "p4", "--seeds", "9..1", "--check")
+    expect("a range that is none is refused", bad.returncode == 2 and "9..1" in bad.stderr, bad.stderr)
+
+
+def statuses(folder):
+    right = {"a": {"matrix": [["M", "J'"], ["J", "0"]], "right": ["S'*tau - h", "-gamma"], "unknowns": ["a", "-lambda"]}}
+    path = write(folder, "right.json", right)
+    done = run("grade", "p1", path, "--format", "json", "--seed", "5")
+    verdict = json.loads(done.stdout)
+    expect("a right part earns its points", done.returncode == 0 and verdict["score"] == 4, done.stdout[:300])
+    for name, content, status in (
+        ("wrong is graded", {"a": {"matrix": [["0", "0"], ["0", "0"]], "right": ["0", "0"]}}, 0),
+        ("an answer nobody can read is not graded", {"a": "?", "b": "?"}, 2),
+        ("an empty object is not graded", {}, 2),
+        ("broken JSON is not graded", "{", 2),
+    ):
+        done = run("grade", "p1", write(folder, "x.json", content))
+        expect(name, done.returncode == status, f"{done.returncode}: {done.stdout}{done.stderr}")
+
+    # what the verdict says is reproduced
+    kept = write(folder, "verdict.json", verdict)
+    again = run("regrade", kept, "--json")
+    expect("a verdict is reproduced", json.loads(again.stdout)["same"] and again.returncode == 0, again.stdout)
+    other = dict(verdict, score=1, problem_hash="0" * 16)
+    again = run("regrade", write(folder, "other.json", other))
+    expect("another score and a changed exercise are said", "ANOTHER SCORE" in again.stdout and "exercise has changed" in again.stdout, again.stdout)
+    expect("what is no verdict is refused", run("regrade", path).returncode == 2)
+
+
+def broken_exercise(folder):
+    """An exercise that is at fault is the program's fault, whatever is handed in."""
+    home = os.path.join(folder, "home")
+    problems = os.path.join(home, "lessons", "01-x", "problems")
+    os.makedirs(problems)
+    os.makedirs(os.path.join(home, "web"))
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "1/l", "second": "1/l"}
+    exercise = {"exercise": 2, "id": "x1", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+                "draw": {"l": {"value": 0}}, "parts": [part]}  # fmt: skip
+    write(problems, "x1.json", exercise)
+    path = write(folder, "a.json", {"a": 1})
+    done = run("grade", "x1", path, home=home)
+    expect("a reference that is not finite is the exercise's fault", done.returncode == 3, f"{done.returncode} {done.stdout}{done.stderr}")
+    done = run("problem", "x1", "--check", home=home)
+    expect("the check finds it", done.returncode == 3 and "not finite" in done.stdout, done.stdout)
+    part["kind"] = "numbr"
+    write(problems, "x1.json", exercise)
+    done = run("grade", "x1", path, home=home)
+    expect("a kind that does not exist is named with its near miss", done.returncode == 3 and "number" in done.stderr, done.stderr)
+
+
+def main():
+    variants()
+    checks()
+    with tempfile.TemporaryDirectory() as folder:
+        statuses(folder)
+        broken_exercise(folder)
+    for n, (name, good, said) in enumerate(RESULTS, 1):
+        if not good:
+            print("# " + said.replace("\n", "\n# "))
+        print(f"{'ok' if good else 'not ok'} {n} - {name}")
+    print(f"1..{len(RESULTS)}")
+    return 0 if all(good for _, good, _ in RESULTS) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

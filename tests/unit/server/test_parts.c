@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kinds of answers: right answers in many spellings, mistakes named, hostile input refused with a
+// reason; the shipped exercises proved over a few seeds.
+#include "grade/exercise_check.h"
+#include "grade/grade.h"
+#include "grade/parts/matrix_text.h"
+#include "grade/parts/unit_text.h"
+#include "grade/variant.h"
+
+#include "support/alloc.h"
+#include "support/near.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// one part of each kind of number and formula, small enough to see through
+static const char VALUES[] =
+    "{\"exercise\":2,\"id\":\"t\",\"title\":\"t\",\"lesson\":\"l\",\"section\":\"s\","
+    "\"statement\":[\"A rod of {l} m.\"],"
+    "\"draw\":{\"l\":{\"range\":[0.5,0.9],\"digits\":2,\"unit\":\"m\"},"
+    "\"w\":{\"range\":[2,3],\"digits\":1,\"unit\":\"rad/s\"}},\"conditions\":[\"l-0.6\"],"
+    "\"parts\":["
+    "{\"id\":\"a\",\"ask\":\"v?\",\"kind\":\"number\",\"points\":2,\"unit\":\"m/s\","
+    "\"answer\":\"l*w\",\"second\":\"sqrt(l^2*w^2)\","
+    "\"faults\":[{\"id\":\"sum\",\"answer\":\"l+w\",\"says\":\"a product\",\"share\":0.5}]},"
+    "{\"id\":\"b\",\"ask\":\"x?\",\"kind\":\"formula\",\"points\":2,"
+    "\"states\":{\"th1\":{\"range\":[-3,3],\"unit\":\"rad\"},\"w1\":{\"range\":[1,2]}},"
+    "\"answer\":\"-l*sin(th1)*w1\",\"second\":\"l*w1*cos(th1+pi/2)\"},"
+    "{\"id\":\"c\",\"ask\":\"p?\",\"kind\":\"vector\",\"points\":2,\"unit\":\"m\","
+    "\"answer\":[\"l\",\"2*l+1\"],\"second\":[\"l\",\"1+l+l\"]}]}";
+
+static hn_exercise *load(const char *text) {
+    hn_exercise *e = NULL;
+    hn_diags diags = {0};
+    if (hn_exercise_load_json(text, strlen(text), &e, &diags) != HN_OK) {
+        fail_msg("%s: %s", diags.item[0].pointer, diags.item[0].message);
+    }
+    return e;
+}
+
+/// Grades {"PART": ANSWER} and returns the first entry of the part.
+static hn_entry_verdict grade(const hn_exercise *e, const char *part, const char *answer) {
+    static hn_verdict v;
+    char text[4000];
+    snprintf(text, sizeof text, "{\"%s\": %s}", part, answer);
+    memset(&v, 0x5A, sizeof v);
+    assert_int_equal(hn_grade_json(e, text, strlen(text), 7, &v), HN_OK);
+    for (int k = 0; k < v.n_entries; k++) {
+        if (strncmp(v.entry[k].name, part, strlen(part)) == 0) {
+            return v.entry[k];
+        }
+    }
+    return (hn_entry_verdict){.mistake = "none"};
+}
+
+static void expect(const hn_exercise *e, const char *part, const char *answer,
+                   const char *mistake) {
+    const hn_entry_verdict v = grade(e, part, answer);
+    if (strcmp(v.mistake, mistake) != 0) {
+        fail_msg("%s = %s: '%s' (%s), wanted '%s'", part, answer, v.mistake, v.explanation,
+                 mistake);
+    }
+    assert_int_equal(v.right, mistake[0] == 0);
+}
+
+/// "1.234 unit" of the drawn numbers of seed 7.
+static const char *with_number(const hn_exercise *e, const char *formula, const char *form) {
+    static char text[100];
+    hn_variant x;
+    double value;
+    assert_int_equal(hn_variant_init(&x, e, 7, NULL), HN_OK);
+    assert_int_equal(hn_draw_value(&x.draw, formula, &value, NULL), HN_OK);
+    snprintf(text, sizeof text, form, value);
+    hn_variant_reset(&x);
+    return text;
+}
+
+static void numbers_are_read_with_their_units(void **state) {
+    hn_exercise *e = *state;
+    expect(e, "a", with_number(e, "l*w", "%.4f"), "");
+    expect(e, "a", with_number(e, "l*w", "\"%.4f m/s\""), "");
+    expect(e, "a", with_number(e, "l*w*100", "\"%.3f cm/s\""), "");
+    expect(e, "a", with_number(e, "l*w*3.6", "\"%.4f km/h\""), "");
+    expect(e, "a", with_number(e, "l*w", "\"2*%.4f/2\""), "");
+    expect(e, "a", with_number(e, "l*w", "\"%.4f m\""), "unit");
+    expect(e, "a", "\"l*w\"", "unreadable");
+    expect(e, "a", "\"fast\"", "unreadable");
+    expect(e, "a", "[1, 2]", "shape");
+    expect(e, "a", "null", "blank");
+    expect(e, "a", "true", "unreadable");
+}
+
+static void mistakes_in_numbers_are_named(void **state) {
+    hn_exercise *e = *state;
+    expect(e, "a", with_number(e, "l+w", "%.4f"), "sum");
+    expect(e, "a", with_number(e, "-l*w", "%.4f"), "sign");
+    expect(e, "a", with_number(e, "l*w/2", "%.4f"), "half");
+    expect(e, "a", with_number(e, "l*w*1000", "%.2f"), "milli");
+    expect(e, "a", with_number(e, "l*w*180/pi", "%.4f"), "degrees");
+    expect(e, "a", with_number(e, "l*w*1.1", "%.4f"), "other");
+
+    // two at once: the listed mistake and the sign
+    const hn_entry_verdict v = grade(e, "a", with_number(e, "-(l+w)", "%.4f"));
+    assert_string_equal(v.mistake, "sum");
+    assert_non_null(strstr(v.explanation, "the sign is wrong as well"));
+    assert_near(v.points, 0.5, 1e-12);
+}
+
+static void formulas_are_right_in_any_form(void **state) {
+    static const char *const right[] = {
+        "\"-l*sin(th1)*w1\"",  "\"-l*np.sin(th1)*w1\"",         "\"-w1*l*Sin[th1]\"",
+        "\"−l·sin(θ1)·w1\"",   "\"-l \\\\sin\\\\theta_1 w_1\"", "\"l*w1*cos(th1+pi/2)\"",
+        "\"-l*w1*sin(th_1)\"",
+    };
+    for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
+        expect(*state, "b", right[i], "");
+    }
+}
+
+static void mistakes_in_formulas_are_named(void **state) {
+    expect(*state, "b", "\"l*sin(th1)*w1\"", "sign");
+    expect(*state, "b", "\"-l*cos(th1)*w1\"", "sine");
+    expect(*state, "b", "\"-l*sin(th1*pi/180)*w1\"", "degrees");
+    expect(*state, "b", "\"-sin(th1)*w1\"", "missing-name");
+    expect(*state, "b", "\"-l*sin(th1)\"", "missing-name");
+    expect(*state, "b", "\"1/0*th1\"", "unreadable");
+    expect(*state, "b", "\"sqrt(th1-9)\"", "not-finite");
+    expect(*state, "b", "\"-l*sin(th2)*w1\"", "unreadable");
+    expect(*state, "b", "\"((((\"", "unreadable");
+}
+
+static void vectors_are_graded_entry_by_entry(void **state) {
+    hn_exercise *e = *state;
+    hn_verdict v;
+    char text[200];
+    snprintf(text, sizeof text, "{\"c\": [%s, 9]}", with_number(e, "l", "%.4f"));
+    assert_int_equal(hn_grade_json(e, text, strlen(text), 7, &v), HN_OK);
+    assert_near(v.score, 1, 1e-12);
+    assert_string_equal(v.entry[2].name, "c.1");
+    assert_int_equal(v.entry[2].right, 1);
+    assert_int_equal(v.entry[3].right, 0);
+}
+
+static void what_nobody_can_read_is_ungradable(void **state) {
+    static const char *const texts[] = {"{}",
+                                        "[]",
+                                        "{\"x\": 1}",
+                                        "{\"a\": \"??\"}",
+                                        "{\"a\": tru}",
+                                        "{\"problem\": \"p9\", \"a\": 1}",
+                                        "{\"seed\": 8, \"a\": 1}"};
+    hn_verdict v;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        assert_int_equal(hn_grade_json(*state, texts[i], strlen(texts[i]), 7, &v), HN_OK);
+        assert_int_equal(v.kind, HN_VERDICT_UNGRADABLE);
+        assert_true(v.reason[0] != 0);
+    }
+}
+
+static void the_same_seed_gives_the_same_text(void **state) {
+    hn_strbuf a, b;
+    hn_variant x;
+    hn_strbuf_init(&a);
+    hn_strbuf_init(&b);
+    assert_int_equal(hn_variant_init(&x, *state, 42, NULL), HN_OK);
+    hn_variant_text(&a, &x);
+    hn_variant_reset(&x);
+    assert_int_equal(hn_variant_init(&x, *state, 42, NULL), HN_OK);
+    assert_true(x.draw.value[0][0] > 0.6); // the condition
+    hn_variant_text(&b, &x);
+    hn_variant_reset(&x);
+    assert_string_equal(hn_strbuf_text(&a), hn_strbuf_text(&b));
+    assert_int_equal(hn_variant_seed(*state, "s1"), hn_variant_seed(*state, "s1"));
+    assert_true(hn_variant_seed(*state, "s1") != hn_variant_seed(*state, "s2"));
+    hn_strbuf_reset(&a);
+    hn_strbuf_reset(&b);
+}
+
+static void units_are_what_they_measure(void **state) {
+    (void)state;
+    hn_unit a, b;
+    assert_int_equal(hn_unit_parse("kg m^2/s^2", &a), 1);
+    assert_int_equal(hn_unit_parse("N m", &b), 1);
+    assert_int_equal(hn_unit_fits(&a, &b), 1);
+    assert_int_equal(hn_unit_parse("rpm", &a), 1);
+    assert_near(a.factor, acos(-1) / 30, 1e-15);
+    assert_int_equal(hn_unit_parse("1/s", &b), 1);
+    assert_int_equal(hn_unit_fits(&a, &b), 1);
+    assert_int_equal(hn_unit_parse("m", &b), 1);
+    assert_int_equal(hn_unit_fits(&a, &b), 0);
+    assert_int_equal(hn_unit_parse("furlong", &a), 0);
+    assert_int_equal(hn_unit_parse("m^99", &a), 0);
+}
+
+// ---- matrices ----
+
+typedef struct two {
+    hn_matrix A, v;
+} two;
+
+static const hn_matrix *find(void *user, const char *name) {
+    two *t = user;
+    return strcmp(name, "A") == 0 ? &t->A : strcmp(name, "vdot") == 0 ? &t->v : NULL;
+}
+
+/// The first entry of a formula with A = [1 2; 3 4] and vdot = (5; 6).
+static hn_status eval(const char *text, double *x, hn_diag *diag) {
+    two t = {{2, 2, 0, (double[]){1, 2, 3, 4}}, {2, 1, 0, (double[]){5, 6}}};
+    static const char *const known[] = {"A", "vdot"};
+    const hn_matrix_names names = {find, &t, known, 2};
+    hn_arena *arena = hn_arena_create(0);
+    hn_matrix out = {0};
+    const hn_status status = hn_matrix_eval(text, &names, arena, &out, diag);
+    *x = status == HN_OK ? out.x[0] : (double)NAN;
+    hn_arena_free(arena);
+    return status;
+}
+
+static void matrices_are_read_in_any_notation(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double first;
+    } rows[] = {
+        {"A", 1},
+        {"A'*vdot", 23},
+        {"A^T vdot", 23},
+        {"A.T @ vdot", 23},
+        {"A^{\\top} \\dot{v}", 23},
+        {"\\mathbf{A}^\\top \\dot v", 23},
+        {"transpose(A) v_dot", 23},
+        {"Aᵀ·v̇", 23},
+        {"-A vdot", -17},
+        {"2 A vdot - vdot", 29},
+        {"A*inv(A)", 1},
+        {"A^-1 A", 1},
+        {"(A + A')'", 2},
+        {"0 - A", -1},
+        {"A*dv", 17},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double x = 0;
+        hn_diag diag = {0};
+        if (eval(rows[i].text, &x, &diag) != HN_OK) {
+            fail_msg("%s: %s", rows[i].text, diag.message);
+        }
+        assert_near(x, rows[i].first, 1e-12);
+    }
+}
+
+static void matrices_that_do_not_fit_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        hn_status status;
+    } rows[] = {
+        {"vdot*A", HN_ERR_UNSUPPORTED},
+        {"A + vdot", HN_ERR_UNSUPPORTED},
+        {"inv(vdot)", HN_ERR_UNSUPPORTED},
+        {"inv(A-A)", HN_ERR_SINGULAR},
+        {"B", HN_ERR_INPUT},
+        {"A *", HN_ERR_INPUT},
+        {"(A", HN_ERR_INPUT},
+        {"A)", HN_ERR_INPUT},
+        {"", HN_ERR_INPUT},
+        {"A^", HN_ERR_INPUT},
+        {"\\dot", HN_ERR_INPUT},
+        {"{", HN_ERR_INPUT},
+        {"A;A", HN_ERR_INPUT},
+        {"\\", HN_ERR_INPUT},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double x;
+        hn_diag diag = {0};
+        assert_int_equal(eval(rows[i].text, &x, &diag), rows[i].status);
+        assert_true(diag.message[0] != 0);
+    }
+    char deep[600];
+    double x;
+    memset(deep, '(', 500);
+    deep[500] = 0;
+    assert_int_equal(eval(deep, &x, NULL), HN_ERR_INPUT);
+}
+
+// ---- the shipped exercises ----
+
+static void every_shipped_exercise_is_sound(void **state) {
+    (void)state;
+    glob_t files;
+    hn_library *lib = NULL;
+    assert_int_equal(hn_library_open(".", &lib, NULL), HN_OK);
+    assert_int_equal(glob("lessons/*/problems/*.json", 0, NULL, &files), 0);
+    for (size_t i = 0; i < files.gl_pathc; i++) {
+        hn_exercise *e = NULL;
+        hn_diags diags = {0};
+        if (hn_exercise_load_file(files.gl_pathv[i], &e, &diags) != HN_OK) {
+            fail_msg("%s: %s: %s", files.gl_pathv[i], diags.item[0].pointer, diags.item[0].message);
+        }
+        e->lib = lib;
+        hn_exercise_report report;
+        if (e->n_parts) {
+            assert_int_equal(hn_exercise_check(e, 1, 3, &report), HN_OK);
+            if (report.bad) {
+                fail_msg("%s: %s", files.gl_pathv[i], report.first);
+            }
+        }
+        hn_exercise_free(e);
+    }
+    globfree(&files);
+    hn_library_free(lib);
+}
+
+/// An exercise whose second means disagrees, and one whose listed mistake is right, are bad.
+static void unsound_exercises_are_found(void **state) {
+    (void)state;
+    static const char *const swaps[][3] = {
+        {"sqrt(l^2*w^2)", "l*w+1", "second means"},
+        {"\"answer\":\"l+w\"", "\"answer\":\"w*l\"", "taken for right"},
+        {"[\"l-0.6\"]", "[\"l-0.95\"]", "conditions"},
+    };
+    for (int i = 0; i < 3; i++) {
+        char text[sizeof VALUES + 100];
+        const char *at = strstr(VALUES, swaps[i][0]);
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - VALUES), VALUES, swaps[i][1],
+                 at + strlen(swaps[i][0]));
+        hn_exercise *e = load(text);
+        hn_exercise_report report;
+        assert_int_equal(hn_exercise_check(e, 1, 5, &report), HN_OK);
+        assert_int_equal(report.bad, 5);
+        assert_non_null(strstr(report.first, swaps[i][2]));
+        hn_exercise_free(e);
+    }
+}
+
+static void faults_of_a_file_are_named(void **state) {
+    (void)state;
+    static const char *const swaps[][3] = {
+        {"\"kind\":\"number\"", "\"kind\":\"numbr\"", "there is no kind of answer 'numbr'"},
+        {"\"unit\":\"m/s\"", "\"units\":\"m/s\"", "a field 'units'"},
+        {"\"points\":2", "\"points\":-2", "points from 0"},
+        {"\"draw\"", "\"drawn\"", "no such field"},
+    };
+    for (int i = 0; i < 4; i++) {
+        char text[sizeof VALUES + 100];
+        const char *at = strstr(VALUES, swaps[i][0]);
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - VALUES), VALUES, swaps[i][1],
+                 at + strlen(swaps[i][0]));
+        hn_exercise *e = NULL;
+        hn_diags diags = {0};
+        assert_int_equal(hn_exercise_load_json(text, strlen(text), &e, &diags), HN_ERR_INPUT);
+        assert_non_null(strstr(diags.item[0].message, swaps[i][2]));
+        assert_null(e);
+    }
+}
+
+static int setup(void **state) {
+    *state = load(VALUES);
+    return 0;
+}
+
+static int teardown(void **state) {
+    hn_exercise_free(*state);
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(numbers_are_read_with_their_units, setup, teardown),
+        cmocka_unit_test_setup_teardown(mistakes_in_numbers_are_named, setup, teardown),
+        cmocka_unit_test_setup_teardown(formulas_are_right_in_any_form, setup, teardown),
+        cmocka_unit_test_setup_teardown(mistakes_in_formulas_are_named, setup, teardown),
+        cmocka_unit_test_setup_teardown(vectors_are_graded_entry_by_entry, setup, teardown),
+        cmocka_unit_test_setup_teardown(what_nobody_can_read_is_ungradable, setup, teardown),
+        cmocka_unit_test_setup_teardown(the_same_seed_gives_the_same_text, setup, teardown),
+        cmocka_unit_test(units_are_what_they_measure),
+        cmocka_unit_test(matrices_are_read_in_any_notation),
+        cmocka_unit_test(matrices_that_do_not_fit_are_refused),
+        cmocka_unit_test(every_shipped_exercise_is_sound),
+        cmocka_unit_test(unsound_exercises_are_found),
+        cmocka_unit_test(faults_of_a_file_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
