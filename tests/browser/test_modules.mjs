@@ -27,7 +27,7 @@ import {
 import { incidentOf, limits, readIndex } from "../../web/state/catalogue.js";
 import { cardOfMethod, groupIncidents, tryOfRemedy } from "../../web/state/cards.js";
 import { sentences, trendOf, verdictAt } from "../../web/state/verdict.js";
-import { predictionAt } from "../../web/state/words.js";
+import { predictionAt, stopReason } from "../../web/state/words.js";
 import { choosePartner, faultOf, misfit, misfitsOf } from "../../web/state/pairs.js";
 import { decodeLink, encodeLink, fits } from "../../web/state/link.js";
 
@@ -561,6 +561,15 @@ test("a link says the same after it was read and written again", () => {
     assert.equal(encodeLink(link), text);
   }
   assert.ok(!fits("x".repeat(5000)));
+});
+
+test("one event has one time: a step that failed is named by its end, a repeated time is left out", () => {
+  assert.equal(
+    stopReason("th3 = 0.81 at t = 1.1 s: the loop went over to its other mode", 1, 10),
+    "in the step to 1.10 s, th3 = 0.81: the loop went over to its other mode",
+  );
+  assert.equal(stopReason("at t = 0.9 s the loops stand open", 0.9, 10), "the loops stand open");
+  assert.equal(stopReason("the mass matrix is singular", 0.9, 10), "the mass matrix is singular");
 });
 
 test("10,000 tampered links: nothing throws, a damaged entry takes no other entry with it", () => {

@@ -128,6 +128,16 @@ test("a pane shows a phase plot: velocity against coordinate, for every method",
   const d = await figure.locator(".phase path.orbit").first().getAttribute("d");
   assert.ok(d.length > 100 && !/NaN/.test(d));
   assert.match(await figure.locator(".phase").textContent(), /th1.*w1/s);
+
+  // what the stream adds to a frame: the smallest singular value and the largest multiplier
+  for (const name of ["sigma_min", "lambda_max"]) {
+    await page.selectOption("#plot-lower", name);
+    const values = await read(page, `(data) => [...data.history.columns[2].${name}.slice(1, 20)]`);
+    assert.ok(
+      values.every((value) => value > 0 && value < 1e4),
+      `${name}: ${values}`,
+    );
+  }
 });
 
 test("the recording is saved as CSV and NDJSON with every digit, the drawing as SVG and PNG", async (t) => {

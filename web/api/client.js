@@ -124,6 +124,11 @@ export const api = {
   abandonStudy: (id) =>
     fetch(`${BASE}/studies/${id}`, { method: "DELETE", keepalive: true }).catch(() => null),
   /** @param {string} id @param {string} lastId */
-  eventsAddress: (id, lastId) =>
-    `${BASE}/comparisons/${id}/events${lastId ? `?last_event_id=${encodeURIComponent(lastId)}` : ""}`,
+  eventsAddress: (id, lastId) => {
+    const query = new URLSearchParams({ fields: "sigma_min,lambda" });
+    if (lastId) {
+      query.set("last_event_id", lastId);
+    }
+    return `${BASE}/comparisons/${id}/events?${query}`;
+  },
 };

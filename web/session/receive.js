@@ -24,6 +24,22 @@ function readMethod(entry) {
   };
 }
 
+/**
+ * A frame whose methods have what the stream adds beside them: the smallest singular value and the
+ * largest multiplier.
+ * @param {any} frame
+ * @returns {import("../state/store.js").Frame}
+ */
+function withExtras({ sigma_min: sigma, lambda, ...frame }) {
+  const largest = (list) =>
+    list?.length ? Math.max(...list.map((x) => Math.abs(x ?? NaN))) : undefined;
+  frame.methods.forEach((method, m) => {
+    method.sigma_min = sigma?.[m];
+    method.lambda_max = largest(lambda?.[m]);
+  });
+  return frame;
+}
+
 /** Do two incidents report the same event? The server repeats one when more is known about it. */
 const isSame = (a, b) => a.method === b.method && a.code === b.code && a.t === b.t;
 
@@ -134,7 +150,7 @@ export function createReceiver(store, notice) {
   /** @type {Record<string, (detail: any, id: number) => boolean | void>} */
   const onEvent = {
     hello: ({ description }) => applyDescription(description),
-    frame: applyFrame,
+    frame: (frame) => applyFrame(withExtras(frame)),
     incident: applyIncident,
     reset: ({ description }) => applyDescription(description),
     state: (change, id) => {

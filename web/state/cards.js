@@ -5,6 +5,7 @@ import { niceBelow, quantity, seconds, withPowers } from "./format.js";
 import { cardOf, parseSpelling, settingOf } from "./spelling.js";
 import { errorsOf } from "./errors.js";
 import { listed, trendOf, verdictAt } from "./verdict.js";
+import { stopReason } from "./words.js";
 
 /** Codes that report one cause: the energy is wrong, by a jump or little by little. */
 const FAMILY = { "energy-jump": "energy", "energy-drift": "energy" };
@@ -107,13 +108,31 @@ export function tryOfRemedy(text) {
     : { label: text.trim() };
 }
 
+/**
+ * What a step costs: operations, exactly, and the computing time of the latest frames with the
+ * range of its middle half.
+ * @param {import("./store.js").Data} data @param {number} m @param {number} shown
+ */
+export function costWords(data, m, shown) {
+  const { ops, steps } = data.history.columns[m];
+  const { median, low, high } = data.latest?.methods[m]?.step_cpu ?? {};
+  if (!(steps[shown] > 0)) {
+    return "";
+  }
+  const count = `A step costs ${Math.round(ops[shown] / steps[shown])} operations`;
+  return median
+    ? `${count}, ${quantity(median, "s", 2)} of computing (${quantity(Number(low), "s", 2)} to ${quantity(Number(high), "s", 2)} in the middle half of the frames).`
+    : `${count}.`;
+}
+
 /** What happened to a method until the frame shown, with numbers. */
 function happenedWords(data, m, shown) {
   const { history, latest } = data;
   const trend = trendOf(history, m, shown);
   const reason = latest?.methods[m]?.reason;
   if (trend.tone === "bad") {
-    return `It ${trend.word}${reason ? `: ${reason}` : ""}.`;
+    const end = history.ended[m];
+    return `It ${trend.word}${reason ? `: ${stopReason(reason, end, data.duration)}` : ""}.`;
   }
   const { off } = errorsOf(data)[m];
   let at = shown; // the reference may have no sample at the very frame shown
@@ -127,7 +146,8 @@ function happenedWords(data, m, shown) {
     Number.isNaN(off[at]) ? "" : `the error of position is ${quantity(off[at], "m")}`,
     `the energy has changed by ${quantity(history.columns[m].energy_change[shown], "J")}`,
   ];
-  return `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
+  const now = `After ${seconds(history.t[shown], data.duration)} ${listed(parts.filter(Boolean))}.`;
+  return [now, costWords(data, m, shown)].filter(Boolean).join(" ");
 }
 
 /**

@@ -5,8 +5,8 @@
 import { offReference } from "./reference.js";
 
 /**
- * `off` [m] and `energy` [J] are NaN where the reference has no sample; the worst ones are NaN
- * until the first sample. `worstGap` [m] needs no reference.
+ * `off` [m] is NaN where the reference has no sample, and `worstOff` until its first one. Energy [J]
+ * and gap [m] need no reference.
  * @typedef {{
  *   off: Float64Array, energy: Float64Array, worstOff: Float64Array, worstEnergy: Float64Array,
  *   worstGap: Float64Array,
@@ -33,20 +33,6 @@ function worse(before, value) {
 }
 
 /**
- * Energy gained or lost by the method [J]: the change since the start less the work of drives,
- * dampers and loads, which is zero for the true motion.
- * @param {import("./history.js").History} history
- * @param {any} reference
- * @param {number} m
- * @param {number} i
- */
-function energyError(history, reference, m, i) {
-  const k = history.frameAt(i) / (reference?.stride ?? 1);
-  const known = reference?.state === "ready" && Number.isInteger(k) && k < reference.energy.length;
-  return known ? history.columns[m].energy_change[i] : NaN;
-}
-
-/**
  * The errors of every method up to the newest frame.
  * @param {{history: import("./history.js").History, reference: any}} data
  * @returns {Errors[]} by method
@@ -66,7 +52,8 @@ export function errorsOf({ history, reference }) {
       const off = offReference(reference, frame, history.pointsAt(m, i));
       // a method that has ended keeps its last points: they are no error of a later time
       errors.off[i] = history.ended[m] < history.t[i] ? NaN : off;
-      errors.energy[i] = energyError(history, reference, m, i);
+      // less the work of drives, dampers and loads: zero for the true motion
+      errors.energy[i] = history.columns[m].energy_change[i];
       errors.worstOff[i] = worse(before("worstOff"), errors.off[i]);
       errors.worstEnergy[i] = worse(before("worstEnergy"), errors.energy[i]);
       errors.worstGap[i] = worse(before("worstGap"), gap);

@@ -18,6 +18,9 @@ export const COLUMNS = /** @type {const} */ ([
   "cpu",
   "steps",
   "pivot_ratio",
+  "work",
+  "sigma_min",
+  "lambda_max",
 ]);
 
 /** @typedef {ReturnType<typeof createHistory>} History */

@@ -86,6 +86,27 @@ export function beforeAndAfter(data, shown) {
   });
 }
 
+/**
+ * Why a run stopped, without a second time for the same event: a step that could not be finished is
+ * named by its end.
+ * @param {string} reason as the engine words it
+ * @param {number} end [s] of the run: its last good configuration
+ * @param {number} duration [s]
+ */
+export function stopReason(reason, end, duration) {
+  const found = /(?:^|\s)at t = ([-+.\de]+) s:?\s*/.exec(reason);
+  if (!found) {
+    return reason;
+  }
+  const [before, after] = [
+    reason.slice(0, found.index),
+    reason.slice(found.index + found[0].length),
+  ];
+  const words = [before, after].filter(Boolean).join(": ");
+  const later = Number(found[1]) > end * (1 + 1e-9);
+  return later ? `in the step to ${seconds(Number(found[1]), duration)}, ${words}` : words;
+}
+
 /** One sentence that stands for the drawing. */
 export function describeDrawing(data, shown) {
   const { scene, methods, view, history } = data;

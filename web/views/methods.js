@@ -2,6 +2,7 @@
 // @ts-check
 // The methods side by side: how each is drawn, the verdict on it, its gap, error, energy and cost.
 import { ROUNDING, bound, quantity, withPowers } from "../state/format.js";
+import { costWords } from "../state/cards.js";
 import { errorsOf } from "../state/errors.js";
 import { limits } from "../state/catalogue.js";
 import { cardOf, parseSpelling } from "../state/spelling.js";
@@ -253,6 +254,7 @@ export function createMethods(el, store, actions, openDialog) {
     say(parts.off, errorWords(m, last));
     say(parts.energy, quantity(column.energy_change[last], "J"));
     say(parts.cost, steps > 0 ? `${Math.round(column.ops[last] / steps)}/step` : "–");
+    set(parts.cost, { "data-tip": costWords(data, m, last) || null });
   }
 
   function paint() {

@@ -4,7 +4,8 @@
 // same words, not more often than every two seconds; methods that stop are announced at once.
 import { shownIndex, listen } from "../state/store.js";
 import { sentences } from "../state/verdict.js";
-import { beforeAndAfter, predictionAt } from "../state/words.js";
+import { seconds } from "../state/format.js";
+import { beforeAndAfter, predictionAt, stopReason } from "../state/words.js";
 import { h, say } from "../widgets/dom.js";
 
 const REDRAW = 120; // [ms]
@@ -45,7 +46,9 @@ export function createVerdictBar(el, store) {
       const end = data.history?.ended[m];
       const reason = data.latest?.methods[m]?.reason;
       return end <= data.history?.t[now]
-        ? [`${method.label} stopped at ${end.toFixed(3)} s${reason ? `: ${reason}` : ""}`]
+        ? [
+            `${method.label} stopped at ${seconds(end)}${reason ? `: ${stopReason(reason, end, data.duration)}` : ""}`,
+          ]
         : [];
     });
   }
