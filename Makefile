@@ -56,7 +56,7 @@ ROOMS_server       := terminal: lesson:terminal grade/parts: grade:grade/parts,l
                       http/studies:http/ground,http/request http/runs:http/ground,http/request \
                       http/routes:grade,lesson,http/ground,http/request,http/live,http/studies,http/runs \
                       cli/shell:terminal tui:terminal,cli/shell \
-                      cli/commands:grade,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
+                      cli/commands:grade,grade/parts,lesson,cli/shell,http/ground,http/request,http/routes,terminal,tui \
                       cli/study:terminal,cli/shell cli:terminal,cli/shell :cli
 
 # ---- variants: each has its own folder under build/ -----------------------------------------------------------
@@ -272,6 +272,7 @@ help:
 	@echo 'make figures      figures of hand-written programs measured again, kept in tests/tables/figures.txt'
 	@echo 'make references   the reference solution of every scene that has changed, for its lesson'
 	@echo 'make extreme      cases in which methods break, predicted and observed: tests/tables/extreme.txt'
+	@echo 'make exercises    every exercise over 200 seeds, right answers in five spellings: tests/tables/exercises.txt'
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format, types of the page'
@@ -280,7 +281,7 @@ help:
 	@echo 'make clean        remove build/'
 
 # ---- testing --------------------------------------------------------------------------------------------------
-.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures run-suite run-unit run-server run-bench run-fuzz reports
+.PHONY: test test-quick asan tsan fuzz bench bench-peers reference orders steps survival every-method rings sweep similarity long-runs extreme figures references report pictures exercises run-suite run-unit run-server run-bench run-fuzz reports
 test: build/.packages-test
 	@$(if $(WEB_READY)$(BROWSER_READY),$(MAKE) -s --no-print-directory $(WEB_READY) $(BROWSER_READY))
 	@$(MAKE) -s $(JOBS) --no-print-directory run-suite
@@ -346,6 +347,11 @@ every-method: build/.packages-test
 	@$(MAKE) -s $(JOBS) --no-print-directory $(PROGRAM)
 	@python3 tests/tables/every_method.py $(PROGRAM) >build/every_method.csv
 	@cp build/every_method.csv tests/tables/every_method.csv && python3 tests/tables/summary.py
+
+# half an hour on one processor; fails where a variant is bad
+exercises: all
+	@python3 tests/tables/exercises.py $(PROGRAM) >build/exercises.txt || { cat build/exercises.txt; exit 1; }
+	@cp build/exercises.txt tests/tables/exercises.txt && cat tests/tables/exercises.txt
 
 pictures: all
 	@python3 tests/scenes/pictures.py $(PROGRAM)

@@ -6,6 +6,7 @@
 #include "base/json_text.h"
 #include "grade/exam.h"
 #include "grade/mistakes.h"
+#include "grade/parts/part_list.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

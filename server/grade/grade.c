@@ -368,7 +368,7 @@ static void begin(hn_verdict *v, const hn_exercise *problem, uint64_t seed) {
     v->shown_entry = -1;
 }
 
-/// What reproduces the verdict later: the hash of the submission, and the submission if it is short.
+/// Keeps what reproduces the verdict: the hash of the submission, and the submission if short.
 static void keep_submission(hn_verdict *v, const char *text, size_t n) {
     v->submission_hash = hn_hash_mix(hn_hash_bytes(HN_HASH_START, text, n));
     if (n < sizeof v->submission) {

@@ -2,7 +2,8 @@
 #ifndef HN_GRADE_PART_H
 #define HN_GRADE_PART_H
 // A part of an exercise: one question with one kind of answer. The kinds are rows of one table;
-// each row is one file part_*.c. A part is read from its JSON node where it is used: the exercise
+// each row is one file part_*.c
+// (part_list.h). A part is read from its JSON node where it is used: the exercise
 // has been tried as a whole when it was loaded (exercise_check.h).
 
 #include "grade/parts/draw.h"
@@ -47,14 +48,6 @@ typedef struct hn_part_kind {
     hn_status (*prove)(const hn_part *p, hn_diag *diag);
 } hn_part_kind;
 
-extern const hn_part_kind hn_part_values, hn_part_choice, hn_part_matrix, hn_part_blocks,
-    hn_part_basis, hn_part_example, hn_part_order, hn_part_method;
-
-/// The kind of a name ("number", "choice" ...); NULL with a near miss in diag.
-const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag);
-/// Checks id, kind, points and that every member is known. `node` is the JSON of the part.
-HN_MUST_CHECK hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag);
-
 // ---- for the kinds ----
 
 /// Fills a result: wrong, with a mistake and a sentence. `share` of the points is given for it.
@@ -63,7 +56,7 @@ void hn_part_wrong(hn_part_result *r, const char *mistake, double share, const c
 /// Fills a result for an answer that cannot be read.
 void hn_part_unreadable(hn_part_result *r, const char *format, ...) HN_PRINTF(2, 3);
 void hn_part_right(hn_part_result *r);
-/// The i-th object of "faults"; NULL after the last. Its "id", its share ("share", 0 when left out).
+/// The i-th object of "faults"; NULL after the last.
 const cJSON *hn_part_fault_at(const hn_part *p, int i);
 const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none
 double hn_part_number(const cJSON *node, const char *key, double otherwise);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A basis of the null space of a Jacobian, as formulas: any basis is right. J N = 0 and the rank of
 // N are tested at random states.
-#include "grade/parts/part.h"
+#include "grade/parts/part_list.h"
 
 #include "grade/parts/spelling.h"
 #include "linalg/svd.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A linear system of blocks, [A B; C D] [x; y] = [b; c], graded by solving it with random matrices:
 // any order of rows, any sign of an unknown, and any equivalent form is right.
+#include "grade/parts/part_list.h"
 #include "grade/parts/world.h"
 #include "linalg/lu.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A choice among options, and the reason for it among reasons. The letters are dealt out anew for
 // every seed. Half of the points are for the choice, half for the reason.
-#include "grade/parts/part.h"
+#include "grade/parts/part_list.h"
 
 #include <ctype.h>
 #include <stdio.h>

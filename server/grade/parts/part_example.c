@@ -8,6 +8,7 @@
 // Tests: symmetric, definite, semidefinite, full-rank (columns), rows-independent, singular,
 // nonsingular: of a formula of matrices; at-most-zero, zero, nonzero: of a formula with one value;
 // positive: of a formula of the numbers.
+#include "grade/parts/part_list.h"
 #include "grade/parts/world.h"
 
 #include "linalg/svd.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A formula of matrices, compared with the reference at random matrices that have the properties
 // their names stand for (J N = 0, M symmetric and definite): any form of a right answer is right.
+#include "grade/parts/part_list.h"
 #include "grade/parts/world.h"
 
 #include <math.h>

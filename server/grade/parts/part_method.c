@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A method with its options that meets an error target within a cost. The method of the answer is
 // run on the scene, and its coordinates at the end are compared with those of the reference method.
-#include "grade/parts/part.h"
+#include "grade/parts/part_list.h"
 
 #include "integrators/method/method_spec.h"
 #include "session/model/model.h"

@@ -4,7 +4,7 @@
 // out is judged. (On a circle the projection of q would not turn J, and a wrong order would go
 // unseen.) The stages are those of the exercise's Problem: assemble, solve, integrate,
 // project-position, project-velocity.
-#include "grade/parts/part.h"
+#include "grade/parts/part_list.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 // with it at the numbers of the variant (number, vector), or at random states (formula, formulas).
 // A wrong entry is compared with the mistakes that the exercise lists, then with those that every
 // formula invites.
-#include "grade/parts/part.h"
+#include "grade/parts/part_list.h"
 
 #include "expr/construct.h"
 #include "expr/diff.h"

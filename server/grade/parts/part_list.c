@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "grade/parts/part_list.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    const hn_part_kind *kind;
+} KINDS[] = {
+    {"number", &hn_part_values},   {"vector", &hn_part_values}, {"formula", &hn_part_values},
+    {"formulas", &hn_part_values}, {"choice", &hn_part_choice}, {"matrix", &hn_part_matrix},
+    {"blocks", &hn_part_blocks},   {"basis", &hn_part_basis},   {"example", &hn_part_example},
+    {"order", &hn_part_order},     {"method", &hn_part_method},
+};
+enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
+
+const hn_part_kind *hn_part_kind_find(const char *name, hn_diag *diag) {
+    const char *names[N_KINDS];
+    for (int i = 0; i < N_KINDS; i++) {
+        names[i] = KINDS[i].name;
+        if (strcmp(KINDS[i].name, name) == 0) {
+            return KINDS[i].kind;
+        }
+    }
+    hn_diag_set(diag, HN_ERR_INPUT, "/parts/kind", hn_nearest_name(name, names, N_KINDS),
+                "there is no kind of answer '%.40s'", name);
+    return NULL;
+}
+
+/// 1 when the word stands in a list separated by blanks.
+static int lists(const char *list, const char *word) {
+    const size_t n = strlen(word);
+    for (const char *p = strstr(list, word); p; p = strstr(p + 1, word)) {
+        if ((p == list || p[-1] == ' ') && (p[n] == ' ' || p[n] == 0)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+hn_status hn_part_open(hn_part *p, const cJSON *node, hn_diag *diag) {
+    p->node = node;
+    p->id = hn_part_text(node, "id");
+    p->points = hn_part_number(node, "points", -1);
+    p->kind = hn_part_kind_find(hn_part_text(node, "kind"), diag);
+    if (!p->kind) {
+        return HN_ERR_INPUT;
+    }
+    if (!p->id[0] || strlen(p->id) > 16 || !(p->points >= 0)) {
+        return hn_diag_set(diag, HN_ERR_INPUT, "/parts", NULL,
+                           "a part needs an id of 1 to 16 characters and points from 0");
+    }
+    const cJSON *m;
+    cJSON_ArrayForEach(m, node) {
+        if (!lists("id kind points ask about", m->string) && !lists(p->kind->fields, m->string)) {
+            return hn_diag_set(diag, HN_ERR_INPUT, "/parts", p->kind->fields,
+                               "part %s has a field '%.40s' that this kind does not read", p->id,
+                               m->string);
+        }
+    }
+    return HN_OK;
+}
