@@ -8,7 +8,7 @@ import json
 import subprocess
 import sys
 
-METHODS = ["projection@rk4:h=0.005", "projection@dop853:rtol=1e-8", "symmetric-projection@midpoint:h=0.005", "partitioning@gauss2:h=0.005",
+METHODS = ["projection@rk4:h=0.005", "projection@dop853:rtol=1e-8", "symmetric-projection@midpoint:h=0.005", "symmetric-projection@gauss2:h=0.005", "partitioning@gauss2:h=0.005",
            "reduced@rk4:h=0.005"]
 
 

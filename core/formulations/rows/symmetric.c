@@ -20,17 +20,20 @@
 //  phi(q1) = 0,  J1 v1 + phi_t = 0                                                         (2)
 //
 // The same mu and nu push off the manifold and back on: with a symmetric Psi the whole step is
-// symmetric, which the usual projection is not, and energy stays bounded. mu and nu by quasi-Newton
-// with 2 S0, S = J M^-1 J'; each turn costs a step of Psi. Source: Hairer 2000; Hairer, Lubich &
-// Wanner 2006, section V.4.1.
+// symmetric, which the usual projection is not, and the energy of a motion that runs back on its
+// way stays bounded. That of a crank that turns one way round need not: there it grows like t h^p.
+// mu and nu by Broyden's method from 2 S0, S = J M^-1 J'; each turn costs a step of Psi. Source:
+// Hairer 2000; Hairer, Lubich & Wanner 2006, section V.4.1; Faou, Hairer & Pham 2004 (energy);
+// Kelley 1995, section 7.3 (Broyden's method from its steps alone).
 
-enum { MAX_TURNS = 40 };
+enum { MAX_TURNS = 40, KEPT_TURNS = 10 };
 static const double ROUNDING = 4 * DBL_EPSILON; // of coordinates and speeds: as far as (2) is met
 static const double COARSE = 1e3;               // times that, where it gets no better
 // a direction in which J is weaker cannot be trusted to close anything, and a row that is short at
 // this pose is mostly rounding if stretched: pushed along either, the step starts somewhere else
 static const double RANK_TOL = 1e-7;
 static const double ROW_FLOOR = 0.05;
+static const double LEAST_PIVOT = 0.1; // of Broyden's method: a smaller one would take a leap
 
 typedef struct symmetric {
     hn_accel_ode ode; // first
@@ -39,6 +42,7 @@ typedef struct symmetric {
     hn_saddle_ws *saddle;
     double length;
     double *mu, *nu, *rate, *x;                  // nc
+    double *steps[KEPT_TURNS + 1];               // 2 nc: of (mu, h nu), in the last turns
     double *N0_mu, *N0_nu, *N1_mu, *push, *zero; // nv
     double *L, *L0, *J0; // nv x nv, nv x nv, nc x nv: factors of M here and at the start, J there
     double *unit;        // nv: see unit_scales.h
@@ -79,6 +83,10 @@ static hn_status create(const hn_system *sys, const double *options, hn_arena *a
     }
     for (size_t i = 0; i < sizeof of_nc / sizeof *of_nc; i++) {
         *of_nc[i] = hn_arena_doubles(arena, nc);
+    }
+
+    for (int i = 0; i <= KEPT_TURNS; i++) {
+        s->steps[i] = hn_arena_doubles(arena, 2 * nc);
     }
 
     // factors, and copies of the start of the step
@@ -217,20 +225,43 @@ static hn_status land(symmetric *s, double t1, double *y, double *q1, double *wo
     return isfinite(*worst) ? HN_OK : HN_ERR_NO_CONVERGENCE;
 }
 
-// mu -= (2 S0)^-1 phi, nu -= (2 S0)^-1 (J v + phi_t)
-static hn_status correct(symmetric *s) {
+// z (2 nc) = -((2 S0)^-1 phi, h (2 S0)^-1 (J v + phi_t))
+static hn_status correct_simply(symmetric *s, double h, double *z) {
+    const int nc = s->ode.base.nc;
     const double *residual[] = {s->phi, s->rate};
-    double *multiplier[] = {s->mu, s->nu};
+    const double factor[] = {0.5, 0.5 * h};
+    memset(z, 0, 2 * (size_t)nc * sizeof *z);
     for (int i = 0; i < 2; i++) {
         // K [a; -x] = [0; -r] has x = -S0^-1 r; a is not wanted
-        const hn_status status =
-            hn_saddle_apply(s->zero, residual[i], s->push, s->x, NULL, s->saddle);
-        if (status != HN_OK) {
-            return status;
-        }
-        hn_axpy(s->ode.base.nc, 0.5, s->x, multiplier[i]);
+        HN_TRY(hn_saddle_apply(s->zero, residual[i], s->push, s->x, NULL, s->saddle));
+        hn_axpy(nc, factor[i], s->x, z + i * nc);
         s->ode.base.cost.solves++;
     }
+    return HN_OK;
+}
+
+// The next correction of (mu, nu): that by S0, with what the *n steps before it have taught. Where
+// as many are kept as there is room for, the next begins anew.
+static hn_status correct(symmetric *s, double h, int *n) {
+    const int nc = s->ode.base.nc, size = 2 * nc;
+    *n = *n > KEPT_TURNS ? 0 : *n;
+    double *z = s->steps[*n];
+    HN_TRY(correct_simply(s, h, z));
+
+    for (int j = 0; j < *n; j++) {
+        const double *step = s->steps[j];
+        const double square = hn_dot(size, step, step), along = hn_dot(size, step, z);
+        if (j + 1 < *n) {
+            hn_axpy(size, along / square, s->steps[j + 1], z);
+        } else if (fabs(1 - along / square) > LEAST_PIVOT) {
+            hn_axpy(size, 1 / (1 - along / square) - 1, z, z);
+        }
+    }
+
+    // a step of nothing teaches nothing
+    *n = hn_dot(size, z, z) > 0 ? *n + 1 : 0;
+    hn_axpy(nc, 1, z, s->mu);
+    hn_axpy(nc, 1 / h, z + nc, s->nu);
     s->ode.base.cost.newton++;
     return HN_OK;
 }
@@ -275,6 +306,7 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
                              const double *y, double *y_new, double *err) {
     symmetric *s = self;
     double worst = HUGE_VAL, last;
+    int n = 0;
     if (s->ode.base.nc == 0) {
         return hn_step_call_make(base, t, h, y, y_new, err);
     }
@@ -290,7 +322,7 @@ static hn_status around_step(void *self, const hn_step_call *base, double t, dou
             return worst > 1 ? polish(s, y_new) : HN_OK;
         }
         if (status == HN_OK) {
-            status = correct(s);
+            status = correct(s, h, &n);
             push_along(s, s->L0, s->J0, s->mu, s->N0_mu);
             push_along(s, s->L0, s->J0, s->nu, s->N0_nu);
         }
@@ -313,16 +345,19 @@ const hn_formulation hn_formulation_symmetric_projection = {
     .short_name = "symm. proj.",
     .rule = "Push the state off the closed loops before the step and back on after it by "
             "the same amount. The step is then symmetric in time, and the energy error "
-            "stays bounded.",
+            "of a motion that swings to and fro stays bounded.",
     .drift = "none: gap and velocity violation at rounding level; with a symmetric "
-             "integrator the energy error stays bounded",
+             "integrator the energy error of a swing stays bounded, that of a crank that keeps "
+             "turning grows slowly",
     .when = "long conservative runs with midpoint or Gauss methods",
     .when_not = "short runs (each step costs several of the integrator's); massless links; "
                 "steps chosen by an error estimate",
-    .source = "Hairer 2000; Hairer, Lubich & Wanner 2006, V.4.1",
+    .source = "Hairer 2000; Hairer, Lubich & Wanner 2006, V.4.1; Faou, Hairer & Pham 2004",
     .needs = "M f phi J gamma",
     .order_note = "the integrator's in q, v and recomputed lambda",
-    .limits = "the energy error stays bounded with symmetric integrators only",
+    .limits = "the energy error stays bounded with symmetric integrators only, and for motions "
+              "that run back on their way: along a crank that turns one way round it grows like "
+              "t h^p",
     .index = 1,
     .traits = HN_TRAIT_CLOSES_POSITION | HN_TRAIT_CLOSES_VELOCITY | HN_TRAIT_NEEDS_MASS_INVERSE,
     .create = create,

@@ -6,6 +6,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 bool hn_energy_is_conservative(const hn_system *sys) {
     const hn_scene *scene = hn_system_scene(sys);
@@ -85,6 +87,23 @@ static void check_jump(hn_watch *w) {
     hn_incident_report(w, &hn_incident_energy_jump, "energy change", e->change, limit,
                        "the energy changed by %.3g J in one step, more than %.3g J", e->change,
                        limit);
+}
+
+/// Of the largest kinetic energy and the range of the potential: a motion whose energy has changed
+/// by more is another motion.
+static const double ANOTHER = 0.2;
+
+void hn_energy_explain(const hn_watch *w, char why[256]) {
+    const hn_energy_record *e = &w->energy;
+    const double change = e->last - e->start;
+    const double size = e->t_max + (e->v_max - e->v_min);
+    const size_t used = strlen(why);
+    if (e->conservative && fabs(change) > ANOTHER * size) {
+        snprintf(why + used, 256 - used,
+                 "; the energy had changed by %.3g J before, so this is no longer the motion that "
+                 "began",
+                 change);
+    }
 }
 
 const hn_incident_kind hn_incident_energy_drift = {

@@ -12,5 +12,7 @@ bool hn_energy_is_conservative(const hn_system *sys);
 void hn_energy_start(hn_watch *w);
 /// Adds the state measured last to the record.
 void hn_energy_record_state(hn_watch *w);
+/// Appends to the reason of a failed iteration that the energy has long been wrong, where it is.
+void hn_energy_explain(const hn_watch *w, char why[256]);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "formulations/ground/flops.h"
 #include "study/incidents/chart.h"
+#include "study/incidents/energy.h"
 #include "study/incidents/failure.h"
 #include "study/incidents/pose.h"
 #include "study/incidents/stiffness.h"
@@ -81,6 +82,7 @@ static hn_status fail(hn_run *run, hn_status status) {
     }
     if (status == HN_ERR_NO_CONVERGENCE || status == HN_ERR_INCONSISTENT) {
         hn_pose_explain(&run->watch, run->reason);
+        hn_energy_explain(&run->watch, run->reason);
     }
     hn_failure_report(&run->watch, status, run->reason);
     return status;
