@@ -161,6 +161,18 @@ $(TABLES): %: %.o $(call archive,support) $(LIBRARY)
 	$(call say,link $@)
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
+# the name of a build holds the hash of its sources; the file is new only when they are
+SOURCES_HASH := $(OUT)/generated/sources_hash.h
+.PHONY: sources-hash
+sources-hash:
+	@mkdir -p $(dir $(SOURCES_HASH))
+	@hash=$$(LC_ALL=C cat $(sort $(wildcard core/*/*.[ch] core/*/*/*.[ch] server/*.[ch] server/*/*.[ch] server/*/*/*.[ch])) | sha256sum | cut -c 1-12); \
+	    echo "#define HN_SOURCES_HASH \"$$hash\"" >$(SOURCES_HASH).new; \
+	    cmp -s $(SOURCES_HASH).new $(SOURCES_HASH) && rm $(SOURCES_HASH).new || mv $(SOURCES_HASH).new $(SOURCES_HASH)
+$(SOURCES_HASH): sources-hash ;
+$(OUT)/server/build.o: $(SOURCES_HASH)
+$(OUT)/server/build.o: CPPFLAGS += -I$(dir $(SOURCES_HASH))
+
 # VARIANT=fuzz alone has what they need; a comparison is changed without its thread
 $(FUZZERS): %: %.o $(call objects,$(FUZZ_SUPPORT)) $(call archive,server) $(LIBRARY)
 	$(call say,link $@)
@@ -276,6 +288,7 @@ help:
 	@echo 'make report       six scenes by twelve methods in five minutes: build/report.html, every plot in build/report/'
 	@echo 'make pictures     a picture of every scene, for its lesson'
 	@echo 'make check        warnings as errors (gcc, clang), layers, lone headers, format, types of the page'
+	@echo 'make check-openapi the description of the API by the default rules of Redocly and Spectral'
 	@echo 'make format       put every C file into the one format'
 	@echo 'make install      into PREFIX=/usr/local (DESTDIR for packagers)'
 	@echo 'make clean        remove build/'
@@ -426,7 +439,7 @@ run-bench: $(BENCH)
 	@for b in $(BENCH); do echo "# $$b"; $$b || exit 1; done
 
 # ---- checking -------------------------------------------------------------------------------------------------
-.PHONY: check check-house test-map check-layers check-width check-names check-circles check-licence check-headers check-format check-web format
+.PHONY: check check-house test-map check-layers check-width check-names check-circles check-licence check-openapi check-headers check-format check-web format
 check: build/.packages-check check-house
 	@$(MAKE) -s --no-print-directory check-headers
 	@$(MAKE) -s $(JOBS) --no-print-directory VARIANT=gcc programs
@@ -475,6 +488,17 @@ check-headers:
 # the page and its tests: one format, types as the comments say, no module too long
 check-web: $(WEB_READY) $(BROWSER_READY)
 	@npm --prefix tests/browser run --silent check
+
+# the description of the API by the default rules of two linters: no error, no warning
+OPENAPI_LINTERS := @redocly/cli@2.77.0 @stoplight/spectral-cli@6.16.3
+check-openapi: all
+	@mkdir -p build/openapi
+	@cd build/openapi && { [ -d node_modules/@stoplight ] || npm install --silent --no-audit --no-fund --no-save $(OPENAPI_LINTERS); }
+	@python3 tests/tools/openapi.py $(PROGRAM) >build/openapi/openapi.json
+	@echo 'extends: ["spectral:oas"]' >build/openapi/.spectral.yaml
+	@cd build/openapi && npx redocly lint --extends=recommended openapi.json >redocly.txt 2>&1; \
+	    grep -q 'is valid' redocly.txt && ! grep -Eq '[0-9]+ (warning|error)' redocly.txt || { cat redocly.txt; exit 1; }
+	@cd build/openapi && npx spectral lint --fail-severity=warn openapi.json && echo 'check-openapi: no error, no warning'
 
 check-format:
 	@clang-format --dry-run --Werror $(ALL_C) $(EXAMPLES) $(HEADERS)

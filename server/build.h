@@ -4,12 +4,9 @@
 // What this program calls itself.
 
 #define HN_VERSION "0.1.0"
-#ifdef __clang__
-#define HN_COMPILER "clang " __clang_version__
-#else
-#define HN_COMPILER "gcc " __VERSION__
-#endif
-/// Same scene, method and build give the same numbers; so the compiler is part of the name.
-#define HN_BUILD HN_VERSION " " HN_COMPILER
+
+/// "0.1.0 3f2a9c81d4e0 gcc 12.2.0": version, hash of the sources, compiler. Same scene, method and
+/// build give the same numbers.
+const char *hn_build_name(void);
 
 #endif

@@ -112,10 +112,10 @@ static hn_exit print_version(const hn_library *lib, const hn_args *args) {
         hn_json_object(&b);
         hn_json_put_string(&b, "name", "holonom");
         hn_json_put_string(&b, "version", HN_VERSION);
-        hn_json_put_string(&b, "build", HN_BUILD);
+        hn_json_put_string(&b, "build", hn_build_name());
         hn_json_end_object(&b);
     } else {
-        hn_strbuf_printf(&b, "holonom %s\n", HN_BUILD);
+        hn_strbuf_printf(&b, "holonom %s\n", hn_build_name());
     }
     return hn_cli_print(&b);
 }

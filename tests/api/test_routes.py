@@ -17,6 +17,13 @@ METHODS = ["index1@rk4:h=1e-3", "projection@rk4:h=1e-3"]
 
 
 class Catalogue(driver.ServerCase):
+    def test_every_answer_names_the_build(self):
+        """Version, hash of the sources, compiler."""
+        build = self.server.ask("GET", "/api/v1/").json()["build"]
+        self.assertRegex(build, r"^0\.1\.0 [0-9a-f]{12} (gcc|clang) [0-9]+\.")
+        for method, path in (("GET", "/"), ("GET", "/healthz"), ("GET", "/nowhere"), ("POST", "/api/v1/terms"), ("GET", "/api/v1/scenes/four-bar")):
+            self.assertEqual(self.server.ask(method, path).headers["holonom-build"], build, path)
+
     def get(self, path):
         answer = self.server.ask("GET", path)
         self.assertEqual(answer.status, 200, answer.body[:300])

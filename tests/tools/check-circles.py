@@ -82,7 +82,7 @@ def circles(graph):
 
 
 def place(source):
-    """Layer and room of a source: all folders between the layer and the file, "" for a file outside all rooms."""
+    """Layer and room of a source: all folders between the layer and the file, "" for a file outside all rooms, which all may use."""
     parts = source.split("/")
     parts = parts[1:] if parts[0] == "core" else parts
     return parts[0], "/".join(parts[1:-1])
@@ -97,7 +97,7 @@ def climbs(graph, layers, rooms):
             other, other_room = place(target)
             if other != layer and other not in layers.get(layer, ()):
                 yield source, f"{source}: uses {name} of {target}: layer {layer} may not use layer {other}"
-            elif other == layer in with_rooms and other_room != room and other_room not in rooms.get(f"{layer}.{room}", ()):
+            elif other == layer in with_rooms and other_room not in ("", room) and other_room not in rooms.get(f"{layer}.{room}", ()):
                 yield source, f"{source}: uses {name} of {target}: room {room} may not use room {other_room}"
 
 

@@ -178,7 +178,7 @@ static hn_status prepare(command *c, hn_diags *diags) {
     c->request.lib = c->lib;
     c->request.load = load_with;
     c->request.load_user = c;
-    c->request.build = HN_BUILD;
+    c->request.build = hn_build_name();
     c->request.limits.folder = hn_cache_folder(c->args, c->folder);
     c->request.limits.stop = hn_is_interrupted;
     c->request.limits.progress = show_progress;

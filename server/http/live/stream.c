@@ -52,7 +52,7 @@ static void put_hello(hn_stream *s) {
     hn_strbuf_init(&b);
     hn_json_object(&b);
     hn_json_put_int(&b, "schema", SCHEMA);
-    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_put_string(&b, "build", hn_build_name());
     hn_json_key(&b, "description");
     hn_session_put_json(&b, s->session);
     hn_json_end_object(&b);

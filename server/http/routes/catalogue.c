@@ -102,7 +102,7 @@ void hn_handle_index(hn_request *r) {
     hn_json_object(&b);
     hn_json_put_string(&b, "name", "holonom");
     hn_json_put_string(&b, "version", HN_VERSION);
-    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_put_string(&b, "build", hn_build_name());
     hn_json_key(&b, "links");
     hn_json_object(&b);
     for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
@@ -127,7 +127,7 @@ void hn_handle_health(hn_request *r) {
     hn_json_object(&b);
     hn_json_put_string(&b, "status", "ok");
     hn_json_put_string(&b, "version", HN_VERSION);
-    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_put_string(&b, "build", hn_build_name());
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }

@@ -2,6 +2,7 @@
 #include "http/routes/dispatch.h"
 
 #include "base/hash.h"
+#include "build.h"
 #include "http/request/guard.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
@@ -212,6 +213,7 @@ static void add_headers(hn_request *r, struct MHD_Response *response) {
     for (int i = 0; i < r->n_headers; i++) {
         add_header(response, r->headers[i].name, r->headers[i].value);
     }
+    add_header(response, "Holonom-Build", hn_build_name());
     add_header(response, "Content-Security-Policy", hn_static_files_policy(r->context->files));
     add_header(response, "X-Content-Type-Options", "nosniff");
     add_header(response, "Referrer-Policy", "no-referrer");

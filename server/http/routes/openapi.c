@@ -15,6 +15,8 @@
 #define NUMBERS "{\"type\":\"array\",\"items\":{\"type\":\"number\"}}"
 #define MAYBE_NUMBER "{\"type\":[\"number\",\"null\"]}"
 #define TEXTS "{\"type\":\"array\",\"items\":{\"type\":\"string\"}}"
+/// An array for each time; null where there is none.
+#define ROWS "{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER "}}"
 #define TEXT "{\"type\":\"string\"}"
 #define STATUS_NAME(value, name, text) ",\"" name "\""
 #define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
@@ -28,7 +30,8 @@ static const struct {
      "{\"type\":\"object\",\"required\":[\"runs\"],\"properties\":{\"runs\":" TEXTS "}}"},
     {"Samples",
      "{\"type\":\"object\",\"required\":[\"fields\",\"rows\",\"next_cursor\"],\"properties\":{"
-     "\"fields\":" TEXTS ",\"rows\":{\"type\":\"array\",\"items\":{\"type\":\"array\"}},"
+     "\"fields\":" TEXTS
+     ",\"rows\":{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":{}}},"
      "\"next_cursor\":{\"type\":[\"integer\",\"null\"]}}}"},
     {"Document", "{\"type\":\"object\"}"},
     {"Health",
@@ -36,7 +39,8 @@ static const struct {
      "\"version\":" TEXT ",\"build\":" TEXT "}}"},
     {"Index", "{\"type\":\"object\",\"required\":[\"name\",\"version\",\"links\",\"limits\","
               "\"routes\",\"incidents\"],\"properties\":{"
-              "\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "},"
+              "\"name\":" TEXT ",\"version\":" TEXT ",\"build\":" TEXT
+              ",\"links\":{\"type\":\"object\",\"additionalProperties\":" TEXT "},"
               "\"limits\":{\"type\":\"object\",\"additionalProperties\":{\"type\":\"number\"}},"
               "\"routes\":" OBJECTS ",\"incidents\":" OBJECTS "}}"},
     {"Scenes",
@@ -78,8 +82,8 @@ static const struct {
      "\"properties\":{\"scene\":" TEXT ",\"scene_hash\":" TEXT ",\"source\":" TEXT
      ",\"means\":" TEXTS
      ",\"time\":{\"type\":\"number\"},\"digits\":{\"type\":\"number\"},\"error\":{\"type\":"
-     "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS
-     ",\"motion\":{\"type\":\"object\"}}}"},
+     "\"object\"},\"coordinates\":" TEXTS ",\"t\":" NUMBERS ",\"energy\":" NUMBERS ",\"q\":" ROWS
+     ",\"v\":" ROWS ",\"lambda\":" ROWS ",\"motion\":{\"type\":\"object\"}}}"},
     {"Run",
      "{\"type\":\"object\",\"required\":[\"id\",\"state\",\"progress\",\"links\"],\"properties\":{"
      "\"id\":" TEXT ",\"state\":{\"enum\":[\"waiting\",\"running\",\"finished\"]},"
@@ -487,7 +491,7 @@ static void put_problem_answers(hn_strbuf *b, const hn_route_table *table) {
     hn_json_end_object(b);
 }
 
-static void put_components(hn_strbuf *b, const hn_route_table *table) {
+static void put_components(hn_strbuf *b, const hn_route_table *table, int with_token) {
     hn_json_key(b, "components");
     hn_json_object(b);
     hn_json_key(b, "schemas");
@@ -498,9 +502,11 @@ static void put_components(hn_strbuf *b, const hn_route_table *table) {
     }
     hn_json_end_object(b);
     put_problem_answers(b, table);
-    hn_json_key(b, "securitySchemes");
-    hn_json_raw(b, "{\"token\":{\"type\":\"http\",\"scheme\":\"bearer\",\"description\":"
-                   "\"The token that the server printed at its start, if it was given one.\"}}");
+    if (with_token) {
+        hn_json_key(b, "securitySchemes");
+        hn_json_raw(b, "{\"token\":{\"type\":\"http\",\"scheme\":\"bearer\",\"description\":"
+                       "\"The token that the server printed at its start.\"}}");
+    }
     hn_json_end_object(b);
 }
 
@@ -512,7 +518,7 @@ void hn_handle_openapi(hn_request *r) {
     hn_json_key(&b, "info");
     hn_json_object(&b);
     hn_json_put_string(&b, "title", "holonom");
-    hn_json_put_string(&b, "version", HN_BUILD);
+    hn_json_put_string(&b, "version", hn_build_name());
     hn_json_put_string(&b, "summary", "Mechanisms with closed loops, many methods on one clock");
     hn_json_put_string(
         &b, "description",
@@ -522,7 +528,7 @@ void hn_handle_openapi(hn_request *r) {
     hn_json_key(&b, "license");
     hn_json_raw(&b, "{\"name\":\"GPL-3.0-or-later\",\"identifier\":\"GPL-3.0-or-later\"}");
     hn_json_key(&b, "contact");
-    hn_json_raw(&b, "{\"name\":\"whoever runs this server\",\"url\":\"/\"}");
+    hn_json_raw(&b, "{\"name\":\"whoever runs this server\"}");
     hn_json_end_object(&b);
 
     // addresses are relative, so that a prefix of a proxy holds; nothing is asked of who calls
@@ -532,7 +538,7 @@ void hn_handle_openapi(hn_request *r) {
     hn_json_raw(&b, r->context->opts.token ? "[{\"token\":[]}]" : "[{}]");
     put_tags(&b);
     put_paths(&b, &r->context->routes);
-    put_components(&b, &r->context->routes);
+    put_components(&b, &r->context->routes, r->context->opts.token != NULL);
     hn_json_end_object(&b);
     hn_reply_json(r, MHD_HTTP_OK, &b);
 }

@@ -117,7 +117,7 @@ static hn_status name_question(hn_run_question *q, const hn_library *lib) {
     hn_strbuf b;
     hn_strbuf_init(&b);
     hn_json_object(&b);
-    hn_json_put_string(&b, "build", HN_BUILD);
+    hn_json_put_string(&b, "build", hn_build_name());
     put_scene(&b, &q->scene, lib);
     put_parameters(&b, &q->scene);
     hn_json_key(&b, "methods");
