@@ -110,7 +110,7 @@ static void put_origin(hn_strbuf *b, const hn_verdict *v) {
     hn_json_put_string(b, "seed", seed); // as text: a program may read numbers as doubles
     hn_json_put_int(b, "states", v->n_states);
     hn_json_put_string(b, "student", v->student);
-    hn_json_put_string(b, "build", HN_BUILD);
+    hn_json_put_string(b, "build", hn_build_name());
     hn_hash_hex(v->submission_hash, hash);
     hn_json_put_string(b, "submission_hash", hash);
     if (v->shown_entry >= 0) {

@@ -54,8 +54,8 @@ static void put_changes(hn_strbuf *b, const cJSON *old, const hn_verdict *v) {
     if (strcmp(text_of(old, "submission_hash"), hash) != 0) {
         hn_strbuf_add(b, "  the submission is another one than was graded\n");
     }
-    if (strcmp(text_of(old, "build"), HN_BUILD) != 0) {
-        hn_strbuf_printf(b, "  graded by %s, now by %s\n", text_of(old, "build"), HN_BUILD);
+    if (strcmp(text_of(old, "build"), hn_build_name()) != 0) {
+        hn_strbuf_printf(b, "  graded by %s, now by %s\n", text_of(old, "build"), hn_build_name());
     }
 }
 
